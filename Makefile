@@ -1,0 +1,90 @@
+# `make` alone lists the targets. Needs Python 3.11 or newer, make, and nothing else.
+
+PYTHON ?= python3
+VENV := .venv
+BIN := $(VENV)/bin
+# A target is up to date when its stamp is newer than pyproject.toml, so that a second run installs nothing.
+INSTALLED := $(VENV)/installed
+INSTALLED_DEV := $(VENV)/installed-dev
+# Only errors: warnings of pip are about the machine, not about this project.
+PIP_INSTALL := $(BIN)/python -m pip install -qq --disable-pip-version-check
+LOWEST := $(VENV)/lowest
+ARGS ?=
+
+.DEFAULT_GOAL := help
+# `make -j` runs one step after the other: tests that measure time do not share the machine, and two
+# installs do not share the environment.
+.NOTPARALLEL:
+.PHONY: help run test lint types imports pytest format bench soak lowest lock clean
+
+help: ## list the targets
+	@awk -F ':.*## ' '/^[a-z]+:.*## / {printf "  make %-8s %s\n", $$1, $$2}' $(firstword $(MAKEFILE_LIST))
+	@echo "  Variables: PYTHON=$(PYTHON) (interpreter), ARGS (for run: more options, for pytest: what to run)"
+
+run: $(INSTALLED) ## start the example robot; prints the address of its page
+	@$(BIN)/pilothouse serve $(ARGS)
+
+test: lint types imports pytest ## everything that has to pass: lint, types, imports, tests
+
+lint: $(INSTALLED_DEV) ## ruff: lint and format
+	@$(BIN)/ruff check .
+	@$(BIN)/ruff format --check .
+
+types: $(INSTALLED_DEV) ## mypy, strict
+	@$(BIN)/mypy
+
+imports: $(INSTALLED_DEV) ## who may import whom
+	@$(BIN)/lint-imports --no-cache --no-logo
+
+pytest: $(INSTALLED_DEV) ## the tests; one of them with ARGS=tests/unit/test_structure.py
+	@$(BIN)/pytest -rs $(ARGS)
+
+format: $(INSTALLED_DEV) ## let ruff format and fix what it can
+	@$(BIN)/ruff check --fix .
+	@$(BIN)/ruff format .
+
+bench: $(INSTALLED_DEV) ## measure latency, jitter and cost
+	@$(BIN)/pytest -s -m bench --timeout=0 $(ARGS)
+
+soak: $(INSTALLED_DEV) ## all tests with many more generated examples, and those that run for minutes
+	@PILOTHOUSE_SOAK=1 $(BIN)/pytest -rs -m "not bench and not browser" --timeout=0 $(ARGS)
+
+lowest: $(INSTALLED_DEV) ## the tests, with the oldest dependencies that pyproject.toml allows
+	@$(PIP_INSTALL) uv
+	@$(BIN)/uv pip compile --quiet --resolution lowest-direct --extra dev \
+	  --output-file $(LOWEST)/requirements.txt pyproject.toml
+	@$(BIN)/python -m venv $(LOWEST)
+	@$(LOWEST)/bin/python -m pip install -qq --disable-pip-version-check \
+	  --requirement $(LOWEST)/requirements.txt --editable .
+	@$(LOWEST)/bin/pytest -rs -p no:cacheprovider $(ARGS)
+
+lock: $(INSTALLED_DEV) ## renew requirements.lock
+	@$(PIP_INSTALL) uv
+	@{ echo "# For installs that are the same everywhere, as in the image; made by \`make lock\`."; \
+	   echo "# Use: pip install --require-hashes -r requirements.lock && pip install --no-deps ."; \
+	   $(BIN)/uv pip compile --quiet --universal --upgrade --generate-hashes --no-annotate \
+	     --no-header --no-emit-index-url --no-emit-find-links pyproject.toml; } > requirements.lock.new
+	@mv requirements.lock.new requirements.lock
+
+clean: ## remove the environment, caches and builds
+	rm -rf $(VENV) build dist *.egg-info .hypothesis .import_linter_cache .mypy_cache .pytest_cache .ruff_cache
+	find api domain service web tests -name __pycache__ -type d -prune -exec rm -rf {} +
+
+$(BIN)/python:
+	@$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11))' 2>/dev/null || { \
+	  echo "Pilothouse needs Python 3.11 or newer, and '$(PYTHON)' is: $$($(PYTHON) --version 2>&1)." >&2; \
+	  echo "Name another one, as in: make PYTHON=python3.12 $(MAKECMDGOALS)" >&2; exit 1; }
+	@echo "Creating $(VENV) ..."
+	@$(PYTHON) -m venv $(VENV) || { rm -rf $(VENV); \
+	  echo "'$(PYTHON) -m venv' failed; on Debian and Ubuntu: apt install python3-venv" >&2; exit 1; }
+
+# Order only after `|`: the interpreter's own date says nothing about what is installed.
+$(INSTALLED): pyproject.toml | $(BIN)/python
+	@echo "Installing Pilothouse into $(VENV) (some seconds) ..."
+	@$(PIP_INSTALL) --editable .
+	@touch $@
+
+$(INSTALLED_DEV): pyproject.toml | $(BIN)/python
+	@echo "Installing Pilothouse and its development tools into $(VENV) (about half a minute) ..."
+	@$(PIP_INSTALL) --editable '.[dev]'
+	@touch $@ $(INSTALLED)

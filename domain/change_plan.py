@@ -1,0 +1,158 @@
+"""What a change asks of each part, and the steps that lead a node there.
+
+Pure functions: the same plan is shown by a dry run and followed by a change.
+
+Source: deliverable D4.8, 4.1.2; the wishes in micro-ROS system_modes issues #25 and #27 (find the
+path of transitions) and #60 (no redundant requests).
+"""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import TypeAlias
+
+from domain.lifecycle import LifecycleState, Transition, arrival, path
+from domain.messages import ChangeRequest, ModeRequest, ParametersRequest
+from domain.node_facts import NodeFacts
+from domain.system_model import (
+    DEFAULT_MODE,
+    ModeName,
+    Parameters,
+    PartName,
+    SmhModel,
+    StateAndMode,
+    same_value,
+)
+
+
+@dataclass(frozen=True, slots=True)
+class SetParameters:
+    """The step that sets parameters, all or none."""
+
+    values: Parameters
+
+
+Action: TypeAlias = Transition | SetParameters
+
+
+@dataclass(frozen=True, slots=True)
+class NodeGoal:
+    """Where a node shall end."""
+
+    state: LifecycleState | None
+    """None: whatever it is in."""
+    mode: ModeName | None = None
+    parameters: Parameters = field(default_factory=dict)
+
+
+@dataclass(frozen=True, slots=True)
+class ChangeGoal:
+    """What a request means for the asked part and all parts below it."""
+
+    targets: Mapping[PartName, StateAndMode]
+    """New targets; empty for a request that sets parameters only."""
+    nodes: Mapping[PartName, NodeGoal]
+
+
+def goal_of(
+    model: SmhModel, request: ChangeRequest, facts: Mapping[PartName, NodeFacts]
+) -> ChangeGoal:
+    """Return what `request` asks of each part; part and mode must be known.
+
+    Activating without naming a mode means `__DEFAULT__`. Nodes that a request to a system passes
+    by, such as an unconfigured one when the system is deactivated, keep the state they rest in.
+    """
+    if isinstance(request, ParametersRequest):
+        return ChangeGoal({}, {request.node: NodeGoal(None, None, dict(request.values))})
+    targets: dict[PartName, StateAndMode] = {}
+    if isinstance(request, ModeRequest):
+        wanted = StateAndMode(LifecycleState.ACTIVE, model.require_mode(request.part, request.mode))
+    elif request.transition is Transition.ACTIVATE:
+        mode = DEFAULT_MODE if model.modes_of(request.part) else None
+        wanted = StateAndMode(LifecycleState.ACTIVE, mode)
+    else:
+        wanted = StateAndMode(request.transition.goal)
+    _spread(model, request.part, wanted, targets)
+    for part in targets:
+        if part in facts and not isinstance(request, ModeRequest):
+            resting = _passed_by(facts[part].known_state, request.transition)
+            if resting is not None and part != request.part:
+                targets[part] = StateAndMode(resting)
+    nodes = {part: _node_goal(model, part, targets[part]) for part in targets if part in facts}
+    return ChangeGoal(targets, nodes)
+
+
+def _spread(
+    model: SmhModel, part: PartName, wanted: StateAndMode, targets: dict[PartName, StateAndMode]
+) -> None:
+    """Record what is wanted of `part`, and of all parts below it."""
+    targets[part] = wanted
+    system = model.systems.get(part)
+    if system is None:
+        return
+    if wanted.state is LifecycleState.ACTIVE:
+        for child, want in system.modes[wanted.mode or DEFAULT_MODE].items():
+            _spread(model, child, want, targets)
+    else:
+        for child in system.parts:
+            _spread(model, child, StateAndMode(wanted.state), targets)
+
+
+def _passed_by(state: LifecycleState, transition: Transition) -> LifecycleState | None:
+    """Return the state that a node keeps while `transition` is done to its system."""
+    if state is LifecycleState.FINALIZED:
+        return state
+    if transition is Transition.DEACTIVATE and state is LifecycleState.UNCONFIGURED:
+        return state
+    return None
+
+
+def _node_goal(model: SmhModel, node: PartName, target: StateAndMode) -> NodeGoal:
+    modes = model.nodes[node].modes
+    if target.state is LifecycleState.ACTIVE and modes:
+        mode = target.mode or DEFAULT_MODE
+        return NodeGoal(target.state, mode, modes[mode])
+    return NodeGoal(target.state)
+
+
+def next_steps(facts: NodeFacts, goal: NodeGoal) -> tuple[Action, ...] | None:
+    """Return the steps from where a node is, or will arrive, to its goal; None: there is no path.
+
+    Parameters are set before the node is activated, so that it never runs in a mode that nobody
+    asked for. The state must be known.
+    """
+    transitions: tuple[Transition, ...] | None = ()
+    if goal.state is not None:
+        start = arrival(facts.known_state)
+        if not facts.has_lifecycle:
+            transitions = () if goal.state is start else None
+        else:
+            transitions = path(start, goal.state)
+    if transitions is None:
+        return None
+    if not _parameters_missing(facts, goal):
+        return transitions
+    setting = SetParameters(goal.parameters)
+    if transitions and transitions[-1] is Transition.ACTIVATE:
+        return (*transitions[:-1], setting, transitions[-1])
+    return (*transitions, setting)
+
+
+def _parameters_missing(facts: NodeFacts, goal: NodeGoal) -> bool:
+    """Tell whether parameters must be set: a value differs, or the node reports another mode."""
+    if goal.mode is not None and facts.mode is not None and facts.mode != goal.mode:
+        return True
+    known = facts.parameters
+    return any(
+        name not in known or not same_value(known[name], value)
+        for name, value in goal.parameters.items()
+    )
+
+
+def presumed_steps(goal: NodeGoal) -> tuple[Action, ...]:
+    """Return the last step towards a goal, for a node of which nothing is known."""
+    if goal.state is None or goal.state is LifecycleState.UNKNOWN:
+        return (SetParameters(goal.parameters),)
+    for transition in Transition:
+        if transition.goal is goal.state:
+            return (transition,)
+    return ()

@@ -1,0 +1,204 @@
+"""The ROS 2 lifecycle of a node as a table, with the ids and labels of `lifecycle_msgs`.
+
+A reader can check `TRANSITIONS` against the standard line by line. Everything else in this module
+is derived from it.
+
+Source: ROS 2 design, "Managed nodes" (design.ros2.org/articles/node_lifecycle.html), and
+`lifecycle_msgs/msg/State` and `Transition`. Modes extend the state `active`: deliverable D4.8,
+4.1.1.3.
+"""
+
+from collections import deque
+from collections.abc import Mapping
+from dataclasses import dataclass
+from enum import StrEnum
+from types import MappingProxyType
+
+
+class LifecycleState(StrEnum):
+    """A primary or transitional state of a node; the value is the label in ROS 2."""
+
+    UNKNOWN = "unknown"
+    UNCONFIGURED = "unconfigured"
+    INACTIVE = "inactive"
+    ACTIVE = "active"
+    FINALIZED = "finalized"
+    CONFIGURING = "configuring"
+    CLEANING_UP = "cleaningup"
+    SHUTTING_DOWN = "shuttingdown"
+    ACTIVATING = "activating"
+    DEACTIVATING = "deactivating"
+    ERROR_PROCESSING = "errorprocessing"
+
+    @property
+    def id(self) -> int:
+        """Return the number of this state in `lifecycle_msgs/msg/State`."""
+        return _STATE_IDS[self]
+
+    @property
+    def is_primary(self) -> bool:
+        """Tell whether a node can rest in this state."""
+        return self in PRIMARY_STATES
+
+
+_STATE_IDS: Mapping[LifecycleState, int] = {
+    LifecycleState.UNKNOWN: 0,
+    LifecycleState.UNCONFIGURED: 1,
+    LifecycleState.INACTIVE: 2,
+    LifecycleState.ACTIVE: 3,
+    LifecycleState.FINALIZED: 4,
+    LifecycleState.CONFIGURING: 10,
+    LifecycleState.CLEANING_UP: 11,
+    LifecycleState.SHUTTING_DOWN: 12,
+    LifecycleState.ACTIVATING: 13,
+    LifecycleState.DEACTIVATING: 14,
+    LifecycleState.ERROR_PROCESSING: 15,
+}
+
+PRIMARY_STATES = frozenset(
+    {
+        LifecycleState.UNCONFIGURED,
+        LifecycleState.INACTIVE,
+        LifecycleState.ACTIVE,
+        LifecycleState.FINALIZED,
+    }
+)
+
+
+class Transition(StrEnum):
+    """A transition that can be asked of a node or a system."""
+
+    CONFIGURE = "configure"
+    CLEANUP = "cleanup"
+    ACTIVATE = "activate"
+    DEACTIVATE = "deactivate"
+    SHUTDOWN = "shutdown"
+
+    @property
+    def goal(self) -> LifecycleState:
+        """Return the primary state that this transition leads to when all goes well."""
+        return _GOALS[self]
+
+
+@dataclass(frozen=True, slots=True)
+class TransitionRule:
+    """One line of the lifecycle table."""
+
+    transition: Transition
+    id: int
+    """Number in `lifecycle_msgs/msg/Transition`; shutdown has one for each start."""
+    start: LifecycleState
+    via: LifecycleState
+    """The transitional state while the callback of the node runs."""
+    success: LifecycleState
+    failure: LifecycleState
+    """Where the node ends when its callback reports failure."""
+
+
+_S = LifecycleState
+_T = Transition
+TRANSITIONS: tuple[TransitionRule, ...] = (
+    #              transition     id  start            via               success          failure
+    TransitionRule(_T.CONFIGURE, 1, _S.UNCONFIGURED, _S.CONFIGURING, _S.INACTIVE, _S.UNCONFIGURED),
+    TransitionRule(_T.CLEANUP, 2, _S.INACTIVE, _S.CLEANING_UP, _S.UNCONFIGURED, _S.INACTIVE),
+    TransitionRule(_T.ACTIVATE, 3, _S.INACTIVE, _S.ACTIVATING, _S.ACTIVE, _S.INACTIVE),
+    TransitionRule(_T.DEACTIVATE, 4, _S.ACTIVE, _S.DEACTIVATING, _S.INACTIVE, _S.ACTIVE),
+    TransitionRule(_T.SHUTDOWN, 5, _S.UNCONFIGURED, _S.SHUTTING_DOWN, _S.FINALIZED, _S.FINALIZED),
+    TransitionRule(_T.SHUTDOWN, 6, _S.INACTIVE, _S.SHUTTING_DOWN, _S.FINALIZED, _S.FINALIZED),
+    TransitionRule(_T.SHUTDOWN, 7, _S.ACTIVE, _S.SHUTTING_DOWN, _S.FINALIZED, _S.FINALIZED),
+)
+"""An error in any callback leads to `errorprocessing` instead; see `ERROR_PROCESSED`."""
+
+ERROR_PROCESSED = LifecycleState.UNCONFIGURED
+"""Where a node goes from `errorprocessing` when its error handling succeeds."""
+
+ERROR_NOT_PROCESSED = LifecycleState.FINALIZED
+"""Where a node goes from `errorprocessing` when its error handling fails."""
+
+_GOALS: Mapping[Transition, LifecycleState] = {
+    rule.transition: rule.success for rule in TRANSITIONS
+}
+_RULES: Mapping[tuple[LifecycleState, Transition], TransitionRule] = MappingProxyType(
+    {(rule.start, rule.transition): rule for rule in TRANSITIONS}
+)
+_ARRIVALS: Mapping[LifecycleState, LifecycleState] = {
+    rule.via: rule.success for rule in TRANSITIONS
+}
+
+_REQUESTS: Mapping[Transition, frozenset[LifecycleState]] = MappingProxyType(
+    {
+        _T.CONFIGURE: frozenset({_S.UNCONFIGURED, _S.INACTIVE}),
+        _T.ACTIVATE: frozenset({_S.UNCONFIGURED, _S.INACTIVE, _S.ACTIVE}),
+        _T.DEACTIVATE: frozenset({_S.INACTIVE, _S.ACTIVE}),
+        _T.CLEANUP: frozenset({_S.UNCONFIGURED, _S.INACTIVE, _S.ACTIVE}),
+        _T.SHUTDOWN: frozenset({_S.UNCONFIGURED, _S.INACTIVE, _S.ACTIVE, _S.FINALIZED}),
+    }
+)
+"""Where a request is legal: its goal is met, or a path leads there that the request implies.
+
+Activate implies configure; cleanup and shutdown imply deactivate. Configure never deactivates, and
+deactivate never configures.
+"""
+
+
+def rule_for(start: LifecycleState, transition: Transition) -> TransitionRule | None:
+    """Return the line of the table for `transition` from `start`; None where there is none."""
+    return _RULES.get((start, transition))
+
+
+def arrival(state: LifecycleState) -> LifecycleState:
+    """Return the primary state that a node in `state` ends in when nothing goes wrong.
+
+    A primary state is its own arrival; `errorprocessing` arrives at `unconfigured`.
+    """
+    if state is LifecycleState.ERROR_PROCESSING:
+        return ERROR_PROCESSED
+    return _ARRIVALS.get(state, state)
+
+
+def is_legal_request(transition: Transition, start: LifecycleState) -> bool:
+    """Tell whether `transition` may be requested of a node that rests in `start`."""
+    return start in _REQUESTS[transition]
+
+
+def available_transitions(state: LifecycleState) -> tuple[Transition, ...]:
+    """Return the transitions that lead somewhere else and may be requested in `state`.
+
+    Wider than `get_available_transitions` of ROS 2 by the paths that a request implies: an
+    unconfigured node may be asked to activate, and is configured on the way.
+    """
+    return tuple(
+        transition
+        for transition in Transition
+        if is_legal_request(transition, state) and transition.goal is not state
+    )
+
+
+def path(start: LifecycleState, goal: LifecycleState) -> tuple[Transition, ...] | None:
+    """Return the shortest sequence of transitions between two primary states.
+
+    Shutdown is a step only towards `finalized`. Returns None where no path leads, as from
+    `finalized`.
+    """
+    return _PATHS.get((start, goal))
+
+
+def _paths_from(start: LifecycleState) -> dict[LifecycleState, tuple[Transition, ...]]:
+    """Search breadth first; on the way to `finalized` an active node is deactivated first."""
+    found: dict[LifecycleState, tuple[Transition, ...]] = {start: ()}
+    waiting = deque([start])
+    while waiting:
+        state = waiting.popleft()
+        for rule in TRANSITIONS:
+            if rule.start is not state or rule.success in found:
+                continue
+            if rule.start is _S.ACTIVE and rule.transition is _T.SHUTDOWN:
+                continue
+            found[rule.success] = (*found[state], rule.transition)
+            waiting.append(rule.success)
+    return found
+
+
+_PATHS: Mapping[tuple[LifecycleState, LifecycleState], tuple[Transition, ...]] = MappingProxyType(
+    {(start, goal): steps for start in PRIMARY_STATES for goal, steps in _paths_from(start).items()}
+)

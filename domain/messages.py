@@ -1,0 +1,213 @@
+"""What goes into the core and what comes out of it, as values.
+
+An *input* is a fact or a request. Everything that acts on the robot is a *command*; everything that
+was decided is an *event*, with the event that caused it.
+"""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import NewType, TypeAlias
+
+from domain.lifecycle import LifecycleState, Transition
+from domain.system_model import ModeName, Parameters, ParameterValue, PartName
+from domain.timebase import Instant
+
+ChangeId = NewType("ChangeId", str)
+
+SignalValue: TypeAlias = bool | float | str
+"""Of a boolean, numeric or enumerated signal, in this order."""
+
+
+# --- facts ---------------------------------------------------------------------------------------
+
+
+@dataclass(frozen=True, slots=True)
+class NodeReport:
+    """What a node, or the backend on its behalf, says about it; None: not said this time."""
+
+    node: PartName
+    state: LifecycleState | None = None
+    mode: ModeName | None = None
+    parameters: Parameters | None = None
+    """Merged by name into what is known."""
+    reachable: bool | None = None
+    has_lifecycle: bool | None = None
+    """False for a plain node: no lifecycle, it counts as active while it is reachable."""
+
+
+@dataclass(frozen=True, slots=True)
+class NodeAnswer:
+    """The answer of a node to a command: taken or refused. Taken is not done; a report is."""
+
+    request: int
+    node: PartName
+    accepted: bool
+    reason: str = ""
+
+
+@dataclass(frozen=True, slots=True)
+class Reading:
+    """One value of one signal."""
+
+    signal: str
+    value: SignalValue
+    stamp: Instant | None = None
+    """When the sender took it, moved to our clock; None: the sender did not say."""
+
+
+@dataclass(frozen=True, slots=True)
+class Readings:
+    """Readings that arrived together; all are taken, or none is."""
+
+    items: tuple[Reading, ...]
+    source: str
+    """Who measured: readings of `estop` are kept apart by it, and one cannot release another's."""
+    actor: str = ""
+
+
+@dataclass(frozen=True, slots=True)
+class BackendStatus:
+    """Whether nodes can be reached at all."""
+
+    available: bool
+    reason: str = ""
+
+
+@dataclass(frozen=True, slots=True)
+class TimePassed:
+    """Nothing but time."""
+
+
+# --- requests ------------------------------------------------------------------------------------
+
+
+@dataclass(frozen=True, slots=True)
+class ModeRequest:
+    """Bring a part into a mode; it is configured and activated on the way if it must be."""
+
+    part: PartName
+    mode: str
+    actor: str = ""
+
+
+@dataclass(frozen=True, slots=True)
+class TransitionRequest:
+    """Bring a part through a lifecycle transition."""
+
+    part: PartName
+    transition: Transition
+    actor: str = ""
+
+
+@dataclass(frozen=True, slots=True)
+class ParametersRequest:
+    """Set parameters of a node, all or none."""
+
+    node: PartName
+    values: Mapping[str, ParameterValue]
+    actor: str = ""
+
+
+@dataclass(frozen=True, slots=True)
+class CancelRequest:
+    """Stop a change: no further step is begun; one in flight is not recalled."""
+
+    change: ChangeId
+    actor: str = ""
+
+
+@dataclass(frozen=True, slots=True)
+class EmergencyStopRequest:
+    """Engage or release the emergency stop."""
+
+    engaged: bool
+    reason: str
+    actor: str = ""
+
+
+@dataclass(frozen=True, slots=True)
+class AcknowledgeRequest:
+    """Acknowledge an error, so that it may end once its cause is gone."""
+
+    error: str
+    actor: str = ""
+
+
+ChangeRequest: TypeAlias = ModeRequest | TransitionRequest | ParametersRequest
+
+Input: TypeAlias = (
+    NodeReport
+    | NodeAnswer
+    | Readings
+    | BackendStatus
+    | TimePassed
+    | ChangeRequest
+    | CancelRequest
+    | EmergencyStopRequest
+    | AcknowledgeRequest
+)
+
+
+# --- commands ------------------------------------------------------------------------------------
+
+
+@dataclass(frozen=True, slots=True)
+class AskTransition:
+    """Ask a node for one lifecycle transition."""
+
+    request: int
+    node: PartName
+    transition: Transition
+
+
+@dataclass(frozen=True, slots=True)
+class AskParameters:
+    """Ask a node to set parameters, all or none."""
+
+    request: int
+    node: PartName
+    values: Parameters
+
+
+@dataclass(frozen=True, slots=True)
+class AskFacts:
+    """Ask a node for its real state and parameters; it answers with a report."""
+
+    request: int
+    node: PartName
+
+
+Command: TypeAlias = AskTransition | AskParameters | AskFacts
+
+
+# --- what comes out ------------------------------------------------------------------------------
+
+
+@dataclass(frozen=True, slots=True)
+class Event:
+    """Something that was decided or that became known."""
+
+    id: int
+    """Rises by one per event."""
+    at: Instant
+    kind: str
+    cause: int | None
+    """The event that led to this one; None: it came from outside."""
+    actor: str
+    data: Mapping[str, object]
+
+
+@dataclass(frozen=True, slots=True)
+class Outputs:
+    """What one input led to."""
+
+    commands: tuple[Command, ...] = ()
+    events: tuple[Event, ...] = ()
+    change: ChangeId | None = None
+    """The change that a request began, or that was already there and is met."""
+    parts: frozenset[PartName] = frozenset()
+    """Parts whose view changed."""
+    signals: frozenset[str] = frozenset()
+    """Signals whose view changed."""
+    system_state: bool = False
+    """Whether the system state changed."""

@@ -1,0 +1,66 @@
+"""What is known of one node, each fact kept apart from the others.
+
+Nothing is derived here from anything else: that a node's parameters match a mode says nothing about
+whether it is active.
+"""
+
+from dataclasses import dataclass, field
+
+from domain.lifecycle import LifecycleState
+from domain.messages import NodeReport
+from domain.system_model import ModeName, ParameterValue, same_value
+
+
+@dataclass(slots=True)
+class NodeFacts:
+    """Latest reported facts of a node; None: never reported."""
+
+    state: LifecycleState | None = None
+    mode: ModeName | None = None
+    parameters: dict[str, ParameterValue] = field(default_factory=dict)
+    reachable: bool | None = None
+    has_lifecycle: bool = True
+
+    def take(self, report: NodeReport) -> bool:
+        """Take over what the report says; return whether anything is different now.
+
+        Leaving `active` ends the reported mode, as it does in system_modes.
+        """
+        before = (self.state, self.mode, self.reachable, self.has_lifecycle)
+        if report.reachable is not None:
+            self.reachable = report.reachable
+        elif self.reachable is None:
+            self.reachable = True
+        if report.has_lifecycle is not None:
+            self.has_lifecycle = report.has_lifecycle
+        if report.state is not None:
+            self.state = report.state
+            if report.state is not LifecycleState.ACTIVE:
+                self.mode = None
+        if report.mode is not None:
+            self.mode = report.mode
+        changed = before != (self.state, self.mode, self.reachable, self.has_lifecycle)
+        for name, value in (report.parameters or {}).items():
+            if name not in self.parameters or not same_value(self.parameters[name], value):
+                self.parameters[name] = value
+                changed = True
+        return changed
+
+    @property
+    def known_state(self) -> LifecycleState:
+        """Return the state that holds now: `unknown` for a node that is silent or never spoke.
+
+        A plain node has no lifecycle; it counts as active while it is reachable.
+        """
+        if not self.reachable:
+            return LifecycleState.UNKNOWN
+        if not self.has_lifecycle:
+            return LifecycleState.ACTIVE
+        return self.state or LifecycleState.UNKNOWN
+
+    @property
+    def why_unknown(self) -> str:
+        """Return why the state is unknown, in words that follow the node's name."""
+        if self.reachable is False:
+            return "is unreachable"
+        return "has never reported a state"

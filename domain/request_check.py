@@ -1,0 +1,61 @@
+"""Whether a request for a change names things that exist, with values that can be right."""
+
+import math
+from collections.abc import Mapping
+
+from domain.errors import InvalidValueError, UnknownParameterError, UnknownPartError
+from domain.messages import ChangeRequest, ModeRequest, ParametersRequest, TransitionRequest
+from domain.node_facts import NodeFacts
+from domain.system_model import ParameterValue, PartName, SmhModel
+
+
+def check_request(
+    model: SmhModel, facts: Mapping[PartName, NodeFacts], request: ChangeRequest
+) -> PartName:
+    """Return the part that a request is about.
+
+    Raises:
+        UnknownPartError: There is no such part, or parameters are asked of what is no node.
+        UnknownModeError: The part has no such mode.
+        UnknownParameterError: The node is known to have no such parameter.
+        InvalidValueError: A value of another type than the node has, or not finite.
+    """
+    if isinstance(request, ParametersRequest):
+        if request.node not in model.nodes:
+            raise UnknownPartError("node", request.node, tuple(model.nodes))
+        known = facts[request.node].parameters
+        if not request.values:
+            raise InvalidValueError("no parameter is named")
+        for name, value in request.values.items():
+            _check_value(request.node, known, name, value)
+        return request.node
+    if request.part not in model:
+        raise UnknownPartError("part", request.part, model.parts)
+    if isinstance(request, ModeRequest):
+        model.require_mode(request.part, request.mode)
+    return request.part
+
+
+def _check_value(
+    node: PartName, known: Mapping[str, ParameterValue], name: str, value: ParameterValue
+) -> None:
+    """Compare with what the node reported; of a node that reported nothing, all may be right."""
+    numbers = value if isinstance(value, tuple) else (value,)
+    if any(isinstance(number, float) and not math.isfinite(number) for number in numbers):
+        raise InvalidValueError(f"{name} must be finite", name)
+    if not known:
+        return
+    if name not in known:
+        raise UnknownParameterError(f"parameter of {node}", name, tuple(known))
+    if type(known[name]) is not type(value):
+        wanted = type(known[name]).__name__
+        raise InvalidValueError(f"{name} of {node} is a {wanted}, not {value!r}", name)
+
+
+def describe_request(request: ChangeRequest) -> dict[str, object]:
+    """Return what a request asks, as it is shown: `{"mode": ...}` and the like."""
+    if isinstance(request, ModeRequest):
+        return {"mode": request.mode}
+    if isinstance(request, TransitionRequest):
+        return {"transition": str(request.transition)}
+    return {"parameters": dict(request.values)}

@@ -1,0 +1,63 @@
+"""Parameters of a simulated node: what it starts with, and which values it takes."""
+
+from collections.abc import Mapping
+
+from domain.errors import InvalidValueError, PilothouseError, UnknownParameterError
+from domain.system_model import NodeModel, Parameters, ParameterValue
+
+
+def declared_parameters(node: NodeModel) -> dict[str, ParameterValue]:
+    """Return every parameter that a mode of `node` sets, with a value of the type that it has.
+
+    Where modes differ in the type, the first mode of the file decides.
+    """
+    declared: dict[str, ParameterValue] = {}
+    for values in node.modes.values():
+        for name, value in values.items():
+            declared.setdefault(name, value)
+    return declared
+
+
+def start_parameters(declared: Parameters) -> dict[str, ParameterValue]:
+    """Return the values that a node starts with: those of a node that was never told any."""
+    return {name: _start_value(value) for name, value in declared.items()}
+
+
+def find_refusal(declared: Parameters, values: Parameters) -> PilothouseError | None:
+    """Return why a node with the `declared` parameters would not take `values`; None: it would.
+
+    A type is never changed: 1 is no value of a parameter that holds 1.0, as in ROS 2.
+    """
+    for name, value in values.items():
+        if name not in declared:
+            return UnknownParameterError("parameter", name, tuple(declared))
+        if not _same_type(declared[name], value):
+            wanted = _type_name(declared[name])
+            return InvalidValueError(
+                f"{name} is of type {wanted}, not {_type_name(value)}", pointer=name
+            )
+    return None
+
+
+_START_VALUES: Mapping[type, ParameterValue] = {bool: False, int: 0, float: 0.0, str: "none"}
+
+
+def _start_value(value: ParameterValue) -> ParameterValue:
+    return () if isinstance(value, tuple) else _START_VALUES[type(value)]
+
+
+def _same_type(one: ParameterValue, other: ParameterValue) -> bool:
+    if isinstance(one, tuple) and isinstance(other, tuple):
+        # An empty array fits every type of array: nothing in it says otherwise.
+        return len({type(item) for item in (*one, *other)}) <= 1
+    return type(one) is type(other)
+
+
+_TYPE_NAMES: Mapping[type, str] = {bool: "bool", int: "integer", float: "double", str: "string"}
+
+
+def _type_name(value: ParameterValue) -> str:
+    """Return the name of the type in ROS 2."""
+    if isinstance(value, tuple):
+        return f"{_TYPE_NAMES[type(value[0])]}_array" if value else "array"
+    return _TYPE_NAMES[type(value)]

@@ -1,0 +1,364 @@
+"""Nodes that exist only here: with a lifecycle, parameters, times and faults of their own.
+
+Deterministic and advanced like the core: the same commands and faults at the same times lead to the
+same messages, whether time passes in one step or in many. Nothing here waits for anything, and one
+node's work never delays another's.
+"""
+
+import heapq
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from itertools import count
+from types import MappingProxyType
+from typing import TypeAlias
+
+from domain.errors import RefusedError, UnknownPartError
+from domain.lifecycle import ERROR_PROCESSED, LifecycleState, Transition, TransitionRule, rule_for
+from domain.messages import (
+    AskFacts,
+    AskParameters,
+    AskTransition,
+    Command,
+    NodeAnswer,
+    NodeReport,
+)
+from domain.simulation.node_parameters import declared_parameters, find_refusal, start_parameters
+from domain.simulation.node_settings import NOTICED_AFTER, SLOWDOWN, Fault, NodeSettings
+from domain.system_model import Parameters, ParameterValue, PartName, SmhModel
+from domain.timebase import Duration, Instant
+
+NodeMessage: TypeAlias = NodeReport | NodeAnswer
+
+
+@dataclass(slots=True)
+class _Node:
+    """One node as it really is, and what the backend has told about it."""
+
+    name: PartName
+    settings: NodeSettings
+    declared: Parameters
+    fault: Fault | None
+    state: LifecycleState = LifecycleState.UNKNOWN
+    parameters: dict[str, ParameterValue] = field(default_factory=dict)
+    process: int = 0
+    """Counts the starts and ends of the process: work that an earlier one was at is lost."""
+    parameters_free_at: Instant = 0
+    """Until when it is busy with parameter sets, which it does one after the other."""
+    unreachable_at: Instant | None = None
+    """When the backend notices that nothing is heard of it; None: it is heard."""
+    told_unreachable: bool = False
+
+    @property
+    def runs(self) -> bool:
+        return self.fault is not Fault.DIE
+
+    @property
+    def speaks(self) -> bool:
+        return self.fault is None or not self.fault.is_mute
+
+    def start(self) -> None:
+        """Begin a process: unconfigured, with the parameters of a node that was told nothing."""
+        self.process += 1
+        plain = self.settings.plain
+        self.state = LifecycleState.UNKNOWN if plain else LifecycleState.UNCONFIGURED
+        self.parameters = start_parameters(self.declared)
+        self.parameters_free_at = 0
+
+    def stop(self) -> None:
+        """End the process, and with it all that it was at."""
+        self.process += 1
+        self.state = LifecycleState.UNKNOWN
+        self.parameters = {}
+
+    def takes(self, duration: Duration) -> Duration:
+        """Return how long something takes now that takes `duration` when all is well."""
+        return duration * SLOWDOWN if self.fault is Fault.SLOW else duration
+
+    def facts(self) -> NodeReport:
+        """Return all there is to say."""
+        plain = self.settings.plain
+        return NodeReport(
+            self.name,
+            state=None if plain else self.state,
+            parameters=MappingProxyType(dict(self.parameters)),
+            reachable=True,
+            has_lifecycle=not plain,
+        )
+
+
+@dataclass(frozen=True, slots=True)
+class _CallbackEnds:
+    node: _Node
+    process: int
+    rule: TransitionRule
+
+
+@dataclass(frozen=True, slots=True)
+class _ErrorIsProcessed:
+    node: _Node
+    process: int
+
+
+@dataclass(frozen=True, slots=True)
+class _ParametersAreSet:
+    node: _Node
+    process: int
+    request: int
+    values: Parameters
+
+
+@dataclass(frozen=True, slots=True)
+class _SilenceIsNoticed:
+    node: _Node
+    at: Instant
+
+
+_Work: TypeAlias = _CallbackEnds | _ErrorIsProcessed | _ParametersAreSet | _SilenceIsNoticed
+
+
+class SimulatedNodes:
+    """All nodes of a model, and the backend's view of which of them can be reached.
+
+    Each starts unconfigured, with every parameter that its modes set, at `0`, `0.0`, `False` or
+    `"none"`. What `now` is given must never fall.
+
+    A transition that the lifecycle table has is answered at once, then reported as the transitional
+    state and, after its time, as its end; any other is refused. Parameter sets are all or nothing,
+    and are answered and reported when they are done.
+
+    Raises:
+        UnknownPartError: There are settings of a node that the model does not have.
+    """
+
+    def __init__(
+        self, model: SmhModel, settings: Mapping[PartName, NodeSettings], start: Instant
+    ) -> None:
+        self._nodes: dict[PartName, _Node] = {}
+        self._due: list[tuple[Instant, int, _Work]] = []
+        self._issues = count()
+        self._messages: list[NodeMessage] = []
+        self._messages_since = start
+        for name in settings:
+            if name not in model.nodes:
+                raise UnknownPartError("node", name, tuple(model.nodes))
+        for name, node_model in model.nodes.items():
+            own = settings.get(name, _USUAL)
+            node = _Node(name, own, declared_parameters(node_model), own.fault)
+            self._nodes[name] = node
+            if node.runs:
+                node.start()
+            self._appear(node, start)
+
+    def handle(self, command: Command, now: Instant) -> None:
+        """Take in what a node is asked; what follows comes out of `advance`."""
+        self._catch_up(now)
+        node = self._nodes.get(command.node)
+        if node is None:
+            self._refuse(command, "there is no such node", now)
+        elif not node.runs:
+            # Until it is noticed, a dead node is one that has not answered yet.
+            if node.told_unreachable:
+                self._refuse(command, "not reachable", now)
+        else:
+            self._hear(node, command, now)
+
+    def advance(self, now: Instant) -> tuple[NodeMessage, ...]:
+        """Return everything due up to `now`, in order of time, then in order of issue."""
+        self._catch_up(now)
+        messages, self._messages = tuple(self._messages), []
+        return messages
+
+    def wake_at(self) -> Instant | None:
+        """Return when `advance` next has something to say, or None: only when something is asked.
+
+        Also a time at which a node only acts, silently.
+        """
+        if self._messages:
+            return self._messages_since
+        while self._due and _is_void(self._due[0][2]):
+            heapq.heappop(self._due)
+        return self._due[0][0] if self._due else None
+
+    def set_fault(self, node: PartName, fault: Fault | None, now: Instant) -> None:
+        """Let something be wrong with a node from now on; None: all is well again.
+
+        What it was already at keeps its time. A node that is heard again says all that it is in.
+
+        Raises:
+            UnknownPartError: There is no such node.
+        """
+        self._catch_up(now)
+        it = self._require(node)
+        before, it.fault = it.fault, fault
+        if fault is before:
+            return
+        if fault is Fault.DIE:
+            it.stop()
+        elif before is Fault.DIE:
+            it.start()
+        if not it.speaks or (before is not None and before.is_mute):
+            self._appear(it, now)
+
+    def set_parameters(self, node: PartName, values: Parameters, now: Instant) -> None:
+        """Change parameters of a node from outside, all or none, at once.
+
+        Raises:
+            UnknownPartError: There is no such node.
+            UnknownParameterError: It has no such parameter.
+            InvalidValueError: A value is not of the parameter's type.
+            RefusedError: The node does not run.
+        """
+        self._catch_up(now)
+        it = self._require(node)
+        if not it.runs:
+            raise RefusedError(f"{node} does not run")
+        refusal = find_refusal(it.declared, values)
+        if refusal is not None:
+            raise refusal
+        self._take_over(it, values, now)
+
+    def state_of(self, node: PartName) -> LifecycleState:
+        """Return what a node really is in; `unknown` without a process or a lifecycle.
+
+        Raises:
+            UnknownPartError: There is no such node.
+        """
+        return self._require(node).state
+
+    def parameters_of(self, node: PartName) -> Parameters:
+        """Return what a node really has set; nothing while it does not run.
+
+        Raises:
+            UnknownPartError: There is no such node.
+        """
+        return dict(self._require(node).parameters)
+
+    def _require(self, name: PartName) -> _Node:
+        if name not in self._nodes:
+            raise UnknownPartError("node", name, tuple(self._nodes))
+        return self._nodes[name]
+
+    # --- what comes out --------------------------------------------------------------------------
+
+    def _emit(self, message: NodeMessage, at: Instant) -> None:
+        if not self._messages:
+            self._messages_since = at
+        self._messages.append(message)
+
+    def _say(self, node: _Node, message: NodeMessage, at: Instant) -> None:
+        """Let a node speak, if it can."""
+        if node.speaks:
+            self._emit(message, at)
+
+    def _refuse(self, command: Command, reason: str, at: Instant) -> None:
+        self._emit(NodeAnswer(command.request, command.node, False, reason), at)
+
+    def _appear(self, node: _Node, at: Instant) -> None:
+        """Say everything of a node that is heard; otherwise wait until that is noticed."""
+        if node.speaks:
+            node.unreachable_at = None
+            node.told_unreachable = False
+            self._emit(node.facts(), at)
+        elif node.fault is not None and not node.told_unreachable:
+            noticed = at + NOTICED_AFTER[node.fault]
+            # One that was silent before it died is noticed as early as either would be.
+            if node.unreachable_at is None or noticed < node.unreachable_at:
+                node.unreachable_at = noticed
+                self._schedule(_SilenceIsNoticed(node, noticed), noticed)
+
+    # --- what nodes do ---------------------------------------------------------------------------
+
+    def _hear(self, node: _Node, command: Command, now: Instant) -> None:
+        """Let a running node take up a command."""
+        match command:
+            case AskFacts():
+                self._say(node, node.facts(), now)
+            case AskTransition():
+                self._begin_transition(node, command, now)
+            case AskParameters():
+                self._begin_parameters(node, command, now)
+
+    def _begin_transition(self, node: _Node, ask: AskTransition, now: Instant) -> None:
+        rule = rule_for(node.state, ask.transition)
+        reason = _why_no_transition(node, ask.transition, rule)
+        self._say(node, NodeAnswer(ask.request, node.name, not reason, reason), now)
+        if rule is None or reason:
+            return
+        self._enter(node, rule.via, now)
+        ends = now + node.takes(node.settings.time_of(ask.transition))
+        self._schedule(_CallbackEnds(node, node.process, rule), ends)
+
+    def _begin_parameters(self, node: _Node, ask: AskParameters, now: Instant) -> None:
+        if node.fault is Fault.REFUSE:
+            self._say(node, NodeAnswer(ask.request, node.name, False, _REFUSES), now)
+            return
+        refusal = find_refusal(node.declared, ask.values)
+        if refusal is not None:
+            self._say(node, NodeAnswer(ask.request, node.name, False, refusal.message), now)
+            return
+        began = max(now, node.parameters_free_at)
+        node.parameters_free_at = began + node.takes(node.settings.set_parameters)
+        work = _ParametersAreSet(node, node.process, ask.request, dict(ask.values))
+        self._schedule(work, node.parameters_free_at)
+
+    def _end_callback(self, node: _Node, rule: TransitionRule, at: Instant) -> None:
+        if node.fault is Fault.ERROR:
+            self._enter(node, LifecycleState.ERROR_PROCESSING, at)
+            processed = at + node.takes(node.settings.process_error)
+            self._schedule(_ErrorIsProcessed(node, node.process), processed)
+        else:
+            self._enter(node, rule.failure if node.fault is Fault.FAIL else rule.success, at)
+
+    def _enter(self, node: _Node, state: LifecycleState, at: Instant) -> None:
+        node.state = state
+        self._say(node, NodeReport(node.name, state=state), at)
+
+    def _take_over(self, node: _Node, values: Parameters, at: Instant) -> None:
+        node.parameters.update(values)
+        # All that was set, changed or not, as in the parameter events of ROS 2.
+        self._say(node, NodeReport(node.name, parameters=MappingProxyType(dict(values))), at)
+
+    # --- time ------------------------------------------------------------------------------------
+
+    def _schedule(self, work: _Work, at: Instant) -> None:
+        heapq.heappush(self._due, (at, next(self._issues), work))
+
+    def _catch_up(self, now: Instant) -> None:
+        """Do what is due up to `now`, each at its own time."""
+        while self._due and self._due[0][0] <= now:
+            at, _, work = heapq.heappop(self._due)
+            if not _is_void(work):
+                self._do(work, at)
+
+    def _do(self, work: _Work, at: Instant) -> None:
+        match work:
+            case _CallbackEnds(node, _, rule):
+                self._end_callback(node, rule, at)
+            case _ErrorIsProcessed(node):
+                self._enter(node, ERROR_PROCESSED, at)
+            case _ParametersAreSet(node, _, request, values):
+                self._say(node, NodeAnswer(request, node.name, True), at)
+                self._take_over(node, values, at)
+            case _SilenceIsNoticed(node):
+                node.told_unreachable = True
+                self._emit(NodeReport(node.name, reachable=False), at)
+
+
+_USUAL = NodeSettings()
+_REFUSES = "the node refuses"
+
+
+def _why_no_transition(node: _Node, transition: Transition, rule: TransitionRule | None) -> str:
+    """Return why a node does not take a transition; empty: it does."""
+    if node.settings.plain:
+        return "the node has no lifecycle"
+    if rule is None:
+        return f"the node is {node.state}: it cannot {transition}"
+    return _REFUSES if node.fault is Fault.REFUSE else ""
+
+
+def _is_void(work: _Work) -> bool:
+    """Tell whether work was overtaken: its process ended, or its node is heard again."""
+    if isinstance(work, _SilenceIsNoticed):
+        return work.node.unreachable_at != work.at or work.node.told_unreachable
+    return work.node.process != work.process

@@ -1,0 +1,194 @@
+"""What can be seen of the robot at one moment: plain, frozen values, made by the core.
+
+Nothing here refers to a live object, so a snapshot may be kept, compared and sent.
+"""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from enum import StrEnum
+from typing import Literal
+
+from domain.findings import Blocker, Fact
+from domain.lifecycle import LifecycleState, Transition
+from domain.messages import ChangeId, ChangeRequest, SignalValue
+from domain.system_model import ModeName, ParameterValue, PartName, StateAndMode
+from domain.timebase import Duration, Instant
+
+
+class SystemState(StrEnum):
+    """State of the whole robot. Source: smart_polaris, `SystemStateStamped.msg`."""
+
+    IDLE = "IDLE"
+    RUNNING = "RUNNING"
+    ERROR = "ERROR"
+
+
+class TaskStatus(StrEnum):
+    """Whether the robot has a task. Source: smart_polaris, `TaskPlannerStatus.msg`."""
+
+    NO_TASK = "NO_TASK"
+    PAUSED_TASK = "PAUSED_TASK"
+    RUNNING_TASK = "RUNNING_TASK"
+
+
+@dataclass(frozen=True, slots=True)
+class Actual:
+    """What a part is in, and how that is known."""
+
+    state: LifecycleState
+    mode: ModeName | None = None
+    inferred: bool = False
+    """The state was inferred (systems) rather than reported."""
+    mode_inferred: bool = False
+    """The mode was inferred, from parts or from parameters."""
+    undecidable: bool = False
+    reason: str | None = None
+    """Why it is undecidable: which part, and what of it is not known."""
+
+    @property
+    def state_and_mode(self) -> StateAndMode:
+        """Return the pair alone."""
+        return StateAndMode(self.state, self.mode)
+
+
+@dataclass(frozen=True, slots=True)
+class EffectiveTarget:
+    """What is pursued now, and why it may differ from what was asked."""
+
+    state: LifecycleState
+    mode: ModeName | None
+    because: str
+
+
+@dataclass(frozen=True, slots=True)
+class PartView:
+    """One system or node."""
+
+    name: PartName
+    kind: Literal["system", "node"]
+    parts: tuple[PartName, ...]
+    target: StateAndMode | None
+    effective_target: EffectiveTarget | None
+    actual: Actual
+    converged: bool
+    deviation_since: Instant | None
+    reachable: bool
+    """Of a system: all its nodes are."""
+    change: ChangeId | None
+    """The running change that this part is under."""
+
+
+@dataclass(frozen=True, slots=True)
+class ModeView:
+    """One mode of a part, and whether it can be entered now."""
+
+    mode: ModeName
+    can_enter: bool
+    blockers: tuple[Blocker, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class ParameterView:
+    """One parameter of a node."""
+
+    name: str
+    value: ParameterValue | None
+    """None: never reported."""
+    wanted: ParameterValue | None
+    """What the target mode wants; None where it wants nothing."""
+
+
+class StepStatus(StrEnum):
+    """Where a step of a change stands."""
+
+    PENDING = "pending"
+    RUNNING = "running"
+    SUCCEEDED = "succeeded"
+    FAILED = "failed"
+    TIMED_OUT = "timed_out"
+    SUPERSEDED = "superseded"
+    CANCELED = "canceled"
+
+
+class ChangeStatus(StrEnum):
+    """Where a change stands; all but `running` are ends."""
+
+    RUNNING = "running"
+    SUCCEEDED = "succeeded"
+    FAILED = "failed"
+    TIMED_OUT = "timed_out"
+    SUPERSEDED = "superseded"
+    CANCELED = "canceled"
+
+
+@dataclass(frozen=True, slots=True)
+class StepView:
+    """One step of a change: one request to one node."""
+
+    node: PartName
+    action: Transition | Literal["set_parameters"]
+    status: StepStatus
+    started_at: Instant | None
+    ended_at: Instant | None
+    error: str | None
+
+
+@dataclass(frozen=True, slots=True)
+class ChangeView:
+    """One change of state, mode or parameters."""
+
+    id: ChangeId
+    part: PartName
+    request: ChangeRequest
+    status: ChangeStatus
+    reason: str | None
+    steps: tuple[StepView, ...]
+    started_at: Instant
+    ended_at: Instant | None
+    cause: int
+    """Id of the event that recorded the request."""
+
+
+@dataclass(frozen=True, slots=True)
+class SignalView:
+    """One signal: the value held, and what is judged of it."""
+
+    signal: str
+    value: SignalValue | None
+    """None: never seen."""
+    unit: str
+    source: str | None
+    received_at: Instant | None
+    stamp: Instant | None
+    stale: bool
+    error: str | None
+    """The value error that is on, if any; staleness is told by `stale`."""
+    pending_error: str | None
+    pending_since: Instant | None
+    pending_needs: Duration | None
+    skewed: bool
+    """The sender's clock differs from ours by more than a second."""
+    settings: Mapping[str, Fact]
+
+
+@dataclass(frozen=True, slots=True)
+class SystemStateView:
+    """State of the robot with its reasons; error code and state are of one moment."""
+
+    state: SystemState
+    error_code: int
+    errors: tuple[str, ...]
+    reasons: tuple[Blocker, ...]
+    task_status: TaskStatus
+
+
+@dataclass(frozen=True, slots=True)
+class EmergencyStopView:
+    """The latch that only a person releases."""
+
+    engaged: bool
+    by: str | None
+    reason: str | None
+    since: Instant | None
+    standstill_at: Instant | None
+    """When the vehicle was first seen standing still since; None: not yet, or no vehicle."""

@@ -1,0 +1,282 @@
+"""The core: one input at a time, in; commands and events, out. It decides everything.
+
+It does no I/O and has no clock. The live service, a simulation and a test hand in the same inputs
+and times, and get the same outputs.
+"""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+
+from domain.change_admission import ChangeAdmission
+from domain.change_plan import next_steps, presumed_steps
+from domain.change_record import ChangeSettings, Step
+from domain.changes import Changes
+from domain.emergency_stop import EmergencyStop
+from domain.errors import BackendUnavailableError
+from domain.findings import Blocker
+from domain.health_events import HealthEvents
+from domain.lifecycle import LifecycleState, Transition
+from domain.messages import (
+    AcknowledgeRequest,
+    BackendStatus,
+    CancelRequest,
+    ChangeId,
+    ChangeRequest,
+    EmergencyStopRequest,
+    Input,
+    ModeRequest,
+    NodeAnswer,
+    NodeReport,
+    Outputs,
+    ParametersRequest,
+    Readings,
+    TimePassed,
+    TransitionRequest,
+)
+from domain.mode_inference import ModeInference
+from domain.outbox import Outbox
+from domain.part_views import PartViews
+from domain.request_check import check_request, describe_request
+from domain.signals import SignalSettings, default_signals
+from domain.snapshot import (
+    ChangeView,
+    EmergencyStopView,
+    ModeView,
+    ParameterView,
+    PartView,
+    SignalView,
+    StepView,
+    SystemStateView,
+    TaskStatus,
+)
+from domain.state_manager import HealthChanges, StateManager
+from domain.system_model import PartName, SmhModel
+from domain.timebase import Instant
+
+
+@dataclass(frozen=True, slots=True)
+class SupervisionSettings:
+    """What can be set about the core."""
+
+    signals: tuple[SignalSettings, ...] = field(default_factory=default_signals)
+    changes: ChangeSettings = field(default_factory=ChangeSettings)
+
+
+class Supervision:
+    """The supervision of one robot."""
+
+    def __init__(self, model: SmhModel, settings: SupervisionSettings, start: Instant) -> None:
+        self.model = model
+        self._now = start
+        self._outbox = Outbox()
+        self._inference = ModeInference(model)
+        self._admission = ChangeAdmission(model, self._inference.facts)
+        self._changes = Changes(
+            self._inference, settings.changes, self._outbox, lambda: bool(self._estop())
+        )
+        self._views = PartViews(self._inference, self._changes, self._outbox)
+        self._health = StateManager(settings.signals, start)
+        self._emergency_stop = EmergencyStop()
+        self._health_events = HealthEvents(self._health, self._outbox)
+        self._backend = BackendStatus(available=True)
+
+    # --- time and inputs -------------------------------------------------------------------------
+
+    def wake_at(self) -> Instant | None:
+        """Return the next instant at which time alone changes something; None: never."""
+        due = [at for at in (self._health.wake_at(), self._changes.wake_at()) if at is not None]
+        return min(due, default=None)
+
+    def handle(self, given: Input, now: Instant) -> Outputs:
+        """Take in one input, after letting pass what was due before it, each at its own time.
+
+        Args:
+            given: A fact or a request.
+            now: When it arrived; a time before the last one counts as the last one.
+
+        Returns:
+            What to do and what was decided; after a refusal, this comes with the next call.
+
+        Raises:
+            PilothouseError: The input is refused; nothing was changed by it.
+        """
+        self._let_pass(max(now, self._now))
+        match given:
+            case NodeReport():
+                self._take_report(given)
+            case NodeAnswer():
+                self._begin_input("node.answered", {"node": given.node, "reason": given.reason})
+                self._changes.answer(given, self._now)
+            case Readings():
+                self._take_readings(given)
+            case ModeRequest() | TransitionRequest() | ParametersRequest():
+                self._take_change_request(given)
+            case CancelRequest():
+                self._begin_input("change.cancel_requested", {"change": given.change}, given.actor)
+                self._changes.cancel(given.change, self._now)
+            case EmergencyStopRequest():
+                self._take_emergency_stop(given)
+            case AcknowledgeRequest():
+                self._begin_input("error.acknowledged", {"error": given.error}, given.actor)
+                self._publish(self._health.acknowledge(given.error, self._now))
+            case BackendStatus():
+                self._take_backend_status(given)
+            case TimePassed():
+                pass
+        self._views.settle(self._now)
+        return self._outbox.take()
+
+    def _let_pass(self, now: Instant) -> None:
+        """Handle what became due up to now, in order; what follows later is due then."""
+        while (due := self.wake_at()) is not None and due <= now:
+            self._now = max(due, self._now)
+            self._begin_input("time.passed", {})
+            self._publish(self._health.pass_time(self._now))
+            self._changes.pass_time(self._now)
+            self._views.settle(self._now)
+        self._now = now
+
+    def _begin_input(
+        self,
+        kind: str,
+        data: Mapping[str, object],
+        actor: str = "",
+        cause: int | None = None,
+    ) -> None:
+        self._outbox.begin(self._now, kind, data, actor, cause)
+
+    def _take_report(self, report: NodeReport) -> None:
+        """Infer first, so that a change is judged by what the report made so."""
+        step = self._changes.step_in_flight(report.node)
+        data: dict[str, object] = {"node": report.node}
+        if report.state is not None:
+            data["state"] = str(report.state)
+        if report.mode is not None:
+            data["mode"] = report.mode
+        if report.parameters is not None:
+            data["parameters"] = dict(report.parameters)
+        if report.reachable is not None:
+            data["reachable"] = report.reachable
+        self._begin_input("node.reported", data, cause=step.event if step else None)
+        changed = self._inference.report(report)
+        self._views.note_reachable(report.node)
+        self._views.note_actuals(changed)
+        self._changes.report(report, self._now)
+
+    def _take_readings(self, readings: Readings) -> None:
+        self._health.check(readings, self._now)
+        values = {reading.signal: reading.value for reading in readings.items}
+        data = {"source": readings.source, "values": values}
+        self._begin_input("signal.read", data, readings.actor)
+        self._publish(self._health.receive(readings, self._now))
+
+    def _take_change_request(self, request: ChangeRequest) -> None:
+        part = check_request(self.model, self._inference.facts, request)
+        if not self._backend.available:
+            raise BackendUnavailableError(self._backend.reason)
+        goal = self._admission.admit(request, self._estop())
+        data = {"part": part, **describe_request(request)}
+        self._begin_input("change.requested", data, request.actor)
+        self._outbox.change = self._changes.begin(part, request, goal, self._now)
+        self._views.note_actuals(self._outbox.parts)
+
+    def _take_emergency_stop(self, request: EmergencyStopRequest) -> None:
+        latch, now = self._emergency_stop, self._now
+        act = latch.engage if request.engaged else latch.release
+        if act(request.actor, request.reason, now):
+            kind = "emergency_stop.engaged" if request.engaged else "emergency_stop.released"
+            self._begin_input(kind, {"reason": request.reason}, request.actor)
+            self._outbox.record_input()
+            changes = self._health.set_emergency_stop(request.engaged, now)
+            self._publish(changes)
+
+    def _take_backend_status(self, status: BackendStatus) -> None:
+        if status.available is not self._backend.available:
+            kind = "backend.available" if status.available else "backend.unavailable"
+            self._begin_input(kind, {"reason": status.reason})
+            self._outbox.record_input()
+        self._backend = status
+
+    def _publish(self, changes: HealthChanges) -> None:
+        self._health_events.publish(changes, TaskStatus.NO_TASK)
+
+    def _estop(self) -> tuple[Blocker, ...]:
+        """Return why ESTOP is on; empty when it is not."""
+        if "ESTOP" not in self._health.errors:
+            return ()
+        return tuple(r for r in self.system_state().reasons if r.code == "ESTOP")
+
+    # --- what can be seen ------------------------------------------------------------------------
+
+    def part(self, name: PartName) -> PartView:
+        """Return one part that the model has."""
+        return self._views.get(name)
+
+    def parts(self) -> Mapping[PartName, PartView]:
+        """Return all parts, systems first, in the order of the model file."""
+        return self._views.all()
+
+    def modes(self, part: PartName) -> tuple[ModeView, ...]:
+        """Return the modes of a part, and what stands against entering each of them now."""
+        estop = self._estop()
+        views = []
+        for mode in self.model.modes_of(part):
+            blockers = self._admission.blockers(ModeRequest(part, mode), estop)
+            views.append(ModeView(mode, not blockers, blockers))
+        return tuple(views)
+
+    def parameters(self, node: PartName) -> tuple[ParameterView, ...]:
+        """Return the parameters of a node."""
+        return self._views.parameters(node)
+
+    def available_transitions(self, part: PartName) -> tuple[Transition, ...]:
+        """Return the transitions that would be accepted now and lead somewhere else."""
+        return self._admission.available_transitions(part, self._estop())
+
+    def plan(self, request: ChangeRequest) -> tuple[StepView, ...]:
+        """Return the steps that a request would take now; nothing is changed.
+
+        Raises:
+            PilothouseError: The request would be refused.
+        """
+        check_request(self.model, self._inference.facts, request)
+        goal = self._admission.admit(request, self._estop())
+        steps = []
+        for node, node_goal in goal.nodes.items():
+            facts = self._inference.facts[node]
+            unknown = facts.known_state is LifecycleState.UNKNOWN
+            actions = presumed_steps(node_goal) if unknown else next_steps(facts, node_goal)
+            steps += [Step(ChangeId(""), node, action).view() for action in actions or ()]
+        return tuple(steps)
+
+    def change(self, identity: str) -> ChangeView:
+        """Return a change.
+
+        Raises:
+            UnknownChangeError: There is none of that id, or it is forgotten.
+        """
+        return self._changes.get(identity).view()
+
+    def changes(self) -> tuple[ChangeView, ...]:
+        """Return the changes that are kept, the newest first."""
+        return tuple(change.view() for change in self._changes.all())
+
+    def signal(self, name: str) -> SignalView:
+        """Return one signal.
+
+        Raises:
+            UnknownSignalError: It is not declared.
+        """
+        return self._health.signal(name)
+
+    def signals(self) -> Mapping[str, SignalView]:
+        """Return all signals."""
+        return self._health.signals()
+
+    def system_state(self) -> SystemStateView:
+        """Return the state of the robot."""
+        return self._health.system_state(TaskStatus.NO_TASK)
+
+    def emergency_stop(self) -> EmergencyStopView:
+        """Return the emergency stop."""
+        return self._emergency_stop.view()

@@ -1,0 +1,267 @@
+"""The shell round the core: hands it what happens, carries out what it says, publishes at 20 Hz.
+
+It decides nothing. Whatever arrives is handed to the core at once; the tick only publishes, and
+lets time pass where nothing arrives.
+"""
+
+import asyncio
+import logging
+from collections.abc import Callable, Coroutine, Sequence
+from contextlib import suppress
+
+from domain.errors import PilothouseError
+from domain.findings import Finding
+from domain.messages import (
+    ChangeId,
+    Input,
+    Outputs,
+    Reading,
+    Readings,
+    SignalValue,
+    TimePassed,
+)
+from domain.snapshot import ChangeStatus, ChangeView
+from domain.supervision import Supervision
+from domain.system_model import PartName, SmhModel
+from domain.timebase import Instant, seconds, to_seconds
+from service.clock import Clock
+from service.event_log import EventLog
+from service.frame_feed import Frame, FrameFeed
+from service.mock_source import MockSource
+from service.model_file import LoadedModel
+from service.ports import NodeBackend
+
+log = logging.getLogger(__name__)
+
+PERIOD = seconds(0.05)
+_FRAMES_PER_FULL = 20
+"""One complete frame a second, so that a client that lost something is soon right again."""
+
+
+class TaskFailedError(Exception):
+    """A task that should run for as long as the service does has ended."""
+
+    def __init__(self, name: str) -> None:
+        super().__init__(f"the task {name!r} has ended")
+        self.name = name
+
+
+class Supervisor:
+    """Owns the core and every task that feeds it; `run` ends only cancelled or broken."""
+
+    def __init__(
+        self,
+        loaded: LoadedModel,
+        core: Supervision,
+        clock: Clock,
+        backend: NodeBackend,
+        mock: MockSource | None = None,
+        simulated: Sequence[str] = (),
+    ) -> None:
+        self.core = core
+        self.clock = clock
+        self.mock = mock
+        self.simulated = tuple(simulated)
+        self.frames = FrameFeed()
+        self.events = EventLog()
+        self.late_ticks = 0
+        self.last_tick_at: Instant | None = None
+        self.on_tick: list[Callable[[float], None]] = []
+        """Called with the seconds since the tick before; must return at once."""
+        self._loaded = loaded
+        self._backend = backend
+        self._seq = 0
+        self._since_full = 0
+        self._changed_parts: set[PartName] = set()
+        self._changed_signals: set[str] = set()
+        self._waiting: dict[ChangeId, set[asyncio.Future[None]]] = {}
+
+    @property
+    def model(self) -> SmhModel:
+        """Return the model of the robot."""
+        return self._loaded.model
+
+    @property
+    def model_text(self) -> str:
+        """Return the model file as it was read."""
+        return self._loaded.text
+
+    @property
+    def warnings(self) -> tuple[Finding, ...]:
+        """Return what is odd about the model."""
+        return self._loaded.warnings
+
+    @property
+    def epoch(self) -> str:
+        """Return the name of this run of the service; event ids count from 1 in each."""
+        return self.events.epoch
+
+    @property
+    def snapshot_seq(self) -> int:
+        """Return the number of the newest frame."""
+        return self._seq
+
+    async def run(self) -> None:
+        """Run until cancelled; the first task that ends, ends them all.
+
+        Raises:
+            ExceptionGroup: Of a `TaskFailedError` that names the task and has what it raised as its
+                cause.
+        """
+        async with asyncio.TaskGroup() as tasks:
+            work: dict[str, Coroutine[object, object, None]] = {
+                "nodes": self._backend.run(self._deliver),
+            }
+            if self.mock is not None:
+                work["mock signals"] = self.mock.run(self._deliver)
+            work["tick"] = self._tick_forever()
+            for name, coroutine in work.items():
+                tasks.create_task(_forever(name, coroutine), name=name)
+
+    # --- inputs ----------------------------------------------------------------------------------
+
+    def submit(self, given: Input) -> Outputs:
+        """Hand an input to the core and carry out what follows.
+
+        Raises:
+            PilothouseError: It is refused; nothing was changed by it.
+        """
+        now = self.clock.now()
+        try:
+            outputs = self.core.handle(given, now)
+        except PilothouseError:
+            self._carry_out(self.core.handle(TimePassed(), now))
+            raise
+        self._carry_out(outputs)
+        return outputs
+
+    def submit_readings(
+        self, items: Sequence[Reading], source: str = "api", actor: str = ""
+    ) -> Outputs:
+        """Hand in readings from outside; where the mock runs, it goes on with their values.
+
+        Raises:
+            PilothouseError: One of them is refused; none was taken.
+        """
+        if self.mock is None:
+            return self.submit(Readings(tuple(items), source, actor))
+        outputs = self.submit(Readings(tuple(items), self.mock.source, actor))
+        for item in items:
+            self.mock.hold(item.signal, item.value)
+        return outputs
+
+    def hold_mock(self, signal: str, value: SignalValue, actor: str = "") -> Outputs:
+        """Let the mock hold another value, from now on.
+
+        Raises:
+            PilothouseError: The value is refused; the mock goes on with the one before.
+        """
+        return self.submit_readings([Reading(signal, value)], actor=actor)
+
+    async def change_ended(self, change: ChangeId, timeout_s: float) -> ChangeView:
+        """Return a change once it has ended, or as it is after `timeout_s` seconds.
+
+        Raises:
+            UnknownChangeError: There is no such change.
+        """
+        view = self.core.change(change)
+        if view.status is not ChangeStatus.RUNNING or timeout_s <= 0:
+            return view
+        ended: asyncio.Future[None] = asyncio.get_running_loop().create_future()
+        self._waiting.setdefault(change, set()).add(ended)
+        deadline = self.clock.now() + seconds(timeout_s)
+        timer = asyncio.ensure_future(self.clock.sleep_until(deadline))
+        try:
+            await asyncio.wait({ended, timer}, return_when=asyncio.FIRST_COMPLETED)
+        finally:
+            self._waiting.get(change, set()).discard(ended)
+            timer.cancel()
+            with suppress(asyncio.CancelledError):
+                await timer
+        return self.core.change(change)
+
+    def _deliver(self, given: Input) -> None:
+        """Take what an adapter reports; one bad report must not end the adapter."""
+        try:
+            self.submit(given)
+        except PilothouseError as error:
+            log.warning("refused %s: %s", type(given).__name__, error)
+
+    # --- outputs ---------------------------------------------------------------------------------
+
+    def _carry_out(self, outputs: Outputs) -> None:
+        """Act on the robot first, then tell."""
+        for command in outputs.commands:
+            self._backend.send(command)
+        self._changed_parts |= outputs.parts
+        self._changed_signals |= outputs.signals
+        for event in outputs.events:
+            self.events.append(event)
+            if event.kind in _ENDS:
+                self._wake_waiting(event.data["change"])
+        if outputs.system_state and self._seq:
+            self._publish()
+
+    def _wake_waiting(self, change: object) -> None:
+        for ended in self._waiting.pop(ChangeId(str(change)), ()):
+            if not ended.done():
+                ended.set_result(None)
+
+    def _publish(self) -> None:
+        """Publish one frame: what changed since the last one, or once a second everything."""
+        full = self._since_full == 0 or self.frames.wants_full
+        self._since_full = (self._since_full + 1) % _FRAMES_PER_FULL
+        self._seq += 1
+        core = self.core
+        frame = Frame(
+            seq=self._seq,
+            at=self.clock.now(),
+            system_state=core.system_state(),
+            parts=core.parts() if full else {p: core.part(p) for p in sorted(self._changed_parts)},
+            signals=(
+                core.signals()
+                if full
+                else {s: core.signal(s) for s in sorted(self._changed_signals)}
+            ),
+            full=full,
+            simulated=self.simulated,
+        )
+        self._changed_parts.clear()
+        self._changed_signals.clear()
+        self.frames.publish(frame)
+
+    async def _tick_forever(self) -> None:
+        """Tick on a fixed grid; a late tick is skipped and counted, never made up for."""
+        start = self.clock.now()
+        count = 0
+        while True:
+            self._tick()
+            count += 1
+            late = self.clock.now() - (start + count * PERIOD)
+            if late >= PERIOD:
+                skipped = late // PERIOD
+                count += skipped
+                self.late_ticks += skipped
+                log.warning("%d ticks were skipped: %.0f ms late", skipped, late / 1e6)
+            await self.clock.sleep_until(start + count * PERIOD)
+
+    def _tick(self) -> None:
+        now = self.clock.now()
+        if self.last_tick_at is not None:
+            for observe in self.on_tick:
+                observe(to_seconds(now - self.last_tick_at))
+        self.last_tick_at = now
+        self.submit(TimePassed())
+        self._publish()
+
+
+_ENDS = frozenset(f"change.{status}" for status in ChangeStatus if status != ChangeStatus.RUNNING)
+
+
+async def _forever(name: str, work: Coroutine[object, object, None]) -> None:
+    """Await what should never end, and name it when it does."""
+    try:
+        await work
+    except Exception as error:
+        raise TaskFailedError(name) from error
+    raise TaskFailedError(name)

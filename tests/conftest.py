@@ -1,0 +1,39 @@
+"""What holds for every test: no task is left behind, and generated examples are reproducible."""
+
+import asyncio
+import inspect
+import os
+from collections.abc import AsyncIterator
+
+import pytest
+from hypothesis import settings
+
+# Derandomized, so that a run fails for what was changed and never by luck; `make soak` looks for
+# new examples. No deadline, since a busy machine is not a fault of the code under test.
+settings.register_profile("default", deadline=None, derandomize=True, print_blob=True)
+settings.register_profile("soak", deadline=None, max_examples=5_000, print_blob=True)
+settings.load_profile("soak" if os.environ.get("PILOTHOUSE_SOAK") == "1" else "default")
+
+
+@pytest.fixture
+async def no_task_is_left_behind() -> AsyncIterator[None]:
+    """Fail the test if asyncio tasks that it started, or its fixtures, outlive it."""
+    before = asyncio.all_tasks()
+    yield
+    # One pass of the loop, in which tasks end that have nothing left to wait for.
+    await asyncio.sleep(0)
+    left = asyncio.all_tasks() - before - {asyncio.current_task()}
+    for task in left:
+        task.cancel()
+    await asyncio.gather(*left, return_exceptions=True)
+    if left:
+        pytest.fail(
+            f"tasks left running: {sorted(task.get_name() for task in left)}", pytrace=False
+        )
+
+
+@pytest.fixture(autouse=True)
+def _leaked_tasks(request: pytest.FixtureRequest) -> None:
+    # Only for coroutines: a synchronous test would pay for an event loop that it does not need.
+    if inspect.iscoroutinefunction(getattr(request, "function", None)):
+        request.getfixturevalue("no_task_is_left_behind")

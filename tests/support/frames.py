@@ -1,0 +1,81 @@
+"""Frames, events and views for tests of what is streamed."""
+
+from collections.abc import Sequence
+from types import MappingProxyType
+
+from domain.lifecycle import LifecycleState
+from domain.messages import Event
+from domain.snapshot import (
+    Actual,
+    PartView,
+    SignalView,
+    SystemState,
+    SystemStateView,
+    TaskStatus,
+)
+from domain.system_model import ModeName, PartName, StateAndMode
+from domain.timebase import seconds
+from service.frame_feed import Frame
+
+IDLE = SystemStateView(SystemState.IDLE, 0, (), (), TaskStatus.NO_TASK)
+
+
+def part_view(name: str, mode: str = "__DEFAULT__") -> PartView:
+    """Show a node that is active as asked."""
+    wanted = StateAndMode(LifecycleState.ACTIVE, ModeName(mode))
+    return PartView(
+        name=PartName(name),
+        kind="node",
+        parts=(),
+        target=wanted,
+        effective_target=None,
+        actual=Actual(wanted.state, wanted.mode),
+        converged=True,
+        deviation_since=None,
+        reachable=True,
+        change=None,
+    )
+
+
+def signal_view(name: str, value: float = 1.0) -> SignalView:
+    """Show a signal that is well."""
+    return SignalView(
+        signal=name,
+        value=value,
+        unit="",
+        source="api",
+        received_at=seconds(1),
+        stamp=None,
+        stale=False,
+        error=None,
+        pending_error=None,
+        pending_since=None,
+        pending_needs=None,
+        skewed=False,
+        settings=MappingProxyType({}),
+    )
+
+
+def frame(
+    seq: int,
+    parts: Sequence[PartView] = (),
+    signals: Sequence[SignalView] = (),
+    *,
+    full: bool = False,
+    system_state: SystemStateView = IDLE,
+) -> Frame:
+    """Make frame number `seq`, of the tick at `seq` * 50 ms."""
+    return Frame(
+        seq=seq,
+        at=seconds(seq * 0.05),
+        system_state=system_state,
+        parts={view.name: view for view in parts},
+        signals={view.signal: view for view in signals},
+        full=full,
+        simulated=("nodes",),
+    )
+
+
+def event(number: int, kind: str = "test.happened") -> Event:
+    """Make event number `number`, caused by the one before."""
+    return Event(number, seconds(number), kind, number - 1 or None, "test", {"number": number})

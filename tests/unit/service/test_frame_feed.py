@@ -1,0 +1,140 @@
+from service.frame_feed import Frame, FrameFeed, FrameReader
+from tests.support.frames import frame, part_view, signal_view
+
+ARM = part_view("arm")
+DRIVE = part_view("drive_base")
+BATTERY = signal_view("battery_level")
+
+
+def started() -> FrameFeed:
+    feed = FrameFeed()
+    feed.publish(frame(1, [ARM, DRIVE], [BATTERY], full=True))
+    return feed
+
+
+def taken(reader: FrameReader) -> tuple[Frame, int]:
+    found = reader.take()
+    assert found is not None
+    return found
+
+
+def test_a_new_reader_begins_with_everything() -> None:
+    feed = started()
+    feed.publish(frame(2))
+
+    newest, skipped = taken(FrameReader(feed))
+
+    assert (newest.seq, newest.full, skipped) == (2, True, 0)
+    assert newest.parts == {"arm": ARM, "drive_base": DRIVE}
+    assert newest.signals == {"battery_level": BATTERY}
+
+
+def test_a_reader_in_step_gets_each_frame_as_it_was_published() -> None:
+    feed = started()
+    reader = FrameReader(feed)
+    reader.take()
+    published = frame(2, [part_view("arm", "STRONG")])
+
+    feed.publish(published)
+
+    assert taken(reader) == (published, 0)
+
+
+def test_there_is_nothing_to_take_twice() -> None:
+    feed = started()
+    reader = FrameReader(feed)
+    reader.take()
+
+    assert reader.take() is None
+
+
+def test_a_slow_reader_gets_the_newest_frame_whole_and_is_told_how_many_it_missed() -> None:
+    feed = started()
+    reader = FrameReader(feed)
+    reader.take()
+    moved = part_view("arm", "STRONG")
+    feed.publish(frame(2, [moved]))
+    feed.publish(frame(3))
+    feed.publish(frame(4))
+
+    newest, skipped = taken(reader)
+
+    assert (newest.seq, newest.full, skipped) == (4, True, 2)
+    assert newest.parts == {"arm": moved, "drive_base": DRIVE}
+
+
+def test_a_reader_that_caught_up_is_in_step_again() -> None:
+    feed = started()
+    reader = FrameReader(feed)
+    reader.take()
+    for seq in (2, 3, 4):
+        feed.publish(frame(seq))
+    reader.take()
+
+    feed.publish(frame(5))
+
+    newest, skipped = taken(reader)
+    assert (newest.seq, newest.full, skipped) == (5, False, 0)
+
+
+def test_a_slow_reader_makes_no_frame_larger_for_the_others() -> None:
+    feed = started()
+    slow, quick = FrameReader(feed), FrameReader(feed)
+    slow.take()
+    quick.take()
+    feed.publish(frame(2))
+    quick.take()
+    feed.publish(frame(3))
+
+    assert taken(slow)[0].full
+    assert not taken(quick)[0].full
+
+
+def test_all_who_need_everything_share_one_frame() -> None:
+    feed = started()
+    feed.publish(frame(2))
+
+    assert taken(FrameReader(feed))[0] is taken(FrameReader(feed))[0]
+
+
+def test_a_frame_that_was_handed_out_does_not_change_any_more() -> None:
+    feed = started()
+    feed.publish(frame(2))
+    before, _ = taken(FrameReader(feed))
+
+    feed.publish(frame(3, [part_view("arm", "STRONG")]))
+
+    assert before.parts[ARM.name] is ARM
+
+
+def test_nobody_gets_half_a_robot_before_the_first_full_frame() -> None:
+    feed = FrameFeed()
+    reader = FrameReader(feed)
+    feed.publish(frame(1, [ARM]))
+
+    assert feed.wants_full
+    assert reader.take() is None
+
+    feed.publish(frame(2, [ARM, DRIVE], [BATTERY], full=True))
+
+    assert not feed.wants_full
+    assert taken(reader)[0].seq == 2
+
+
+def test_a_reader_is_woken_by_each_frame() -> None:
+    feed, wakes = FrameFeed(), list[None]()
+
+    with feed.watch(lambda: wakes.append(None)):
+        feed.publish(frame(1, full=True))
+        feed.publish(frame(2))
+
+    assert len(wakes) == 2
+
+
+def test_the_feed_says_what_is_newest() -> None:
+    feed = FrameFeed()
+    assert feed.newest is None
+
+    feed.publish(frame(1, full=True))
+
+    assert feed.newest == frame(1, full=True)

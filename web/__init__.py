@@ -1,0 +1,5 @@
+"""The monitor page, as files: HTML, CSS, ES modules and SVG, served as they are.
+
+A Python package only so that `importlib.resources` finds the files in a source tree and in an
+installed wheel alike. No build step and no third-party script; read `index.html` first.
+"""

@@ -1,0 +1,101 @@
+/** The stream: a WebSocket that comes back by itself and never hides how old its last frame is. */
+
+import { localNow } from "/web/js/clock.js";
+
+const LATE_MS = 2500;
+const LOST_MS = 3000;
+const SILENCE_MS = 5000;
+const RETRY_MS = [500, 1000, 2000, 4000, 8000];
+
+/** Dispatches `frame` with the decoded frame as `detail`.
+ *
+ * `resume()` returns the query to go on with, or null to begin anew.
+ */
+export class Connection extends EventTarget {
+  #socket = null;
+  #resume;
+  #attempts = 0;
+  #startedAt = 0;
+  #lastFrameAt = null;
+  #retryAt = null;
+
+  constructor(resume) {
+    super();
+    this.#resume = resume;
+    setInterval(() => this.#watch(), 250);
+    const recheck = () => this.#recheck();
+    document.addEventListener("visibilitychange", recheck);
+    window.addEventListener("pageshow", recheck);
+    window.addEventListener("online", recheck);
+  }
+
+  /** Drop what there is and connect at once. */
+  tryNow() {
+    this.#retryAt = null;
+    this.#startedAt = localNow();
+    this.#drop();
+    const query = this.#resume();
+    const url = new URL("/ws", location.href);
+    url.protocol = location.protocol === "https:" ? "wss:" : "ws:";
+    if (query) url.search = new URLSearchParams(query);
+    const socket = new WebSocket(url);
+    this.#socket = socket;
+    socket.onmessage = ({ data }) => this.#take(JSON.parse(data));
+    socket.onclose = () => this.#closed();
+  }
+
+  /** How good the contact is: "connecting" (never had any), "live", "late" or "lost". */
+  level() {
+    if (this.#lastFrameAt === null) return this.#attempts < 2 ? "connecting" : "lost";
+    const silence = this.silenceMs();
+    if (silence > LOST_MS) return "lost";
+    return silence > LATE_MS || this.#socket === null ? "late" : "live";
+  }
+
+  /** Time since the last frame, or since the page was opened. */
+  silenceMs() {
+    return localNow() - (this.#lastFrameAt ?? performance.timeOrigin);
+  }
+
+  /** Time until the next attempt; null while one is under way. */
+  retryInMs() {
+    return this.#retryAt === null ? null : Math.max(0, this.#retryAt - localNow());
+  }
+
+  #take(frame) {
+    this.#lastFrameAt = localNow();
+    this.#attempts = 0;
+    this.dispatchEvent(new CustomEvent("frame", { detail: frame }));
+  }
+
+  #closed() {
+    this.#socket = null;
+    const wait = RETRY_MS[Math.min(this.#attempts, RETRY_MS.length - 1)];
+    this.#attempts += 1;
+    // Spread, so that many pages do not knock at a restarted server in the same moment.
+    this.#retryAt = localNow() + wait * (0.8 + 0.4 * Math.random());
+  }
+
+  /** A dead peer never closes: after a silence the socket is given up without waiting for it. */
+  #watch() {
+    const quietSince = Math.max(this.#startedAt, this.#lastFrameAt ?? 0);
+    if (this.#socket !== null && localNow() - quietSince > SILENCE_MS) {
+      this.#drop();
+      this.#closed();
+    }
+    if (this.#retryAt !== null && localNow() >= this.#retryAt) this.tryNow();
+  }
+
+  /** A page that was asleep does not wait for its timers. */
+  #recheck() {
+    const quiet = this.#lastFrameAt !== null && this.silenceMs() > LOST_MS;
+    if (!document.hidden && (quiet || this.#retryAt !== null)) this.tryNow();
+  }
+
+  #drop() {
+    if (this.#socket === null) return;
+    this.#socket.onmessage = this.#socket.onclose = null;
+    this.#socket.close();
+    this.#socket = null;
+  }
+}

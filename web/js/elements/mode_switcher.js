@@ -1,0 +1,89 @@
+/** <ph-mode-switcher>: buttons for lifecycle and mode; where one is off, the first reason beneath.
+ *
+ * Dispatches `ph-change` with the change that the server began, or `ph-problem` with the refusal.
+ */
+
+import { partPath, request } from "/web/js/api.js";
+import { el, setAttribute, setText } from "/web/js/dom.js";
+
+const TRANSITIONS = ["configure", "activate", "deactivate", "cleanup", "shutdown"];
+
+class ModeSwitcher extends HTMLElement {
+  connectedCallback() {
+    if (this.fields) return;
+    this.transitions = new Map();
+    const lifecycle = el("div", { class: "buttons", role: "group", "aria-label": "Lifecycle" });
+    for (const name of TRANSITIONS) {
+      const button = this.#transitionButton(name);
+      this.transitions.set(name, button);
+      lifecycle.append(button);
+    }
+    this.modes = new Map();
+    this.modeList = el("div", { class: "modes", role: "group", "aria-label": "Mode" });
+    this.modeTitle = el("h3", {}, "Mode");
+    this.fields = el("fieldset", {}, this.modeTitle, this.modeList, el("h3", {}, "Lifecycle"), lifecycle);
+    this.append(this.fields);
+  }
+
+  show({ part, transitions, modes, enabled }) {
+    this.subject = part;
+    setAttribute(this.fields, "disabled", !enabled);
+    for (const [name, button] of this.transitions) {
+      const off = !transitions.includes(name);
+      if (name === "shutdown") button.disabled = off;
+      else setAttribute(button, "disabled", off);
+    }
+    setAttribute(this.modeTitle, "hidden", modes.length === 0);
+    const key = modes.map((item) => item.mode).join("\n");
+    if (this.key !== key) this.#build(key, modes);
+    for (const item of modes) this.#fill(item);
+  }
+
+  /** A part that was shut down cannot come back, so this one is held. */
+  #transitionButton(name) {
+    const ask = () => this.#ask("state", { transition: name });
+    if (name === "shutdown") return el("ph-hold-button", { label: "shutdown (hold)", "onph-held": ask });
+    return el("button", { type: "button", onclick: ask }, name);
+  }
+
+  #build(key, modes) {
+    this.key = key;
+    this.modes.clear();
+    for (const { mode } of modes) {
+      const blocker = el("p", { class: "blocker", id: `blocker-${mode}` });
+      const mark = el("span", { class: "mark" });
+      const ask = () => this.#ask("mode", { mode });
+      const button = el("button", { type: "button", onclick: ask }, el("span", {}, mode), mark);
+      this.modes.set(mode, { button, mark, blocker, item: el("div", { class: "mode" }, button, blocker) });
+    }
+    this.modeList.replaceChildren(...[...this.modes.values()].map(({ item }) => item));
+  }
+
+  #fill({ mode, can_enter, blockers }) {
+    const { button, mark, blocker } = this.modes.get(mode);
+    const { actual, target } = this.subject;
+    const isActual = actual.mode === mode && actual.state === "active";
+    const isTarget = target?.mode === mode;
+    setAttribute(button, "disabled", !can_enter);
+    setAttribute(button, "aria-pressed", String(isActual));
+    setAttribute(button, "aria-describedby", can_enter ? null : blocker.id);
+    setText(mark, isActual ? "actual" : isTarget ? "target" : "");
+    const [first, ...others] = can_enter ? [] : blockers;
+    const more = others.length ? ` (and ${others.length} more)` : "";
+    setText(blocker, first ? first.message + more : "");
+  }
+
+  async #ask(what, body) {
+    try {
+      this.#emit("ph-change", await request("POST", `${partPath(this.subject)}/${what}`, body));
+    } catch (error) {
+      this.#emit("ph-problem", error.problem);
+    }
+  }
+
+  #emit(name, detail) {
+    this.dispatchEvent(new CustomEvent(name, { bubbles: true, detail }));
+  }
+}
+
+customElements.define("ph-mode-switcher", ModeSwitcher);

@@ -1,0 +1,40 @@
+/** <ph-pills>: the target and the actual state and mode of a part; one pill when they agree. */
+
+import { el, renderOnce, setAttribute } from "/web/js/dom.js";
+import { label } from "/web/js/words.js";
+
+class Pills extends HTMLElement {
+  show(part) {
+    const { actual } = part;
+    const target = part.effective_target ?? part.target;
+    setAttribute(this, "data-fit", part.converged ? "converged" : part.change ? "changing" : "deviating");
+    renderOnce(this, JSON.stringify([target, actual, part.converged]), () => {
+      const shown = actualPill(actual);
+      if (part.converged || !target) return [shown];
+      return [
+        el("span", { class: "pill target" }, hidden("target "), label(target)),
+        el("span", { class: "arrow", "aria-hidden": "true" }, "→"),
+        hidden("actual "),
+        shown,
+      ];
+    });
+  }
+}
+
+/** Inferred is italic with (*), as in the mode monitor of system_modes. */
+function actualPill(actual) {
+  if (actual.state === "unknown") return el("span", { class: "pill actual unknown" }, "?", hidden(" unknown"));
+  const parts = [el("span", { class: actual.inferred ? "inferred" : null }, actual.state)];
+  if (actual.mode) parts.push(el("span", { class: actual.mode_inferred ? "inferred" : null }, `.${actual.mode}`));
+  if (actual.inferred || actual.mode_inferred) {
+    const title = actual.inferred ? "inferred, not reported" : "the mode is inferred, not reported";
+    parts.push(el("span", { title, class: "star" }, " (*)"), hidden(" inferred"));
+  }
+  return el("span", { class: "pill actual" }, ...parts);
+}
+
+function hidden(text) {
+  return el("span", { class: "visually-hidden" }, text);
+}
+
+customElements.define("ph-pills", Pills);

@@ -1,0 +1,71 @@
+/** <ph-state-bar>: one sentence on the robot, the reasons, and how good the contact is. */
+
+import { el, icon, renderOnce, setAttribute, setText } from "/web/js/dom.js";
+import { stateSentence, wholeSeconds } from "/web/js/words.js";
+
+class StateBar extends HTMLElement {
+  connectedCallback() {
+    this.word = el("strong");
+    this.text = el("span");
+    this.symbol = el("span", { class: "symbol" });
+    this.more = el("ul", { class: "reasons" });
+    this.simulated = el("span", { class: "badge", hidden: true });
+    this.contact = el("span", { class: "contact" });
+    this.tryNow = el("button", { type: "button", class: "small", hidden: true }, "Try now");
+    this.tryNow.addEventListener("click", () => this.emit("ph-try-now"));
+    this.spoken = el("p", { class: "visually-hidden", role: "status", "aria-live": "polite" });
+    this.append(
+      this.symbol,
+      el(
+        "div",
+        { class: "said" },
+        el("h1", { class: "sentence" }, this.word, this.text),
+        this.more,
+        el("p", { class: "facts" }, this.contact, this.tryNow, this.simulated),
+      ),
+      this.spoken,
+    );
+  }
+
+  emit(name) {
+    this.dispatchEvent(new CustomEvent(name, { bubbles: true }));
+  }
+
+  update({ state, contact }) {
+    const said = stateSentence(state, contact);
+    setAttribute(this, "data-level", said.level);
+    renderOnce(this.symbol, said.level, () => [icon(said.level)]);
+    setText(this.word, `${said.word}: `);
+    setText(this.text, said.text);
+    renderOnce(this.more, said.more.join("\n"), () => said.more.map((text) => el("li", {}, text)));
+    this.#updateFacts(state, contact);
+    this.#speak(state, said);
+  }
+
+  #updateFacts(state, contact) {
+    const simulated = state.systemState?.simulated ?? [];
+    setAttribute(this.simulated, "hidden", simulated.length === 0);
+    setText(this.simulated, `simulated: ${simulated.join(", ")}`);
+    setText(this.contact, contactWords(contact));
+    setAttribute(this.tryNow, "hidden", contact.retryInMs === null || contact.level === "live");
+  }
+
+  /** Screen readers hear what the state becomes, and not each figure that moves in it. */
+  #speak(state, said) {
+    const errors = state.systemState?.errors ?? [];
+    const key = said.level === "error" ? errors.join() : said.level;
+    if (this.spokenKey === key) return;
+    this.spokenKey = key;
+    const word = said.level === "lost" ? "No contact" : said.word;
+    setText(this.spoken, [`${word}: ${said.text}`, ...said.more].join("; "));
+  }
+}
+
+function contactWords({ level, silenceMs, retryInMs }) {
+  if (level === "live") return "Connected";
+  const late = level === "late" ? `Late: last values ${wholeSeconds(silenceMs)} ago. ` : "";
+  if (retryInMs === null) return `${late}Connecting …`;
+  return `${late}Next attempt in ${Math.ceil(retryInMs / 1000)} s`;
+}
+
+customElements.define("ph-state-bar", StateBar);

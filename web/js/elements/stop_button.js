@@ -1,0 +1,94 @@
+/** <ph-stop-button>: engages the emergency stop at one press and insists until it is acknowledged.
+ *
+ * It needs neither the stream nor anything else on the page to work.
+ */
+
+import { request } from "/web/js/api.js";
+import { el, setAttribute, setText } from "/web/js/dom.js";
+import { timeOfDay } from "/web/js/words.js";
+
+const ANSWER_MS = 2000;
+const RETRY_MS = 500;
+
+class StopButton extends HTMLElement {
+  #sending = false;
+  #undelivered = false;
+  #problem = null;
+  #latch = null;
+
+  connectedCallback() {
+    this.word = el("span", { class: "octagon" }, "STOP");
+    this.button = el("button", { type: "button", class: "stop", "aria-describedby": "stop-note" }, this.word);
+    this.status = el("p", { class: "stop-status", "aria-live": "assertive" });
+    this.note = el("p", { id: "stop-note", class: "quiet" }, "Software stop, not safety-rated");
+    this.release = el("ph-hold-button", { label: "Hold to release", hidden: true });
+    this.append(el("div", { class: "stop-text" }, this.status, this.release, this.note), this.button);
+    // A press counts when it begins: a finger that slides off must still stop the robot.
+    this.button.addEventListener("pointerdown", ({ button }) => button === 0 && this.#engage());
+    this.button.addEventListener("click", () => this.#engage());
+    this.release.addEventListener("ph-held", () => this.#release());
+  }
+
+  update({ state, contact }) {
+    this.#latch = state.emergencyStop;
+    this.release.disabled = contact.level === "lost";
+    this.#render();
+  }
+
+  async #engage() {
+    if (this.#sending) return;
+    this.#sending = true;
+    this.#problem = null;
+    this.#render();
+    while (!(await this.#put(true, "STOP pressed on the monitor page"))) {
+      this.#undelivered = true;
+      this.#render();
+      await new Promise((resolve) => setTimeout(resolve, RETRY_MS));
+    }
+    this.#sending = this.#undelivered = false;
+    this.#problem = null;
+    this.#render();
+  }
+
+  async #release() {
+    await this.#put(false, "released on the monitor page");
+    this.#render();
+  }
+
+  async #put(engaged, reason) {
+    try {
+      const options = { keepalive: true, timeoutMs: ANSWER_MS };
+      this.#latch = await request("PUT", "/emergency_stop", { engaged, reason }, options);
+    } catch (error) {
+      this.#problem = error.problem;
+      return false;
+    }
+    this.dispatchEvent(new CustomEvent("ph-latch", { bubbles: true, detail: this.#latch }));
+    return true;
+  }
+
+  #render() {
+    const engaged = Boolean(this.#latch?.engaged);
+    const phase = this.#sending ? "sending" : engaged ? "engaged" : "ready";
+    setAttribute(this, "data-phase", phase);
+    setText(this.word, { sending: "SENDING", engaged: "ENGAGED", ready: "STOP" }[phase]);
+    setAttribute(this.button, "aria-label", { ready: "STOP", sending: "STOP, sending", engaged: "STOP, engaged" }[phase]);
+    setAttribute(this.release, "hidden", !engaged || this.#sending);
+    setText(this.status, this.#statusWords(engaged));
+  }
+
+  #statusWords(engaged) {
+    if (this.#undelivered) {
+      const refused = this.#problem?.status ? ` (${this.#problem.detail})` : "";
+      return `Not delivered. Use the hardware stop.${refused} Still trying.`;
+    }
+    if (this.#sending) return "Sending the stop …";
+    if (this.#problem) return `Not released: ${this.#problem.detail}`;
+    if (!engaged) return "";
+    const { since_at, by, reason } = this.#latch;
+    const who = by ? ` by ${by}` : "";
+    return `Stop engaged${since_at ? ` at ${timeOfDay(since_at)}` : ""}${who}${reason ? `: ${reason}` : ""}`;
+  }
+}
+
+customElements.define("ph-stop-button", StopButton);

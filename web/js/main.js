@@ -1,0 +1,126 @@
+/** Wires the stream, the store and the elements. */
+
+import { request } from "/web/js/api.js";
+import { localNow, ServerClock } from "/web/js/clock.js";
+import { Connection } from "/web/js/connection.js";
+import { emptyState, fold } from "/web/js/store.js";
+import "/web/js/elements/pills.js";
+import "/web/js/elements/hold_button.js";
+import "/web/js/elements/state_bar.js";
+import "/web/js/elements/stop_button.js";
+import "/web/js/elements/part_tree.js";
+import "/web/js/elements/mode_switcher.js";
+import "/web/js/elements/change.js";
+import "/web/js/elements/part_panel.js";
+import "/web/js/elements/mock_control.js";
+import "/web/js/elements/signal_list.js";
+import "/web/js/elements/event_list.js";
+
+const SLOW_REFRESH_MS = 5000;
+const REDRAW_MS = 250;
+
+const clock = new ServerClock();
+const connection = new Connection(() =>
+  state.epoch === null ? null : { after: state.lastEventId, epoch: state.epoch },
+);
+const panel = document.querySelector("ph-part-panel");
+const elements = document.querySelectorAll(
+  "ph-state-bar, ph-stop-button, ph-part-tree, ph-part-panel, ph-signal-list, ph-event-list",
+);
+let state = emptyState();
+let mock = {};
+let selected = null;
+let drawAsked = false;
+
+function take(message) {
+  state = fold(state, message);
+  askToDraw();
+}
+
+/** Draw at most once per animation frame, however many frames of the stream arrive. */
+function askToDraw() {
+  if (drawAsked) return;
+  drawAsked = true;
+  requestAnimationFrame(draw);
+}
+
+function draw() {
+  drawAsked = false;
+  const contact = {
+    level: connection.level(),
+    silenceMs: connection.silenceMs(),
+    retryInMs: connection.retryInMs(),
+  };
+  document.body.dataset.contact = contact.level;
+  selected ??= Object.values(state.parts).find((part) => part.kind === "system")?.name ?? null;
+  const view = { state, contact, mock, selected, serverNow: clock.now() };
+  for (const element of elements) element.update(view);
+}
+
+/** The title tells a hidden page too, so it does not wait for an animation frame. */
+function title() {
+  const level = connection.level();
+  const word = level === "lost" ? "No contact" : (state.systemState?.state ?? "Connecting");
+  const text = `${word} · Pilothouse`;
+  if (document.title !== text) document.title = text;
+}
+
+/** Load what frames do not carry; what fails is loaded again with the next event or contact. */
+async function load(paths, use) {
+  try {
+    use(await Promise.all(paths.map((path) => request("GET", path))));
+  } catch {
+    // Lost contact is told by the state bar; there is nothing to add here.
+  }
+}
+
+function loadStructure() {
+  load(["/systems", "/nodes"], ([systems, nodes]) =>
+    take({ type: "structure", items: [...systems.items, ...nodes.items] }),
+  );
+}
+
+function loadLatch() {
+  load(["/emergency_stop"], ([latch]) => take({ type: "emergency_stop", latch }));
+}
+
+/** The mock is asked for only where something is simulated; without it the page shows values only. */
+function loadMock() {
+  if (!state.systemState?.simulated?.length) return;
+  load(["/mock"], ([{ items }]) => {
+    mock = Object.fromEntries(items.map((item) => [item.signal, item]));
+  });
+}
+
+function resync({ epoch }) {
+  const isNew = epoch !== state.epoch;
+  loadStructure();
+  loadLatch();
+  if (isNew) load(["/events?limit=50"], ([{ items }]) => take({ type: "log", items }));
+  panel.refresh();
+}
+
+connection.addEventListener("frame", ({ detail: frame }) => {
+  if (frame.type === "hello") resync(frame);
+  if (frame.type === "event") {
+    panel.refresh();
+    if (frame.kind.startsWith("emergency_stop")) loadLatch();
+    if (frame.kind.startsWith("change")) loadStructure();
+  }
+  if (frame.type === "state") clock.observe(frame.at, localNow());
+  const isFirst = state.systemState === null;
+  take(frame);
+  if (isFirst && state.systemState) loadMock();
+  title();
+});
+
+document.addEventListener("ph-select", ({ detail }) => {
+  selected = detail;
+  askToDraw();
+});
+document.addEventListener("ph-try-now", () => connection.tryNow());
+document.addEventListener("ph-latch", ({ detail }) => take({ type: "emergency_stop", latch: detail }));
+setInterval(askToDraw, REDRAW_MS);
+setInterval(title, REDRAW_MS);
+setInterval(() => connection.level() === "live" && loadLatch(), SLOW_REFRESH_MS);
+connection.tryNow();

@@ -1,0 +1,123 @@
+/** What is known of the robot, as a pure fold of the frames of the stream.
+ *
+ * `fold(state, message)` returns the next state and never changes the one given. Besides the frames
+ * of the server it takes three messages of our own, made from answers to requests: `structure`
+ * (`items` of /systems and /nodes), `log` (`items` of /events) and `emergency_stop`.
+ */
+
+const EVENTS_KEPT = 50;
+
+/** What is known before the first frame: nothing. */
+export function emptyState() {
+  return {
+    epoch: null,
+    at: null,
+    skipped: 0,
+    systemState: null,
+    parts: {},
+    signals: {},
+    emergencyStop: null,
+    events: [],
+    lastEventId: 0,
+    problem: null,
+  };
+}
+
+/** Return the state that follows from `state` and one message. */
+export function fold(state, message) {
+  const folder = FOLDERS[message.type];
+  return folder ? folder(state, message) : state;
+}
+
+const FOLDERS = {
+  hello(state, { epoch }) {
+    if (epoch === state.epoch) return state;
+    if (state.epoch === null) return { ...state, epoch };
+    const note = { note: "The server was restarted; what follows is new.", id: `restart-${epoch}` };
+    return { ...emptyState(), epoch, events: keep([...state.events, note]) };
+  },
+
+  state(state, frame) {
+    return {
+      ...state,
+      at: frame.at,
+      skipped: state.skipped + (frame.skipped ?? 0),
+      systemState: frame.system_state ?? state.systemState,
+      parts: frame.parts ? foldParts(state.parts, frame.parts, frame.at) : state.parts,
+      signals: frame.signals ? foldSignals(state.signals, frame.signals, frame.at) : state.signals,
+    };
+  },
+
+  event(state, event) {
+    if (event.id <= state.lastEventId) return state;
+    return { ...state, lastEventId: event.id, events: keep([...state.events, event]) };
+  },
+
+  /** The log is asked for once; events of the stream may have come before the answer did. */
+  log(state, { items }) {
+    const begin = state.events.findLastIndex((event) => event.note) + 1;
+    const streamed = state.events.slice(begin);
+    const known = new Set(streamed.map((event) => event.id));
+    const older = items.filter((event) => !known.has(event.id));
+    const lastEventId = Math.max(state.lastEventId, ...items.map((event) => event.id));
+    const events = keep([...state.events.slice(0, begin), ...older, ...streamed]);
+    return { ...state, lastEventId, events };
+  },
+
+  gap(state, { from, to }) {
+    const note = { note: `Events ${from} to ${to} are missing here.`, id: `gap-${from}-${to}` };
+    return { ...state, lastEventId: to, events: keep([...state.events, note]) };
+  },
+
+  problem(state, problem) {
+    return { ...state, problem };
+  },
+
+  structure(state, { items }) {
+    const parts = {};
+    for (const item of items) {
+      const streamed = state.parts[item.name];
+      const { target, effective_target, actual, converged } = streamed ?? item;
+      parts[item.name] = { ...item, target, effective_target, actual, converged };
+    }
+    return { ...state, parts };
+  },
+
+  emergency_stop(state, { latch }) {
+    return { ...state, emergencyStop: latch };
+  },
+};
+
+function keep(events) {
+  return events.slice(-EVENTS_KEPT);
+}
+
+/** Frames carry the changed parts only, and may leave out what the structure told once. */
+function foldParts(parts, changed, at) {
+  const next = { ...parts };
+  for (const [name, part] of Object.entries(changed)) {
+    const before = parts[name];
+    const since = part.converged ? null : (before?.deviation_since_at ?? at);
+    next[name] = { name, ...before, deviation_since_at: since, ...part };
+  }
+  return next;
+}
+
+/** A pending error is kept with the time it began, so that it can be counted on between frames. */
+function foldSignals(signals, changed, at) {
+  const next = { ...signals };
+  for (const [name, signal] of Object.entries(changed)) {
+    const pending = signal.pending && {
+      ...signal.pending,
+      since: pendingSince(signal.pending, signals[name]?.pending, at),
+    };
+    next[name] = { ...signal, pending };
+  }
+  return next;
+}
+
+function pendingSince(pending, before, at) {
+  if (pending.since_at) return Date.parse(pending.since_at);
+  const since = Date.parse(at) - 1000 * (pending.for_s ?? 0);
+  return before?.error === pending.error ? Math.min(before.since, since) : since;
+}
