@@ -6,8 +6,9 @@ an `SmhModel` that exists is free of cycles, unknown parts and unknown modes.
 Source: deliverable D4.8, 4.1; micro-ROS system_modes, `mode_inference.cpp` and README.
 """
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Collection, Iterable, Mapping
 from dataclasses import dataclass, field
+from itertools import chain
 from types import MappingProxyType
 from typing import NewType, TypeAlias
 
@@ -21,6 +22,12 @@ PartName = NewType("PartName", str)
 ModeName = NewType("ModeName", str)
 
 DEFAULT_MODE = ModeName("__DEFAULT__")
+
+
+def part_name(name: str) -> PartName:
+    """Return the name of a part as models hold it: ROS 2 writes a leading slash, models do not."""
+    return PartName(name.lstrip("/"))
+
 
 ParameterValue: TypeAlias = (
     bool
@@ -37,9 +44,32 @@ ParameterValue: TypeAlias = (
 Parameters: TypeAlias = Mapping[str, ParameterValue]
 
 
+MAX_LEVELS = 64
+"""Of systems in systems. No robot comes near, and no walk through a model has to fear more."""
+
+MAX_ANCESTORS = 1_000_000
+"""Of all parts together; a balanced model of 10,000 nodes has less than 50,000."""
+
+_MAX_CYCLES_TOLD = 100
+_MAX_NAMES_TOLD = 12
+
+
 def same_value(one: ParameterValue, other: ParameterValue) -> bool:
     """Tell whether two parameter values are equal in type and value."""
-    return type(one) is type(other) and one == other
+    return one == other and value_type(one) == value_type(other)
+
+
+def value_type(value: ParameterValue) -> str:
+    """Return the type of a parameter value in the words of ROS 2, as in `double` or `int[]`.
+
+    Source: `rcl_interfaces/msg/ParameterType`.
+    """
+    if isinstance(value, tuple):
+        return f"{_TYPE_NAMES[type(value[0])]}[]" if value else "[]"
+    return _TYPE_NAMES[type(value)]
+
+
+_TYPE_NAMES: Mapping[type, str] = {bool: "bool", int: "int", float: "double", str: "string"}
 
 
 @dataclass(frozen=True, slots=True)
@@ -67,7 +97,7 @@ class StateAndMode:
         return cls(state, ModeName(mode) if mode and has_mode else None)
 
     def agrees_with(self, other: "StateAndMode") -> bool:
-        """Tell whether both mean the same: no mode and `__DEFAULT__` are one, and only when active."""
+        """Tell whether both mean the same; only active has modes, and no mode is `__DEFAULT__`."""
         if self.state is not other.state:
             return False
         return self.state is not LifecycleState.ACTIVE or (self.mode or DEFAULT_MODE) == (
@@ -86,7 +116,7 @@ class NodeModel:
 
 @dataclass(frozen=True, slots=True)
 class Rule:
-    """What to do when a part of a system is in a given state while the system has a given target."""
+    """What to pursue instead of a given target of a system while one part is in a given state."""
 
     name: str
     if_target: StateAndMode
@@ -100,13 +130,20 @@ class SystemModel:
 
     name: PartName
     modes: Mapping[ModeName, Mapping[PartName, StateAndMode]]
-    """What each mode wants of its parts, in the order of the file, `__DEFAULT__` merged in."""
+    """What each mode wants of its parts, in the order of the file, `__DEFAULT__` merged in; empty
+    for a system of no parts.
+    """
     rules: tuple[Rule, ...] = ()
 
     @property
     def parts(self) -> tuple[PartName, ...]:
         """Return the parts of this system: those of `__DEFAULT__`, in the order of the file."""
-        return tuple(self.modes[DEFAULT_MODE])
+        return tuple(self.modes.get(DEFAULT_MODE, ()))
+
+    @property
+    def named_parts(self) -> tuple[PartName, ...]:
+        """Return the parts that any mode names, so also those that `__DEFAULT__` leaves out."""
+        return tuple(dict.fromkeys(part for wanted in self.modes.values() for part in wanted))
 
 
 @dataclass(frozen=True)
@@ -114,7 +151,8 @@ class SmhModel:
     """Systems and nodes of one robot.
 
     Raises:
-        InvalidModelError: A cycle, or a part or mode that is named but not there.
+        InvalidModelError: A cycle, or a part or mode that is named but not there, or systems in
+            systems beyond `MAX_LEVELS` or `MAX_ANCESTORS`.
     """
 
     nodes: Mapping[PartName, NodeModel]
@@ -172,8 +210,15 @@ class SmhModel:
         if part in self.nodes:
             return (part,)
         found: dict[PartName, None] = {}
-        for child in self.systems[part].parts:
-            found.update(dict.fromkeys(self.nodes_below(child)))
+        seen: set[PartName] = set()
+        waiting = [part]
+        while waiting:
+            name = waiting.pop()
+            if name in self.nodes:
+                found[name] = None
+            elif name not in seen:
+                seen.add(name)
+                waiting.extend(reversed(self.systems[name].parts))
         return tuple(found)
 
 
@@ -181,19 +226,25 @@ def find_errors(
     nodes: Mapping[PartName, NodeModel], systems: Mapping[PartName, SystemModel]
 ) -> list[Finding]:
     """Return everything that makes a model unusable: unknown parts and modes, and cycles."""
-    findings: list[Finding] = []
+    modes_of: dict[PartName, Collection[ModeName]] = {
+        **{name: node.modes for name, node in nodes.items()},
+        **{name: system.modes for name, system in systems.items()},
+    }
+    findings = [
+        _missing_default(part)
+        for part, modes in modes_of.items()
+        if modes and DEFAULT_MODE not in modes
+    ]
     for system in systems.values():
-        if DEFAULT_MODE not in system.modes:
-            findings.append(_missing_default(system.name))
-        for mode, wanted in system.modes.items():
-            for part, want in wanted.items():
-                findings.extend(_check_want(nodes, systems, system.name, mode, part, want))
-    findings.extend(
-        _missing_default(node.name)
-        for node in nodes.values()
-        if node.modes and DEFAULT_MODE not in node.modes
-    )
-    findings.extend(_find_cycles(systems))
+        findings.extend(_check_wants(modes_of, system))
+        for rule in system.rules:
+            findings.extend(_check_rule(modes_of, system.name, rule))
+    hierarchy = _Hierarchy.of(systems)
+    findings.extend(_cycle(systems, cycle) for cycle in hierarchy.cycles)
+    too_deep = None if findings else hierarchy.too_deep()
+    if too_deep is not None:
+        message = f"{too_deep} has more than {MAX_LEVELS} levels of systems below it"
+        findings.append(Finding("error", "TOO_DEEP", message, too_deep, (too_deep,)))
     return findings
 
 
@@ -202,50 +253,111 @@ def _missing_default(part: PartName) -> Finding:
     return Finding("error", "MISSING_DEFAULT_MODE", message, part, (part, "modes"))
 
 
-def _check_want(
-    nodes: Mapping[PartName, NodeModel],
-    systems: Mapping[PartName, SystemModel],
-    system: PartName,
-    mode: ModeName,
-    part: PartName,
-    want: StateAndMode,
+def _check_wants(
+    modes_of: Mapping[PartName, Collection[ModeName]], system: SystemModel
 ) -> Iterable[Finding]:
-    """Check one line of a mode: the part is there, and has the mode that is wanted of it."""
-    place = (system, "modes", mode, part)
-    if part not in nodes and part not in systems:
-        message = f"{system} in {mode}: there is no part {part!r}"
-        yield Finding("error", "UNKNOWN_PART", message, system, place)
-        return
-    modes = nodes[part].modes if part in nodes else systems[part].modes
-    if want.state is LifecycleState.ACTIVE and want.mode is not None and want.mode not in modes:
+    """Check the lines of all modes; what a mode took over from `__DEFAULT__` is told there."""
+    default = system.modes.get(DEFAULT_MODE, {})
+    for mode, wanted in system.modes.items():
+        for part, want in wanted.items():
+            if mode == DEFAULT_MODE or default.get(part) != want:
+                where = f"{system.name} in {mode}"
+                place = (system.name, "modes", mode, part)
+                yield from _check_pair(modes_of, where, part, want, system.name, place)
+
+
+def _check_rule(
+    modes_of: Mapping[PartName, Collection[ModeName]], system: PartName, rule: Rule
+) -> Iterable[Finding]:
+    for key, part, pair in (
+        ("if_target", system, rule.if_target),
+        ("if_part", *rule.if_part),
+        ("new_target", system, rule.new_target),
+    ):
+        place = (system, "rules", rule.name, key)
+        where = f"rule {rule.name} of {system}, {key}"
+        yield from _check_pair(modes_of, where, part, pair, system, place)
+
+
+def _check_pair(
+    modes_of: Mapping[PartName, Collection[ModeName]],
+    where: str,
+    part: PartName,
+    pair: StateAndMode,
+    owner: PartName,
+    place: tuple[str, ...],
+) -> Iterable[Finding]:
+    """Check that a part is there, and has the mode that is said of it."""
+    modes = modes_of.get(part)
+    if modes is None:
+        message = f"{where}: there is no part {part!r}"
+        yield Finding("error", "UNKNOWN_PART", message, owner, place)
+    elif pair.state is LifecycleState.ACTIVE and pair.mode is not None and pair.mode not in modes:
         known = f"it has {', '.join(modes)}" if modes else "it has no modes"
-        message = f"{system} in {mode}: {part} has no mode {want.mode!r}; {known}"
-        yield Finding("error", "UNKNOWN_MODE", message, system, place)
+        message = f"{where}: {part} has no mode {pair.mode!r}; {known}"
+        yield Finding("error", "UNKNOWN_MODE", message, owner, place)
 
 
-def _find_cycles(systems: Mapping[PartName, SystemModel]) -> Iterable[Finding]:
-    """Find systems that contain themselves; each cycle is told once, without recursion."""
-    done: set[PartName] = set()
-    for root in systems:
-        trail: list[PartName] = []
-        waiting: list[tuple[PartName, int]] = [(root, 0)]
-        while waiting:
-            name, depth = waiting.pop()
-            del trail[depth:]
-            if name in trail:
-                cycle = [*trail[trail.index(name) :], name]
-                message = f"{name} contains itself: {' > '.join(cycle)}"
-                owner = cycle[-2]
-                place = (owner, "modes", DEFAULT_MODE, name)
-                yield Finding("error", "CYCLE", message, owner, place)
+def _cycle(systems: Mapping[PartName, SystemModel], cycle: tuple[PartName, ...]) -> Finding:
+    owner, name = cycle[-2:]
+    names = cycle
+    if len(cycle) > _MAX_NAMES_TOLD:
+        names = (*cycle[: _MAX_NAMES_TOLD - 2], PartName("..."), *cycle[-2:])
+    mode = next(mode for mode, wanted in systems[owner].modes.items() if name in wanted)
+    message = f"{name} contains itself: {' > '.join(names)}"
+    return Finding("error", "CYCLE", message, owner, (owner, "modes", mode, name))
+
+
+@dataclass(frozen=True, slots=True)
+class _Hierarchy:
+    """How systems contain systems, found in one walk without recursion."""
+
+    children: Mapping[PartName, tuple[PartName, ...]]
+    """The systems in each system."""
+    order: tuple[PartName, ...]
+    """All systems, each after those that it contains."""
+    cycles: tuple[tuple[PartName, ...], ...]
+    """Each from a system back to itself; not all, but none only if there is none."""
+
+    @classmethod
+    def of(cls, systems: Mapping[PartName, SystemModel]) -> "_Hierarchy":
+        """Walk depth first; a system that is met again on the way down closes a cycle."""
+        children = {
+            name: tuple(part for part in system.named_parts if part in systems)
+            for name, system in systems.items()
+        }
+        order: dict[PartName, None] = {}
+        cycles: list[tuple[PartName, ...]] = []
+        for root in systems:
+            if root in order:
                 continue
-            if name in done or name not in systems:
-                continue
-            trail.append(name)
-            children = {part for wanted in systems[name].modes.values() for part in wanted}
-            waiting.extend((child, len(trail)) for child in sorted(children))
-        done.update(trail)
-    return
+            trail: dict[PartName, None] = {root: None}
+            waiting = [iter(children[root])]
+            while waiting:
+                child = next(waiting[-1], None)
+                if child is None:
+                    waiting.pop()
+                    order[trail.popitem()[0]] = None
+                elif child in trail:
+                    if len(cycles) < _MAX_CYCLES_TOLD:
+                        names = tuple(trail)
+                        cycles.append((*names[names.index(child) :], child))
+                elif child not in order:
+                    trail[child] = None
+                    waiting.append(iter(children[child]))
+        return cls(children, tuple(order), tuple(cycles))
+
+    def heights(self) -> dict[PartName, int]:
+        """Return how far each system is above the nodes: higher than all that it contains."""
+        height: dict[PartName, int] = {}
+        for name in self.order:
+            height[name] = 1 + max((height[child] for child in self.children[name]), default=0)
+        return height
+
+    def too_deep(self) -> PartName | None:
+        """Return a system with too many levels below it; there must be no cycle."""
+        heights = self.heights()
+        return next((name for name in self.order if heights[name] > MAX_LEVELS), None)
 
 
 def _ancestors(
@@ -254,33 +366,21 @@ def _ancestors(
     """Return the ancestors of each part, bottom up, so that one pass over them infers them all."""
     parents: dict[PartName, list[PartName]] = {name: [] for name in (*systems, *nodes)}
     for system in systems.values():
-        for part in dict.fromkeys(part for wanted in system.modes.values() for part in wanted):
+        for part in system.named_parts:
             parents[part].append(system.name)
-    height = _heights(systems)
-    result: dict[PartName, tuple[PartName, ...]] = {}
-    for name in parents:
-        found: set[PartName] = set()
-        waiting = list(parents[name])
-        while waiting:
-            parent = waiting.pop()
-            if parent not in found:
-                found.add(parent)
-                waiting.extend(parents[parent])
-        result[name] = tuple(sorted(found, key=lambda system: (height[system], system)))
-    return result
-
-
-def _heights(systems: Mapping[PartName, SystemModel]) -> dict[PartName, int]:
-    """Return how far each system is above the nodes; a system is higher than all its parts."""
-    height: dict[PartName, int] = {}
-    waiting = list(systems)
-    while waiting:
-        name = waiting[-1]
-        parts = {part for wanted in systems[name].modes.values() for part in wanted}
-        missing = [part for part in parts if part in systems and part not in height]
-        if missing:
-            waiting.extend(missing)
-            continue
-        waiting.pop()
-        height[name] = 1 + max((height.get(part, 0) for part in parts), default=0)
-    return height
+    hierarchy = _Hierarchy.of(systems)
+    height = hierarchy.heights()
+    found: dict[PartName, tuple[PartName, ...]] = {}
+    of_parents: dict[tuple[PartName, ...], tuple[PartName, ...]] = {}
+    total = 0
+    for name in (*reversed(hierarchy.order), *nodes):
+        above = tuple(parents[name])
+        if above not in of_parents:
+            all_above = {*above, *chain.from_iterable(found[parent] for parent in above)}
+            of_parents[above] = tuple(sorted(all_above, key=lambda s: (height[s], s)))
+        found[name] = of_parents[above]
+        total += len(found[name])
+        if total > MAX_ANCESTORS:
+            message = "too many parts belong to too many systems"
+            raise InvalidModelError([Finding("error", "TOO_LARGE", message, name, (name,))])
+    return {name: found[name] for name in parents}

@@ -145,9 +145,12 @@ class Supervisor:
         """
         if self.mock is None:
             return self.submit(Readings(tuple(items), source, actor))
+        for readings in self.mock.due():
+            self.submit(readings)
         outputs = self.submit(Readings(tuple(items), self.mock.source, actor))
         for item in items:
-            self.mock.hold(item.signal, item.value)
+            if self.mock.holds(item.signal):
+                self.mock.hold(item.signal, item.value)
         return outputs
 
     def hold_mock(self, signal: str, value: SignalValue, actor: str = "") -> Outputs:

@@ -56,13 +56,13 @@ class _Node:
     def speaks(self) -> bool:
         return self.fault is None or not self.fault.is_mute
 
-    def start(self) -> None:
+    def start(self, at: Instant) -> None:
         """Begin a process: unconfigured, with the parameters of a node that was told nothing."""
         self.process += 1
         plain = self.settings.plain
         self.state = LifecycleState.UNKNOWN if plain else LifecycleState.UNCONFIGURED
         self.parameters = start_parameters(self.declared)
-        self.parameters_free_at = 0
+        self.parameters_free_at = at
 
     def stop(self) -> None:
         """End the process, and with it all that it was at."""
@@ -146,7 +146,7 @@ class SimulatedNodes:
             node = _Node(name, own, declared_parameters(node_model), own.fault)
             self._nodes[name] = node
             if node.runs:
-                node.start()
+                node.start(start)
             self._appear(node, start)
 
     def handle(self, command: Command, now: Instant) -> None:
@@ -195,7 +195,7 @@ class SimulatedNodes:
         if fault is Fault.DIE:
             it.stop()
         elif before is Fault.DIE:
-            it.start()
+            it.start(now)
         if not it.speaks or (before is not None and before.is_mute):
             self._appear(it, now)
 

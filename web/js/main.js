@@ -31,6 +31,7 @@ let state = emptyState();
 let mock = {};
 let selected = null;
 let drawAsked = false;
+let latchesSet = 0;
 
 function take(message) {
   state = fold(state, message);
@@ -80,13 +81,17 @@ function loadStructure() {
   );
 }
 
+/** What was asked before the last press of STOP would tell of the time before it. */
 function loadLatch() {
-  load(["/emergency_stop"], ([latch]) => take({ type: "emergency_stop", latch }));
+  const asked = latchesSet;
+  load(["/emergency_stop"], ([latch]) => {
+    if (asked === latchesSet) take({ type: "emergency_stop", latch });
+  });
 }
 
-/** The mock is asked for only where something is simulated; without it the page shows values only. */
+/** The mock is asked for only where signals are simulated; else the page shows values only. */
 function loadMock() {
-  if (!state.systemState?.simulated?.length) return;
+  if (!state.systemState?.simulated?.includes("signals")) return;
   load(["/mock"], ([{ items }]) => {
     mock = Object.fromEntries(items.map((item) => [item.signal, item]));
   });
@@ -119,8 +124,15 @@ document.addEventListener("ph-select", ({ detail }) => {
   askToDraw();
 });
 document.addEventListener("ph-try-now", () => connection.tryNow());
-document.addEventListener("ph-latch", ({ detail }) => take({ type: "emergency_stop", latch: detail }));
+document.addEventListener("ph-latch", ({ detail }) => {
+  latchesSet += 1;
+  take({ type: "emergency_stop", latch: detail });
+});
 setInterval(askToDraw, REDRAW_MS);
 setInterval(title, REDRAW_MS);
-setInterval(() => connection.level() === "live" && loadLatch(), SLOW_REFRESH_MS);
+setInterval(() => {
+  if (connection.level() !== "live") return;
+  loadLatch();
+  loadMock();
+}, SLOW_REFRESH_MS);
 connection.tryNow();

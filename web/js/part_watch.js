@@ -1,5 +1,7 @@
-/** Follows what the stream does not carry of the selected part: what may be asked of it and why not,
- * and how its last change goes. */
+/** Follows what the stream does not carry of the selected part.
+ *
+ * That is what may be asked of it, why something may not, and how its last change goes.
+ */
 
 import { partPath, request } from "/web/js/api.js";
 
@@ -61,8 +63,8 @@ export class PartWatch {
     if (this.change?.status === "running") paths.push(`/changes/${this.change.id}`);
     const [state, modes, whole, change] = await this.#answers(paths);
     if (this.part !== part) return;
-    this.transitions = state.available_transitions ?? [];
-    this.modes = modes.items ?? [];
+    this.transitions = state.available_transitions ?? this.transitions;
+    this.modes = modes.items ?? this.modes;
     if (change?.id && change.id === this.change?.id) this.change = change;
     const running = whole.change;
     if (running && running !== this.change?.id) {
@@ -73,7 +75,7 @@ export class PartWatch {
     if (this.change?.status === "running") setTimeout(() => this.refresh(), FOLLOW_MS);
   }
 
-  /** What cannot be loaded stays empty: the state bar tells of lost contact. */
+  /** What cannot be loaded stays as it was: the state bar tells of lost contact. */
   #answers(paths) {
     return Promise.all(paths.map((path) => request("GET", path).catch(() => ({}))));
   }

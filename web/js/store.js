@@ -5,21 +5,19 @@
  * (`items` of /systems and /nodes), `log` (`items` of /events) and `emergency_stop`.
  */
 
-const EVENTS_KEPT = 50;
+const EVENTS_KEPT = 200;
 
 /** What is known before the first frame: nothing. */
 export function emptyState() {
   return {
     epoch: null,
     at: null,
-    skipped: 0,
     systemState: null,
     parts: {},
     signals: {},
     emergencyStop: null,
     events: [],
     lastEventId: 0,
-    problem: null,
   };
 }
 
@@ -41,7 +39,6 @@ const FOLDERS = {
     return {
       ...state,
       at: frame.at,
-      skipped: state.skipped + (frame.skipped ?? 0),
       systemState: frame.system_state ?? state.systemState,
       parts: frame.parts ? foldParts(state.parts, frame.parts, frame.at) : state.parts,
       signals: frame.signals ? foldSignals(state.signals, frame.signals, frame.at) : state.signals,
@@ -58,19 +55,18 @@ const FOLDERS = {
     const begin = state.events.findLastIndex((event) => event.note) + 1;
     const streamed = state.events.slice(begin);
     const known = new Set(streamed.map((event) => event.id));
-    const older = items.filter((event) => !known.has(event.id));
+    const older = items.filter((event) => !known.has(event.id)).sort((a, b) => a.id - b.id);
     const lastEventId = Math.max(state.lastEventId, ...items.map((event) => event.id));
     const events = keep([...state.events.slice(0, begin), ...older, ...streamed]);
     return { ...state, lastEventId, events };
   },
 
+  /** Without `to` nobody knows how many: the server was restarted meanwhile, and ids begin anew. */
   gap(state, { from, to }) {
-    const note = { note: `Events ${from} to ${to} are missing here.`, id: `gap-${from}-${to}` };
-    return { ...state, lastEventId: to, events: keep([...state.events, note]) };
-  },
-
-  problem(state, problem) {
-    return { ...state, problem };
+    const which = to ? `Events ${from} to ${to} are` : `Whatever followed event ${from - 1} is`;
+    const note = { note: `${which} missing here.`, id: `gap-${from}` };
+    const lastEventId = to ? Math.max(to, state.lastEventId) : state.lastEventId;
+    return { ...state, lastEventId, events: keep([...state.events, note]) };
   },
 
   structure(state, { items }) {

@@ -29,12 +29,18 @@ export function label({ state, mode }) {
 export function stateSentence(state, contact) {
   const { systemState } = state;
   if (contact.level === "lost") {
-    const since = state.at ? `values shown are from ${timeOfDay(state.at)}` : "nothing is known yet";
+    const since = state.at
+      ? `values shown are from ${timeOfDay(state.at)}`
+      : "nothing is known yet";
     return sentence("lost", `No contact for ${wholeSeconds(contact.silenceMs)}`, since);
   }
   if (systemState === null) return sentence("late", "Connecting", "waiting for the first values");
   if (systemState.state !== "ERROR") {
-    return sentence(systemState.state.toLowerCase(), systemState.state, TASKS[systemState.task_status]);
+    return sentence(
+      systemState.state.toLowerCase(),
+      systemState.state,
+      TASKS[systemState.task_status],
+    );
   }
   const reasons = systemState.reasons.map((reason) => reason.message);
   const [first = systemState.errors.join(", "), ...more] = reasons;
@@ -61,7 +67,9 @@ export function requestWords(asked) {
 
 /** The state of a change in words, with the time it took or has taken. */
 export function changeWords(change, now) {
-  const took = duration((change.ended_at ? Date.parse(change.ended_at) : now) - Date.parse(change.started_at));
+  const took = duration(
+    (change.ended_at ? Date.parse(change.ended_at) : now) - Date.parse(change.started_at),
+  );
   const words = CHANGE_STATUS[change.status] ?? change.status;
   return `${words} ${change.status === "running" ? "for" : "after"} ${took}`;
 }
@@ -75,10 +83,25 @@ const CHANGE_STATUS = {
   canceled: "canceled",
 };
 
-/** What happened, from the kind of an event and its data. */
-export function eventWords({ data }) {
-  const said = data.message ?? data.reason;
-  if (typeof said === "string" && said) return said;
+const EVENT_WORDS = {
+  "signal.pending": ({ signal, error }) => `${signal} is bad; ${error} follows if it lasts`,
+  "signal.settled": ({ signal, error }) => `${signal} is good again; no ${error}`,
+  "error.raised": ({ error, message }) => `${error}: ${message}`,
+  "error.cleared": ({ error }) => `${error} is over`,
+  "system_state.changed": ({ was, state, errors }) =>
+    [was === state ? state : `${was} to ${state}`, errors.join(", ")].filter(Boolean).join(": "),
+  "part.actual_changed": ({ part, was, actual }) => `${part}: ${was} to ${actual}`,
+  "part.deviation_began": ({ part, actual, target }) => `${part} is ${actual}, not ${target}`,
+  "part.deviation_ended": ({ part, actual }) => `${part} is ${actual}, as asked`,
+  "change.requested": ({ part, ...asked }) => `${part}: ${requestWords(asked)}`,
+  "change.step_started": ({ node, action }) => `${node}: ${action}`,
+  "change.step_ended": ({ node, action, status, error }) =>
+    `${node}: ${action} ${status}${error ? `, ${error}` : ""}`,
+};
+
+/** What happened, in words; an event of a kind not known here tells its data as they are. */
+export function eventWords({ kind, data }) {
+  if (EVENT_WORDS[kind]) return EVENT_WORDS[kind](data);
   return Object.entries(data)
     .filter(([, value]) => value !== null && value !== "" && !isEmpty(value))
     .map(([name, value]) => `${name.replaceAll("_", " ")} ${plain(value)}`)
@@ -93,5 +116,7 @@ function plain(value) {
   if (typeof value !== "object") return String(value);
   if (Array.isArray(value)) return value.map(plain).join(" ");
   if ("state" in value) return label(value);
-  return Object.entries(value).map(([name, inner]) => `${name} ${plain(inner)}`).join(" ");
+  return Object.entries(value)
+    .map(([name, inner]) => `${name} ${plain(inner)}`)
+    .join(" ");
 }

@@ -13,8 +13,19 @@ class Change extends HTMLElement {
     this.asked = el("h3");
     this.status = el("p", { class: "change-status" });
     this.steps = el("ol", { class: "steps" });
-    this.cancel = el("button", { type: "button", class: "small", onclick: () => this.#cancel() }, "Cancel the rest");
-    this.result = el("div", { class: "change", hidden: true }, this.asked, this.status, this.steps, this.cancel);
+    this.cancel = el(
+      "button",
+      { type: "button", class: "small", onclick: () => this.#cancel() },
+      "Cancel the rest",
+    );
+    this.result = el(
+      "div",
+      { class: "change", hidden: true },
+      this.asked,
+      this.status,
+      this.steps,
+      this.cancel,
+    );
     this.append(this.problem, this.result);
   }
 
@@ -25,8 +36,14 @@ class Change extends HTMLElement {
     if (!change) return;
     this.change = change;
     const of = change.part === part.name ? "" : ` of ${change.part}`;
-    setText(this.asked, `${requestWords(change.request)}${of}, asked at ${timeOfDay(change.started_at)}`);
-    setText(this.status, changeWords(change, serverNow) + (change.reason ? `: ${change.reason}` : ""));
+    setText(
+      this.asked,
+      `${requestWords(change.request)}${of}, asked at ${timeOfDay(change.started_at)}`,
+    );
+    setText(
+      this.status,
+      changeWords(change, serverNow) + (change.reason ? `: ${change.reason}` : ""),
+    );
     setAttribute(this.status, "data-status", change.status);
     setAttribute(this.cancel, "hidden", change.status !== "running");
     const running = change.status === "running" ? Math.floor(serverNow / 250) : 0;
@@ -46,7 +63,9 @@ class Change extends HTMLElement {
 
 function stepLine(step, now) {
   const { node, action, status, started_at, ended_at, error } = step;
-  const took = started_at ? duration((ended_at ? Date.parse(ended_at) : now) - Date.parse(started_at)) : "";
+  const took = started_at
+    ? duration((ended_at ? Date.parse(ended_at) : now) - Date.parse(started_at))
+    : "";
   return el(
     "li",
     { "data-status": status },
@@ -60,7 +79,9 @@ function stepLine(step, now) {
 /** The refusal in words; blockers that the detail already names are not said twice. */
 function problemLines({ title, detail, hint, blockers = [] }) {
   const said = detail ?? title;
-  const more = blockers.map((blocker) => blocker.message).filter((message) => !said.includes(message));
+  const more = blockers
+    .map((blocker) => blocker.message)
+    .filter((message) => !said.includes(message));
   return [
     el("strong", {}, "Refused: "),
     el("span", {}, said),

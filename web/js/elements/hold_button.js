@@ -1,4 +1,4 @@
-/** <ph-hold-button label="Hold to release">: dispatches `ph-held` after a press of 1.5 s, by pointer or key. */
+/** <ph-hold-button label="...">: dispatches `ph-held` after a press of 1.5 s, by pointer or key. */
 
 import { el, setAttribute } from "/web/js/dom.js";
 
@@ -8,7 +8,12 @@ class HoldButton extends HTMLElement {
   connectedCallback() {
     if (this.button) return;
     const label = this.getAttribute("label");
-    this.button = el("button", { type: "button" }, el("span", { class: "fill" }), el("span", {}, label));
+    this.button = el(
+      "button",
+      { type: "button" },
+      el("span", { class: "fill" }),
+      el("span", {}, label),
+    );
     this.append(this.button);
     this.button.addEventListener("pointerdown", () => this.#start());
     for (const end of ["pointerup", "pointerleave", "pointercancel", "blur", "keyup"]) {

@@ -8,38 +8,43 @@ const REST_MS = 800;
 
 class MockControl extends HTMLElement {
   #signal = null;
+  #mock = null;
   #waiting = null;
   #sending = false;
   #touchedAt = -Infinity;
   #dragging = false;
 
-  /** Build the control for one signal; `mock` is its entry in /mock. */
-  open(signal, { label, control }, mock) {
+  /** Build the control for one signal. */
+  open(signal, { label, control }) {
     this.#signal = signal;
     this.input = control ? makeInput(control, label) : null;
     this.publishing = makeSwitch("Publishing", `${label}: publishing`);
-    this.publishing.box.checked = mock.publishing;
     this.problem = el("p", { class: "problem", role: "alert", hidden: true });
     this.fields = el("fieldset", {}, this.input?.node ?? null, this.publishing.node);
     this.append(this.fields, this.problem);
-    this.publishing.box.addEventListener("change", () => this.#ask({ publishing: this.publishing.box.checked }));
+    this.publishing.box.addEventListener("change", () =>
+      this.#ask({ publishing: this.publishing.box.checked }),
+    );
     if (!this.input) return;
-    this.input.write(mock.value);
     const field = this.input.field;
     field.addEventListener("input", () => this.#ask({ value: this.input.read() }));
+    if (control.kind !== "range") return;
     field.addEventListener("pointerdown", () => (this.#dragging = true));
     for (const end of ["pointerup", "pointercancel", "change"]) {
       field.addEventListener(end, () => (this.#dragging = false));
     }
   }
 
-  /** Follow the value that comes in, except while a person is at the control. */
-  show(signal, enabled) {
+  /** Follow what comes in, except while a person is at the control; `mock` is from /mock. */
+  show(signal, mock, enabled) {
     setAttribute(this.fields, "disabled", !enabled);
-    const resting = !this.#dragging && performance.now() - this.#touchedAt > REST_MS;
-    if (this.input && resting && this.publishing.box.checked && signal.value !== null) {
-      this.input.write(signal.value);
+    if (this.#dragging || performance.now() - this.#touchedAt < REST_MS) return;
+    if (this.#mock !== mock) {
+      this.#mock = mock;
+      this.publishing.box.checked = mock.publishing;
+      this.input?.write(mock.value);
     }
+    if (this.publishing.box.checked && signal.value !== null) this.input?.write(signal.value);
   }
 
   /** Send the newest wish, at most ten a second and one at a time. */
@@ -75,7 +80,12 @@ function makeInput(control, label) {
   if (control.kind === "range") {
     const { min, max, step } = control;
     const field = el("input", { type: "range", min, max, step, "aria-label": `${label}: set` });
-    return { node: field, field, read: () => field.valueAsNumber, write: (value) => (field.valueAsNumber = value) };
+    return {
+      node: field,
+      field,
+      read: () => field.valueAsNumber,
+      write: (value) => (field.valueAsNumber = value),
+    };
   }
   if (control.kind === "select") {
     const options = control.options.map((option) => el("option", {}, option));

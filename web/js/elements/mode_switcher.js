@@ -21,7 +21,14 @@ class ModeSwitcher extends HTMLElement {
     this.modes = new Map();
     this.modeList = el("div", { class: "modes", role: "group", "aria-label": "Mode" });
     this.modeTitle = el("h3", {}, "Mode");
-    this.fields = el("fieldset", {}, this.modeTitle, this.modeList, el("h3", {}, "Lifecycle"), lifecycle);
+    this.fields = el(
+      "fieldset",
+      {},
+      this.modeTitle,
+      this.modeList,
+      el("h3", {}, "Lifecycle"),
+      lifecycle,
+    );
     this.append(this.fields);
   }
 
@@ -42,7 +49,8 @@ class ModeSwitcher extends HTMLElement {
   /** A part that was shut down cannot come back, so this one is held. */
   #transitionButton(name) {
     const ask = () => this.#ask("state", { transition: name });
-    if (name === "shutdown") return el("ph-hold-button", { label: "shutdown (hold)", "onph-held": ask });
+    if (name === "shutdown")
+      return el("ph-hold-button", { label: "shutdown (hold)", "onph-held": ask });
     return el("button", { type: "button", onclick: ask }, name);
   }
 
@@ -54,7 +62,12 @@ class ModeSwitcher extends HTMLElement {
       const mark = el("span", { class: "mark" });
       const ask = () => this.#ask("mode", { mode });
       const button = el("button", { type: "button", onclick: ask }, el("span", {}, mode), mark);
-      this.modes.set(mode, { button, mark, blocker, item: el("div", { class: "mode" }, button, blocker) });
+      this.modes.set(mode, {
+        button,
+        mark,
+        blocker,
+        item: el("div", { class: "mode" }, button, blocker),
+      });
     }
     this.modeList.replaceChildren(...[...this.modes.values()].map(({ item }) => item));
   }

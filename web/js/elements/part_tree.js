@@ -77,8 +77,10 @@ class PartTree extends HTMLElement {
       ArrowUp: () => this.#focus(order[at - 1]),
       Home: () => this.#focus(order[0]),
       End: () => this.#focus(order.at(-1)),
-      ArrowRight: () => (open === "false" ? this.#toggle(item) : open && this.#focus(order[at + 1])),
-      ArrowLeft: () => (open === "true" ? this.#toggle(item) : this.#focus(parentOf(item.dataset.path))),
+      ArrowRight: () =>
+        open === "false" ? this.#toggle(item) : open && this.#focus(order[at + 1]),
+      ArrowLeft: () =>
+        open === "true" ? this.#toggle(item) : this.#focus(parentOf(item.dataset.path)),
       Enter: () => this.#select(item),
       " ": () => this.#select(item),
     };
@@ -100,13 +102,16 @@ class PartTree extends HTMLElement {
   }
 
   #select(item) {
-    this.dispatchEvent(new CustomEvent("ph-select", { bubbles: true, detail: nameOf(item.dataset.path) }));
+    this.dispatchEvent(
+      new CustomEvent("ph-select", { bubbles: true, detail: nameOf(item.dataset.path) }),
+    );
   }
 
   #focus(path) {
     if (!this.#rows.has(path)) return;
     this.#focused = path;
-    for (const [other, { item }] of this.#rows) setAttribute(item, "tabindex", other === path ? 0 : -1);
+    for (const [other, { item }] of this.#rows)
+      setAttribute(item, "tabindex", other === path ? 0 : -1);
     this.#rows.get(path).item.focus();
   }
 }
@@ -133,7 +138,11 @@ function visibleLines(parts, collapsed) {
       lines.push({ path, part: parts[name], level, open, index: index + 1, count: names.length });
       if (open) add(children, path, level + 1);
     });
-  add(Object.keys(parts).filter((name) => !owned.has(name)), "", 1);
+  add(
+    Object.keys(parts).filter((name) => !owned.has(name)),
+    "",
+    1,
+  );
   return lines;
 }
 
@@ -148,7 +157,13 @@ function makeRow({ path, level }) {
   };
   const twist = el("span", { class: "twist", "aria-hidden": "true" });
   const head = el("span", { class: "head" }, twist, row.dot, row.name, row.kind, row.dotText);
-  const item = el("li", { role: "treeitem", class: `row level-${Math.min(level, 6)}` }, head, row.pills, row.note);
+  const item = el(
+    "li",
+    { role: "treeitem", class: `row level-${Math.min(level, 6)}` },
+    head,
+    row.pills,
+    row.note,
+  );
   item.dataset.path = path;
   return { ...row, item };
 }

@@ -7,7 +7,11 @@ class Pills extends HTMLElement {
   show(part) {
     const { actual } = part;
     const target = part.effective_target ?? part.target;
-    setAttribute(this, "data-fit", part.converged ? "converged" : part.change ? "changing" : "deviating");
+    setAttribute(
+      this,
+      "data-fit",
+      part.converged ? "converged" : part.change ? "changing" : "deviating",
+    );
     renderOnce(this, JSON.stringify([target, actual, part.converged]), () => {
       const shown = actualPill(actual);
       if (part.converged || !target) return [shown];
@@ -23,9 +27,11 @@ class Pills extends HTMLElement {
 
 /** Inferred is italic with (*), as in the mode monitor of system_modes. */
 function actualPill(actual) {
-  if (actual.state === "unknown") return el("span", { class: "pill actual unknown" }, "?", hidden(" unknown"));
+  if (actual.state === "unknown")
+    return el("span", { class: "pill actual unknown" }, "?", hidden(" unknown"));
   const parts = [el("span", { class: actual.inferred ? "inferred" : null }, actual.state)];
-  if (actual.mode) parts.push(el("span", { class: actual.mode_inferred ? "inferred" : null }, `.${actual.mode}`));
+  if (actual.mode)
+    parts.push(el("span", { class: actual.mode_inferred ? "inferred" : null }, `.${actual.mode}`));
   if (actual.inferred || actual.mode_inferred) {
     const title = actual.inferred ? "inferred, not reported" : "the mode is inferred, not reported";
     parts.push(el("span", { title, class: "star" }, " (*)"), hidden(" inferred"));

@@ -46,16 +46,18 @@ class SignalCard extends HTMLElement {
     if (mock[name] && !this.control) {
       this.control = el("ph-mock-control");
       this.append(this.control);
-      this.control.open(name, about, mock[name]);
+      this.control.open(name, about);
     }
-    this.control?.show(signal, contact.level !== "lost");
+    this.control?.show(signal, mock[name], contact.level !== "lost");
   }
 
   #judge({ error, stale, pending }, now) {
     const level = error || stale ? "error" : pending ? "pending" : "ok";
     setAttribute(this, "data-level", level);
     setAttribute(this.bar, "hidden", level !== "pending");
-    const words = [error, stale && error !== "STALE_DATA" ? "STALE" : null].filter(Boolean).join(", ");
+    const words = [error, stale && error !== "STALE_DATA" ? "STALE" : null]
+      .filter(Boolean)
+      .join(", ");
     if (level !== "pending") {
       setText(this.verdict, words ? `⚠ ${words}` : "OK");
       return;

@@ -18,11 +18,17 @@ class StopButton extends HTMLElement {
 
   connectedCallback() {
     this.word = el("span", { class: "octagon" }, "STOP");
-    this.button = el("button", { type: "button", class: "stop", "aria-describedby": "stop-note" }, this.word);
+    this.button = el(
+      "button",
+      { type: "button", class: "stop", "aria-describedby": "stop-note" },
+      this.word,
+    );
     this.status = el("p", { class: "stop-status", "aria-live": "assertive" });
     this.note = el("p", { id: "stop-note", class: "quiet" }, "Software stop, not safety-rated");
     this.release = el("ph-hold-button", { label: "Hold to release", hidden: true });
-    this.append(el("div", { class: "stop-text" }, this.status, this.release, this.note), this.button);
+    this.by = el("p", { class: "quiet" });
+    const text = el("div", { class: "stop-text" }, this.status, this.by, this.release, this.note);
+    this.append(text, this.button);
     // A press counts when it begins: a finger that slides off must still stop the robot.
     this.button.addEventListener("pointerdown", ({ button }) => button === 0 && this.#engage());
     this.button.addEventListener("click", () => this.#engage());
@@ -40,13 +46,12 @@ class StopButton extends HTMLElement {
     this.#sending = true;
     this.#problem = null;
     this.#render();
-    while (!(await this.#put(true, "STOP pressed on the monitor page"))) {
+    while (!(await this.#put(true, "STOP on the monitor page"))) {
       this.#undelivered = true;
       this.#render();
       await new Promise((resolve) => setTimeout(resolve, RETRY_MS));
     }
     this.#sending = this.#undelivered = false;
-    this.#problem = null;
     this.#render();
   }
 
@@ -59,6 +64,7 @@ class StopButton extends HTMLElement {
     try {
       const options = { keepalive: true, timeoutMs: ANSWER_MS };
       this.#latch = await request("PUT", "/emergency_stop", { engaged, reason }, options);
+      this.#problem = null;
     } catch (error) {
       this.#problem = error.problem;
       return false;
@@ -71,10 +77,16 @@ class StopButton extends HTMLElement {
     const engaged = Boolean(this.#latch?.engaged);
     const phase = this.#sending ? "sending" : engaged ? "engaged" : "ready";
     setAttribute(this, "data-phase", phase);
+    setAttribute(this, "data-undelivered", this.#undelivered);
     setText(this.word, { sending: "SENDING", engaged: "ENGAGED", ready: "STOP" }[phase]);
-    setAttribute(this.button, "aria-label", { ready: "STOP", sending: "STOP, sending", engaged: "STOP, engaged" }[phase]);
+    setAttribute(
+      this.button,
+      "aria-label",
+      { ready: "STOP", sending: "STOP, sending", engaged: "STOP, engaged" }[phase],
+    );
     setAttribute(this.release, "hidden", !engaged || this.#sending);
     setText(this.status, this.#statusWords(engaged));
+    setText(this.by, phase === "engaged" ? byWords(this.#latch) : "");
   }
 
   #statusWords(engaged) {
@@ -85,10 +97,13 @@ class StopButton extends HTMLElement {
     if (this.#sending) return "Sending the stop …";
     if (this.#problem) return `Not released: ${this.#problem.detail}`;
     if (!engaged) return "";
-    const { since_at, by, reason } = this.#latch;
-    const who = by ? ` by ${by}` : "";
-    return `Stop engaged${since_at ? ` at ${timeOfDay(since_at)}` : ""}${who}${reason ? `: ${reason}` : ""}`;
+    const { since_at } = this.#latch;
+    return `Stop engaged${since_at ? ` at ${timeOfDay(since_at)}` : ""}`;
   }
+}
+
+function byWords({ by, reason }) {
+  return [by ? `by ${by}` : "", reason ?? ""].filter(Boolean).join(": ");
 }
 
 customElements.define("ph-stop-button", StopButton);

@@ -1,0 +1,64 @@
+"""What routes may ask for."""
+
+from typing import Annotated
+
+from fastapi import Depends, Request
+from fastapi.requests import HTTPConnection
+
+from domain.errors import UnknownPartError
+from domain.system_model import PartName, SmhModel
+from service.supervisor import Supervisor
+from service.worker import Worker
+
+
+def _supervisor(connection: HTTPConnection) -> Supervisor:
+    found: Supervisor = connection.app.state.supervisor
+    return found
+
+
+def _worker(connection: HTTPConnection) -> Worker:
+    found: Worker = connection.app.state.worker
+    return found
+
+
+SupervisorDep = Annotated[Supervisor, Depends(_supervisor)]
+WorkerDep = Annotated[Worker, Depends(_worker)]
+
+
+def _actor(request: Request) -> str:
+    return f"http:{request.client.host}" if request.client else "http:unknown"
+
+
+ActorDep = Annotated[str, Depends(_actor)]
+"""Who asks, as events record it."""
+
+
+def _part(part: str, request: Request, supervisor: SupervisorDep) -> PartName:
+    """Return the part that the path names.
+
+    Raises:
+        UnknownPartError: There is none of that name and kind, with a hint.
+    """
+    kind = "system" if request.url.path.startswith("/systems/") else "node"
+    known = supervisor.model.systems if kind == "system" else supervisor.model.nodes
+    if part not in known:
+        hint = _hint(supervisor.model, kind, part, request.url.path)
+        raise UnknownPartError(kind, part, tuple(known), hint)
+    return PartName(part)
+
+
+PartDep = Annotated[PartName, Depends(_part)]
+
+
+def _hint(model: SmhModel, kind: str, part: str, path: str) -> str | None:
+    """Say where the part is, or what the longest known part at the begin of the name has."""
+    if part in model:
+        other = "node" if kind == "system" else "system"
+        return f"{part} is a {other}: see {path.replace(f'/{kind}s/', f'/{other}s/', 1)}"
+    name = part
+    while "/" in name:
+        name = name.rpartition("/")[0]
+        if name in model:
+            more = " and parameters" if name in model.nodes else ""
+            return f"{name} is there; it has state, states, mode, modes{more}"
+    return None

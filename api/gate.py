@@ -1,0 +1,197 @@
+"""What every request passes before a route sees it, and every answer on its way out.
+
+Plain ASGI, so that it holds for WebSocket handshakes as well, and costs little.
+"""
+
+import logging
+import re
+from collections.abc import Iterable
+from http import HTTPStatus
+from typing import ClassVar
+from urllib.parse import urlsplit
+
+from starlette.datastructures import Headers, MutableHeaders
+from starlette.types import ASGIApp, Message, Receive, Scope, Send
+
+from api.problems import Problem, make_problem, problem_response
+
+log = logging.getLogger(__name__)
+
+LOOPBACK_NAMES = ("localhost", "127.0.0.1", "[::1]")
+
+CONTENT_SECURITY_POLICY = (
+    "default-src 'none'; script-src 'self'; style-src 'self'; img-src 'self'; connect-src 'self'; "
+    "base-uri 'none'; form-action 'none'; frame-ancestors 'none'"
+)
+
+_SAFE_METHODS = frozenset({"GET", "HEAD", "OPTIONS"})
+_STARTS = frozenset({"http.response.start", "websocket.http.response.start"})
+
+
+class SecurityHeaders:
+    """Tell browsers to be strict with whatever comes from here."""
+
+    HEADERS: ClassVar = {
+        "Content-Security-Policy": CONTENT_SECURITY_POLICY,
+        "X-Content-Type-Options": "nosniff",
+        "Referrer-Policy": "no-referrer",
+        # Of a robot only the present is worth anything; the page's files say otherwise themselves.
+        "Cache-Control": "no-store",
+    }
+
+    def __init__(self, app: ASGIApp) -> None:
+        self._app = app
+
+    async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
+        """Add to the headers of the answer what it does not say itself."""
+
+        async def send_with_headers(message: Message) -> None:
+            if message["type"] in _STARTS:
+                headers = MutableHeaders(scope=message)
+                for name, value in self.HEADERS.items():
+                    headers.setdefault(name, value)
+            await send(message)
+
+        await self._app(scope, receive, send_with_headers)
+
+
+class Gate:
+    """Refuse what a page of another site can make a browser send to this service.
+
+    * A name in `Host` that is not ours: a foreign name that was made to resolve to our address (DNS
+      rebinding), by which a foreign page would be of the same origin.
+    * A write, or a WebSocket, with a foreign `Origin`.
+    * A write from a page with a body of a type that browsers send without asking first (a form).
+    """
+
+    def __init__(self, app: ASGIApp, allowed_hosts: Iterable[str]) -> None:
+        """Guard `app`.
+
+        Args:
+            app: What is behind the gate.
+            allowed_hosts: Names and addresses in `Host`, without port, beside those of loopback.
+        """
+        self._app = app
+        self._hosts = {_bare(host) for host in (*LOOPBACK_NAMES, *allowed_hosts)}
+
+    async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
+        """Pass the request on, or answer 403 or 415."""
+        if scope["type"] in ("http", "websocket"):
+            problem = self._find_fault(scope)
+            if problem is not None:
+                await _refuse(problem, scope, receive, send)
+                return
+        await self._app(scope, receive, send)
+
+    def _find_fault(self, scope: Scope) -> Problem | None:
+        headers = Headers(scope=scope)
+        path = scope["path"]
+        hosts = headers.getlist("host")
+        if len(hosts) != 1 or _bare(hosts[0]) not in self._hosts:
+            named = hosts[0] if hosts else ""
+            hint = "a further name is allowed with `pilothouse serve --allowed-host NAME`"
+            return make_problem(
+                HTTPStatus.FORBIDDEN,
+                "HOST_NOT_ALLOWED",
+                f"this service is not asked by the name {named!r}",
+                path,
+                more={"hint": hint},
+            )
+        origin = headers.get("origin")
+        if origin is None or (scope["type"] == "http" and scope["method"] in _SAFE_METHODS):
+            return None
+        if not is_same_origin(origin, hosts[0]):
+            detail = f"a page of {origin!r} may not do this"
+            return make_problem(HTTPStatus.FORBIDDEN, "FOREIGN_ORIGIN", detail, path)
+        if scope["type"] == "http" and _has_body(headers) and not _is_typed(headers):
+            detail = "a page sends JSON, YAML or CSV, and says so"
+            return make_problem(
+                HTTPStatus.UNSUPPORTED_MEDIA_TYPE, "UNSUPPORTED_TYPE", detail, path
+            )
+        return None
+
+
+class UnexpectedErrors:
+    """The edge of the service: what nobody foresaw is logged, and answered without its inside."""
+
+    def __init__(self, app: ASGIApp) -> None:
+        self._app = app
+
+    async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
+        """Answer 500 where the application raises."""
+        if scope["type"] != "http":
+            await self._app(scope, receive, send)
+            return
+        has_begun = False
+
+        async def send_and_note(message: Message) -> None:
+            nonlocal has_begun
+            has_begun = True
+            await send(message)
+
+        try:
+            await self._app(scope, receive, send_and_note)
+        except Exception:
+            log.exception("%s %s failed", scope["method"], scope["path"])
+            if has_begun:
+                raise
+            status = HTTPStatus.INTERNAL_SERVER_ERROR
+            detail = "this is a fault in Pilothouse; its log tells more"
+            problem = make_problem(status, "INTERNAL", detail, scope["path"])
+            await problem_response(problem)(scope, receive, send)
+
+
+def is_same_origin(origin: str, host: str) -> bool:
+    """Tell whether a page of `origin` comes from the service that was asked as `host`.
+
+    The scheme is that of the page: behind a proxy that speaks TLS, ours is another one.
+
+    Args:
+        origin: As in the header, `https://robot.example` or `null`.
+        host: As in the header, `robot.example:8000`.
+    """
+    try:
+        page = urlsplit(origin)
+        asked = urlsplit(f"{page.scheme}://{host}")
+        default = _DEFAULT_PORTS.get(page.scheme)
+        if default is None or not page.hostname:
+            return False
+        return (page.hostname, page.port or default) == (asked.hostname, asked.port or default)
+    except ValueError:
+        return False
+
+
+_DEFAULT_PORTS = {"http": 80, "https": 443}
+_HOST = re.compile(r"(\[[0-9a-f:.]+\]|[^\s:/?#@\[\]\\]+)(?::[0-9]*)?")
+
+
+def _bare(host: str) -> str:
+    """Return a host without its port, in one of its forms; empty if it is none."""
+    if host.count(":") > 1 and not host.startswith("["):
+        host = f"[{host}]"
+    match = _HOST.fullmatch(host.strip().lower())
+    return match[1].removesuffix(".") if match else ""
+
+
+def _has_body(headers: Headers) -> bool:
+    return "transfer-encoding" in headers or headers.get("content-length", "0") != "0"
+
+
+_TYPES = frozenset(
+    {"application/json", "application/yaml", "application/x-yaml", "text/yaml", "text/csv"}
+)
+
+
+def _is_typed(headers: Headers) -> bool:
+    return headers.get("content-type", "").partition(";")[0].strip().lower() in _TYPES
+
+
+async def _refuse(problem: Problem, scope: Scope, receive: Receive, send: Send) -> None:
+    if scope["type"] == "websocket" and "websocket.http.response" not in scope.get(
+        "extensions", {}
+    ):
+        # Closed before it was accepted: the server itself answers 403.
+        await receive()
+        await send({"type": "websocket.close", "code": 1008})
+        return
+    await problem_response(problem)(scope, receive, send)

@@ -1,0 +1,141 @@
+"""What Prometheus reads: made from the supervisor when it is asked for, and kept up by nobody."""
+
+from collections.abc import Iterable, Iterator
+from itertools import islice
+
+from fastapi import FastAPI
+from prometheus_client import CollectorRegistry, Histogram
+from prometheus_client.core import CounterMetricFamily, GaugeMetricFamily
+from prometheus_client.metrics_core import Metric
+from prometheus_client.registry import Collector
+
+from api.stream_hub import StreamHub, stream_hub
+from domain.messages import Event
+from domain.snapshot import ChangeStatus, SystemState
+from domain.timebase import to_seconds
+from service.event_log import EventReader
+from service.supervisor import PERIOD, Supervisor
+
+_MAX_PARTS = 1_000
+"""More would make each scrape larger than what anybody looks at."""
+
+_ENDS = tuple(str(status) for status in ChangeStatus if status != ChangeStatus.RUNNING)
+
+_PERIODS_S = tuple(
+    to_seconds(PERIOD) * factor for factor in (0.5, 0.9, 0.98, 1, 1.02, 1.1, 1.5, 2, 4, 20)
+)
+
+
+class Metrics:
+    """The metrics of one service, in a registry of their own."""
+
+    def __init__(self, hub: StreamHub) -> None:
+        self.registry = CollectorRegistry(auto_describe=False)
+        period = Histogram(
+            "pilothouse_publish_period_seconds",
+            "Time from one tick to the next",
+            buckets=_PERIODS_S,
+            registry=self.registry,
+        )
+        hub.supervisor.on_tick.append(period.observe)
+        self.registry.register(_RobotCollector(hub.supervisor))
+        self.registry.register(_ServiceCollector(hub))
+
+
+def metrics(app: FastAPI) -> Metrics:
+    """Return the metrics of an application; the first who asks makes them."""
+    known = getattr(app.state, "metrics", None)
+    if not isinstance(known, Metrics):
+        known = app.state.metrics = Metrics(stream_hub(app))
+    return known
+
+
+class _RobotCollector(Collector):
+    """What the robot is in."""
+
+    def __init__(self, supervisor: Supervisor) -> None:
+        self._supervisor = supervisor
+
+    def collect(self) -> Iterator[Metric]:
+        core = self._supervisor.core
+        view = core.system_state()
+        yield _gauge(
+            "pilothouse_system_state",
+            "1 for the state that the robot is in",
+            "state",
+            ((str(state), float(state is view.state)) for state in SystemState),
+        )
+        yield _gauge(
+            "pilothouse_error_active",
+            "1 for each error that is on",
+            "error",
+            ((error, 1.0) for error in view.errors),
+        )
+        deviating = (name for name, part in core.parts().items() if not part.converged)
+        yield _gauge(
+            "pilothouse_part_deviates",
+            f"1 for each part that is not as it should be; at most {_MAX_PARTS}",
+            "part",
+            ((str(name), 1.0) for name in islice(deviating, _MAX_PARTS)),
+        )
+        now = self._supervisor.clock.now()
+        yield _gauge(
+            "pilothouse_signal_age_seconds",
+            "Time since the last reading of a signal; none for a signal never seen",
+            "signal",
+            (
+                (name, to_seconds(now - signal.received_at))
+                for name, signal in core.signals().items()
+                if signal.received_at is not None
+            ),
+        )
+
+
+class _ServiceCollector(Collector):
+    """How the service fares."""
+
+    def __init__(self, hub: StreamHub) -> None:
+        self._hub = hub
+        self._events = EventReader(hub.supervisor.events, after=0)
+        self._ended = dict.fromkeys(_ENDS, 0)
+
+    def collect(self) -> Iterator[Metric]:
+        supervisor = self._hub.supervisor
+        yield CounterMetricFamily(
+            "pilothouse_ticks_late", "Ticks that were skipped", value=supervisor.late_ticks
+        )
+        yield GaugeMetricFamily(
+            "pilothouse_ws_clients", "Clients of the stream", value=self._hub.clients
+        )
+        yield CounterMetricFamily(
+            "pilothouse_ws_dropped",
+            "Clients cut off because they read too slowly",
+            value=self._hub.dropped,
+        )
+        yield CounterMetricFamily(
+            "pilothouse_ws_frames_skipped",
+            "Frames that clients were too slow for",
+            value=self._hub.skipped,
+        )
+        self._count_changes()
+        changes = CounterMetricFamily("pilothouse_changes", "Changes that ended", labels=["status"])
+        for status, number in self._ended.items():
+            changes.add_metric([status], number)
+        yield changes
+
+    def _count_changes(self) -> None:
+        """Count what ended since the last time, by the log: nothing has to be told to us."""
+        while found := self._events.take(limit=1_000):
+            for item in found:
+                area, _, status = item.kind.partition(".") if isinstance(item, Event) else ("",) * 3
+                if area == "change" and status in self._ended:
+                    self._ended[status] += 1
+
+
+def _gauge(
+    name: str, about: str, label: str, values: Iterable[tuple[str, float]]
+) -> GaugeMetricFamily:
+    family = GaugeMetricFamily(name, about, labels=[label])
+    for value_label, value in values:
+        family.add_metric([value_label], value)
+    return family

@@ -1,0 +1,73 @@
+"""Answer with a problem document whatever goes wrong on the way to a route or in it."""
+
+from collections.abc import Sequence
+from http import HTTPStatus
+
+from fastapi import FastAPI, Request
+from fastapi.exceptions import RequestValidationError
+from fastapi.responses import Response
+from starlette.exceptions import HTTPException as StarletteHTTPException
+from starlette.routing import BaseRoute, Match
+
+from api.bodies import BodyTooLargeError, InvalidBodyError, faults_of
+from api.problems import HttpError, make_problem, problem_of, problem_response
+from domain.errors import PilothouseError
+from service.clock import Clock
+from service.worker import WorkerBusyError
+
+_OUTSIDE = frozenset({"body", "query", "path", "header"})
+
+
+def add_problem_handlers(app: FastAPI, clock: Clock) -> None:
+    """Let `app` answer every error with its problem document."""
+
+    async def on_our_error(request: Request, error: Exception) -> Response:
+        if not isinstance(error, PilothouseError):
+            raise error
+        headers = {}
+        if isinstance(error, WorkerBusyError):
+            headers["Retry-After"] = str(error.retry_after_s)
+        if isinstance(error, BodyTooLargeError):
+            # The rest of the body is not read; without this it would be taken for a next request.
+            headers["Connection"] = "close"
+        return problem_response(problem_of(error, clock, request.url.path), headers)
+
+    async def on_invalid_request(request: Request, error: Exception) -> Response:
+        if not isinstance(error, RequestValidationError):
+            raise error
+        return await on_our_error(request, InvalidBodyError(faults_of(error.errors(), _OUTSIDE)))
+
+    app.add_exception_handler(PilothouseError, on_our_error)
+    app.add_exception_handler(RequestValidationError, on_invalid_request)
+    app.add_exception_handler(StarletteHTTPException, _on_http_error)
+
+
+async def _on_http_error(request: Request, error: Exception) -> Response:
+    """Answer what the framework refuses: unknown paths, other methods."""
+    if not isinstance(error, StarletteHTTPException):
+        raise error
+    status = HTTPStatus(error.status_code)
+    headers = dict(error.headers or {})
+    code, detail, more = status.name, str(error.detail), {}
+    if isinstance(error, HttpError):
+        code = error.code
+        more = {"hint": error.hint} if error.hint else {}
+    elif status is HTTPStatus.NOT_FOUND:
+        code, detail = "UNKNOWN_PATH", f"there is nothing at {request.url.path}"
+        more = {"hint": "see /openapi.json"}
+    elif status is HTTPStatus.METHOD_NOT_ALLOWED:
+        methods = allowed_methods(request.app.routes, request)
+        detail = f"{request.method} is not done here; these are: {', '.join(methods)}"
+        headers["Allow"] = ", ".join(methods)
+    problem = make_problem(status, code, detail, request.url.path, more=more)
+    return problem_response(problem, headers)
+
+
+def allowed_methods(routes: Sequence[BaseRoute], request: Request) -> list[str]:
+    """Return the methods of all routes for a path; the framework itself names those of the first."""
+    methods: set[str] = set()
+    for route in routes:
+        match, _ = route.matches(request.scope)
+        if match is not Match.NONE:
+            methods |= getattr(route, "methods", None) or set()
+    return sorted(methods)

@@ -1,0 +1,199 @@
+"""`pilothouse serve`: put the parts together, then run robot and web server as equals.
+
+The only place that names concrete adapters, and the owner of SIGINT, SIGTERM and every task.
+"""
+
+import asyncio
+import gc
+import logging
+import os
+import signal
+import socket
+import sys
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+from api.app import create_app
+from api.distribution import installed_version
+from api.web_server import ListenError, WebServer, is_loopback, listen, url_of, web_server
+from domain.errors import InvalidModelError
+from domain.findings import Finding
+from domain.simulation.mock_signals import MockSignals
+from domain.simulation.nodes import SimulatedNodes
+from domain.supervision import Supervision, SupervisionSettings
+from service.backends.simulated import SimulatedBackend
+from service.clock import Clock, MonotonicClock
+from service.mock_source import MockSource
+from service.model_file import LoadedModel, load_model
+from service.robot_file import RobotSettings, load_robot_file
+from service.supervisor import Supervisor, TaskFailedError
+
+log = logging.getLogger(__name__)
+
+SUCCEEDED, FAILED, MISUSED, INTERRUPTED = 0, 1, 2, 130
+
+
+@dataclass(frozen=True, slots=True)
+class ServeOptions:
+    """What `pilothouse serve` was told."""
+
+    model: Path | None = None
+    """None: the example."""
+    robot: Path | None = None
+    host: str = "127.0.0.1"
+    port: int = 8000
+    anonymous: bool = False
+    mock_signals: bool = False
+    allowed_hosts: tuple[str, ...] = ()
+    log_level: str = "info"
+
+
+def serve(options: ServeOptions) -> int:
+    """Run the service until a signal ends it, and return the exit code of the process."""
+    exposed = not is_loopback(options.host)
+    if exposed and not options.anonymous:
+        return _complain(
+            f"--host {options.host} lets others on the network control the robot without a "
+            "password; say --anonymous if that is meant, or leave out --host",
+            MISUSED,
+        )
+    _log_to_stderr(options.log_level)
+    try:
+        supervisor = compose(options, MonotonicClock())
+        sockets = listen(options.host, options.port)
+    except InvalidModelError as error:
+        return _complain_of_model(options.model or EXAMPLE, error.findings)
+    except (ListenError, UnreadableFileError) as error:
+        return _complain(str(error), FAILED)
+    hosts = (options.host, *options.allowed_hosts)
+    app = create_app(supervisor, allowed_hosts=hosts)
+    greeting = "\n".join(greet(supervisor, options, url_of(sockets, options.host)))
+    server = web_server(app, lambda: print(greeting, flush=True))
+    # What was made until now stays: it need not be looked through again by each collection, which
+    # would stop the tick for as long.
+    gc.collect()
+    gc.freeze()
+    with asyncio.Runner(loop_factory=_new_event_loop) as runner:
+        return runner.run(run_service(supervisor, server, sockets))
+
+
+def compose(options: ServeOptions, clock: Clock) -> Supervisor:
+    """Return the supervisor of the robot that the options describe; nothing runs yet.
+
+    Raises:
+        InvalidModelError: The model or the robot file has faults.
+    """
+    loaded = load_model(options.model or EXAMPLE)
+    robot = load_robot_file(options.robot, loaded.model) if options.robot else RobotSettings()
+    now = clock.now()
+    nodes = SimulatedNodes(loaded.model, robot.to_node_settings(), now)
+    settings = SupervisionSettings(robot.to_signal_settings(), robot.to_change_settings())
+    mock = MockSource(MockSignals(now), clock) if _mocks(options, robot) else None
+    return Supervisor(
+        loaded,
+        Supervision(loaded.model, settings, now),
+        clock,
+        SimulatedBackend(nodes, clock),
+        mock,
+        simulated=("nodes", "signals") if mock else ("nodes",),
+    )
+
+
+async def run_service(
+    supervisor: Supervisor, server: WebServer, sockets: Sequence[socket.socket]
+) -> int:
+    """Run robot and web server until a signal or a failure, and return the exit code.
+
+    A supervisor that died takes the web server with it: a page that looks alive over a robot that
+    nobody watches is the worst of ends. On a signal the nodes are left as they are, and clients are
+    told that the service goes (close code 1012). A second signal ends the process at once.
+    """
+    stopping = asyncio.Event()
+    _on_signals(stopping)
+    code = SUCCEEDED
+    try:
+        async with asyncio.TaskGroup() as tasks:
+            supervising = tasks.create_task(supervisor.run(), name="supervisor")
+            serving = tasks.create_task(_serve_until(stopping, server, sockets), name="web server")
+            await stopping.wait()
+            server.should_exit = True
+            await serving
+            supervising.cancel()
+    except* Exception as failures:
+        for failure in _leaves(failures):
+            log.critical("%s", failure, exc_info=failure.__cause__ or failure)
+        code = FAILED
+    return code
+
+
+def greet(supervisor: Supervisor, options: ServeOptions, url: str) -> Iterator[str]:
+    """Say what runs, where, and what to try first."""
+    model = supervisor.model
+    source = f"{options.model}" if options.model else "the built-in example"
+    counts = f"{_count(len(model.systems), 'system')}, {_count(len(model.nodes), 'node')}"
+    yield f"Pilothouse {installed_version()} supervises {source}: {counts}"
+    yield f"  page  {url}/"
+    part = next(iter(model.parts), None)
+    if part is not None:
+        kind = "systems" if part in model.systems else "nodes"
+        yield f"  try   curl {url}/{kind}/{part}"
+        modes = model.modes_of(part)
+        if modes:
+            body = f'{{"mode": "{modes[-1]}"}}'
+            yield f"        curl -X POST {url}/{kind}/{part}/mode -d '{body}'"
+    if supervisor.simulated:
+        yield f"Simulated: {', '.join(supervisor.simulated)}. Nothing here moves a real robot."
+    for warning in supervisor.warnings:
+        yield finding_line(source, warning)
+    yield "Ctrl-C ends it; nodes are left as they are."
+
+
+def _on_signals(stopping: asyncio.Event) -> None:
+    def stop() -> None:
+        if stopping.is_set():
+            os._exit(INTERRUPTED)
+        stopping.set()
+
+    for number in (signal.SIGINT, signal.SIGTERM):
+        asyncio.get_running_loop().add_signal_handler(number, stop)
+
+
+async def _serve_until(
+    stopping: asyncio.Event, server: WebServer, sockets: Sequence[socket.socket]
+) -> None:
+    """Serve until told to stop; to end otherwise is a failure like that of any task."""
+    await server.serve(list(sockets))
+    if not stopping.is_set():
+        raise TaskFailedError("web server")
+
+
+def _leaves(group: BaseExceptionGroup[BaseException]) -> Iterator[BaseException]:
+    for failure in group.exceptions:
+        if isinstance(failure, BaseExceptionGroup):
+            yield from _leaves(failure)
+        else:
+            yield failure
+
+
+def _new_event_loop() -> asyncio.AbstractEventLoop:
+    try:
+        import uvloop
+    except ImportError:  # There is none for Windows.
+        return asyncio.new_event_loop()
+    return uvloop.new_event_loop()
+
+
+def _log_to_stderr(level: str) -> None:
+    logging.basicConfig(
+        level=level.upper(),
+        stream=sys.stderr,
+        format="%(asctime)s %(levelname)s %(name)s: %(message)s",
+    )
+    # It tells of each connection at this level; what matters is told by our own modules.
+    for name in ("uvicorn.error", "uvicorn.access"):
+        logging.getLogger(name).setLevel("DEBUG" if level == "debug" else "WARNING")
+
+
+def _count(number: int, what: str) -> str:
+    return f"{number} {what}" + ("" if number == 1 else "s")

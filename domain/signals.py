@@ -1,0 +1,288 @@
+"""What the robot's signals are, which values are errors, and the table of the usual five.
+
+The table is that of smart_polaris (`gem_state_manager`), whose error bits it keeps; further signals
+are declared with the same types.
+"""
+
+import math
+from dataclasses import dataclass
+from enum import StrEnum
+
+from domain.errors import InvalidValueError
+from domain.findings import Fact
+from domain.messages import SignalValue
+from domain.timebase import Duration, seconds, to_seconds
+
+ESTOP_SIGNAL = "estop"
+ESTOP = "ESTOP"
+STALE_DATA = "STALE_DATA"
+STALE_DATA_BIT = 64
+DECLARED_BIT = 128
+"""Shared by the errors of all declared signals; their names tell them apart."""
+
+RATIO = "ratio"
+"""Unit of a number from 0 to 1 that is a percentage in words."""
+
+
+class SignalKind(StrEnum):
+    """What the values of a signal are."""
+
+    NUMBER = "number"
+    BOOLEAN = "boolean"
+    ENUMERATION = "enumeration"
+
+
+class Comparison(StrEnum):
+    """How a value is compared with a threshold; above and below are strict."""
+
+    ABOVE = "above"
+    BELOW = "below"
+    EQUAL = "equal"
+
+
+class Recovery(StrEnum):
+    """How an error ends once its cause is gone."""
+
+    AUTOMATIC = "automatic"
+    ACKNOWLEDGE = "acknowledge"
+    """Only when an operator has acknowledged it, before or after the cause went."""
+
+
+@dataclass(frozen=True, slots=True)
+class SignalSpec:
+    """What a signal can say."""
+
+    name: str
+    kind: SignalKind
+    unit: str = ""
+    label: str = ""
+    """Its name in a sentence; empty: the name itself."""
+    minimum: float | None = None
+    maximum: float | None = None
+    members: tuple[str, ...] = ()
+    """Of an enumeration, from good to bad."""
+    is_stop: bool = False
+    """True stops the robot: one source cannot release what another presses, and a reading that
+    presses is never refused.
+    """
+
+    def __post_init__(self) -> None:
+        if (self.kind is SignalKind.ENUMERATION) is not bool(self.members):
+            raise InvalidValueError(
+                f"{self.name}: an enumeration has members, and nothing else has", self.name
+            )
+        if len(set(self.members)) != len(self.members):
+            raise InvalidValueError(f"{self.name}: a member is named twice", self.name)
+        if self.is_stop and self.kind is not SignalKind.BOOLEAN:
+            raise InvalidValueError(f"{self.name}: a stop is a boolean", self.name)
+
+    def checked(self, value: object) -> SignalValue:
+        """Return `value` as this signal holds it: a number as a float, -0.0 as 0.0.
+
+        Raises:
+            InvalidValueError: It is of another type, not finite, out of range or no member. A
+                boolean is not a number, and a number is not a boolean.
+        """
+        match self.kind:
+            case SignalKind.NUMBER:
+                return self._checked_number(value)
+            case SignalKind.BOOLEAN:
+                if isinstance(value, bool):
+                    return value
+                raise self._invalid("true or false", value)
+            case SignalKind.ENUMERATION:
+                if isinstance(value, str) and value in self.members:
+                    return value
+                raise self._invalid(f"one of {', '.join(self.members)}", value)
+
+    def _checked_number(self, value: object) -> float:
+        if isinstance(value, bool) or not isinstance(value, int | float):
+            raise self._invalid("a number", value)
+        try:
+            number = float(value)
+        except OverflowError:
+            number = math.inf
+        if not math.isfinite(number):
+            raise self._invalid("a finite number", number)
+        if self.minimum is not None and number < self.minimum:
+            raise self._invalid(f"at least {self.minimum:g}", number)
+        if self.maximum is not None and number > self.maximum:
+            raise self._invalid(f"at most {self.maximum:g}", number)
+        return number + 0.0
+
+    def _invalid(self, wanted: str, value: object) -> InvalidValueError:
+        return InvalidValueError(f"{self.name} must be {wanted}, not {value!r:.40}", self.name)
+
+
+@dataclass(frozen=True, slots=True)
+class Condition:
+    """Which values of a signal are an error, and for how long they have to be."""
+
+    error: str
+    comparison: Comparison
+    threshold: SignalValue
+    clear_threshold: float | None = None
+    """Of a number: where the error ends once it is on; None: at the threshold."""
+    for_: Duration = 0
+    """How long after the last good reading the error comes; 0: at once."""
+    bit: int = DECLARED_BIT
+    key: str = ""
+    """Tells the settings of several conditions of one signal apart, as in `lost_for_s`."""
+
+    def is_met_by(self, value: SignalValue, *, error_is_on: bool = False) -> bool:
+        """Tell whether `value` is bad; while the error is on, the clear threshold decides."""
+        if self.comparison is Comparison.EQUAL:
+            return value == self.threshold
+        limit = self.clear_limit if error_is_on else float(self.threshold)
+        if self.comparison is Comparison.ABOVE:
+            return float(value) > limit
+        return float(value) < limit
+
+    @property
+    def clear_limit(self) -> float:
+        """Return where the error of a number ends."""
+        return float(self.threshold) if self.clear_threshold is None else self.clear_threshold
+
+    def badness(self, value: float) -> float:
+        """Return how far a number is on the bad side of the threshold; negative: on the good."""
+        excess = value - float(self.threshold)
+        return excess if self.comparison is Comparison.ABOVE else -excess
+
+
+@dataclass(frozen=True, slots=True)
+class SignalSettings:
+    """A signal with everything that can be set about it.
+
+    Raises:
+        InvalidValueError: A condition does not fit the signal; `pointer` is
+            `<signal>/<setting>`.
+    """
+
+    spec: SignalSpec
+    conditions: tuple[Condition, ...] = ()
+    """Most urgent first; a number needs none to be worth showing."""
+    stale_after: Duration = seconds(2.0)
+    """A reading older than this is stale; 0 turns staleness off."""
+    min_on: Duration = seconds(0.2)
+    """An error of this signal stays on for at least so long, so that a short one is seen."""
+    recovery: Recovery = Recovery.AUTOMATIC
+    """Of the errors of its values; staleness always ends by itself."""
+
+    def __post_init__(self) -> None:
+        if len({condition.key for condition in self.conditions}) != len(self.conditions):
+            raise self._invalid("key", "tells its conditions apart, and must differ")
+        for duration, setting in ((self.stale_after, "stale_after_s"), (self.min_on, "min_on_s")):
+            if duration < 0:
+                raise self._invalid(setting, "must not be negative")
+        for condition in self.conditions:
+            self._check_condition(condition)
+
+    def is_worse(self, value: SignalValue, held: SignalValue) -> bool:
+        """Tell whether `value` is worse news than the one held."""
+        return self._badness(value) > self._badness(held)
+
+    def facts(self) -> dict[str, Fact]:
+        """Return the settings as plain values, with units in the names."""
+        facts: dict[str, Fact] = {}
+        for condition in self.conditions:
+            if self.spec.kind is SignalKind.NUMBER:
+                facts[_prefixed(condition, "threshold")] = condition.threshold
+                facts[_prefixed(condition, "clear_threshold")] = condition.clear_limit
+            facts[_prefixed(condition, "for_s")] = to_seconds(condition.for_)
+        facts |= {
+            "stale_after_s": to_seconds(self.stale_after),
+            "min_on_s": to_seconds(self.min_on),
+            "recovery": str(self.recovery),
+        }
+        if self.spec.kind is SignalKind.NUMBER:
+            facts |= {"minimum": self.spec.minimum, "maximum": self.spec.maximum}
+        elif self.spec.members:
+            facts["members"] = ", ".join(self.spec.members)
+        return facts
+
+    def _badness(self, value: SignalValue) -> float:
+        if isinstance(value, str):
+            return self.spec.members.index(value)
+        if isinstance(value, bool):
+            return any(condition.is_met_by(value) for condition in self.conditions)
+        return max((condition.badness(value) for condition in self.conditions), default=0.0)
+
+    def _check_condition(self, condition: Condition) -> None:
+        is_number = self.spec.kind is SignalKind.NUMBER
+        if is_number is (condition.comparison is Comparison.EQUAL):
+            words = "numbers are compared above or below, everything else is compared equal"
+            raise self._invalid(_prefixed(condition, "threshold"), words)
+        self._check_threshold(condition, "threshold", condition.threshold)
+        if condition.for_ < 0:
+            raise self._invalid(_prefixed(condition, "for_s"), "must not be negative")
+        if condition.clear_threshold is None:
+            return
+        setting = _prefixed(condition, "clear_threshold")
+        if not is_number:
+            raise self._invalid(setting, "is only for numbers")
+        self._check_threshold(condition, "clear_threshold", condition.clear_threshold)
+        if condition.badness(condition.clear_threshold) > 0:
+            raise self._invalid(setting, "must be on the good side of the threshold")
+
+    def _check_threshold(self, condition: Condition, name: str, value: SignalValue) -> None:
+        try:
+            self.spec.checked(value)
+        except InvalidValueError as error:
+            setting = _prefixed(condition, name)
+            raise self._invalid(setting, f"can never be reached: {error.message}") from error
+
+    def _invalid(self, setting: str, what: str) -> InvalidValueError:
+        pointer = f"{self.spec.name}/{setting}"
+        return InvalidValueError(f"{setting} of {self.spec.name} {what}", pointer)
+
+
+def _prefixed(condition: Condition, setting: str) -> str:
+    return f"{condition.key}_{setting}" if condition.key else setting
+
+
+_NUMBER, _ABOVE, _BELOW = SignalKind.NUMBER, Comparison.ABOVE, Comparison.BELOW
+_EQUAL = Comparison.EQUAL
+
+_DEFAULT_SIGNALS = (
+    SignalSettings(
+        SignalSpec("battery_level", _NUMBER, RATIO, "battery", minimum=0.0, maximum=1.0),
+        (Condition("BATTERY_LOW", _BELOW, 0.5, bit=1),),
+    ),
+    SignalSettings(
+        SignalSpec(ESTOP_SIGNAL, SignalKind.BOOLEAN, label="e-stop", is_stop=True),
+        (Condition(ESTOP, _EQUAL, threshold=True, bit=2),),
+    ),
+    SignalSettings(
+        SignalSpec("gps_accuracy", _NUMBER, "mm", "GPS accuracy", minimum=0.0),
+        (Condition("GPS_LOST", _ABOVE, 200.0, for_=seconds(15.0), bit=4),),
+    ),
+    SignalSettings(
+        SignalSpec(
+            "signal_strength",
+            SignalKind.ENUMERATION,
+            label="signal strength",
+            members=("CONNECTED", "LOW_SIGNAL", "NOT_CONNECTED"),
+        ),
+        (
+            Condition(
+                "SIGNAL_LOST", _EQUAL, "NOT_CONNECTED", for_=seconds(10.0), bit=8, key="lost"
+            ),
+            Condition("SIGNAL_LOW", _EQUAL, "LOW_SIGNAL", for_=seconds(20.0), bit=16, key="low"),
+        ),
+    ),
+    SignalSettings(
+        SignalSpec("temperature", _NUMBER, "°C"),
+        (Condition("TEMPERATURE_HIGH", _ABOVE, 55.0, bit=32),),
+    ),
+)
+
+
+def default_signals() -> tuple[SignalSettings, ...]:
+    """Return the five signals of smart_polaris with its thresholds and error bits.
+
+    Its README says when an error comes (">= 15 s"), which its code misses by one instant; the
+    README is followed. Staleness is on, which there it is not.
+
+    Source: smart_polaris, README and `state_manager.cpp`, `SystemStateStamped.msg`.
+    """
+    return _DEFAULT_SIGNALS

@@ -1,0 +1,157 @@
+"""One process beside ours, for work that would keep the event loop from its 20 Hz.
+
+A thread would not do: it takes the interpreter's lock from the tick. The process is an interpreter
+started anew, not a fork, so that it holds nothing of ours: no socket, no half-held lock. It is in a
+session of its own, so that Ctrl-C in the terminal does not reach it; and it ends with us, however
+we end, since its standard input ends then.
+"""
+
+import asyncio
+import os
+import pickle
+import sys
+from asyncio.subprocess import PIPE, Process
+from collections.abc import Callable
+from typing import ParamSpec, TypeVar, cast
+
+from domain.errors import PilothouseError
+from service.worker_process import LENGTH_BYTES, PackedError, Reply, length_of, pack
+
+Given = ParamSpec("Given")
+Result = TypeVar("Result")
+
+QUEUE_LENGTH = 4
+DEADLINE_S = 10.0
+
+
+class WorkerBusyError(PilothouseError):
+    """Too much work is waiting already; the same may be accepted later."""
+
+    code = "BUSY"
+    retry_after_s = 2
+
+    def __init__(self) -> None:
+        super().__init__(f"{QUEUE_LENGTH} requests of this kind are waiting already")
+        self.hint = f"try again in {self.retry_after_s} s"
+
+
+class TooComplexError(PilothouseError):
+    """Work that takes more time or memory than a request may have."""
+
+    code = "TOO_COMPLEX"
+
+    def __init__(self, how: str) -> None:
+        super().__init__(f"this is too complex: {how}")
+
+
+class JobFailedError(Exception):
+    """A fault in the program, met in the worker; the message is its traceback."""
+
+
+class Worker:
+    """Does one job at a time in its own process, which is started when there is something to do."""
+
+    def __init__(self, deadline_s: float = DEADLINE_S) -> None:
+        """Prepare; nothing is started yet.
+
+        Args:
+            deadline_s: How long one job may take.
+        """
+        self._deadline_s = deadline_s
+        self._process: Process | None = None
+        self._turn = asyncio.Lock()
+        self._jobs = 0
+
+    async def start(self) -> None:
+        """Start the process now, so that the first job need not wait for it."""
+        async with self._turn:
+            await self._running()
+
+    async def close(self) -> None:
+        """End the process; a job that it is at fails."""
+        process, self._process = self._process, None
+        if process is not None:
+            await _end(process)
+
+    async def call(
+        self, function: Callable[Given, Result], *arguments: Given.args, **_: Given.kwargs
+    ) -> Result:
+        """Return what a function returns, computed in the worker.
+
+        Args:
+            function: One that a module names, since it is sent by its name.
+            arguments: Positional ones only.
+
+        Raises:
+            WorkerBusyError: Too many jobs are waiting.
+            TooComplexError: It took too long, or ended the process.
+            PilothouseError: Raised by the function.
+            JobFailedError: The function has a fault.
+        """
+        if self._jobs > QUEUE_LENGTH:
+            raise WorkerBusyError
+        self._jobs += 1
+        try:
+            async with self._turn:
+                reply = await self._exchange(pack((function, arguments)))
+        finally:
+            self._jobs -= 1
+        if isinstance(reply.value, PackedError):
+            raise reply.value.unpacked()
+        if reply.outcome == "failed":
+            raise JobFailedError(reply.value)
+        return cast("Result", reply.value)
+
+    async def _exchange(self, job: bytes) -> Reply:
+        """Send a job and wait for what becomes of it; a process that fails is not used again."""
+        process = await self._running()
+        try:
+            async with asyncio.timeout(self._deadline_s):
+                return await _ask(process, job)
+        except BaseException as error:
+            # Also when cancelled: the reply to this job must never be taken for the next one's.
+            self._process = None
+            await _end(process)
+            if isinstance(error, TimeoutError):
+                how = f"it was not done within {self._deadline_s:g} s"
+                raise TooComplexError(how) from error
+            if isinstance(error, asyncio.IncompleteReadError | ConnectionError):
+                raise TooComplexError("it ended the process that worked on it") from error
+            raise
+
+    async def _running(self) -> Process:
+        """Return the process, or a new one if there is none or it has died."""
+        if self._process is None or self._process.returncode is not None:
+            path = os.pathsep.join(entry or os.getcwd() for entry in sys.path)
+            self._process = await asyncio.create_subprocess_exec(
+                sys.executable,
+                "-P",
+                "-c",
+                # Not `-m`: its module would be called __main__ there, and so would its classes.
+                "from service.worker_process import main; main()",
+                stdin=PIPE,
+                stdout=PIPE,
+                env={**os.environ, "PYTHONPATH": path},
+                start_new_session=True,
+            )
+        return self._process
+
+
+async def _ask(process: Process, job: bytes) -> Reply:
+    """Write a job and read the reply."""
+    if process.stdin is None or process.stdout is None:
+        raise ConnectionError("the worker has no pipes")
+    process.stdin.write(job)
+    await process.stdin.drain()
+    head = await process.stdout.readexactly(LENGTH_BYTES)
+    reply = pickle.loads(await process.stdout.readexactly(length_of(head)))
+    if not isinstance(reply, Reply):
+        raise ConnectionError("the worker sent something else than a reply")
+    return reply
+
+
+async def _end(process: Process) -> None:
+    """Kill a process and wait until it and its pipes are gone."""
+    if process.returncode is None:
+        process.kill()
+    await process.communicate()

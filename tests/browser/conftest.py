@@ -1,0 +1,83 @@
+"""A real Chromium, and a real service as a process of its own that a test may kill."""
+
+import socket
+from collections.abc import Iterator
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import pytest
+
+from tests.browser.station import Complaints, Service
+
+if TYPE_CHECKING:
+    from playwright.sync_api import Browser, Page
+
+CHROMIUM = Path("/usr/bin/chromium")
+CHROMIUM_ARGUMENTS = [
+    "--headless",
+    "--no-sandbox",
+    "--disable-gpu",
+    "--disable-quic",
+    "--no-first-run",
+    "--disable-background-networking",
+    "--disable-component-update",
+    "--disable-sync",
+]
+
+
+@pytest.fixture(scope="module")
+def running_service(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Service]:
+    with socket.socket() as probe:
+        probe.bind(("127.0.0.1", 0))
+        port = probe.getsockname()[1]
+    with (tmp_path_factory.mktemp("service") / "output").open("w+b") as output:
+        service = Service(port, output)
+        service.start()
+        yield service
+        service.kill()
+
+
+@pytest.fixture
+def service(running_service: Service) -> Service:
+    running_service.make_healthy()
+    return running_service
+
+
+@pytest.fixture(scope="module")
+def browser() -> Iterator["Browser"]:
+    sync_api = pytest.importorskip("playwright.sync_api", reason="playwright is not installed")
+    if not CHROMIUM.exists():
+        pytest.skip(f"there is no {CHROMIUM}")
+    with sync_api.sync_playwright() as playwright:
+        browser = playwright.chromium.launch(executable_path=str(CHROMIUM), args=CHROMIUM_ARGUMENTS)
+        yield browser
+        browser.close()
+
+
+@pytest.fixture
+def complaints() -> Complaints:
+    return Complaints()
+
+
+@pytest.fixture
+def desktop(browser: "Browser", service: Service, complaints: Complaints) -> Iterator["Page"]:
+    yield from _opened(browser, service, complaints, width=1280, height=800)
+
+
+@pytest.fixture
+def phone(browser: "Browser", service: Service, complaints: Complaints) -> Iterator["Page"]:
+    yield from _opened(browser, service, complaints, width=360, height=640)
+
+
+def _opened(
+    browser: "Browser", service: Service, complaints: Complaints, width: int, height: int
+) -> Iterator["Page"]:
+    from playwright.sync_api import expect
+
+    context = browser.new_context(viewport={"width": width, "height": height})
+    page = context.new_page()
+    complaints.watch(page)
+    page.goto(service.url)
+    expect(page.get_by_role("heading", level=1)).to_contain_text("IDLE")
+    yield page
+    context.close()

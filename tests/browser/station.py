@@ -1,0 +1,95 @@
+"""What a test of the page works with: the service as a process, and an ear for complaints."""
+
+import json
+import subprocess
+import sys
+import time
+import urllib.error
+import urllib.request
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import IO, TYPE_CHECKING, Any
+
+import pytest
+
+if TYPE_CHECKING:
+    from playwright.sync_api import ConsoleMessage, Page
+
+START_WITHIN_S = 15.0
+HEALTHY = {
+    "battery_level": 0.9,
+    "estop": False,
+    "gps_accuracy": 20,
+    "signal_strength": "CONNECTED",
+    "temperature": 30,
+}
+
+
+@dataclass
+class Service:
+    """`pilothouse serve` with its built-in robot, on a port that stays the same over restarts."""
+
+    port: int
+    output: IO[bytes]
+    _process: subprocess.Popen[bytes] | None = field(default=None, init=False)
+
+    @property
+    def url(self) -> str:
+        return f"http://127.0.0.1:{self.port}"
+
+    def start(self) -> None:
+        command = Path(sys.executable).with_name("pilothouse")
+        arguments = [str(command), "serve", "--port", str(self.port)]
+        self._process = subprocess.Popen(arguments, stdout=self.output, stderr=self.output)
+        end = time.monotonic() + START_WITHIN_S
+        while not self._is_ready():
+            if self._process.poll() is not None or time.monotonic() > end:
+                self.output.seek(0)
+                pytest.fail(f"the service did not start: {self.output.read().decode()}")
+            time.sleep(0.05)
+
+    def kill(self) -> None:
+        """End the process as a power cut would."""
+        if self._process is not None:
+            self._process.kill()
+            self._process.wait()
+            self._process = None
+
+    def request(self, method: str, path: str, body: object = None) -> dict[str, Any]:
+        data = None if body is None else json.dumps(body).encode()
+        request = urllib.request.Request(f"{self.url}{path}", data, method=method)
+        with urllib.request.urlopen(request, timeout=10) as answer:
+            result: dict[str, Any] = json.load(answer)
+        return result
+
+    def make_healthy(self) -> None:
+        """Bring stop and signals to where they are after a start."""
+        self.request("PUT", "/emergency_stop", {"engaged": False, "reason": "next test"})
+        for signal, value in HEALTHY.items():
+            self.request("PATCH", f"/mock/{signal}", {"value": value, "publishing": True})
+        end = time.monotonic() + 2.0
+        while self.request("GET", "/system_state")["state"] != "IDLE":
+            assert time.monotonic() < end, self.request("GET", "/system_state")
+            time.sleep(0.02)
+
+    def _is_ready(self) -> bool:
+        try:
+            with urllib.request.urlopen(f"{self.url}/readyz", timeout=1) as answer:
+                return bool(answer.status == 200)
+        except (urllib.error.URLError, ConnectionError, TimeoutError):
+            return False
+
+
+@dataclass
+class Complaints:
+    """What the browser says that no operator should have to read: errors, and refused content."""
+
+    messages: list[str] = field(default_factory=list)
+
+    def watch(self, page: "Page") -> None:
+        page.on("console", self._note)
+        page.on("pageerror", lambda error: self.messages.append(str(error)))
+
+    def _note(self, message: "ConsoleMessage") -> None:
+        if message.type in ("error", "warning"):
+            self.messages.append(message.text)

@@ -1,0 +1,207 @@
+"""What an operator does with the page, in a real browser and over the real service."""
+
+import re
+
+import pytest
+
+pytest.importorskip("playwright.sync_api", reason="playwright is not installed")
+
+from playwright.sync_api import Locator, Page, expect
+
+from tests.browser.station import Complaints, Service
+
+pytestmark = pytest.mark.browser
+
+
+def sentence(page: Page) -> Locator:
+    return page.get_by_role("heading", level=1)
+
+
+def row(page: Page, part: str) -> Locator:
+    return page.get_by_role("treeitem", name=re.compile(f"^{part} "))
+
+
+def stop(page: Page) -> Locator:
+    return page.get_by_role("button", name=re.compile("^STOP"))
+
+
+def card(page: Page, name: str) -> Locator:
+    return page.locator("ph-signal-card").filter(has=page.get_by_role("heading", name=name))
+
+
+def hold(button: Locator, page: Page, milliseconds: int) -> None:
+    button.hover()
+    page.mouse.down()
+    page.wait_for_timeout(milliseconds)
+    page.mouse.up()
+
+
+def test_the_page_says_what_the_robot_is_in_and_what_of_it_is_not_real(
+    desktop: Page, complaints: Complaints
+) -> None:
+    expect(sentence(desktop)).to_have_text("IDLE: no task")
+    expect(desktop.get_by_text("simulated: ")).to_be_visible()
+    expect(row(desktop, "actuation")).to_have_attribute("aria-expanded", "true")
+    expect(row(desktop, "drive_base")).to_be_visible()
+    assert complaints.messages == []
+
+
+def test_a_system_changes_its_mode_and_both_nodes_follow(
+    desktop: Page, complaints: Complaints
+) -> None:
+    desktop.get_by_role("button", name="PERFORMANCE").click()
+    expect(row(desktop, "drive_base")).to_contain_text("active.FAST", timeout=15_000)
+    expect(row(desktop, "manipulator")).to_contain_text("active.STRONG", timeout=15_000)
+    expect(row(desktop, "actuation")).to_contain_text("active.PERFORMANCE (*)")
+    expect(desktop.locator("ph-change")).to_contain_text("succeeded after")
+    assert complaints.messages == []
+
+
+def test_a_battery_dragged_low_is_an_error_that_says_why_and_ends_when_it_is_full(
+    desktop: Page, complaints: Complaints
+) -> None:
+    slider = card(desktop, "Battery").get_by_role("slider")
+    box = slider.bounding_box()
+    assert box is not None
+    middle = box["y"] + box["height"] / 2
+    desktop.mouse.move(box["x"] + box["width"] * 0.9, middle)
+    desktop.mouse.down()
+    desktop.mouse.move(box["x"] + box["width"] * 0.3, middle, steps=15)
+    expect(sentence(desktop)).to_have_text(re.compile(r"^ERROR: battery \d+ % is below 50 %$"))
+    expect(card(desktop, "Battery")).to_contain_text("BATTERY_LOW")
+    desktop.mouse.move(box["x"] + box["width"] * 0.95, middle, steps=15)
+    desktop.mouse.up()
+    expect(sentence(desktop)).to_have_text("IDLE: no task")
+    assert complaints.messages == []
+
+
+def test_a_signal_that_is_no_longer_published_grows_old_and_is_called_stale(
+    desktop: Page, complaints: Complaints
+) -> None:
+    temperature = card(desktop, "Temperature")
+    temperature.get_by_role("switch", name="Temperature: publishing").click()
+    expect(temperature).to_contain_text("STALE")
+    expect(temperature).to_contain_text(re.compile(r"[234]\.\d s old"))
+    expect(sentence(desktop)).to_contain_text("ERROR")
+    assert complaints.messages == []
+
+
+def test_bad_gps_is_seen_coming_before_it_is_an_error(
+    desktop: Page, service: Service, complaints: Complaints
+) -> None:
+    service.request("PATCH", "/mock/gps_accuracy", {"value": 250})
+    expect(card(desktop, "GPS accuracy")).to_contain_text(re.compile(r"GPS_LOST in 1\d s"))
+    expect(card(desktop, "GPS accuracy").get_by_role("progressbar")).to_be_visible()
+    expect(sentence(desktop)).to_have_text("IDLE: no task")
+    assert complaints.messages == []
+
+
+def test_stop_engages_at_one_press_and_only_a_long_press_releases_it(
+    desktop: Page, complaints: Complaints
+) -> None:
+    stop(desktop).click()
+    expect(stop(desktop)).to_contain_text("ENGAGED")
+    expect(sentence(desktop)).to_contain_text("ERROR")
+    moderate = desktop.locator(".mode").filter(has_text="MODERATE")
+    expect(moderate.get_by_role("button")).to_be_disabled()
+    expect(moderate.locator(".blocker")).not_to_be_empty()
+    release = desktop.get_by_role("button", name="Hold to release")
+    hold(release, desktop, 400)
+    desktop.wait_for_timeout(1300)
+    expect(stop(desktop)).to_contain_text("ENGAGED")
+    hold(release, desktop, 1700)
+    expect(stop(desktop)).to_have_text("STOP")
+    expect(sentence(desktop)).to_have_text("IDLE: no task")
+    assert complaints.messages == []
+
+
+def test_all_of_it_works_from_the_keyboard(desktop: Page, complaints: Complaints) -> None:
+    row(desktop, "actuation").focus()
+    desktop.keyboard.press("ArrowDown")
+    desktop.keyboard.press("Enter")
+    expect(row(desktop, "drive_base")).to_have_attribute("aria-selected", "true")
+    expect(desktop.get_by_role("button", name="FAST")).to_be_visible()
+    desktop.keyboard.press("ArrowLeft")
+    desktop.keyboard.press("ArrowLeft")
+    expect(row(desktop, "drive_base")).to_have_count(0)
+    desktop.keyboard.press("ArrowRight")
+    expect(row(desktop, "drive_base")).to_be_visible()
+    stop(desktop).focus()
+    desktop.keyboard.press("Enter")
+    expect(stop(desktop)).to_contain_text("ENGAGED")
+    desktop.get_by_role("button", name="Hold to release").focus()
+    desktop.keyboard.down(" ")
+    desktop.wait_for_timeout(1700)
+    desktop.keyboard.up(" ")
+    expect(stop(desktop)).to_have_text("STOP")
+    assert complaints.messages == []
+
+
+def test_a_refused_request_is_shown_in_words(desktop: Page, service: Service) -> None:
+    mode = desktop.get_by_role("button", name="MODERATE")
+    expect(mode).to_be_enabled()
+    refusal = {
+        "title": "Refused",
+        "status": 409,
+        "code": "BLOCKED",
+        "detail": "actuation cannot be changed: <b>manipulator</b> is finalized",
+        "hint": "restart the node",
+    }
+    desktop.route(
+        "**/systems/actuation/mode", lambda route: route.fulfill(status=409, json=refusal)
+    )
+    mode.click()
+    alert = desktop.locator("ph-change").get_by_role("alert")
+    # As text: markup from the network stays text.
+    expect(alert).to_contain_text("<b>manipulator</b> is finalized")
+    expect(alert).to_contain_text("Hint: restart the node")
+
+
+def test_a_phone_shows_stop_wherever_one_scrolls_and_never_scrolls_sideways(
+    phone: Page, service: Service, complaints: Complaints
+) -> None:
+    service.request("PATCH", "/mock/battery_level", {"value": 0.1})
+    service.request("PATCH", "/mock/temperature", {"value": 90})
+    stop(phone).click()
+    expect(sentence(phone)).to_contain_text("ERROR")
+    assert phone.evaluate("document.documentElement.scrollWidth") == 360
+    for end in ("0", "document.body.scrollHeight"):
+        phone.evaluate(f"scrollTo(0, {end})")
+        expect(stop(phone)).to_be_in_viewport(ratio=1)
+        expect(sentence(phone)).to_be_in_viewport()
+    box = stop(phone).bounding_box()
+    assert box is not None
+    assert min(box["width"], box["height"]) >= 64
+    assert complaints.messages == []
+
+
+def test_buttons_and_inputs_are_large_enough_for_a_thumb(phone: Page) -> None:
+    expect(phone.get_by_role("button", name="PERFORMANCE")).to_be_visible()
+    small = phone.evaluate(
+        """() => [...document.querySelectorAll("button, select, input[type=range], label, .row")]
+            .filter((node) => node.checkVisibility() && node.getBoundingClientRect().height < 44)
+            .map((node) => node.outerHTML)"""
+    )
+    assert small == []
+
+
+def test_a_killed_service_leaves_no_contact_and_a_stop_that_is_delivered_when_it_is_back(
+    desktop: Page, service: Service
+) -> None:
+    expect(desktop.get_by_role("button", name="MODERATE")).to_be_enabled()
+    service.kill()
+    expect(sentence(desktop)).to_have_text(
+        re.compile(r"^No contact for \d s: values shown are from \d\d:\d\d:\d\d$")
+    )
+    expect(desktop.get_by_role("button", name="MODERATE")).to_be_disabled()
+    stop(desktop).click()
+    status = desktop.locator("ph-stop-button")
+    expect(status).to_contain_text("Not delivered. Use the hardware stop.")
+    service.start()
+    # Not `click()`: by chance the page may just have come back by itself.
+    desktop.get_by_text("Try now").dispatch_event("click")
+    expect(desktop.locator("ph-state-bar .contact")).to_have_text("Connected")
+    expect(stop(desktop)).to_contain_text("ENGAGED")
+    expect(sentence(desktop)).to_contain_text("ERROR")
+    expect(desktop.get_by_role("list", name="Recent events")).to_contain_text("restarted")
+    assert service.request("GET", "/emergency_stop")["engaged"] is True

@@ -1,0 +1,195 @@
+"""A slow model of health that is easy to believe: it looks again at every single instant.
+
+It knows neither timers nor wake-up times. At each nanosecond it asks the whole history what holds.
+Only for signals of which a value meets one condition at most, as those of smart_polaris.
+"""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+
+from domain.messages import Reading, Readings
+from domain.signals import STALE_DATA, Comparison, Condition, Recovery, SignalSettings
+from domain.timebase import Instant
+
+SECOND = 1_000_000_000
+
+
+@dataclass(frozen=True)
+class Moment:
+    """What holds at one instant, after everything that happened at it so far."""
+
+    errors: frozenset[str]
+    pending: Mapping[str, str | None]
+    stale: frozenset[str]
+
+
+@dataclass
+class _Arrived:
+    at: Instant
+    source: str
+    reading: Reading
+    was_good: bool = False
+
+
+@dataclass
+class _Signal:
+    settings: SignalSettings
+    start: Instant
+    arrived: list[_Arrived] = field(default_factory=list)
+    engaged: bool = False
+    cause: Condition | None = None
+    on: str | None = None
+    on_since: Instant = 0
+    acknowledged: bool = False
+    stale: bool = False
+    stale_on: bool = False
+    stale_since: Instant = 0
+
+    def __post_init__(self) -> None:
+        self.stale = self.stale_on = self.settings.stale_after > 0
+        # So long ago that its least time is over.
+        self.stale_since = self.start - self.settings.min_on
+
+    def of_source(self, source: str) -> list[_Arrived]:
+        """Return what counts for the order of stamps."""
+        return [a for a in self.arrived if a.source == source or not self.settings.spec.is_stop]
+
+    def value(self) -> object:
+        if not self.settings.spec.is_stop:
+            return self.arrived[-1].reading.value if self.arrived else None
+        last_of_each = {a.source: a.reading.value for a in self.arrived}
+        return any(last_of_each.values()) if last_of_each else None
+
+    def bad(self) -> Condition | None:
+        """Return the condition that the value read meets."""
+        value = self.value()
+        for condition in self.settings.conditions:
+            limit = condition.threshold
+            if condition is self.cause and condition.clear_threshold is not None:
+                limit = condition.clear_threshold
+            if value is None:
+                continue
+            if condition.comparison is Comparison.EQUAL:
+                is_met = value == limit
+            elif condition.comparison is Comparison.ABOVE:
+                is_met = float(str(value)) > float(limit)
+            else:
+                is_met = float(str(value)) < float(limit)
+            if is_met:
+                return condition
+        return None
+
+    def last_good(self) -> Instant:
+        return max((a.at for a in self.arrived if a.was_good), default=self.start)
+
+    def look(self, now: Instant) -> None:
+        bad = self.settings.conditions[0] if self.engaged else self.bad()
+        had_cause = self.cause
+        if bad is None:
+            self.cause = None
+        elif self.engaged or self.cause is not None or now - self.last_good() >= bad.for_:
+            self.cause = bad
+        if self.cause is not None:
+            if self.cause is not had_cause:
+                self.acknowledged = False
+            if self.on != self.cause.error:
+                self.on, self.on_since = self.cause.error, now
+        elif self.on is not None and now - self.on_since >= self.settings.min_on:
+            if self.settings.recovery is Recovery.AUTOMATIC or self.acknowledged:
+                self.on = None
+        self._look_at_age(now)
+
+    def _look_at_age(self, now: Instant) -> None:
+        limit = self.settings.stale_after
+        self.stale = limit > 0 and (not self.arrived or now - self.arrived[-1].at > limit)
+        if self.stale and not self.stale_on:
+            self.stale_on, self.stale_since = True, now
+        if not self.stale and now - self.stale_since >= self.settings.min_on:
+            self.stale_on = False
+
+    def pending(self) -> str | None:
+        bad = None if self.engaged else self.bad()
+        return bad.error if bad is not None and self.cause is None else None
+
+
+class HealthReference:
+    """The signals of a robot, looked at one nanosecond after the other."""
+
+    def __init__(self, settings: Sequence[SignalSettings], start: Instant) -> None:
+        self._now = start
+        self._signals = {item.spec.name: _Signal(item, start) for item in settings}
+
+    def advance_to(self, now: Instant) -> list[tuple[Instant, Moment]]:
+        """Look at every instant up to now, the present one again; return what was seen."""
+        seen = []
+        for instant in range(self._now, now + 1):
+            for signal in self._signals.values():
+                signal.look(instant)
+            seen.append((instant, self.moment()))
+        self._now = now
+        return seen
+
+    def refuses(self, readings: Readings) -> bool:
+        """Tell whether one of the readings is older than one before it, and no worse."""
+        trial: dict[str, list[_Arrived]] = {}
+        for reading in readings.items:
+            signal = self._signals[reading.signal]
+            mine = [*signal.of_source(readings.source), *trial.get(reading.signal, [])]
+            stamps = [a.reading.stamp for a in mine if a.reading.stamp is not None]
+            arrivals = {id(a.reading): a.at for a in mine}
+            counted = [
+                a.reading.stamp
+                for a in mine
+                if a.reading.stamp is not None
+                and a.reading.stamp - arrivals[id(a.reading)] <= SECOND
+            ]
+            if stamps and counted and reading.stamp is not None and reading.stamp < max(counted):
+                if not self._is_worse(signal, reading.value, mine[-1].reading.value):
+                    return True
+            item = _Arrived(self._now, readings.source, reading)
+            trial.setdefault(reading.signal, []).append(item)
+        return False
+
+    def receive(self, readings: Readings) -> None:
+        """Take readings that arrive now."""
+        for reading in readings.items:
+            signal = self._signals[reading.signal]
+            item = _Arrived(self._now, readings.source, reading)
+            signal.arrived.append(item)
+            item.was_good = signal.bad() is None
+            signal.look(self._now)
+
+    def engage(self, engaged: bool) -> None:
+        """Engage or release the emergency stop."""
+        self._signals["estop"].engaged = engaged
+        self._signals["estop"].look(self._now)
+
+    def acknowledge(self, error: str) -> None:
+        """Acknowledge an error."""
+        for signal in self._signals.values():
+            if signal.on == error:
+                signal.acknowledged = True
+                signal.look(self._now)
+
+    def moment(self) -> Moment:
+        """Return what holds now."""
+        signals = self._signals
+        errors = {signal.on for signal in signals.values() if signal.on is not None}
+        if any(signal.stale_on for signal in signals.values()):
+            errors.add(STALE_DATA)
+        return Moment(
+            frozenset(errors),
+            {name: signal.pending() for name, signal in signals.items()},
+            frozenset(name for name, signal in signals.items() if signal.stale),
+        )
+
+    @staticmethod
+    def _is_worse(signal: _Signal, value: object, held: object) -> bool:
+        if signal.settings.spec.is_stop:
+            return value is True
+        if signal.settings.spec.members:
+            order = signal.settings.spec.members
+            return order.index(str(value)) > order.index(str(held))
+        if signal.settings.conditions[0].comparison is Comparison.BELOW:
+            return float(str(value)) < float(str(held))
+        return float(str(value)) > float(str(held))

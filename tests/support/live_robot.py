@@ -1,0 +1,51 @@
+"""The supervisor of the example robot, as it is live, on a clock that a test moves."""
+
+import asyncio
+from collections.abc import AsyncIterator, Sequence
+from contextlib import asynccontextmanager
+
+from domain.findings import Finding
+from domain.simulation.mock_signals import MockSignals
+from domain.simulation.nodes import SimulatedNodes
+from domain.supervision import Supervision, SupervisionSettings
+from domain.system_model import SmhModel
+from service.backends.simulated import SimulatedBackend
+from service.mock_source import MockSource
+from service.model_file import LoadedModel
+from service.supervisor import Supervisor
+from tests.support.manual_clock import ManualClock
+from tests.support.models import actuation_model
+
+
+def make_supervisor(
+    clock: ManualClock | None = None,
+    model: SmhModel | None = None,
+    warnings: Sequence[Finding] = (),
+    *,
+    mock: bool = True,
+) -> Supervisor:
+    """Return a supervisor of simulated nodes that does not run yet."""
+    clock = clock or ManualClock()
+    model = model or actuation_model()
+    now = clock.now()
+    return Supervisor(
+        LoadedModel(model=model, warnings=tuple(warnings), text=""),
+        Supervision(model, SupervisionSettings(), now),
+        clock,
+        SimulatedBackend(SimulatedNodes(model, {}, now), clock),
+        MockSource(MockSignals(now), clock) if mock else None,
+        simulated=("nodes", "signals"),
+    )
+
+
+@asynccontextmanager
+async def running(supervisor: Supervisor) -> AsyncIterator[None]:
+    """Let a supervisor run, up to its first frame, as long as the context lasts."""
+    run = asyncio.create_task(supervisor.run(), name="supervisor")
+    while supervisor.frames.newest is None and not run.done():
+        await asyncio.sleep(0)
+    try:
+        yield
+    finally:
+        run.cancel()
+        await asyncio.gather(run, return_exceptions=True)

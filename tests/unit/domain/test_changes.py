@@ -1,0 +1,288 @@
+"""Changes, told as what an operator asks for and sees."""
+
+import pytest
+
+from domain.errors import UnknownChangeError
+from domain.messages import CancelRequest, ChangeId
+from domain.simulation.node_settings import Fault, NodeSettings
+from domain.snapshot import ChangeStatus, StepStatus
+from domain.timebase import seconds
+from tests.support.models import actuation_model, nested_model
+from tests.support.virtual_robot import GOOD, VirtualRobot
+
+
+@pytest.fixture
+def robot() -> VirtualRobot:
+    robot = VirtualRobot(actuation_model())
+    robot.read(**GOOD)
+    return robot
+
+
+def test_the_four_steps_of_annex_4(robot: VirtualRobot) -> None:
+    """D4.8, Annex 4: configure, activate, PERFORMANCE, then both parts by hand."""
+    robot.transition("actuation", "configure")
+    robot.advance(1)
+    assert [robot.actual(p) for p in robot.model.parts] == ["inactive", "inactive", "inactive"]
+
+    robot.transition("actuation", "activate")
+    robot.advance(1)
+    assert robot.actual("actuation") == "active.__DEFAULT__"
+    assert robot.actual("drive_base") == "active.__DEFAULT__"
+    assert robot.actual("manipulator") == "inactive"
+
+    robot.mode("actuation", "PERFORMANCE")
+    robot.advance(1)
+    assert robot.actual("actuation") == "active.PERFORMANCE"
+    assert robot.actual("drive_base") == "active.FAST"
+    assert robot.actual("manipulator") == "active.STRONG"
+
+    robot.mode("drive_base", "SLOW")
+    robot.mode("manipulator", "WEAK")
+    robot.advance(1)
+    assert robot.actual("actuation") == "activating.MODERATE"
+    target = robot.core.part(robot.model.parts[0]).target
+    assert target is not None
+    assert target.label == "active.PERFORMANCE"
+
+
+def test_a_mode_asked_of_unconfigured_nodes_configures_and_activates_them(
+    robot: VirtualRobot,
+) -> None:
+    change = robot.mode("actuation", "PERFORMANCE")
+    robot.advance(2)
+    assert robot.change(change).status is ChangeStatus.SUCCEEDED
+    assert robot.steps(change) == [
+        (node, action, "succeeded")
+        for node in ("manipulator", "drive_base")
+        for action in ("configure", "set_parameters", "activate")
+    ]
+
+
+def test_a_mode_change_of_active_nodes_sets_parameters_and_nothing_else(
+    robot: VirtualRobot,
+) -> None:
+    robot.mode("actuation", "PERFORMANCE")
+    robot.advance(2)
+    change = robot.mode("actuation", "MODERATE")
+    robot.advance(1)
+    assert {action for _, action, _ in robot.steps(change)} == {"set_parameters"}
+
+
+def test_a_request_that_is_met_succeeds_at_once_without_a_step(robot: VirtualRobot) -> None:
+    robot.mode("actuation", "PERFORMANCE")
+    robot.advance(2)
+    change = robot.mode("actuation", "PERFORMANCE")
+    assert robot.change(change).status is ChangeStatus.SUCCEEDED
+    assert robot.steps(change) == []
+
+
+def test_parts_go_side_by_side(robot: VirtualRobot) -> None:
+    change = robot.transition("actuation", "configure")
+    robot.advance(0.1)
+    assert [status for _, _, status in robot.steps(change)] == ["running", "running"]
+
+
+def test_a_node_that_refuses_fails_the_change_and_the_other_goes_on() -> None:
+    robot = VirtualRobot(actuation_model(), nodes={"manipulator": NodeSettings(fault=Fault.REFUSE)})
+    robot.read(**GOOD)
+    change = robot.mode("actuation", "PERFORMANCE")
+    robot.advance(2)
+    view = robot.change(change)
+    assert view.status is ChangeStatus.FAILED
+    assert view.reason is not None
+    assert view.reason.startswith("manipulator: configure: refused")
+    assert robot.actual("drive_base") == "active.FAST"
+
+
+def test_a_node_whose_callback_fails_is_named(robot: VirtualRobot) -> None:
+    robot.fault("drive_base", Fault.FAIL)
+    change = robot.transition("drive_base", "configure")
+    robot.advance(1)
+    assert robot.change(change).reason == "drive_base: configure: the node went back to unconfigured"
+
+
+def test_an_error_in_a_callback_fails_the_change(robot: VirtualRobot) -> None:
+    robot.fault("drive_base", Fault.ERROR)
+    change = robot.transition("drive_base", "configure")
+    robot.advance(0.5)
+    assert robot.change(change).status is ChangeStatus.FAILED
+    assert robot.actual("drive_base") == "errorprocessing"
+
+
+def test_a_slow_node_is_asked_for_its_state_before_it_is_called_late() -> None:
+    slow = NodeSettings(configure=seconds(30))
+    robot = VirtualRobot(actuation_model(), nodes={"drive_base": slow})
+    robot.read(**GOOD)
+    change = robot.transition("drive_base", "configure")
+    robot.advance(9.9)
+    assert robot.change(change).status is ChangeStatus.RUNNING
+    robot.advance(0.2)
+    assert robot.change(change).status is ChangeStatus.TIMED_OUT
+    assert robot.change(change).reason == "drive_base: configure: the node is still configuring"
+
+
+def test_a_node_that_swallowed_its_report_is_found_done_when_asked(robot: VirtualRobot) -> None:
+    change = robot.transition("drive_base", "configure")
+    robot.fault("drive_base", Fault.SILENT)
+    robot.advance(2)
+    robot.fault("drive_base", None)
+    robot.advance(0)
+    assert robot.change(change).status is ChangeStatus.SUCCEEDED
+
+
+def test_an_absent_node_refuses_nothing_and_fails_the_change_at_the_deadline() -> None:
+    robot = VirtualRobot(actuation_model(), nodes={"drive_base": NodeSettings(fault=Fault.DIE)})
+    robot.read(**GOOD)
+    change = robot.mode("actuation", "PERFORMANCE")
+    robot.advance(9.9)
+    assert robot.change(change).status is ChangeStatus.RUNNING
+    assert robot.actual("manipulator") == "active.STRONG"
+    robot.advance(0.2)
+    assert robot.change(change).status is ChangeStatus.FAILED
+    assert robot.change(change).reason == "drive_base is unreachable"
+
+
+def test_an_absent_node_that_comes_before_the_deadline_is_brought_along() -> None:
+    robot = VirtualRobot(actuation_model(), nodes={"drive_base": NodeSettings(fault=Fault.DIE)})
+    robot.read(**GOOD)
+    change = robot.mode("actuation", "PERFORMANCE")
+    robot.advance(5)
+    robot.fault("drive_base", None)
+    robot.advance(2)
+    assert robot.change(change).status is ChangeStatus.SUCCEEDED
+    assert robot.actual("actuation") == "active.PERFORMANCE"
+
+
+def test_a_node_that_dies_during_a_change_fails_it_and_the_system_says_why(
+    robot: VirtualRobot,
+) -> None:
+    change = robot.mode("actuation", "PERFORMANCE")
+    robot.advance(0.1)
+    robot.fault("drive_base", Fault.DIE)
+    robot.advance(12)
+    view = robot.change(change)
+    assert view.status is ChangeStatus.FAILED
+    assert view.reason == "drive_base: configure: the node is unreachable"
+    part = robot.core.part(robot.model.parts[0])
+    assert (part.actual.state, part.actual.reason) == ("unknown", "drive_base is unreachable")
+    assert not part.converged
+    assert not part.reachable
+
+
+def test_a_newer_request_supersedes_the_older_one_and_waits_for_its_step(
+    robot: VirtualRobot,
+) -> None:
+    older = robot.mode("actuation", "PERFORMANCE")
+    robot.advance(0.1)
+    newer = robot.transition("actuation", "cleanup")
+    assert robot.change(older).status is ChangeStatus.SUPERSEDED
+    assert [s for _, _, s in robot.steps(older)].count("running") == 2
+    robot.advance(2)
+    assert robot.change(newer).status is ChangeStatus.SUCCEEDED
+    assert robot.actual("actuation") == "unconfigured"
+
+
+def test_a_request_for_a_part_supersedes_its_system_and_the_other_part_arrives(
+    robot: VirtualRobot,
+) -> None:
+    older = robot.mode("actuation", "PERFORMANCE")
+    robot.advance(0.1)
+    newer = robot.mode("drive_base", "SLOW")
+    assert robot.change(older).status is ChangeStatus.SUPERSEDED
+    assert robot.change(older).reason == f"superseded by change {newer} of drive_base"
+    robot.advance(2)
+    assert robot.change(newer).status is ChangeStatus.SUCCEEDED
+    assert robot.actual("drive_base") == "active.SLOW"
+    assert robot.actual("manipulator") == "active.STRONG"
+
+
+def test_a_canceled_change_begins_no_further_step_and_keeps_its_target(
+    robot: VirtualRobot,
+) -> None:
+    change = robot.mode("actuation", "PERFORMANCE")
+    robot.advance(0.1)
+    robot.give(CancelRequest(change))
+    robot.advance(2)
+    view = robot.change(change)
+    assert view.status is ChangeStatus.CANCELED
+    assert robot.actual("drive_base") == "inactive"
+    statuses = [step.status for step in view.steps]
+    assert statuses == [StepStatus.SUCCEEDED, StepStatus.CANCELED, StepStatus.CANCELED] * 2
+    target = robot.core.part(robot.model.parts[0]).target
+    assert target is not None
+    assert target.label == "active.PERFORMANCE"
+
+
+def test_canceling_twice_is_harmless_and_an_unknown_change_is_told(robot: VirtualRobot) -> None:
+    change = robot.mode("actuation", "PERFORMANCE")
+    robot.give(CancelRequest(change))
+    robot.give(CancelRequest(change))
+    with pytest.raises(UnknownChangeError):
+        robot.give(CancelRequest(ChangeId("c99")))
+
+
+def test_under_an_emergency_stop_a_running_change_activates_nothing_and_fails(
+    robot: VirtualRobot,
+) -> None:
+    change = robot.mode("actuation", "PERFORMANCE")
+    robot.advance(0.1)
+    robot.stop()
+    robot.advance(2)
+    view = robot.change(change)
+    assert view.status is ChangeStatus.FAILED
+    assert view.reason is not None
+    assert "drive_base is not activated under ESTOP" in view.reason
+    assert robot.actual("drive_base") == "inactive"
+    assert robot.actual("manipulator") == "inactive"
+
+
+def test_deactivating_a_system_leaves_its_unconfigured_parts_alone(robot: VirtualRobot) -> None:
+    robot.mode("drive_base", "FAST")
+    robot.advance(2)
+    change = robot.transition("actuation", "deactivate")
+    robot.advance(2)
+    assert robot.change(change).status is ChangeStatus.SUCCEEDED
+    assert robot.actual("actuation") == "inactive"
+    assert robot.actual("manipulator") == "unconfigured"
+    assert all(view.converged for view in robot.core.parts().values())
+
+
+def test_a_finalized_part_does_not_keep_the_rest_from_being_deactivated(
+    robot: VirtualRobot,
+) -> None:
+    robot.mode("actuation", "PERFORMANCE")
+    robot.advance(2)
+    robot.transition("manipulator", "shutdown")
+    robot.advance(2)
+    change = robot.transition("actuation", "deactivate")
+    robot.advance(2)
+    assert robot.actual("drive_base") == "inactive"
+    view = robot.change(change)
+    assert view.status is ChangeStatus.FAILED
+    assert view.reason == "actuation is deactivating, not inactive; manipulator is finalized"
+
+
+def test_a_mode_of_a_nested_system_reaches_all_nodes() -> None:
+    robot = VirtualRobot(nested_model())
+    robot.read(**GOOD)
+    change = robot.mode("robot", "RACE")
+    robot.advance(2)
+    assert robot.change(change).status is ChangeStatus.SUCCEEDED
+    assert robot.actual("robot") == "active.RACE"
+    assert robot.actual("actuation") == "active.PERFORMANCE"
+
+
+def test_every_event_of_a_change_points_at_what_caused_it(robot: VirtualRobot) -> None:
+    change = robot.transition("drive_base", "configure")
+    robot.advance(1)
+    by_id = {event.id: event for event in robot.events}
+    last = next(e for e in robot.events if e.kind == "change.succeeded")
+    kinds = []
+    event = last
+    while True:
+        kinds.append(event.kind)
+        if event.cause is None:
+            break
+        event = by_id[event.cause]
+    assert kinds == ["change.succeeded", "node.reported", "change.step_started", "change.requested"]
+    assert robot.change(change).cause == event.id

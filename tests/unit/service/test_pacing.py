@@ -1,0 +1,174 @@
+import asyncio
+import heapq
+
+import pytest
+
+from domain.timebase import Instant, seconds, to_seconds
+from service.pacing import Pacer
+from tests.support.manual_clock import ManualClock, settle
+
+
+class Alarms:
+    """Rings at the times that were set, and counts how often it was advanced."""
+
+    def __init__(self, *times_s: float) -> None:
+        self._due = sorted(seconds(time_s) for time_s in times_s)
+        self.advanced = 0
+
+    def set(self, time_s: float) -> None:
+        heapq.heappush(self._due, seconds(time_s))
+
+    def advance(self, now: Instant) -> list[float]:
+        self.advanced += 1
+        rung = []
+        while self._due and self._due[0] <= now:
+            rung.append(to_seconds(heapq.heappop(self._due)))
+        return rung
+
+    def wake_at(self) -> Instant | None:
+        return self._due[0] if self._due else None
+
+
+class Paced:
+    """Alarms that run on a clock, and when each was heard."""
+
+    def __init__(self, *times_s: float) -> None:
+        self.clock = ManualClock()
+        self.alarms = Alarms(*times_s)
+        self.pacer = Pacer(self.alarms, self.clock)
+        self.heard: list[tuple[float, float]] = []
+        self.sets_off: dict[float, float] = {}
+        self.running = asyncio.create_task(self.pacer.run(self.hear), name="paced")
+
+    def hear(self, alarm_s: float) -> None:
+        self.heard.append((to_seconds(self.clock.now()), alarm_s))
+        if alarm_s in self.sets_off:
+            self.set(self.sets_off[alarm_s])
+
+    def set(self, time_s: float) -> None:
+        self.alarms.set(time_s)
+        self.pacer.touch()
+
+    async def stop(self) -> None:
+        self.running.cancel()
+        await asyncio.wait([self.running])
+
+
+async def test_what_is_due_is_delivered_at_its_exact_time() -> None:
+    paced = Paced(0.0, 0.1, 0.1, 7.3)
+    await paced.clock.advance(10.0)
+    await paced.stop()
+
+    assert paced.heard == [(0.0, 0.0), (0.1, 0.1), (0.1, 0.1), (7.3, 7.3)]
+
+
+async def test_it_sleeps_between_what_is_due() -> None:
+    paced = Paced(1.0, 2.0, 3.0)
+    await paced.clock.advance(10.0)
+    await paced.stop()
+
+    assert paced.alarms.advanced == 4
+
+
+async def test_something_handed_in_that_is_due_earlier_is_delivered_in_its_time() -> None:
+    paced = Paced(5.0)
+    await paced.clock.advance(1.0)
+    paced.set(2.0)
+    await paced.clock.advance(10.0)
+    await paced.stop()
+
+    assert paced.heard == [(2.0, 2.0), (5.0, 5.0)]
+
+
+async def test_something_handed_in_that_is_due_now_is_delivered_without_time_passing() -> None:
+    paced = Paced(5.0)
+    await paced.clock.advance(1.0)
+    paced.set(1.0)
+    await settle()
+    await paced.stop()
+
+    assert paced.heard == [(1.0, 1.0)]
+
+
+async def test_an_object_that_wants_nothing_is_left_alone_until_something_is_handed_in() -> None:
+    paced = Paced()
+    await paced.clock.advance(3600.0)
+    paced.set(3600.0)
+    await settle()
+    await paced.stop()
+
+    assert paced.heard == [(3600.0, 3600.0)]
+    assert paced.alarms.advanced == 2
+
+
+async def test_what_is_handed_in_while_something_is_delivered_is_not_lost() -> None:
+    paced = Paced(1.0, 9.0)
+    paced.sets_off = {1.0: 0.5, 0.5: 2.0}
+    await paced.clock.advance(5.0)
+    await paced.stop()
+
+    assert paced.heard == [(1.0, 1.0), (1.0, 0.5), (2.0, 2.0)]
+
+
+async def test_many_things_handed_in_at_once_wake_it_once() -> None:
+    paced = Paced()
+    await settle()
+    for _ in range(1000):
+        paced.set(0.0)
+    await settle()
+    await paced.stop()
+
+    assert len(paced.heard) == 1000
+    assert paced.alarms.advanced == 2
+
+
+async def test_the_rest_of_the_service_runs_while_thousands_of_things_are_delivered() -> None:
+    paced = Paced(*[0.0] * 1000)
+    heard_by_turn = []
+    while len(paced.heard) < 1000:
+        await asyncio.sleep(0)
+        heard_by_turn.append(len(paced.heard))
+    await paced.stop()
+
+    assert heard_by_turn == [100 * n for n in range(1, 11)]
+
+
+async def test_what_the_listener_raises_ends_it() -> None:
+    paced = Paced(1.0)
+
+    def fail(alarm_s: float) -> None:
+        raise LookupError(alarm_s)
+
+    failing = asyncio.create_task(paced.pacer.run(fail))
+    await paced.stop()
+    await paced.clock.advance(1.0)
+
+    with pytest.raises(LookupError):
+        failing.result()
+
+
+@pytest.mark.parametrize("times_s", [(), (5.0,)], ids=["wanting nothing", "asleep"])
+async def test_cancelling_it_ends_it_at_once_and_leaves_no_task(times_s: tuple[float, ...]) -> None:
+    before = asyncio.all_tasks()
+    paced = Paced(*times_s)
+    await paced.clock.advance(1.0)
+    await paced.stop()
+
+    assert paced.running.cancelled()
+    assert asyncio.all_tasks() == before
+
+
+async def test_touching_it_when_it_does_not_run_does_no_harm() -> None:
+    paced = Paced()
+    await paced.stop()
+
+    paced.pacer.touch()
+
+
+async def test_a_clock_that_breaks_ends_it() -> None:
+    class BrokenClock(ManualClock):
+        async def sleep_until(self, deadline: Instant) -> None:
+            raise OSError("no timer")
+
+    with pytest.raises(OSError, match="no timer"):
+        await Pacer(Alarms(1.0), BrokenClock()).run(lambda _: None)
