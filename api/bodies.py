@@ -45,20 +45,22 @@ class BodyTooLargeError(PilothouseError):
 
 
 class InvalidBodyError(PilothouseError):
-    """A body that can be read, and says something that cannot be; `faults` hold it all."""
+    """A request that can be read, and says something that cannot be; `faults` hold it all."""
 
     code = "INVALID_BODY"
 
-    def __init__(self, faults: Sequence[BodyFault], hint: str | None = None) -> None:
+    def __init__(
+        self, faults: Sequence[BodyFault], code: str | None = None, hint: str | None = None
+    ) -> None:
         first = faults[0]
         place = f"{first.pointer}: " if first.pointer else ""
         more = f" (and {len(faults) - 1} more)" if len(faults) > 1 else ""
         super().__init__(f"{place}{first.message}{more}")
         self.faults = tuple(faults)
-        if hint:
+        if code is not None:
+            self.code = code
+        if hint is not None:
             self.hint = hint
-        if len(faults) == 1:
-            self.code = first.code
 
     @classmethod
     def at(cls, pointer: str, error: PilothouseError) -> "InvalidBodyError":
@@ -69,7 +71,7 @@ class InvalidBodyError(PilothouseError):
             error: What was raised.
         """
         fault = BodyFault(pointer=as_pointer(pointer), code=error.code, message=error.message)
-        return cls([fault], error.hint)
+        return cls([fault], error.code, error.hint)
 
 
 async def read_limited(chunks: AsyncIterable[bytes], limit: int) -> bytes:
@@ -98,7 +100,7 @@ def parse_text(raw: bytes) -> str:
         raise MalformedBodyError(f"the body is not UTF-8: {error.reason}") from error
 
 
-def parse_json(raw: bytes) -> Any:
+def parse_json(raw: bytes) -> object:
     """Return what a JSON text says.
 
     Raises:
@@ -107,7 +109,7 @@ def parse_json(raw: bytes) -> Any:
     """
     text = parse_text(raw)
     try:
-        value = json.loads(text)
+        value: object = json.loads(text)
         if "\\u" in text:
             json.dumps(value, ensure_ascii=False).encode()
     except json.JSONDecodeError as error:

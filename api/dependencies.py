@@ -1,4 +1,7 @@
-"""What routes may ask for."""
+"""What routes may ask for.
+
+All are coroutines: the framework would call plain functions in a thread.
+"""
 
 from typing import Annotated
 
@@ -11,12 +14,12 @@ from service.supervisor import Supervisor
 from service.worker import Worker
 
 
-def _supervisor(connection: HTTPConnection) -> Supervisor:
+async def _supervisor(connection: HTTPConnection) -> Supervisor:
     found: Supervisor = connection.app.state.supervisor
     return found
 
 
-def _worker(connection: HTTPConnection) -> Worker:
+async def _worker(connection: HTTPConnection) -> Worker:
     found: Worker = connection.app.state.worker
     return found
 
@@ -25,7 +28,7 @@ SupervisorDep = Annotated[Supervisor, Depends(_supervisor)]
 WorkerDep = Annotated[Worker, Depends(_worker)]
 
 
-def _actor(request: Request) -> str:
+async def _actor(request: Request) -> str:
     return f"http:{request.client.host}" if request.client else "http:unknown"
 
 
@@ -33,7 +36,7 @@ ActorDep = Annotated[str, Depends(_actor)]
 """Who asks, as events record it."""
 
 
-def _part(part: str, request: Request, supervisor: SupervisorDep) -> PartName:
+async def _part(part: str, request: Request, supervisor: SupervisorDep) -> PartName:
     """Return the part that the path names.
 
     Raises:

@@ -105,9 +105,7 @@ class Gate:
             return make_problem(HTTPStatus.FORBIDDEN, "FOREIGN_ORIGIN", detail, path)
         if scope["type"] == "http" and _has_body(headers) and not _is_typed(headers):
             detail = "a page sends JSON, YAML or CSV, and says so"
-            return make_problem(
-                HTTPStatus.UNSUPPORTED_MEDIA_TYPE, "UNSUPPORTED_TYPE", detail, path
-            )
+            return make_problem(HTTPStatus.UNSUPPORTED_MEDIA_TYPE, "UNSUPPORTED_TYPE", detail, path)
         return None
 
 

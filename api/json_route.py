@@ -32,7 +32,7 @@ class _JsonRequest(Request):
     """A request with its body read and parsed."""
 
     _raw = b""
-    _parsed: Any = None
+    _parsed: object = None
 
     @classmethod
     async def read(cls, request: Request) -> "_JsonRequest":
@@ -47,6 +47,6 @@ class _JsonRequest(Request):
         """Return the body as it was sent."""
         return self._raw
 
-    async def json(self) -> Any:
+    async def json(self) -> object:
         """Return what the body says."""
         return self._parsed

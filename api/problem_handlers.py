@@ -15,6 +15,8 @@ from domain.errors import PilothouseError
 from service.clock import Clock
 from service.worker import WorkerBusyError
 
+_BAD_QUERY = "INVALID_QUERY"
+_METHODS = ("DELETE", "GET", "PATCH", "POST", "PUT")
 _OUTSIDE = frozenset({"body", "query", "path", "header"})
 
 
@@ -35,7 +37,9 @@ def add_problem_handlers(app: FastAPI, clock: Clock) -> None:
     async def on_invalid_request(request: Request, error: Exception) -> Response:
         if not isinstance(error, RequestValidationError):
             raise error
-        return await on_our_error(request, InvalidBodyError(faults_of(error.errors(), _OUTSIDE)))
+        faults = faults_of(error.errors(), _OUTSIDE)
+        code = None if any(found["loc"][0] == "body" for found in error.errors()) else _BAD_QUERY
+        return await on_our_error(request, InvalidBodyError(faults, code))
 
     app.add_exception_handler(PilothouseError, on_our_error)
     app.add_exception_handler(RequestValidationError, on_invalid_request)
@@ -64,10 +68,10 @@ async def _on_http_error(request: Request, error: Exception) -> Response:
 
 
 def allowed_methods(routes: Sequence[BaseRoute], request: Request) -> list[str]:
-    """Return the methods of all routes for a path; the framework itself names those of the first."""
-    methods: set[str] = set()
-    for route in routes:
-        match, _ = route.matches(request.scope)
-        if match is not Match.NONE:
-            methods |= getattr(route, "methods", None) or set()
-    return sorted(methods)
+    """Return the methods of all routes for a path; the framework names those of the first."""
+    scope = request.scope
+    return [
+        method
+        for method in _METHODS
+        if any(route.matches({**scope, "method": method})[0] is Match.FULL for route in routes)
+    ]

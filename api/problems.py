@@ -1,6 +1,6 @@
 """What is answered when something is refused or fails: RFC 9457, from one table.
 
-A class of error becomes a status by `STATUS_OF`; what has no meaning without HTTP is an `HttpError`.
+A class of error becomes a status by `STATUS_OF`; what only HTTP can get wrong is an `HttpError`.
 """
 
 from collections.abc import Mapping
@@ -88,9 +88,7 @@ class Problem(Json):
 class HttpError(HTTPException):
     """A problem that only HTTP has, with a code of its own."""
 
-    def __init__(
-        self, status: HTTPStatus, code: str, detail: str, hint: str | None = None
-    ) -> None:
+    def __init__(self, status: HTTPStatus, code: str, detail: str, hint: str | None = None) -> None:
         super().__init__(status, detail)
         self.code = code
         self.hint = hint
@@ -118,7 +116,7 @@ def problem_of(error: PilothouseError, clock: Clock, instance: str = "") -> Prob
     if isinstance(error, InvalidValueError):
         pointer = as_pointer(error.pointer)
         more["errors"] = [BodyFault(pointer=pointer, code=error.code, message=error.message)]
-    title = (type(error).__doc__ or "").partition("\n")[0].rstrip(".")
+    title = (type(error).__doc__ or "").partition("\n")[0].partition(";")[0].rstrip(".")
     return make_problem(status_of(error), error.code, error.message, instance, title, more)
 
 

@@ -1,12 +1,15 @@
 """Signals, the system state, the emergency stop and the mock as clients see them."""
 
 from collections.abc import Sequence
+from datetime import datetime
 
 from pydantic import Field
 
 from api.schemas import BlockerJson, Body, Json, Timestamp, timestamp, timestamp_or_none
+from api.values import SentSignalValue
+from domain.errors import InvalidValueError
 from domain.findings import Fact
-from domain.messages import SignalValue
+from domain.messages import Reading, SignalValue
 from domain.snapshot import (
     EmergencyStopView,
     SignalView,
@@ -176,7 +179,7 @@ class MockJson(Json):
 class ReadingBody(Body):
     """One reading of one signal."""
 
-    value: bool | float | str
+    value: SentSignalValue
     stamp: str | None = Field(
         default=None,
         max_length=64,
@@ -189,6 +192,30 @@ class ReadingBody(Body):
         description="Who measured; several sources of `estop` cannot release each other",
     )
 
+    def reading(self, signal: str, clock: Clock) -> Reading:
+        """Return the reading that was sent.
+
+        Raises:
+            InvalidValueError: The stamp is no time with an offset.
+        """
+        stamp = None if self.stamp is None else read_stamp(self.stamp, clock)
+        return Reading(signal, self.value, stamp)
+
+
+def read_stamp(text: str, clock: Clock) -> Instant:
+    """Return a time in RFC 3339 as an instant of `clock`.
+
+    Raises:
+        InvalidValueError: It is none, or has no offset.
+    """
+    try:
+        return clock.from_wall(datetime.fromisoformat(text))
+    except ValueError as error:
+        message = f"{text!r} is no time such as 2026-05-04T12:00:00.250Z"
+        raise InvalidValueError(message, "/stamp") from error
+    except InvalidValueError as error:
+        raise InvalidValueError(error.message, "/stamp") from error
+
 
 class EmergencyStopBody(Body):
     """Engage or release the emergency stop."""
@@ -200,5 +227,5 @@ class EmergencyStopBody(Body):
 class MockBody(Body):
     """Let the mock hold another value, or stop and resume its publishing of one signal."""
 
-    value: bool | float | str | None = None
+    value: SentSignalValue | None = None
     publishing: bool | None = None

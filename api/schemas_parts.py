@@ -12,6 +12,7 @@ from api.schemas import (
     Timestamp,
     timestamp_or_none,
 )
+from api.values import SentParameter
 from domain.lifecycle import LifecycleState, Transition
 from domain.snapshot import Actual, EffectiveTarget, ModeView, ParameterView, PartView
 from domain.system_model import ParameterValue
@@ -29,12 +30,10 @@ ParameterType: TypeAlias = Literal[
 ]
 """Labels of `rcl_interfaces/msg/ParameterType`."""
 
-Int64 = Annotated[int, Field(ge=-(2**63), le=2**63 - 1)]
-
 ParameterJson: TypeAlias = (
-    bool | Int64 | float | str | list[bool] | list[Int64] | list[float] | list[str]
+    bool | int | float | str | list[bool] | list[int] | list[float] | list[str]
 )
-"""A value of a parameter; 1 is an integer and 1.0 a double, as in ROS 2."""
+"""A value of a parameter as a client reads it; 1 is an integer and 1.0 a double, as in ROS 2."""
 
 
 class ActualJson(Json):
@@ -219,18 +218,10 @@ class TransitionBody(Body):
     transition: Literal["configure", "activate", "deactivate", "cleanup", "shutdown"]
 
 
-ParametersBody: TypeAlias = dict[str, ParameterJson]
+ParametersBody: TypeAlias = Annotated[
+    dict[str, SentParameter], Field(min_length=1, examples=[{"max_speed": 0.4}])
+]
 """Values by parameter name."""
-
-
-class ReportedNodeBody(Body):
-    """What a node is taken to have reported."""
-
-    state: str | None = Field(
-        default=None, description="A label of a lifecycle state; left out: it never reported"
-    )
-    mode: str | None = Field(default=None, description="Outranks the parameters")
-    parameters: ParametersBody = Field(default_factory=dict)
 
 
 def shown(value: ParameterValue | None) -> ParameterJson | None:
@@ -243,11 +234,6 @@ def type_of(value: ParameterValue) -> ParameterType | None:
     if isinstance(value, tuple):
         return _ARRAYS[type(value[0])] if value else None
     return _SCALARS[type(value)]
-
-
-def parameter_value(value: ParameterJson) -> ParameterValue:
-    """Return a value that a client sent as the core has it."""
-    return tuple(value) if isinstance(value, list) else value  # type: ignore[return-value]
 
 
 _SCALARS: dict[type, ParameterType] = {

@@ -12,26 +12,31 @@ import socket
 import sys
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
+from importlib import resources
 from pathlib import Path
 
 from api.app import create_app
 from api.distribution import installed_version
+from api.metrics import metrics
+from api.model_check import finding_line
 from api.web_server import ListenError, WebServer, is_loopback, listen, url_of, web_server
 from domain.errors import InvalidModelError
-from domain.findings import Finding
 from domain.simulation.mock_signals import MockSignals
 from domain.simulation.nodes import SimulatedNodes
 from domain.supervision import Supervision, SupervisionSettings
 from service.backends.simulated import SimulatedBackend
 from service.clock import Clock, MonotonicClock
 from service.mock_source import MockSource
-from service.model_file import LoadedModel, load_model
+from service.model_file import load_model
 from service.robot_file import RobotSettings, load_robot_file
 from service.supervisor import Supervisor, TaskFailedError
+from service.text_file import UnreadableFileError
 
 log = logging.getLogger(__name__)
 
 SUCCEEDED, FAILED, MISUSED, INTERRUPTED = 0, 1, 2, 130
+
+EXAMPLE = Path(str(resources.files("service") / "example" / "actuation.yaml"))
 
 
 @dataclass(frozen=True, slots=True)
@@ -63,11 +68,15 @@ def serve(options: ServeOptions) -> int:
         supervisor = compose(options, MonotonicClock())
         sockets = listen(options.host, options.port)
     except InvalidModelError as error:
-        return _complain_of_model(options.model or EXAMPLE, error.findings)
+        for finding in error.findings:
+            print(finding_line(str(options.model or EXAMPLE), finding), file=sys.stderr)
+        return FAILED
     except (ListenError, UnreadableFileError) as error:
         return _complain(str(error), FAILED)
     hosts = (options.host, *options.allowed_hosts)
     app = create_app(supervisor, allowed_hosts=hosts)
+    app.state.exposed = exposed
+    metrics(app)
     greeting = "\n".join(greet(supervisor, options, url_of(sockets, options.host)))
     server = web_server(app, lambda: print(greeting, flush=True))
     # What was made until now stays: it need not be looked through again by each collection, which
@@ -193,6 +202,19 @@ def _log_to_stderr(level: str) -> None:
     # It tells of each connection at this level; what matters is told by our own modules.
     for name in ("uvicorn.error", "uvicorn.access"):
         logging.getLogger(name).setLevel("DEBUG" if level == "debug" else "WARNING")
+
+
+def _mocks(options: ServeOptions, robot: RobotSettings) -> bool:
+    """Tell whether the signals are mocked: with simulated nodes they are, unless told otherwise.
+
+    So a model that somebody tries is IDLE, and not in ERROR for want of readings.
+    """
+    return options.mock_signals or robot.mock is not False
+
+
+def _complain(message: str, code: int) -> int:
+    print(f"pilothouse: {message}", file=sys.stderr)
+    return code
 
 
 def _count(number: int, what: str) -> str:

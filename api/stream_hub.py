@@ -48,7 +48,8 @@ def stream_hub(app: FastAPI) -> StreamHub:
     return hub
 
 
-def _hub(connection: HTTPConnection) -> StreamHub:
+# A coroutine, since the framework would call a plain function in a thread.
+async def _hub(connection: HTTPConnection) -> StreamHub:
     return stream_hub(connection.app)
 
 

@@ -46,7 +46,7 @@ def read_parameter_value(value: object) -> ParameterValue:
     Raises:
         PydanticCustomError: No value of a parameter.
     """
-    items = value if isinstance(value, list) else [value]
+    items: list[Any] = value if isinstance(value, list) else [value]
     kinds = {type(item) for item in items}
     if kinds == {int, float}:
         items, kinds = [float(item) for item in items], {float}
@@ -56,7 +56,8 @@ def read_parameter_value(value: object) -> ParameterValue:
             "a parameter is a boolean, an integer of 64 bits, a finite number, a text,"
             " or a list of one of these",
         )
-    return tuple(items) if isinstance(value, list) else items[0]
+    found: ParameterValue = tuple(items) if isinstance(value, list) else items[0]
+    return found
 
 
 def _is_scalar(value: object) -> bool:

@@ -103,7 +103,7 @@ def web_server(app: FastAPI, on_started: Callable[[], None]) -> WebServer:
         ws_per_message_deflate=False,
         ws_ping_interval=_PING_INTERVAL_S,
         ws_ping_timeout=_PING_TIMEOUT_S,
-        lifespan="off",
+        lifespan="on",
         log_config=None,
         access_log=False,
         server_header=False,

@@ -6,7 +6,7 @@
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import replace
 
-from domain.change_plan import ChangeGoal, NodeGoal, goal_of, next_steps
+from domain.change_plan import TOWARDS_REST, ChangeGoal, NodeGoal, goal_of, next_steps
 from domain.errors import BlockedError, IllegalTransitionError
 from domain.findings import Blocker
 from domain.lifecycle import LifecycleState, Transition, arrival, is_legal_request
@@ -16,8 +16,6 @@ from domain.system_model import PartName, SmhModel
 
 ADVISORY = frozenset({"UNREACHABLE", "UNKNOWN_STATE"})
 """Shown, but not refused: an absent node may come back before the deadline."""
-
-_TOWARDS_REST = (Transition.DEACTIVATE, Transition.CLEANUP, Transition.SHUTDOWN)
 
 
 class ChangeAdmission:
@@ -58,7 +56,7 @@ class ChangeAdmission:
         Wider than `get_available_transitions` of ROS 2 by the paths that a request implies: an
         unconfigured part may be asked to activate, and is configured on the way.
         """
-        states = self._resting_states(part)
+        states = self._lifecycles(part)
         return tuple(
             transition
             for transition in Transition
@@ -70,13 +68,17 @@ class ChangeAdmission:
     def _refusing(self, request: ChangeRequest, estop: Sequence[Blocker]) -> list[Blocker]:
         return [b for b in self.blockers(request, estop) if b.code not in ADVISORY]
 
-    def _resting_states(self, part: PartName) -> list[LifecycleState]:
-        return [arrival(self._facts[n].known_state) for n in self._model.nodes_below(part)]
+    def _lifecycles(self, part: PartName) -> list[LifecycleState]:
+        """Return where the nodes below a part rest, or will, if they have a lifecycle."""
+        below = [self._facts[node] for node in self._model.nodes_below(part)]
+        return [arrival(facts.known_state) for facts in below if facts.has_lifecycle]
 
     def _check_legal(self, request: TransitionRequest, estop: Sequence[Blocker]) -> None:
-        states = self._resting_states(request.part)
+        states = self._lifecycles(request.part)
         if not self._is_legal(request.transition, states):
             state = states[0] if len(set(states)) == 1 else None
+            if not states:
+                state = LifecycleState.ACTIVE
             available = self.available_transitions(request.part, estop)
             raise IllegalTransitionError(request.part, request.transition, state, available)
 
@@ -85,9 +87,11 @@ class ChangeAdmission:
         """Judge by all nodes below: towards rest one that can go is enough, otherwise all must.
 
         An unknown node refuses nothing. A finalized one is told by a blocker, since no transition
-        leads out of it; towards rest it is passed by.
+        leads out of it; towards rest it is passed by. Plain nodes are active, and nothing else.
         """
-        if transition in _TOWARDS_REST:
+        if not states:
+            return transition is Transition.ACTIVATE
+        if transition in TOWARDS_REST:
             return any(
                 state is LifecycleState.UNKNOWN or is_legal_request(transition, state)
                 for state in states
@@ -99,7 +103,7 @@ class ChangeAdmission:
         self, request: ChangeRequest, goal: ChangeGoal, estop: Sequence[Blocker]
     ) -> Iterable[Blocker]:
         part = part_of(request)
-        resting = isinstance(request, TransitionRequest) and request.transition in _TOWARDS_REST
+        resting = isinstance(request, TransitionRequest) and request.transition in TOWARDS_REST
         if estop and any(self._activates(node, want) for node, want in goal.nodes.items()):
             for reason in estop:
                 yield replace(reason, path=(part, *reason.path))

@@ -11,7 +11,7 @@ from dataclasses import dataclass, field
 from typing import TypeAlias
 
 from domain.lifecycle import LifecycleState, Transition, arrival, path
-from domain.messages import ChangeRequest, ModeRequest, ParametersRequest
+from domain.messages import ChangeRequest, ModeRequest, ParametersRequest, TransitionRequest
 from domain.node_facts import NodeFacts
 from domain.system_model import (
     DEFAULT_MODE,
@@ -22,6 +22,10 @@ from domain.system_model import (
     StateAndMode,
     same_value,
 )
+
+
+TOWARDS_REST = (Transition.DEACTIVATE, Transition.CLEANUP, Transition.SHUTDOWN)
+"""What is done to those parts of a system that can go; the others are passed by."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -59,7 +63,8 @@ def goal_of(
     """Return what `request` asks of each part; part and mode must be known.
 
     Activating without naming a mode means `__DEFAULT__`. Nodes that a request to a system passes
-    by, such as an unconfigured one when the system is deactivated, keep the state they rest in.
+    by, such as an unconfigured one when the system is deactivated, keep the state they rest in;
+    of a plain node, nothing is asked but to be active.
     """
     if isinstance(request, ParametersRequest):
         return ChangeGoal({}, {request.node: NodeGoal(None, None, dict(request.values))})
@@ -72,11 +77,8 @@ def goal_of(
     else:
         wanted = StateAndMode(request.transition.goal)
     _spread(model, request.part, wanted, targets)
-    for part in targets:
-        if part in facts and not isinstance(request, ModeRequest):
-            resting = _passed_by(facts[part].known_state, request.transition)
-            if resting is not None and part != request.part:
-                targets[part] = StateAndMode(resting)
+    if isinstance(request, TransitionRequest):
+        _pass_by(request, facts, targets)
     nodes = {part: _node_goal(model, part, targets[part]) for part in targets if part in facts}
     return ChangeGoal(targets, nodes)
 
@@ -97,13 +99,26 @@ def _spread(
             _spread(model, child, StateAndMode(wanted.state), targets)
 
 
-def _passed_by(state: LifecycleState, transition: Transition) -> LifecycleState | None:
-    """Return the state that a node keeps while `transition` is done to its system."""
-    if state is LifecycleState.FINALIZED:
-        return state
+def _pass_by(
+    request: TransitionRequest,
+    facts: Mapping[PartName, NodeFacts],
+    targets: dict[PartName, StateAndMode],
+) -> None:
+    """Let nodes below the asked part be where `request` has nothing to do with them."""
+    for part in [part for part in targets if part in facts and part != request.part]:
+        if not facts[part].has_lifecycle and request.transition is not Transition.ACTIVATE:
+            del targets[part]
+            continue
+        resting = arrival(facts[part].known_state)
+        if _stays(resting, request.transition):
+            targets[part] = StateAndMode(resting)
+
+
+def _stays(state: LifecycleState, transition: Transition) -> bool:
+    """Tell whether a node that rests in `state` stays there when its system goes towards rest."""
     if transition is Transition.DEACTIVATE and state is LifecycleState.UNCONFIGURED:
-        return state
-    return None
+        return True
+    return transition in TOWARDS_REST and state is LifecycleState.FINALIZED
 
 
 def _node_goal(model: SmhModel, node: PartName, target: StateAndMode) -> NodeGoal:

@@ -47,9 +47,22 @@ def _check_value(
         return
     if name not in known:
         raise UnknownParameterError(f"parameter of {node}", name, tuple(known))
-    if type(known[name]) is not type(value):
-        wanted = type(known[name]).__name__
-        raise InvalidValueError(f"{name} of {node} is a {wanted}, not {value!r}", name)
+    if not _same_type(known[name], value):
+        wanted = _type_in_words(known[name])
+        raise InvalidValueError(f"{name} of {node} is {wanted}, not {value!r}", name)
+
+
+def _same_type(one: ParameterValue, other: ParameterValue) -> bool:
+    """Compare types as ROS 2 does: 1 is no 1.0, and an empty array fits every type of array."""
+    if isinstance(one, tuple) and isinstance(other, tuple):
+        return len({type(item) for item in (*one, *other)}) <= 1
+    return type(one) is type(other)
+
+
+def _type_in_words(value: ParameterValue) -> str:
+    if not isinstance(value, tuple):
+        return f"a {type(value).__name__}"
+    return f"an array of {type(value[0]).__name__}" if value else "an array"
 
 
 def describe_request(request: ChangeRequest) -> dict[str, object]:

@@ -121,6 +121,8 @@ class StateManager:
         self._bits = _error_bits(declared)
         self._monitors = {item.spec.name: SignalMonitor(item, start) for item in declared}
         self._seen = self._look()
+        self._wake_at = self._next_wake()
+        """Kept, since it is asked for at every input of the core."""
 
     # --- what happens ----------------------------------------------------------------------------
 
@@ -179,8 +181,7 @@ class StateManager:
 
     def wake_at(self) -> Instant | None:
         """Return the earliest instant at which time alone changes something; None: never."""
-        due = (monitor.wake_at() for monitor in self._monitors.values())
-        return min((at for at in due if at is not None), default=None)
+        return self._wake_at
 
     # --- what can be seen ------------------------------------------------------------------------
 
@@ -245,6 +246,10 @@ class StateManager:
         yield gathered
         self._gather(gathered)
 
+    def _next_wake(self) -> Instant | None:
+        due = (monitor.wake_at() for monitor in self._monitors.values())
+        return min((at for at in due if at is not None), default=None)
+
     def _gather(self, gathered: _Gathered) -> None:
         before = self._seen
         now = self._look()
@@ -252,6 +257,7 @@ class StateManager:
             # Whoever holds the mapping sees by its identity that it is still the same.
             now = replace(now, views=before.views)
         self._seen = now
+        self._wake_at = self._next_wake()
         gathered.add(before, now)
 
     def _look(self) -> _Seen:

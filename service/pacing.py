@@ -63,9 +63,7 @@ class Pacer(Generic[MessageT]):
         try:
             await asyncio.wait((resting,))
         finally:
-            self._resting = None
-            if resting.cancel():
-                await asyncio.wait((resting,))
+            resting.cancel()
         if not resting.cancelled():
             resting.result()
 

@@ -105,4 +105,3 @@ def main() -> None:
         serve(sys.stdin.buffer, replies)
     except MemoryError:
         sys.exit("the worker ran out of memory")
-

@@ -172,7 +172,7 @@ class _Builder:
             self.tree.documents.append(node)
             return
         top = self._open[-1]
-        if type(top.node) is Sequence:
+        if isinstance(top.node, Sequence):
             top.node.items.append(node)
         elif not top.expects_value:
             top.key = self._checked_key(top, node)
@@ -200,10 +200,11 @@ class _Builder:
         top.lines[key.text] = key.line
         return key
 
-    def _complain(self, event: Any, code: str, message: str) -> None:
+    def _complain(self, event: yaml.Event, code: str, message: str) -> None:
         line, column = _position(event)
         self.tree.findings.append(Finding("error", code, message, line=line, column=column))
 
 
-def _position(event: Any) -> tuple[int, int]:
-    return event.start_mark.line + 1, event.start_mark.column + 1
+def _position(event: yaml.Event) -> tuple[int, int]:
+    mark = event.start_mark
+    return (mark.line + 1, mark.column + 1) if mark else (1, 1)

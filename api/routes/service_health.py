@@ -87,7 +87,7 @@ async def get_healthz(hub: StreamHubDep, request: Request) -> HealthJson:
     )
 
 
-def _metrics(request: Request) -> Metrics:
+async def _metrics(request: Request) -> Metrics:
     return metrics(request.app)
 
 

@@ -162,5 +162,6 @@ class _Client:
 
     def _take(self, message: Mapping[str, Any]) -> None:
         supervisor = self._hub.supervisor
-        reading, source = read_client_message(message, supervisor.clock)
-        supervisor.submit_readings([reading], source, f"websocket:{self._address}")
+        given = read_client_message(message)
+        reading = given.reading(given.signal, supervisor.clock)
+        supervisor.submit_readings([reading], given.source, f"websocket:{self._address}")

@@ -45,7 +45,7 @@ class MockSignals:
         self._values = dict(GOOD_VALUES)
         self._stopped: set[str] = set()
         self._messages: list[Readings] = []
-        self._messages_since = start
+        self._messages_at = start
         self._next = start
 
     def advance(self, now: Instant) -> tuple[Readings, ...]:
@@ -56,7 +56,7 @@ class MockSignals:
 
     def wake_at(self) -> Instant:
         """Return when `advance` next has something to say."""
-        return self._messages_since if self._messages else self._next
+        return self._messages_at if self._messages else self._next
 
     def holds(self, signal: str) -> bool:
         """Tell whether the mock has this signal."""
@@ -110,7 +110,6 @@ class MockSignals:
         self._next = last_due + PERIOD
 
     def _publish(self, signals: tuple[str, ...], at: Instant) -> None:
-        if not self._messages:
-            self._messages_since = at
         readings = tuple(Reading(signal, self._values[signal]) for signal in signals)
         self._messages.append(Readings(readings, source=MOCK_SOURCE))
+        self._messages_at = at

@@ -45,7 +45,7 @@ class _Node:
     parameters_free_at: Instant = 0
     """Until when it is busy with parameter sets, which it does one after the other."""
     unreachable_at: Instant | None = None
-    """When the backend notices that nothing is heard of it; None: it is heard."""
+    """When the backend will notice that nothing is heard of it."""
     told_unreachable: bool = False
 
     @property
@@ -137,7 +137,7 @@ class SimulatedNodes:
         self._due: list[tuple[Instant, int, _Work]] = []
         self._issues = count()
         self._messages: list[NodeMessage] = []
-        self._messages_since = start
+        self._messages_at = start
         for name in settings:
             if name not in model.nodes:
                 raise UnknownPartError("node", name, tuple(model.nodes))
@@ -174,7 +174,7 @@ class SimulatedNodes:
         Also a time at which a node only acts, silently.
         """
         if self._messages:
-            return self._messages_since
+            return self._messages_at
         while self._due and _is_void(self._due[0][2]):
             heapq.heappop(self._due)
         return self._due[0][0] if self._due else None
@@ -190,8 +190,6 @@ class SimulatedNodes:
         self._catch_up(now)
         it = self._require(node)
         before, it.fault = it.fault, fault
-        if fault is before:
-            return
         if fault is Fault.DIE:
             it.stop()
         elif before is Fault.DIE:
@@ -241,9 +239,8 @@ class SimulatedNodes:
     # --- what comes out --------------------------------------------------------------------------
 
     def _emit(self, message: NodeMessage, at: Instant) -> None:
-        if not self._messages:
-            self._messages_since = at
         self._messages.append(message)
+        self._messages_at = at
 
     def _say(self, node: _Node, message: NodeMessage, at: Instant) -> None:
         """Let a node speak, if it can."""
@@ -304,7 +301,7 @@ class SimulatedNodes:
     def _end_callback(self, node: _Node, rule: TransitionRule, at: Instant) -> None:
         if node.fault is Fault.ERROR:
             self._enter(node, LifecycleState.ERROR_PROCESSING, at)
-            processed = at + node.takes(node.settings.process_error)
+            processed = at + node.settings.process_error
             self._schedule(_ErrorIsProcessed(node, node.process), processed)
         else:
             self._enter(node, rule.failure if node.fault is Fault.FAIL else rule.success, at)
@@ -340,6 +337,7 @@ class SimulatedNodes:
                 self._say(node, NodeAnswer(request, node.name, True), at)
                 self._take_over(node, values, at)
             case _SilenceIsNoticed(node):
+                node.unreachable_at = None
                 node.told_unreachable = True
                 self._emit(NodeReport(node.name, reachable=False), at)
 
@@ -360,5 +358,5 @@ def _why_no_transition(node: _Node, transition: Transition, rule: TransitionRule
 def _is_void(work: _Work) -> bool:
     """Tell whether work was overtaken: its process ended, or its node is heard again."""
     if isinstance(work, _SilenceIsNoticed):
-        return work.node.unreachable_at != work.at or work.node.told_unreachable
+        return work.node.unreachable_at != work.at
     return work.node.process != work.process

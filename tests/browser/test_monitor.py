@@ -1,6 +1,7 @@
 """What an operator does with the page, in a real browser and over the real service."""
 
 import re
+import time
 
 import pytest
 
@@ -73,6 +74,24 @@ def test_a_battery_dragged_low_is_an_error_that_says_why_and_ends_when_it_is_ful
     desktop.mouse.up()
     expect(sentence(desktop)).to_have_text("IDLE: no task")
     assert complaints.messages == []
+
+
+def test_a_slider_that_is_dragged_asks_at_most_ten_times_a_second(desktop: Page) -> None:
+    slider = card(desktop, "Temperature").get_by_role("slider")
+    box = slider.bounding_box()
+    assert box is not None
+    middle = box["y"] + box["height"] / 2
+    asked: list[str] = []
+    desktop.on("request", lambda request: asked.append(request.method))
+    desktop.mouse.move(box["x"] + box["width"] * 0.3, middle)
+    desktop.mouse.down()
+    begin = time.monotonic()
+    for step in range(40):
+        desktop.mouse.move(box["x"] + box["width"] * (0.1 + step / 100), middle)
+        desktop.wait_for_timeout(25)
+    seconds = time.monotonic() - begin
+    desktop.mouse.up()
+    assert 5 <= asked.count("PATCH") <= 10 * seconds + 1
 
 
 def test_a_signal_that_is_no_longer_published_grows_old_and_is_called_stale(

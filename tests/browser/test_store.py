@@ -1,18 +1,29 @@
 """The fold of the stream, the reference client, in the only engine that runs it: the browser."""
 
+from collections.abc import Iterator
 from typing import Any
 
 import pytest
 
 pytest.importorskip("playwright.sync_api", reason="playwright is not installed")
 
-from playwright.sync_api import Page
+from playwright.sync_api import Browser, Page
+
+from tests.browser.station import Service
 
 pytestmark = pytest.mark.browser
 
 AT = "2026-01-02T03:04:05.000Z"
 ACTIVE = {"target": None, "actual": {"state": "active", "mode": "FAST"}, "converged": True}
 DEVIATING = {**ACTIVE, "converged": False}
+
+
+@pytest.fixture(scope="module")
+def page(browser: Browser, running_service: Service) -> Iterator[Page]:
+    page = browser.new_page()
+    page.goto(running_service.url)
+    yield page
+    page.close()
 
 
 def fold(page: Page, *messages: dict[str, Any]) -> dict[str, Any]:
@@ -42,40 +53,40 @@ def event(number: int) -> dict[str, Any]:
     return {"type": "event", "epoch": "a", "id": number, "at": AT, "kind": "x", "data": {}}
 
 
-def test_parts_that_a_frame_leaves_out_stay_as_they_were(desktop: Page) -> None:
-    state = fold(desktop, frame(parts={"a": ACTIVE, "b": ACTIVE}), frame(parts={"b": DEVIATING}))
+def test_parts_that_a_frame_leaves_out_stay_as_they_were(page: Page) -> None:
+    state = fold(page, frame(parts={"a": ACTIVE, "b": ACTIVE}), frame(parts={"b": DEVIATING}))
     assert state["parts"]["a"]["converged"] is True
     assert state["parts"]["b"]["converged"] is False
 
 
-def test_an_answer_to_a_request_never_takes_a_part_back_behind_the_stream(desktop: Page) -> None:
+def test_an_answer_to_a_request_never_takes_a_part_back_behind_the_stream(page: Page) -> None:
     old = {"name": "a", "kind": "node", "reachable": True, **DEVIATING, "deviation_since_at": AT}
-    state = fold(desktop, frame(parts={"a": ACTIVE}), {"type": "structure", "items": [old]})
+    state = fold(page, frame(parts={"a": ACTIVE}), {"type": "structure", "items": [old]})
     assert state["parts"]["a"]["converged"] is True
     assert state["parts"]["a"]["kind"] == "node"
 
 
-def test_a_deviation_is_as_old_as_the_first_frame_that_tells_it(desktop: Page) -> None:
+def test_a_deviation_is_as_old_as_the_first_frame_that_tells_it(page: Page) -> None:
     later = "2026-01-02T03:04:09.000Z"
-    state = fold(desktop, frame(parts={"a": DEVIATING}), frame(later, parts={"a": DEVIATING}))
+    state = fold(page, frame(parts={"a": DEVIATING}), frame(later, parts={"a": DEVIATING}))
     assert state["parts"]["a"]["deviation_since_at"] == AT
 
 
-def test_events_are_kept_once_though_the_log_tells_them_again(desktop: Page) -> None:
-    state = fold(desktop, event(3), {"type": "log", "items": [event(1), event(2), event(3)]})
+def test_events_are_kept_once_though_the_log_tells_them_again(page: Page) -> None:
+    state = fold(page, event(3), {"type": "log", "items": [event(1), event(2), event(3)]})
     assert [kept["id"] for kept in state["events"]] == [1, 2, 3]
     assert state["lastEventId"] == 3
 
 
-def test_missing_events_leave_a_note(desktop: Page) -> None:
-    state = fold(desktop, event(1), {"type": "gap", "from": 2, "to": 7}, event(8))
+def test_missing_events_leave_a_note(page: Page) -> None:
+    state = fold(page, event(1), {"type": "gap", "from": 2, "to": 7}, event(8))
     notes = [kept["note"] for kept in state["events"] if "note" in kept]
     assert notes == ["Events 2 to 7 are missing here."]
     assert state["lastEventId"] == 8
 
 
-def test_after_a_restart_nothing_old_is_shown_but_the_events(desktop: Page) -> None:
+def test_after_a_restart_nothing_old_is_shown_but_the_events(page: Page) -> None:
     first, second = ({"type": "hello", "epoch": epoch} for epoch in "ab")
-    state = fold(desktop, first, frame(parts={"a": ACTIVE}), event(9), second, event(1))
+    state = fold(page, first, frame(parts={"a": ACTIVE}), event(9), second, event(1))
     assert state["parts"] == {}
     assert [kept["id"] for kept in state["events"]] == [9, "restart-b", 1]

@@ -15,7 +15,7 @@ from domain.lifecycle import LifecycleState, Transition
 from domain.messages import AskFacts, AskParameters, AskTransition, NodeAnswer, NodeReport
 from domain.simulation.node_settings import Fault
 from domain.simulation.nodes import SimulatedNodes
-from domain.system_model import PartName
+from domain.system_model import ParameterValue, PartName
 from service.backends.simulated import SimulatedBackend
 from service.ports import BackendMessage, NodeBackend
 from tests.support.manual_clock import ManualClock
@@ -86,6 +86,8 @@ class Robot:
         """Let time pass until something is the case."""
         waited_s = 0.0
         while not is_it():
+            if self.running.done():
+                self.running.result()
             assert waited_s < within_s, f"did not come in {within_s} s; heard: {self.heard[-5:]}"
             await self.under_test.pass_time(_STEP_S)
             waited_s += _STEP_S
@@ -225,7 +227,7 @@ async def test_a_transition_that_is_not_to_be_had_is_refused_with_a_reason(robot
 
 async def test_parameters_are_accepted_and_reported(robot: Robot) -> None:
     await robot.forget()
-    values = {"max_speed": 0.9, "controller": "MPC"}
+    values: dict[str, ParameterValue] = {"max_speed": 0.9, "controller": "MPC"}
     robot.under_test.backend.send(AskParameters(1, BASE, values))
     await robot.until(lambda: robot.parameters(BASE) == values and robot.answer(1) is not None)
 

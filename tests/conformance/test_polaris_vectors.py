@@ -16,7 +16,7 @@ from domain.signals import default_signals
 from domain.snapshot import TaskStatus
 from domain.state_manager import StateManager
 from domain.timebase import NANOSECONDS_PER_SECOND, seconds
-from tests.support.polaris import Observation, Vector, play
+from tests.support.polaris import Observation, Send, Vector, play, timeline
 from tests.support.shared import json_cases
 
 VECTORS = json_cases("conformance/polaris/vectors", "0[1-8]_*.json", "vectors")
@@ -93,3 +93,64 @@ def test_every_overruled_vector_exists() -> None:
         pytest.skip("the vectors are not beside this checkout")
 
     assert OVERRULED.keys() <= names
+
+
+# --- the player itself ---------------------------------------------------------------------------
+
+LOW_BATTERY: Vector = {
+    "name": "low_battery",
+    "config": {"state_timeout_ms": 0},
+    "steps": [{"t": 0.5, "signal": "battery_level", "value": 0.4}],
+    "expected": [
+        {"from": 0.0, "to": 0.45, "state": "IDLE", "errors": []},
+        {"t": 0.5, "state": "ERROR", "errors": ["BATTERY_LOW"]},
+    ],
+}
+
+
+class Deaf(OverStateManager):
+    """A robot that takes every reading and judges none."""
+
+    def reading(self, signal: str, value: object, stamp_offset_s: float) -> bool:
+        return True
+
+
+class Refusing(OverStateManager):
+    """A robot that takes no reading."""
+
+    def reading(self, signal: str, value: object, stamp_offset_s: float) -> bool:
+        return False
+
+
+def test_the_player_passes_a_robot_that_does_as_expected() -> None:
+    assert play(LOW_BATTERY, OverStateManager(LOW_BATTERY)) == []
+
+
+def test_the_player_notices_what_is_not_seen() -> None:
+    (failure,) = play(LOW_BATTERY, Deaf(LOW_BATTERY))
+
+    assert failure.startswith("500 ms: expected")
+
+
+def test_the_player_notices_a_reading_that_should_have_been_taken() -> None:
+    failures = play(LOW_BATTERY, Refusing(LOW_BATTERY))
+
+    assert failures[0].startswith("500 ms: refused")
+
+
+def test_a_repeated_step_ends_with_its_window_and_ramps_over_it() -> None:
+    step = {"t": 1.0, "signal": "battery_level", "ramp": [1.0, 0.8], "repeat_hz": 10, "until": 1.2}
+    sent = timeline({"steps": [step], "expected": []})
+
+    assert [(item.at_ms, item.value) for item in sent if isinstance(item, Send)] == [
+        (1000, 1.0),
+        (1100, 0.9),
+        (1200, 0.8),
+    ]
+
+
+def test_a_frozen_stamp_falls_behind() -> None:
+    step = {"t": 0, "signal": "estop", "value": False, "repeat_hz": 2, "until": 1, "stamp": "first"}
+    sent = timeline({"steps": [step], "expected": []})
+
+    assert [item.stamp_offset_s for item in sent if isinstance(item, Send)] == [0.0, -0.5, -1.0]

@@ -18,7 +18,8 @@ SECOND = 1_000_000_000
 class Moment:
     """What holds at one instant, after everything that happened at it so far."""
 
-    errors: frozenset[str]
+    errors: frozenset[tuple[str, str]]
+    """Signal and error."""
     pending: Mapping[str, str | None]
     stale: frozenset[str]
 
@@ -94,10 +95,12 @@ class _Signal:
                 self.acknowledged = False
             if self.on != self.cause.error:
                 self.on, self.on_since = self.cause.error, now
-        elif self.on is not None and now - self.on_since >= self.settings.min_on:
-            if self.settings.recovery is Recovery.AUTOMATIC or self.acknowledged:
-                self.on = None
+        elif self._may_end() and now - self.on_since >= self.settings.min_on:
+            self.on = None
         self._look_at_age(now)
+
+    def _may_end(self) -> bool:
+        return self.settings.recovery is Recovery.AUTOMATIC or self.acknowledged
 
     def _look_at_age(self, now: Instant) -> None:
         limit = self.settings.stale_after
@@ -135,17 +138,17 @@ class HealthReference:
         for reading in readings.items:
             signal = self._signals[reading.signal]
             mine = [*signal.of_source(readings.source), *trial.get(reading.signal, [])]
-            stamps = [a.reading.stamp for a in mine if a.reading.stamp is not None]
-            arrivals = {id(a.reading): a.at for a in mine}
             counted = [
-                a.reading.stamp
-                for a in mine
-                if a.reading.stamp is not None
-                and a.reading.stamp - arrivals[id(a.reading)] <= SECOND
+                arrived.reading.stamp
+                for arrived in mine
+                if arrived.reading.stamp is not None
+                and arrived.reading.stamp - arrived.at <= SECOND
             ]
-            if stamps and counted and reading.stamp is not None and reading.stamp < max(counted):
-                if not self._is_worse(signal, reading.value, mine[-1].reading.value):
-                    return True
+            is_late = reading.stamp is not None and reading.stamp < max(
+                counted, default=-(SECOND**2)
+            )
+            if is_late and not self._is_worse(signal, reading.value, mine[-1].reading.value):
+                return True
             item = _Arrived(self._now, readings.source, reading)
             trial.setdefault(reading.signal, []).append(item)
         return False
@@ -174,11 +177,10 @@ class HealthReference:
     def moment(self) -> Moment:
         """Return what holds now."""
         signals = self._signals
-        errors = {signal.on for signal in signals.values() if signal.on is not None}
-        if any(signal.stale_on for signal in signals.values()):
-            errors.add(STALE_DATA)
+        on = {(name, signal.on) for name, signal in signals.items() if signal.on is not None}
+        on |= {(name, STALE_DATA) for name, signal in signals.items() if signal.stale_on}
         return Moment(
-            frozenset(errors),
+            frozenset(on),
             {name: signal.pending() for name, signal in signals.items()},
             frozenset(name for name, signal in signals.items() if signal.stale),
         )

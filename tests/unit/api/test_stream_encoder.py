@@ -10,7 +10,6 @@ from domain.findings import Blocker
 from domain.messages import Event
 from domain.timebase import seconds
 from service.event_log import Gap
-from service.frame_feed import Frame
 from service.supervisor import Supervisor
 from tests.support.frames import event, frame, part_view, signal_view
 from tests.support.live_robot import make_supervisor
@@ -143,10 +142,6 @@ def test_a_part_with_quotes_in_its_name_is_still_json(encoder: StreamEncoder) ->
     shown = read(encoder.frame(frame(2, [odd]), 0, ALL))
 
     assert list(shown["parts"]) == ['arm "left"\n']
-
-
-def many(count: int) -> Frame:
-    return frame(1, [part_view(f"node_{n}") for n in range(count)], full=True)
 
 
 def test_a_view_that_did_not_change_is_not_encoded_again(

@@ -111,4 +111,4 @@ def test_a_moment_is_exact_to_the_microsecond() -> None:
 
 def test_a_moment_of_no_known_offset_is_refused() -> None:
     with pytest.raises(InvalidValueError):
-        since_epoch(datetime(2026, 5, 4))  # noqa: DTZ001
+        since_epoch(datetime(2026, 5, 4))

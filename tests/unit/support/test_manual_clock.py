@@ -70,8 +70,11 @@ async def test_a_task_that_spins_is_told_instead_of_hanging_the_test(
     monkeypatch.setattr("tests.support.manual_clock._MANY_TURNS", 100)
 
     async def spin() -> None:
+        loop = asyncio.get_running_loop()
         while True:
-            await asyncio.sleep(0)
+            turn = loop.create_future()
+            loop.call_soon(turn.set_result, None)
+            await turn
 
     spinning = asyncio.create_task(spin())
     with pytest.raises(AssertionError, match="one of them spins"):

@@ -110,6 +110,15 @@ def test_what_was_due_before_a_value_was_held_still_has_the_old_one() -> None:
     assert second.items == (Reading("battery_level", 0.42),)
 
 
+def test_what_was_due_before_a_signal_was_stopped_still_has_it() -> None:
+    mock = MockSignals(START)
+    mock.set_publishing("battery_level", False, at(0.05))
+
+    (message,) = mock.advance(at(0.05))
+
+    assert len(message.items) == 5
+
+
 def test_after_a_pause_it_publishes_once_and_keeps_to_its_grid() -> None:
     mock = MockSignals(START)
     published(mock, 0.0)

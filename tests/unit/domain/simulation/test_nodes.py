@@ -12,7 +12,15 @@ from domain.lifecycle import TRANSITIONS, LifecycleState, Transition, Transition
 from domain.messages import AskTransition, NodeAnswer, NodeReport
 from domain.simulation.node_settings import Fault, NodeSettings
 from domain.simulation.nodes import NodeMessage, SimulatedNodes
-from domain.system_model import DEFAULT_MODE, ModeName, NodeModel, Parameters, PartName, SmhModel
+from domain.system_model import (
+    DEFAULT_MODE,
+    ModeName,
+    NodeModel,
+    Parameters,
+    ParameterValue,
+    PartName,
+    SmhModel,
+)
 from domain.timebase import seconds
 from tests.support.models import ARM, BASE, actuation_model
 from tests.support.simulated_robot import SimulatedRobot, answers, states
@@ -196,6 +204,16 @@ def test_parameters_are_set_all_at_once_then_answered_and_reported() -> None:
         (1.02, NodeReport(BASE, parameters={"max_speed": 0.5, "controller": "MPC"})),
     ]
     assert robot.nodes.parameters_of(BASE) == {"max_speed": 0.5, "controller": "MPC"}
+
+
+def test_what_was_asked_is_set_whatever_became_of_the_request_meanwhile() -> None:
+    robot = robot_with(None)
+    values: dict[str, ParameterValue] = {"max_speed": 0.5}
+    robot.ask_parameters(BASE, values)
+    values["max_speed"] = 7.0
+    robot.pass_time(1.0)
+
+    assert robot.nodes.parameters_of(BASE)["max_speed"] == 0.5
 
 
 @pytest.mark.parametrize(
@@ -502,6 +520,31 @@ def test_the_same_fault_once_more_changes_nothing() -> None:
     robot.set_fault(BASE, Fault.SILENT)
 
     assert reachability(robot.pass_time(60.0)) == [(4.0, False)]
+
+
+def test_a_node_that_dies_a_second_time_is_missed_a_second_time() -> None:
+    robot = robot_with(Fault.DIE)
+    robot.pass_time(2.0)
+    robot.set_fault(BASE, None)
+    robot.set_fault(BASE, Fault.DIE)
+
+    assert reachability(robot.pass_time(60.0)) == [(3.0, True), (4.0, False)]
+
+
+def test_a_node_that_falls_silent_twice_at_the_same_time_is_missed_once() -> None:
+    robot = robot_with(Fault.SILENT)
+    robot.set_fault(BASE, None)
+    robot.set_fault(BASE, Fault.SILENT)
+
+    assert reachability(robot.pass_time(60.0)) == [(1.0, True), (4.0, False)]
+
+
+def test_nobody_is_woken_to_notice_a_silence_that_is_over() -> None:
+    robot = robot_with(Fault.SILENT)
+    robot.set_fault(BASE, None)
+    robot.pass_time(0.0)
+
+    assert robot.nodes.wake_at() is None
 
 
 def test_a_fault_of_a_node_that_is_not_there_is_refused() -> None:

@@ -1,21 +1,31 @@
 """What holds of simulated nodes whatever is asked of them, whatever fails, and whenever."""
 
 from collections.abc import Callable, Sequence
+from contextlib import suppress
 from dataclasses import dataclass
 from typing import TypeAlias
 
 from hypothesis import given
 from hypothesis import strategies as st
 
+from domain.errors import PilothouseError
 from domain.lifecycle import ERROR_PROCESSED, TRANSITIONS, LifecycleState, Transition
 from domain.messages import AskFacts, AskParameters, AskTransition, NodeAnswer, NodeReport
 from domain.simulation.node_settings import Fault, NodeSettings
 from domain.simulation.nodes import NodeMessage, SimulatedNodes
-from domain.system_model import ParameterValue, PartName
+from domain.system_model import Parameters, PartName
 from domain.timebase import Duration, Instant, seconds
 from tests.support.models import ARM, BASE, actuation_model
 
-Act: TypeAlias = Transition | Fault | dict[str, ParameterValue] | None
+
+@dataclass(frozen=True)
+class Outside:
+    """Somebody else sets these."""
+
+    values: Parameters
+
+
+Act: TypeAlias = Transition | Fault | Parameters | Outside | str | None
 S = LifecycleState
 
 
@@ -25,18 +35,18 @@ class Step:
 
     pause: Duration
     node: PartName
-    act: Act | str
+    act: Act
 
 
 # Short steps, so that they meet work that is under way, and at times its very end.
 PAUSES = st.sampled_from([0, 0, 0.01, 0.02, 0.1, 0.2, 0.3, 0.5, 1.0, 3.0]).map(seconds)
-PARAMETERS = st.sampled_from(
+PARAMETERS: st.SearchStrategy[Parameters] = st.sampled_from(
     [{"max_speed": 0.5}, {"max_speed": 0.1, "controller": "PID"}, {"max_speed": 1}, {"wheels": 4.0}]
 )
 TRANSITION_ACTS = st.sampled_from(Transition)
 
 
-def steps(acts: st.SearchStrategy[Act | str]) -> st.SearchStrategy[list[Step]]:
+def steps(acts: st.SearchStrategy[Act]) -> st.SearchStrategy[list[Step]]:
     """Return sequences of up to 40 things that somebody does to a node."""
     nodes = st.sampled_from([BASE, ARM])
     return st.lists(st.builds(Step, PAUSES, nodes, acts), max_size=40)
@@ -44,7 +54,12 @@ def steps(acts: st.SearchStrategy[Act | str]) -> st.SearchStrategy[list[Step]]:
 
 ANYTHING = steps(
     st.one_of(
-        TRANSITION_ACTS, st.sampled_from(Fault), st.none(), PARAMETERS, st.just("say your facts")
+        TRANSITION_ACTS,
+        st.sampled_from(Fault),
+        st.none(),
+        PARAMETERS,
+        PARAMETERS.map(Outside),
+        st.just("say your facts"),
     )
 )
 WITHOUT_LOSS = steps(
@@ -71,6 +86,10 @@ def do(nodes: SimulatedNodes, request: int, step: Step, now: Instant) -> None:
             nodes.handle(AskTransition(request, step.node, transition), now)
         case Fault() | None as fault:
             nodes.set_fault(step.node, fault, now)
+        case Outside(values):
+            # What it would not take, or has no process for, changes nothing.
+            with suppress(PilothouseError):
+                nodes.set_parameters(step.node, values, now)
         case dict() as values:
             nodes.handle(AskParameters(request, step.node, values), now)
         case _:

@@ -1,0 +1,94 @@
+"""Build the web application around a supervisor that somebody else runs."""
+
+from collections.abc import AsyncIterator, Sequence
+from contextlib import asynccontextmanager
+from functools import partial
+
+from fastapi import FastAPI
+from starlette.middleware import Middleware
+
+from api.distribution import installed_version
+from api.gate import Gate, SecurityHeaders, UnexpectedErrors
+from api.openapi import describe
+from api.problem_handlers import add_problem_handlers
+from api.routes import (
+    changes,
+    emergency_stop,
+    events,
+    inference,
+    mock,
+    model,
+    parameters,
+    parts,
+    service_health,
+    signals,
+    stream,
+    system_state,
+)
+from api.static_page import page_routes
+from service.supervisor import Supervisor
+from service.worker import Worker
+
+_RESOURCES = (
+    # Before the parts: the path of a part matches everything below /nodes.
+    parameters.router,
+    changes.router,
+    model.router,
+    inference.router,
+    signals.router,
+    system_state.router,
+    emergency_stop.router,
+    mock.router,
+    events.router,
+    stream.router,
+    service_health.router,
+)
+
+
+def create_app(supervisor: Supervisor, *, allowed_hosts: Sequence[str]) -> FastAPI:
+    """Return the application; it starts no task.
+
+    Whoever serves it with its lifespan has the worker process ready before the first request and
+    ended after the last; otherwise the process is started by the first request that needs it.
+
+    Args:
+        supervisor: What is served.
+        allowed_hosts: Names by which this service may be asked, beside those of loopback.
+    """
+    app = FastAPI(
+        title="Pilothouse",
+        summary="States and modes of a robot's systems and nodes, its health, and why",
+        version=installed_version(),
+        docs_url=None,
+        redoc_url=None,
+        redirect_slashes=False,
+        lifespan=_lifespan,
+        # "default" keeps the framework from describing an answer that is never given.
+        responses={"default": {"description": "A problem"}},
+        middleware=[
+            Middleware(SecurityHeaders),
+            Middleware(Gate, allowed_hosts=allowed_hosts),
+            Middleware(UnexpectedErrors),
+        ],
+    )
+    app.state.supervisor = supervisor
+    app.state.worker = Worker()
+    app.state.model_json = model.encode_model(supervisor)
+    add_problem_handlers(app, supervisor.clock)
+    for router in _RESOURCES:
+        app.include_router(router)
+    for prefix in ("systems", "nodes"):
+        app.include_router(parts.router, prefix=f"/{prefix}", tags=[prefix])
+    app.include_router(page_routes())
+    app.openapi = partial(describe, app)  # type: ignore[method-assign]
+    return app
+
+
+@asynccontextmanager
+async def _lifespan(app: FastAPI) -> AsyncIterator[None]:
+    worker: Worker = app.state.worker
+    await worker.start()
+    try:
+        yield
+    finally:
+        await worker.close()

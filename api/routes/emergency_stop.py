@@ -1,0 +1,28 @@
+"""The emergency stop: a latch that no reading releases, only a person."""
+
+from fastapi import APIRouter
+
+from api.dependencies import ActorDep, SupervisorDep
+from api.json_route import JsonRoute
+from api.schemas_health import EmergencyStopBody, EmergencyStopJson
+from domain.messages import EmergencyStopRequest
+
+router = APIRouter(prefix="/emergency_stop", tags=["health"], route_class=JsonRoute)
+
+
+@router.get("")
+async def get_emergency_stop(supervisor: SupervisorDep) -> EmergencyStopJson:
+    """Show whether the emergency stop is engaged, by whom and why."""
+    return EmergencyStopJson.of(supervisor.core.emergency_stop(), supervisor.clock)
+
+
+@router.put("")
+async def set_emergency_stop(
+    body: EmergencyStopBody, supervisor: SupervisorDep, actor: ActorDep
+) -> EmergencyStopJson:
+    """Engage or release the emergency stop; to do so twice changes nothing.
+
+    This is a software stop. It is not safety-rated, and replaces no hardware stop.
+    """
+    supervisor.submit(EmergencyStopRequest(body.engaged, body.reason, actor))
+    return EmergencyStopJson.of(supervisor.core.emergency_stop(), supervisor.clock)

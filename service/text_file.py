@@ -1,0 +1,39 @@
+"""Reading a text file that a person names, and saying plainly why it cannot be read."""
+
+from pathlib import Path
+
+from domain.errors import PilothouseError
+
+MAX_BYTES = 16 * 1024 * 1024
+
+
+class UnreadableFileError(PilothouseError):
+    """A file that is not there, cannot be read, is too large, or holds no text."""
+
+    code = "UNREADABLE_FILE"
+
+    def __init__(self, path: Path, reason: str) -> None:
+        super().__init__(f"{path} cannot be read: {reason}")
+        self.path = path
+
+
+def read_text_file(path: Path) -> str:
+    """Return the text of a UTF-8 file of at most `MAX_BYTES`.
+
+    Raises:
+        UnreadableFileError: There is no such file, or it is not that.
+    """
+    try:
+        with path.open("rb") as file:
+            content = file.read(MAX_BYTES + 1)
+    except (OSError, ValueError) as error:
+        # ValueError: a name with a null character in it.
+        reason = error.strerror if isinstance(error, OSError) and error.strerror else str(error)
+        raise UnreadableFileError(path, reason) from error
+    if len(content) > MAX_BYTES:
+        raise UnreadableFileError(path, f"it is larger than {MAX_BYTES // 1024 // 1024} MiB")
+    try:
+        return content.decode("utf-8-sig")
+    except UnicodeDecodeError as error:
+        line = content.count(b"\n", 0, error.start) + 1
+        raise UnreadableFileError(path, f"it is not UTF-8 text (line {line})") from error

@@ -1,0 +1,325 @@
+"""`WS /ws` as a client sees it, over the real supervisor in virtual time."""
+
+import asyncio
+import json
+from collections.abc import AsyncIterator
+
+import pytest
+from fastapi import FastAPI
+
+import api.stream_hub
+from api.app import create_app
+from api.routes import stream
+from api.stream_hub import stream_hub
+from domain.messages import EmergencyStopRequest, ModeRequest
+from domain.system_model import PartName
+from service.supervisor import Supervisor
+from tests.support.live_robot import make_supervisor, running
+from tests.support.manual_clock import ManualClock
+from tests.support.websocket import WebSocketClient
+
+PERFORMANCE = ModeRequest(PartName("actuation"), "PERFORMANCE", "operator")
+
+
+@pytest.fixture
+def clock() -> ManualClock:
+    return ManualClock()
+
+
+@pytest.fixture
+async def supervisor(clock: ManualClock) -> AsyncIterator[Supervisor]:
+    supervisor = make_supervisor(clock)
+    async with running(supervisor):
+        yield supervisor
+
+
+@pytest.fixture
+def app(supervisor: Supervisor) -> FastAPI:
+    return create_app(supervisor, allowed_hosts=[])
+
+
+async def in_step(client: WebSocketClient) -> None:
+    """Read what is there from the start."""
+    await client.frame("state")
+    client.frames()
+
+
+async def test_a_client_is_greeted_and_then_told_everything(
+    app: FastAPI, supervisor: Supervisor
+) -> None:
+    async with WebSocketClient(app) as client:
+        hello = await client.frame()
+        state = await client.frame()
+
+    assert hello["type"] == "hello"
+    assert hello["epoch"] == supervisor.epoch
+    assert state["type"] == "state"
+    assert state["skipped"] == 0
+    assert set(state["parts"]) == {"actuation", "drive_base", "manipulator"}
+    assert len(state["signals"]) == 5
+
+
+async def test_frames_come_at_twenty_a_second_without_a_gap(
+    app: FastAPI, clock: ManualClock
+) -> None:
+    async with WebSocketClient(app) as client:
+        await in_step(client)
+        await clock.advance(3)
+        frames = client.frames()
+
+    states = [frame for frame in frames if frame["type"] == "state"]
+    assert len(states) == 60
+    assert [frame["seq"] - states[0]["seq"] for frame in states] == list(range(60))
+    assert {frame["skipped"] for frame in states} == {0}
+
+
+async def test_once_a_second_everything_is_told_again(app: FastAPI, clock: ManualClock) -> None:
+    async with WebSocketClient(app, topics="parts") as client:
+        await in_step(client)
+        await clock.advance(3)
+        complete = [frame for frame in client.frames() if len(frame.get("parts", ())) == 3]
+
+    assert len(complete) == 3
+
+
+async def test_an_emergency_stop_is_told_at_once_and_not_at_the_next_tick(
+    app: FastAPI, supervisor: Supervisor
+) -> None:
+    async with WebSocketClient(app, topics="system_state") as client:
+        await in_step(client)
+
+        supervisor.submit(EmergencyStopRequest(True, "test", "operator"))
+
+        frame = await client.frame("state")
+    assert frame["system_state"]["state"] == "ERROR"
+    assert frame["system_state"]["errors"] == ["ESTOP"]
+
+
+async def test_a_change_of_mode_is_followed_by_events_in_order(
+    app: FastAPI, supervisor: Supervisor, clock: ManualClock
+) -> None:
+    async with WebSocketClient(app, topics="events") as client:
+        await client.frame("hello")
+        supervisor.submit(PERFORMANCE)
+        await clock.advance(2)
+        events = client.frames()
+
+    assert {event["type"] for event in events} == {"event"}
+    ids = [event["id"] for event in events]
+    assert ids == list(range(ids[0], ids[0] + len(ids)))
+    assert events[0]["kind"] == "change.requested"
+    assert events[0]["actor"] == "operator"
+    assert "change.succeeded" in {event["kind"] for event in events}
+
+
+async def test_the_last_frame_of_a_change_shows_the_robot_as_it_was_asked_to_be(
+    app: FastAPI, supervisor: Supervisor, clock: ManualClock
+) -> None:
+    parts: dict[str, object] = {}
+    async with WebSocketClient(app) as client:
+        await in_step(client)
+        supervisor.submit(PERFORMANCE)
+        await clock.advance(2)
+        for frame in client.frames():
+            parts |= frame.get("parts", {})
+
+    actuation = parts["actuation"]
+    assert isinstance(actuation, dict)
+    assert actuation["converged"] is True
+    assert actuation["actual"]["mode"] == "PERFORMANCE"
+
+
+async def test_a_client_that_comes_back_gets_the_events_it_missed(
+    app: FastAPI, supervisor: Supervisor, clock: ManualClock
+) -> None:
+    known = supervisor.events.newest
+    supervisor.submit(PERFORMANCE)
+    await clock.advance(2)
+    newest = supervisor.events.newest
+
+    query = {"topics": "events", "after": known, "epoch": supervisor.epoch}
+    async with WebSocketClient(app, **query) as client:
+        ids = [(await client.frame("event"))["id"] for _ in range(known, newest)]
+
+    assert ids == list(range(known + 1, newest + 1))
+
+
+async def test_a_client_of_an_earlier_run_is_told_of_the_gap_and_gets_all_there_is(
+    app: FastAPI, supervisor: Supervisor
+) -> None:
+    async with WebSocketClient(app, topics="events", after=88, epoch="earlier") as client:
+        await client.frame("hello")
+        gap = await client.frame()
+        first = await client.frame()
+
+    assert gap == {"type": "gap", "from": 89, "to": None, "epoch": "earlier"}
+    assert (first["type"], first["id"], first["epoch"]) == ("event", 1, supervisor.epoch)
+
+
+async def test_without_a_cursor_only_new_events_come(
+    app: FastAPI, supervisor: Supervisor
+) -> None:
+    known = supervisor.events.newest
+    assert known > 0
+
+    async with WebSocketClient(app, topics="events") as client:
+        await client.frame("hello")
+        supervisor.submit(EmergencyStopRequest(True, "test", "operator"))
+        event = await client.frame()
+
+    assert event["id"] == known + 1
+
+
+async def test_a_slow_client_skips_is_told_how_many_and_gets_everything_then(
+    app: FastAPI, clock: ManualClock
+) -> None:
+    async with WebSocketClient(app, topics="parts,signals") as client:
+        await in_step(client)
+        client.stop_reading()
+        await clock.advance(0.5)
+        client.go_on_reading()
+        waited = await client.frame("state")
+        after = await client.frame("state")
+
+    assert waited["skipped"] == 0
+    assert after["seq"] == waited["seq"] + after["skipped"] + 1
+    assert after["skipped"] == 8
+    assert len(after["parts"]) == 3
+
+
+async def test_a_slow_client_delays_nobody(app: FastAPI, clock: ManualClock) -> None:
+    async with WebSocketClient(app) as slow, WebSocketClient(app) as quick:
+        await in_step(slow)
+        await in_step(quick)
+        slow.stop_reading()
+        await clock.advance(2)
+        frames = quick.frames()
+
+    assert len([frame for frame in frames if frame["type"] == "state"]) == 40
+    assert not any(frame.get("skipped") for frame in frames)
+
+
+async def test_a_client_that_does_not_read_at_all_is_dropped_and_told_to_come_later(
+    app: FastAPI, clock: ManualClock, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(stream, "SEND_TIMEOUT_S", 0.01)
+    async with WebSocketClient(app) as client:
+        await in_step(client)
+        client.stop_reading()
+        await clock.advance(0.1)
+        while stream_hub(app).dropped == 0:
+            await asyncio.sleep(0)
+        client.go_on_reading()
+
+        assert await client.end() == 1013
+    assert stream_hub(app).clients == 0
+
+
+async def test_one_client_too_many_is_told_to_come_later(
+    app: FastAPI, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(api.stream_hub, "MAX_CLIENTS", 1)
+
+    async with WebSocketClient(app) as first, WebSocketClient(app) as second:
+        assert await second.end() == 1013
+        assert (await first.frame())["type"] == "hello"
+
+
+async def test_a_client_that_left_leaves_its_place_to_the_next(app: FastAPI) -> None:
+    async with WebSocketClient(app) as client:
+        await client.frame()
+        assert stream_hub(app).clients == 1
+
+    assert stream_hub(app).clients == 0
+
+
+@pytest.mark.parametrize(
+    ("query", "words"),
+    [
+        ({"topics": "partz"}, "there is no topic 'partz'"),
+        ({"topics": ""}, "no topic is named"),
+        ({"after": "yesterday"}, "no id of an event"),
+    ],
+)
+async def test_what_is_wrong_with_the_address_is_told_before_it_is_closed(
+    app: FastAPI, query: dict[str, str], words: str
+) -> None:
+    async with WebSocketClient(app, **query) as client:
+        problem = await client.frame()
+
+        assert await client.end() == 1008
+    assert (problem["type"], problem["status"]) == ("problem", 422)
+    assert words in problem["detail"]
+
+
+async def test_a_reading_over_the_stream_counts_like_any_other(
+    app: FastAPI, supervisor: Supervisor
+) -> None:
+    async with WebSocketClient(app, topics="system_state") as client:
+        await in_step(client)
+        client.send({"type": "reading", "signal": "battery_level", "value": 0.2})
+        frame = await client.frame("state")
+
+    assert frame["system_state"]["errors"] == ["BATTERY_LOW"]
+    assert supervisor.core.signal("battery_level").value == 0.2
+
+
+BAD = [
+    ("{", 400),
+    ("", 400),
+    ("[" * 30_000, 400),
+    ('{"type":"reading","signal":"battery_level","value":"\\ud800"}', 400),
+    ('"reading"', 422),
+    ("{}", 422),
+    ('{"type":"command","signal":"battery_level","value":0.8}', 422),
+    ('{"type":"reading","signal":"battery_level"}', 422),
+    ('{"type":"reading","signal":"battery_level","value":0.8,"more":1}', 422),
+    ('{"type":"reading","signal":"battery_level","value":NaN}', 422),
+    ('{"type":"reading","signal":"battery_level","value":1e999}', 422),
+    ('{"type":"reading","signal":"battery_level","value":null}', 422),
+    ('{"type":"reading","signal":"battery_level","value":true}', 422),
+    ('{"type":"reading","signal":"battery_level","value":0.8,"stamp":"noon"}', 422),
+    ('{"type":"reading","signal":"battery_level","value":0.8,"stamp":"2026-01-01T00:00:00"}', 422),
+    ('{"type":"reading","signal":"no_such_signal","value":0.8}', 404),
+]
+
+
+@pytest.mark.parametrize(("text", "status"), BAD, ids=[text[:60] for text, _ in BAD])
+async def test_a_bad_message_is_answered_with_a_problem_and_the_connection_stays(
+    app: FastAPI, supervisor: Supervisor, text: str, status: int
+) -> None:
+    before = supervisor.core.signals()
+    async with WebSocketClient(app, topics="events") as client:
+        await client.frame("hello")
+        client.send_text(text)
+        problem = await client.frame()
+        client.send({"type": "reading", "signal": "battery_level", "value": 0.3})
+        event = await client.frame()
+
+    assert (problem["type"], problem["status"]) == ("problem", status)
+    assert event["data"]["values"] == {"battery_level": 0.3}
+    assert before["battery_level"].value == 1.0
+
+
+async def test_a_binary_message_is_answered_with_a_problem_too(app: FastAPI) -> None:
+    async with WebSocketClient(app, topics="events") as client:
+        await client.frame("hello")
+        client.send_bytes(b"\x00")
+        problem = await client.frame()
+
+        assert problem["status"] == 422
+        assert "binary" in problem["detail"]
+        assert client.closed is None
+
+
+async def test_a_flood_of_messages_does_not_keep_others_from_their_turn(
+    app: FastAPI, clock: ManualClock
+) -> None:
+    text = json.dumps({"type": "reading", "signal": "battery_level", "value": 0.9})
+    async with WebSocketClient(app, topics="events") as loud, WebSocketClient(app) as other:
+        await in_step(other)
+        for _ in range(500):
+            loud.send_text(text)
+        await clock.advance(0.05)
+
+        assert (await other.frame("state"))["skipped"] == 0

@@ -1,0 +1,79 @@
+"""Many deadlines, one of which is next."""
+
+import hypothesis.strategies as st
+from hypothesis.stateful import RuleBasedStateMachine, invariant, rule
+
+from domain.deadlines import Deadlines
+
+
+def test_without_a_deadline_nothing_is_next_and_nothing_is_due() -> None:
+    deadlines: Deadlines[str] = Deadlines()
+    assert deadlines.next() is None
+    assert deadlines.pop_due(10) is None
+
+
+def test_a_deadline_is_due_at_its_time_and_not_a_nanosecond_earlier() -> None:
+    deadlines: Deadlines[str] = Deadlines()
+    deadlines.set("arm", 10)
+    assert deadlines.pop_due(9) is None
+    assert deadlines.pop_due(10) == "arm"
+
+
+def test_a_deadline_comes_once() -> None:
+    deadlines: Deadlines[str] = Deadlines()
+    deadlines.set("arm", 10)
+    deadlines.pop_due(10)
+    assert deadlines.pop_due(10) is None
+    assert deadlines.next() is None
+
+
+def test_equal_deadlines_come_in_the_order_in_which_they_were_set() -> None:
+    """Not in the order of their keys: keys need no order at all."""
+    deadlines: Deadlines[str] = Deadlines()
+    for key in ("b", "c", "a"):
+        deadlines.set(key, 10)
+    assert [deadlines.pop_due(10) for _ in range(3)] == ["b", "c", "a"]
+
+
+def test_a_deadline_that_is_set_again_counts_as_set_last() -> None:
+    deadlines: Deadlines[str] = Deadlines()
+    for key in ("a", "b", "a"):
+        deadlines.set(key, 10)
+    assert [deadlines.pop_due(10) for _ in range(3)] == ["b", "a", None]
+
+
+class AgainstASortedList(RuleBasedStateMachine):
+    """Whatever is set, cleared and popped, it is as if all were sorted anew each time."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.deadlines: Deadlines[int] = Deadlines()
+        self.expected: dict[int, tuple[int, int]] = {}
+        self.count = 0
+
+    @rule(key=st.integers(0, 4), at=st.integers(0, 20))
+    def set(self, key: int, at: int) -> None:
+        self.count += 1
+        self.deadlines.set(key, at)
+        self.expected[key] = (at, self.count)
+
+    @rule(key=st.integers(0, 4))
+    def clear(self, key: int) -> None:
+        self.deadlines.clear(key)
+        self.expected.pop(key, None)
+
+    @rule(now=st.integers(0, 20))
+    def pop(self, now: int) -> None:
+        due = [key for key, (at, _) in self.expected.items() if at <= now]
+        first = min(due, key=self.expected.__getitem__, default=None)
+        assert self.deadlines.pop_due(now) == first
+        if first is not None:
+            del self.expected[first]
+
+    @invariant()
+    def the_earliest_is_next(self) -> None:
+        earliest = min((at for at, _ in self.expected.values()), default=None)
+        assert self.deadlines.next() == earliest
+
+
+TestAgainstASortedList = AgainstASortedList.TestCase

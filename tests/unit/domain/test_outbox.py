@@ -1,0 +1,105 @@
+"""What one input leads to, and what caused what."""
+
+from domain.messages import AskFacts, ChangeId, Outputs
+from domain.outbox import Outbox
+from domain.system_model import PartName
+
+ARM = PartName("arm")
+
+
+def test_an_input_from_which_nothing_follows_leaves_no_trace() -> None:
+    outbox = Outbox()
+    outbox.begin(5, "signal.read", {"value": 1.0}, "alice")
+    assert outbox.take() == Outputs()
+
+
+def test_what_follows_from_an_input_points_at_it() -> None:
+    outbox = Outbox()
+    outbox.begin(5, "signal.read", {"value": 0.1}, "alice")
+    outbox.emit("error.raised", {"error": "BATTERY_LOW"})
+    read, raised = outbox.take().events
+    assert (read.kind, read.cause, read.data) == ("signal.read", None, {"value": 0.1})
+    assert (raised.kind, raised.cause, raised.data) == (
+        "error.raised",
+        read.id,
+        {"error": "BATTERY_LOW"},
+    )
+
+
+def test_all_events_of_an_input_have_its_time_and_actor() -> None:
+    outbox = Outbox()
+    outbox.begin(5, "signal.read", actor="alice")
+    outbox.emit("error.raised", {})
+    assert {(event.at, event.actor) for event in outbox.take().events} == {(5, "alice")}
+
+
+def test_an_input_is_recorded_once_however_much_follows_from_it() -> None:
+    outbox = Outbox()
+    outbox.begin(5, "signal.read")
+    first, second = outbox.record_input(), outbox.record_input()
+    outbox.emit("error.raised", {})
+    assert first == second
+    assert [event.kind for event in outbox.take().events] == ["signal.read", "error.raised"]
+
+
+def test_a_nearer_cause_is_told_instead_of_the_input_which_then_leaves_no_trace() -> None:
+    outbox = Outbox()
+    outbox.begin(5, "signal.read")
+    pending = outbox.emit("signal.pending", {})
+    outbox.take()
+    outbox.begin(20, "time.passed")
+    outbox.emit("error.raised", {}, cause=pending)
+    (raised,) = outbox.take().events
+    assert (raised.kind, raised.cause) == ("error.raised", pending)
+
+
+def test_the_cause_of_an_input_is_kept() -> None:
+    outbox = Outbox()
+    outbox.begin(5, "node.reported", cause=3)
+    outbox.record_input()
+    assert outbox.take().events[0].cause == 3
+
+
+def test_a_new_input_is_not_mistaken_for_the_one_before() -> None:
+    outbox = Outbox()
+    outbox.begin(5, "signal.read", actor="alice")
+    before = outbox.record_input()
+    outbox.begin(6, "node.reported")
+    assert outbox.record_input() != before
+    assert [(e.at, e.kind, e.actor) for e in outbox.take().events] == [
+        (5, "signal.read", "alice"),
+        (6, "node.reported", ""),
+    ]
+
+
+def test_ids_rise_by_one_over_all_inputs() -> None:
+    outbox = Outbox()
+    ids = []
+    for at in range(3):
+        outbox.begin(at, "signal.read")
+        outbox.emit("error.raised", {})
+        ids += [event.id for event in outbox.take().events]
+    assert ids == [1, 2, 3, 4, 5, 6]
+
+
+def test_numbers_of_commands_are_never_given_twice() -> None:
+    outbox = Outbox()
+    first = outbox.next_request()
+    outbox.take()
+    assert [first, outbox.next_request(), outbox.next_request()] == [1, 2, 3]
+
+
+def test_what_was_taken_is_not_there_a_second_time() -> None:
+    outbox = Outbox()
+    outbox.begin(5, "change.requested")
+    outbox.record_input()
+    outbox.command(AskFacts(1, ARM))
+    outbox.change = ChangeId("c1")
+    outbox.parts.add(ARM)
+    outbox.signals.add("estop")
+    outbox.system_state = True
+    taken = outbox.take()
+    assert taken.commands == (AskFacts(1, ARM),)
+    assert (taken.change, taken.parts, taken.signals) == ("c1", {ARM}, {"estop"})
+    assert taken.system_state
+    assert outbox.take() == Outputs()
