@@ -14,16 +14,15 @@ from domain.messages import Event
 from domain.snapshot import ChangeStatus, SystemState
 from domain.timebase import to_seconds
 from service.event_log import EventReader
-from service.supervisor import PERIOD, Supervisor
+from service.supervisor import Supervisor
 
 _MAX_PARTS = 1_000
 """More would make each scrape larger than what anybody looks at."""
 
 _ENDS = tuple(str(status) for status in ChangeStatus if status != ChangeStatus.RUNNING)
 
-_PERIODS_S = tuple(
-    to_seconds(PERIOD) * factor for factor in (0.5, 0.9, 0.98, 1, 1.02, 1.1, 1.5, 2, 4, 20)
-)
+_PERIODS_S = (0.025, 0.045, 0.049, 0.05, 0.051, 0.055, 0.075, 0.1, 0.2, 1.0)
+"""Close together about the 50 ms of the tick."""
 
 
 class Metrics:

@@ -21,6 +21,10 @@ from domain.timebase import Instant, to_seconds
 from service.clock import Clock
 
 
+MAX_SOURCE = 64
+"""Characters of the name of who measured."""
+
+
 class PendingJson(Json):
     """An error that will come if the signal stays bad."""
 
@@ -48,7 +52,7 @@ class StreamedSignalJson(Json):
     stale: bool
     error: str | None
     pending: PendingJson | None
-    settings: dict[str, Fact | tuple[str, ...]]
+    settings: dict[str, Fact]
 
     @classmethod
     def of(cls, view: SignalView, clock: Clock) -> "StreamedSignalJson":
@@ -188,7 +192,7 @@ class ReadingBody(Body):
     source: str = Field(
         default="api",
         min_length=1,
-        max_length=64,
+        max_length=MAX_SOURCE,
         description="Who measured; several sources of `estop` cannot release each other",
     )
 

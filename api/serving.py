@@ -21,6 +21,7 @@ from api.metrics import metrics
 from api.model_check import finding_line
 from api.web_server import ListenError, WebServer, is_loopback, listen, url_of, web_server
 from domain.errors import InvalidModelError
+from domain.findings import Finding
 from domain.simulation.mock_signals import MockSignals
 from domain.simulation.nodes import SimulatedNodes
 from domain.supervision import Supervision, SupervisionSettings
@@ -28,7 +29,7 @@ from service.backends.simulated import SimulatedBackend
 from service.clock import Clock, MonotonicClock
 from service.mock_source import MockSource
 from service.model_file import load_model
-from service.robot_file import RobotSettings, load_robot_file
+from service.robot_file import InvalidRobotFileError, RobotSettings, load_robot_file
 from service.supervisor import Supervisor, TaskFailedError
 from service.text_file import UnreadableFileError
 
@@ -56,21 +57,21 @@ class ServeOptions:
 
 def serve(options: ServeOptions) -> int:
     """Run the service until a signal ends it, and return the exit code of the process."""
-    exposed = not is_loopback(options.host)
-    if exposed and not options.anonymous:
-        return _complain(
-            f"--host {options.host} lets others on the network control the robot without a "
-            "password; say --anonymous if that is meant, or leave out --host",
-            MISUSED,
-        )
     _log_to_stderr(options.log_level)
     try:
+        exposed = not is_loopback(options.host)
+        if exposed and not options.anonymous:
+            return _complain(
+                f"--host {options.host} lets others on the network control the robot without a "
+                "password; say --anonymous if that is meant, or leave out --host",
+                MISUSED,
+            )
         supervisor = compose(options, MonotonicClock())
         sockets = listen(options.host, options.port)
     except InvalidModelError as error:
-        for finding in error.findings:
-            print(finding_line(str(options.model or EXAMPLE), finding), file=sys.stderr)
-        return FAILED
+        return _complain_of(options.model or EXAMPLE, error.findings)
+    except InvalidRobotFileError as error:
+        return _complain_of(options.robot, error.findings)
     except (ListenError, UnreadableFileError) as error:
         return _complain(str(error), FAILED)
     hosts = (options.host, *options.allowed_hosts)
@@ -91,7 +92,9 @@ def compose(options: ServeOptions, clock: Clock) -> Supervisor:
     """Return the supervisor of the robot that the options describe; nothing runs yet.
 
     Raises:
-        InvalidModelError: The model or the robot file has faults.
+        UnreadableFileError: A file cannot be read.
+        InvalidModelError: The model has faults.
+        InvalidRobotFileError: The robot file has.
     """
     loaded = load_model(options.model or EXAMPLE)
     robot = load_robot_file(options.robot, loaded.model) if options.robot else RobotSettings()
@@ -215,6 +218,12 @@ def _mocks(options: ServeOptions, robot: RobotSettings) -> bool:
 def _complain(message: str, code: int) -> int:
     print(f"pilothouse: {message}", file=sys.stderr)
     return code
+
+
+def _complain_of(file: Path | None, findings: Sequence[Finding]) -> int:
+    for finding in findings:
+        print(finding_line(str(file), finding), file=sys.stderr)
+    return FAILED
 
 
 def _count(number: int, what: str) -> str:

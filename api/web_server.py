@@ -147,11 +147,15 @@ def listen(host: str, port: int) -> list[socket.socket]:
 
 
 def is_loopback(host: str) -> bool:
-    """Tell whether only this machine can reach `host`; a name that is unknown is no loopback."""
+    """Tell whether only this machine can reach `host`.
+
+    Raises:
+        ListenError: There is no such host.
+    """
     try:
         addresses = [address for _, address in _addresses(host)]
-    except OSError:
-        return False
+    except OSError as error:
+        raise ListenError(_why(error, host, 0)) from error
     return all(ipaddress.ip_address(address).is_loopback for address in addresses)
 
 

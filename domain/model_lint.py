@@ -68,8 +68,8 @@ def _modes_alike(part: PartName, looks: Iterator[tuple[ModeName, Hashable]]) -> 
         other = first.setdefault(look, mode)
         if other != mode:
             message = (
-                f"{part}: {mode} wants the same as {other}; inference tells them apart by the "
-                "target alone"
+                f"{part}: {mode} is the same as {other}; inference cannot tell which of the two "
+                "it is in"
             )
             yield _warning("MODES_ALIKE", message, part, "modes", mode)
 

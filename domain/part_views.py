@@ -6,9 +6,11 @@ from domain.changes import Changes
 from domain.lifecycle import LifecycleState
 from domain.mode_inference import ModeInference
 from domain.outbox import Outbox
-from domain.snapshot import Actual, EffectiveTarget, ParameterView, PartView
-from domain.system_model import DEFAULT_MODE, PartName
+from domain.snapshot import EffectiveTarget, ParameterView, PartView
+from domain.system_model import DEFAULT_MODE, PartName, StateAndMode
 from domain.timebase import Instant
+
+_UNKNOWN = StateAndMode(LifecycleState.UNKNOWN)
 
 
 class PartViews:
@@ -20,12 +22,13 @@ class PartViews:
         self._changes = changes
         self._outbox = outbox
         self._views: dict[PartName, PartView] = {}
-        self._actual: dict[PartName, Actual] = {}
+        self._told: dict[PartName, StateAndMode] = {}
         self._deviates_since: dict[PartName, Instant] = {}
         self._unreachable = set(self._model.nodes)
-        self._unreachable_below = {
-            system: len(self._model.nodes_below(system)) for system in self._model.systems
-        }
+        self._unreachable_below = dict.fromkeys(self._model.systems, 0)
+        for node in self._unreachable:
+            for system in self._model.ancestors[node]:
+                self._unreachable_below[system] += 1
 
     def get(self, part: PartName) -> PartView:
         """Return the view of a part that the model has."""
@@ -52,13 +55,13 @@ class PartViews:
         """Tell of each part whose actual state or mode is another one than told before."""
         for part in sorted(parts):
             self._outbox.parts.add(part)
-            now, before = self._inference.actual(part), self._actual.get(part)
-            if before is not None and now.state_and_mode == before.state_and_mode:
+            actual = self._inference.actual(part)
+            now, was = actual.state_and_mode, self._told.get(part, _UNKNOWN)
+            if now == was:
                 continue
-            self._actual[part] = now
-            was = before.state_and_mode.label if before else str(LifecycleState.UNKNOWN)
-            data = {"part": part, "actual": now.state_and_mode.label, "was": was}
-            self._outbox.emit("part.actual_changed", {**data, "reason": now.reason})
+            self._told[part] = now
+            data = {"part": part, "actual": now.label, "was": was.label, "reason": actual.reason}
+            self._outbox.emit("part.actual_changed", data)
 
     def note_reachable(self, node: PartName) -> None:
         """Count a node among those that can be reached or those that cannot; tell a difference."""

@@ -64,19 +64,7 @@ def check_model(text: str) -> tuple[Finding, ...]:
 def _read(text: str) -> tuple[SmhModel | None, tuple[Finding, ...]]:
     """Return the model, if it is one, and all findings."""
     with _collector_paused():
-        tree = read_tree(text)
-        if not tree.is_complete:
-            return None, _in_order(tree.findings)
-        file = read_parameter_file(tree.documents)
-        parts = read_parts(file.nodes)
-        findings = [*tree.findings, *file.findings, *parts.findings]
-        model = None
-        if any(finding.severity == "error" for finding in findings):
-            found = find_errors(parts.nodes, parts.systems)
-        else:
-            model, found = _build(parts)
-        findings.extend(_placed(file.nodes, finding) for finding in found)
-        return model, _in_order(findings)
+        return _read_all(text)
 
 
 @contextmanager
@@ -92,6 +80,22 @@ def _collector_paused() -> Iterator[None]:
     finally:
         if was_enabled:
             gc.enable()
+
+
+def _read_all(text: str) -> tuple[SmhModel | None, tuple[Finding, ...]]:
+    tree = read_tree(text)
+    if not tree.is_complete:
+        return None, _in_order(tree.findings)
+    file = read_parameter_file(tree.documents)
+    parts = read_parts(file.nodes)
+    findings = [*tree.findings, *file.findings, *parts.findings]
+    model = None
+    if any(finding.severity == "error" for finding in findings):
+        found = find_errors(parts.nodes, parts.systems)
+    else:
+        model, found = _build(parts)
+    findings.extend(_placed(file.nodes, finding) for finding in found)
+    return model, _in_order(findings)
 
 
 def _build(parts: SmhParts) -> tuple[SmhModel | None, list[Finding]]:

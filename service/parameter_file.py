@@ -1,8 +1,8 @@
 """ROS 2 parameter files as rcl reads them: nodes, each with dotted parameters in order.
 
 A node is `name: {ros__parameters: ...}`, in namespaces if there are maps around it. Names of maps
-in each other are joined by dots, so that `a: {b: 1}` and `a.b: 1` are the same. Scalars are not those
-of any YAML schema: `y` and `on` are booleans, `010` is 8, `~` is a text.
+in each other are joined by dots, so that `a: {b: 1}` and `a.b: 1` are the same. Scalars are not
+those of any YAML schema: `y` and `on` are booleans, `010` is 8, `~` is a text.
 
 Source: ROS 2 `rcl_yaml_param_parser`, `parse.c` (`parse_file_events`, `get_value`).
 """
@@ -18,8 +18,8 @@ from service.yaml_tree import STRING_TAG, Mapping, Node, Scalar, Sequence, findi
 
 PARAMETERS_KEY = "ros__parameters"
 
-_TRUE = frozenset("y Y yes Yes YES true True TRUE on On ON".split())
-_FALSE = frozenset("n N no No NO false False FALSE off Off OFF".split())
+_TRUE = frozenset(["y", "Y", "yes", "Yes", "YES", "true", "True", "TRUE", "on", "On", "ON"])
+_FALSE = frozenset(["n", "N", "no", "No", "NO", "false", "False", "FALSE", "off", "Off", "OFF"])
 _DOTTED_WORD = re.compile(r"\.(nan|NaN|NAN)|[+-]?\.(inf|Inf|INF)")
 # What strtoll takes with base 0, and what strtod takes, each to the end of the text.
 _INTEGER = re.compile(r"([+-]?)(?:(0[xX][0-9a-fA-F]+)|(0[0-7]*)|([1-9][0-9]*))")
@@ -76,6 +76,13 @@ def read_parameter_file(documents: Values[Node | None]) -> ParameterFile:
             message = f"there must be names of parts here, each with {PARAMETERS_KEY} below it"
             reader.complain(document, "NOT_A_BLOCK", message)
     return reader.file
+
+
+def scalar_value(scalar: Scalar) -> bool | int | float | str | None:
+    """Return the value of a scalar; None where there is nothing, not even quotes."""
+    if scalar.is_quoted or scalar.tag == STRING_TAG:
+        return scalar.text
+    return plain_value(scalar.text) if scalar.text else None
 
 
 @lru_cache(maxsize=10_000)
@@ -206,13 +213,11 @@ class _Reader:
             return self._scalar(key, value)
         return None if value is None else self._array(key, value)
 
-    def _scalar(self, key: Scalar, value: Scalar) -> bool | int | float | str | None:
-        if value.is_quoted or value.tag == STRING_TAG:
-            return value.text
-        if not value.text:
-            self._complain_of_nothing(key, value)
-            return None
-        return plain_value(value.text)
+    def _scalar(self, key: Scalar, scalar: Scalar) -> bool | int | float | str | None:
+        value = scalar_value(scalar)
+        if value is None:
+            self._complain_of_nothing(key, scalar)
+        return value
 
     def _array(self, key: Scalar, array: Sequence) -> ParameterValue | None:
         values: list[bool | int | float | str] = []

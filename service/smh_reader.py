@@ -94,21 +94,24 @@ def _read_system(block: SmhBlock, with_modes: Collection[PartName]) -> SystemMod
     if not block.modes:
         message = f"{block.name} is a system without modes, and so without parts"
         block.warn(block.key, "NO_PARTS", message)
-    own = {mode: _read_wants(block, mode, with_modes) for mode in block.modes}
-    default = own.get(DEFAULT_MODE)
-    if default is not None:
-        _compare_parts(block, default)
-    modes = {mode: {**(default or {}), **wanted} for mode, wanted in own.items()}
+    named = {part_name(below) for below, _ in block.modes.get(DEFAULT_MODE, ())}
+    if named:
+        _compare_parts(block, named)
+    own = {mode: _read_wants(block, mode, named, with_modes) for mode in block.modes}
+    default = own.get(DEFAULT_MODE, {})
+    modes = {mode: {**default, **wanted} for mode, wanted in own.items()}
     rules = [read_rule(block, name, with_modes) for name in block.rules]
     return SystemModel(block.name, modes, tuple(rule for rule in rules if rule is not None))
 
 
 def _read_wants(
-    block: SmhBlock, mode: ModeName, with_modes: Collection[PartName]
+    block: SmhBlock,
+    mode: ModeName,
+    named: Collection[PartName],
+    with_modes: Collection[PartName],
 ) -> dict[PartName, StateAndMode]:
-    """Read the lines of one mode."""
+    """Read the lines of one mode; `named` are the parts that `__DEFAULT__` names."""
     where = f"{block.name} in {mode}"
-    default = {part_name(below) for below, _ in block.modes.get(DEFAULT_MODE, ())}
     wanted: dict[PartName, StateAndMode] = {}
     for below, parameter in block.modes[mode]:
         if below.partition(".")[0] == PARAMETERS_KEY:
@@ -123,7 +126,7 @@ def _read_wants(
             message = f"{where}: {part} is there twice, with a slash before it and without"
             block.complain(parameter.key, "DUPLICATE_KEY", message)
             continue
-        if default and part not in default:
+        if named and part not in named:
             message = f"{where}: {part} is not in {DEFAULT_MODE}, and so no part of {block.name}"
             block.warn(parameter.key, "PART_NOT_IN_DEFAULT", message)
         if parameter.value is not None:
@@ -139,7 +142,7 @@ def _complain_of_dots(block: SmhBlock, mode: ModeName, below: str, parameter: Pa
     block.complain(parameter.key, "DOTTED_NAME", message)
 
 
-def _compare_parts(block: SmhBlock, default: Mapping[PartName, StateAndMode]) -> None:
+def _compare_parts(block: SmhBlock, named: set[PartName]) -> None:
     """Warn if `parts`, which nothing else reads, tells of other parts than `__DEFAULT__`."""
     for parameter in block.parts:
         names = parameter.value
@@ -148,7 +151,7 @@ def _compare_parts(block: SmhBlock, default: Mapping[PartName, StateAndMode]) ->
         if parameter.name != "parts" or not isinstance(names, tuple):
             continue
         listed = {part_name(str(name)) for name in names}
-        more, fewer = sorted(listed - default.keys()), sorted(default.keys() - listed)
+        more, fewer = sorted(listed - named), sorted(named - listed)
         words = [f"it also lists {', '.join(more)}"] * bool(more)
         words += [f"it lacks {', '.join(fewer)}"] * bool(fewer)
         if words:

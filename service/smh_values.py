@@ -16,6 +16,7 @@ from domain.system_model import (
     Rule,
     StateAndMode,
 )
+from service.parameter_file import Parameter
 from service.smh_block import SmhBlock
 from service.yaml_tree import Node
 
@@ -53,39 +54,37 @@ def fitted(pair: StateAndMode, part: PartName, with_modes: Collection[PartName])
 def read_rule(block: SmhBlock, name: str, with_modes: Collection[PartName]) -> Rule | None:
     """Read a rule; None after a complaint."""
     lines, where = block.rules[name], f"rule {name} of {block.name}"
-    unknown = [key for key in lines if key not in _RULE_KEYS]
+    for key, line in lines.items():
+        if key not in _RULE_KEYS:
+            message = f"{where}: there is no key {key!r} in a rule; known: {', '.join(_RULE_KEYS)}"
+            block.complain(line.key, "UNKNOWN_RULE_KEY", message)
     missing = [key for key in _RULE_KEYS if key not in lines]
-    for key in unknown:
-        message = f"{where}: there is no key {key!r} in a rule; known: {', '.join(_RULE_KEYS)}"
-        block.complain(lines[key].key, "UNKNOWN_RULE_KEY", message)
     if missing:
         place = next(iter(lines.values())).key
         block.complain(place, "INCOMPLETE_RULE", f"{where} lacks {', '.join(missing)}")
-    if unknown or missing:
-        return None
-    if_target = _read_rule_target(block, where, "if_target", name, with_modes)
-    new_target = _read_rule_target(block, where, "new_target", name, with_modes)
-    if_part = _read_if_part(block, where, name, with_modes)
-    if if_target is None or new_target is None or if_part is None:
+    if_target, new_target = (
+        _read_rule_target(block, f"{where}, {key}", lines.get(key), with_modes)
+        for key in ("if_target", "new_target")
+    )
+    if_part = _read_if_part(block, f"{where}, if_part", lines.get("if_part"), with_modes)
+    if if_target is None or if_part is None or new_target is None:
         return None
     return Rule(name, if_target, if_part, new_target)
 
 
 def _read_rule_target(
-    block: SmhBlock, where: str, key: str, rule: str, with_modes: Collection[PartName]
+    block: SmhBlock, where: str, line: Parameter | None, with_modes: Collection[PartName]
 ) -> StateAndMode | None:
-    line = block.rules[rule][key]
-    if line.value is None:
+    if line is None or line.value is None:
         return None
-    pair = _read_rule_pair(block, f"{where}, {key}", line.value, line.place)
+    pair = _read_rule_pair(block, where, line.value, line.place)
     return None if pair is None else fitted(pair, block.name, with_modes)
 
 
 def _read_if_part(
-    block: SmhBlock, where: str, rule: str, with_modes: Collection[PartName]
+    block: SmhBlock, where: str, line: Parameter | None, with_modes: Collection[PartName]
 ) -> tuple[PartName, StateAndMode] | None:
-    line, where = block.rules[rule]["if_part"], f"{where}, if_part"
-    if line.value is None:
+    if line is None or line.value is None:
         return None
     items = line.value if isinstance(line.value, tuple) else ()
     if len(items) < 2 or not isinstance(items[0], str):

@@ -149,21 +149,20 @@ class _Builder:
                 self._add(Scalar(mark.line + 1, mark.column + 1, event.value, is_quoted, event.tag))
             elif kind is yaml.MappingEndEvent or kind is yaml.SequenceEndEvent:
                 self._add(self._open.pop().node)
-            elif kind is yaml.MappingStartEvent:
-                self._open.append(_Open(Mapping(*_position(event))))
-            elif kind is yaml.SequenceStartEvent:
-                self._open.append(_Open(Sequence(*_position(event))))
+            elif event is None:
+                self.tree.is_complete = True
+                return
             elif kind is yaml.AliasEvent:
                 message = f"*{event.anchor}: aliases are not supported; write the value again"
                 self._complain(event, "ALIAS", message)
                 self._add(None)
-            elif event is None:
-                self.tree.is_complete = True
-                return
-            if len(self._open) > MAX_DEPTH:
-                message = f"more than {MAX_DEPTH} maps and lists in each other"
-                self._complain(event, "TOO_DEEP", message)
-                return
+            elif kind is yaml.MappingStartEvent or kind is yaml.SequenceStartEvent:
+                if len(self._open) == MAX_DEPTH:
+                    message = f"more than {MAX_DEPTH} maps and lists in each other"
+                    self._complain(event, "TOO_DEEP", message)
+                    return
+                begin = Mapping if kind is yaml.MappingStartEvent else Sequence
+                self._open.append(_Open(begin(*_position(event))))
         self._complain(event, "TOO_LARGE", f"more than {MAX_EVENTS:,} keys, values and ends")
 
     def _add(self, node: Node | None) -> None:

@@ -8,7 +8,7 @@ from api.bodies import InvalidBodyError
 from api.dependencies import ActorDep, SupervisorDep
 from api.json_route import JsonRoute
 from api.routes.system_state import current_system_state
-from api.schemas_health import ReadingBody, SignalJson, SignalsJson, SystemStateJson
+from api.schemas_health import MAX_SOURCE, ReadingBody, SignalJson, SignalsJson, SystemStateJson
 from api.values import SentSignalValue
 from domain.errors import InvalidValueError, UnknownSignalError
 from domain.messages import Reading
@@ -51,6 +51,9 @@ async def post_readings(
     values, source = dict(body), SOURCE
     if "source" not in supervisor.core.signals() and isinstance(values.get("source"), str):
         source = str(values.pop("source"))
+        if not 0 < len(source) <= MAX_SOURCE:
+            error = InvalidValueError(f"a source has 1 to {MAX_SOURCE} characters")
+            raise InvalidBodyError.at("source", error)
     readings = [Reading(signal, value) for signal, value in values.items()]
     try:
         supervisor.submit_readings(readings, source, actor)

@@ -41,7 +41,7 @@ class _Node:
     state: LifecycleState = LifecycleState.UNKNOWN
     parameters: dict[str, ParameterValue] = field(default_factory=dict)
     process: int = 0
-    """Counts the starts and ends of the process: work that an earlier one was at is lost."""
+    """Counts the processes that ended: work that one of them was at is lost."""
     parameters_free_at: Instant = 0
     """Until when it is busy with parameter sets, which it does one after the other."""
     unreachable_at: Instant | None = None
@@ -58,7 +58,6 @@ class _Node:
 
     def start(self, at: Instant) -> None:
         """Begin a process: unconfigured, with the parameters of a node that was told nothing."""
-        self.process += 1
         plain = self.settings.plain
         self.state = LifecycleState.UNKNOWN if plain else LifecycleState.UNCONFIGURED
         self.parameters = start_parameters(self.declared)

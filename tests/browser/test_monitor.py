@@ -116,8 +116,10 @@ def test_bad_gps_is_seen_coming_before_it_is_an_error(
 
 
 def test_stop_engages_at_one_press_and_only_a_long_press_releases_it(
-    desktop: Page, complaints: Complaints
+    desktop: Page, service: Service, complaints: Complaints
 ) -> None:
+    # Under ESTOP nothing is activated; a mode of what is active already can be entered still.
+    service.request("POST", "/systems/actuation/state?wait=15", {"transition": "cleanup"})
     stop(desktop).click()
     expect(stop(desktop)).to_contain_text("ENGAGED")
     expect(sentence(desktop)).to_contain_text("ERROR")
@@ -137,6 +139,9 @@ def test_stop_engages_at_one_press_and_only_a_long_press_releases_it(
 def test_all_of_it_works_from_the_keyboard(desktop: Page, complaints: Complaints) -> None:
     row(desktop, "actuation").focus()
     desktop.keyboard.press("ArrowDown")
+    desktop.keyboard.press("Home")
+    expect(row(desktop, "actuation")).to_be_focused()
+    desktop.keyboard.press("d")
     desktop.keyboard.press("Enter")
     expect(row(desktop, "drive_base")).to_have_attribute("aria-selected", "true")
     expect(desktop.get_by_role("button", name="FAST")).to_be_visible()

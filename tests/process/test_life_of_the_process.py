@@ -11,7 +11,8 @@ import httpx
 import pytest
 import websockets
 
-from tests.support.process import run, service
+from tests.support.process import read_on, run, service
+from tests.support.waiting import until
 
 
 async def test_sigterm_ends_it_in_time_and_clients_are_told_that_it_goes() -> None:
@@ -22,8 +23,7 @@ async def test_sigterm_ends_it_in_time_and_clients_are_told_that_it_goes() -> No
         code, seconds, errors = await running.ended()
 
         with pytest.raises(websockets.ConnectionClosed) as closed:
-            while True:
-                await client.recv()
+            await read_on(client)
     assert (code, errors) == (0, "")
     assert seconds < 2
     assert closed.value.rcvd is not None
@@ -75,8 +75,10 @@ async def _wait_for_a_change(http: httpx.AsyncClient) -> None:
 
 
 async def _until_a_change_runs(http: httpx.AsyncClient) -> None:
-    while not (await http.get("/changes")).json()["items"]:
-        await asyncio.sleep(0.02)
+    async def it_runs() -> bool:
+        return bool((await http.get("/changes")).json()["items"])
+
+    await until(it_runs, pause_s=0.02)
 
 
 async def test_a_task_that_fails_ends_the_process_and_is_named(tmp_path: Path) -> None:

@@ -13,7 +13,8 @@ import pytest
 import websockets
 from websockets.asyncio.client import ClientConnection
 
-from tests.support.process import ServiceProcess, service
+from tests.support.process import ServiceProcess, read_on, service
+from tests.support.waiting import until
 
 READING = '{"type":"reading","signal":"battery_level","value":0.9}'
 
@@ -55,10 +56,11 @@ async def test_a_client_that_never_reads_harms_nobody_and_is_dropped(
     async with websockets.connect(running.stream_url) as other:
         await count_frames(other, 1)
         before = running.memory_bytes()
-        mute = await _connect_and_never_read(running)
-        start = time.monotonic()
+        mute = _connect_and_never_read(running)
         skipped = 0
         async with httpx.AsyncClient(base_url=running.url) as http:
+            await until(lambda: _has_clients(http, 2), pause_s=0.01)
+            start = time.monotonic()
             while await _clients(http) == 2:
                 assert time.monotonic() - start < 10
                 frames = await count_frames(other, 0.5)
@@ -71,7 +73,7 @@ async def test_a_client_that_never_reads_harms_nobody_and_is_dropped(
     assert grown < 4 * 1024 * 1024
 
 
-async def _connect_and_never_read(running: ServiceProcess) -> socket.socket:
+def _connect_and_never_read(running: ServiceProcess) -> socket.socket:
     parts = urlsplit(running.url)
     client = socket.create_connection((parts.hostname or "", parts.port or 0))
     client.sendall(
@@ -79,9 +81,11 @@ async def _connect_and_never_read(running: ServiceProcess) -> socket.socket:
         "Connection: Upgrade\r\nSec-WebSocket-Version: 13\r\n"
         "Sec-WebSocket-Key: dGhlIHNhbXBsZSBub25jZQ==\r\n\r\n".encode()
     )
-    while not client.recv(1, socket.MSG_PEEK):
-        await asyncio.sleep(0.01)
     return client
+
+
+async def _has_clients(http: httpx.AsyncClient, count: int) -> bool:
+    return await _clients(http) == count
 
 
 async def _clients(http: httpx.AsyncClient) -> int:
@@ -132,8 +136,7 @@ async def test_a_message_that_is_too_large_ends_that_connection_only(
     ):
         await client.send(" " * 65_537)
         with pytest.raises(websockets.ConnectionClosed) as closed:
-            while True:
-                await client.recv()
+            await read_on(client)
         frames = await count_frames(other, 0.5)
 
     assert closed.value.rcvd is not None
@@ -144,9 +147,7 @@ async def test_a_message_that_is_too_large_ends_that_connection_only(
 async def test_two_hundred_clients_are_served_and_the_next_is_told_to_come_later(
     running: ServiceProcess,
 ) -> None:
-    clients = [
-        await websockets.connect(f"{running.stream_url}?topics=events") for _ in range(200)
-    ]
+    clients = [await websockets.connect(f"{running.stream_url}?topics=events") for _ in range(200)]
     try:
         async with websockets.connect(running.stream_url) as one_too_many:
             with pytest.raises(websockets.ConnectionClosed) as closed:

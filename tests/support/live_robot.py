@@ -15,6 +15,7 @@ from service.model_file import LoadedModel
 from service.supervisor import Supervisor
 from tests.support.manual_clock import ManualClock
 from tests.support.models import actuation_model
+from tests.support.waiting import until
 
 
 def make_supervisor(
@@ -42,9 +43,8 @@ def make_supervisor(
 async def running(supervisor: Supervisor) -> AsyncIterator[None]:
     """Let a supervisor run, up to its first frame, as long as the context lasts."""
     run = asyncio.create_task(supervisor.run(), name="supervisor")
-    while supervisor.frames.newest is None and not run.done():
-        await asyncio.sleep(0)
     try:
+        await until(lambda: run.done() or supervisor.frames.newest is not None)
         yield
     finally:
         run.cancel()

@@ -11,6 +11,8 @@ from collections.abc import AsyncIterator
 from contextlib import asynccontextmanager
 from pathlib import Path
 
+from websockets.asyncio.client import ClientConnection
+
 START_TIMEOUT_S = 20.0
 _ADDRESS = re.compile(r"page\s+(http://\S+)/")
 
@@ -46,7 +48,7 @@ class ServiceProcess:
         self._process.send_signal(number)
 
     async def ended(self, within_s: float = 10.0) -> tuple[int, float, str]:
-        """Wait for the end; return the exit code, the seconds it took, and what it complained of."""
+        """Wait for the end; return the exit code, the seconds that took, and its complaints."""
         start = time.monotonic()
         _, errors = await asyncio.wait_for(self._process.communicate(), within_s)
         assert self._process.returncode is not None
@@ -85,6 +87,16 @@ async def run(*arguments: str, within_s: float = 20.0) -> tuple[int, str, str]:
     output, errors = await asyncio.wait_for(process.communicate(), within_s)
     assert process.returncode is not None
     return process.returncode, output.decode(), errors.decode()
+
+
+async def read_on(client: ClientConnection) -> None:
+    """Read until the connection is closed.
+
+    Raises:
+        ConnectionClosed: By whom and why.
+    """
+    while True:
+        await client.recv()
 
 
 async def _greeted(process: Process) -> ServiceProcess:

@@ -8,6 +8,7 @@ from api.stream_encoder import StreamEncoder
 from domain.errors import BlockedError
 from domain.findings import Blocker
 from domain.messages import Event
+from domain.snapshot import PartView
 from domain.timebase import seconds
 from service.event_log import Gap
 from service.supervisor import Supervisor
@@ -150,8 +151,13 @@ def test_a_view_that_did_not_change_is_not_encoded_again(
     views = [part_view(f"node_{n}") for n in range(3)]
     encoder.frame(frame(1, views, full=True), 0, ALL)
     encoded: list[str] = []
+
+    def encode(view: PartView) -> str:
+        encoded.append(view.name)
+        return "{}"
+
     members = encoder._parts  # noqa: SLF001 - the point of the class is what it does not do
-    monkeypatch.setattr(members, "_encode", lambda view: encoded.append(view.name) or "{}")
+    monkeypatch.setattr(members, "_encode", encode)
 
     encoder.frame(frame(2, [views[0], part_view("node_1", "FAST"), views[2]], full=True), 0, ALL)
 

@@ -1,5 +1,4 @@
 import math
-from dataclasses import replace
 
 import pytest
 
@@ -197,12 +196,15 @@ def test_a_condition_that_does_not_fit_its_signal_is_refused(
     assert pointer in refusal.value.pointer
 
 
-@pytest.mark.parametrize("setting", ["stale_after", "min_on"])
-def test_a_time_is_not_negative(setting: str) -> None:
+@pytest.mark.parametrize(
+    ("stale_after", "min_on", "pointer"),
+    [(-1, 0, "voltage/stale_after_s"), (0, -1, "voltage/min_on_s")],
+)
+def test_a_time_is_not_negative(stale_after: int, min_on: int, pointer: str) -> None:
     with pytest.raises(InvalidValueError) as refusal:
-        replace(declare(low()), **{setting: -1})
+        SignalSettings(VOLTAGE, (low(),), stale_after, min_on)
 
-    assert refusal.value.pointer == f"voltage/{setting}_s"
+    assert refusal.value.pointer == pointer
 
 
 def test_two_conditions_are_told_apart_by_their_keys() -> None:

@@ -1,5 +1,4 @@
 import math
-from collections.abc import Iterable
 from dataclasses import replace
 
 import pytest
@@ -11,7 +10,7 @@ from domain.errors import (
     UnknownErrorNameError,
     UnknownSignalError,
 )
-from domain.messages import Reading, Readings, SignalValue
+from domain.messages import Reading
 from domain.signals import (
     STALE_DATA,
     Comparison,
@@ -25,52 +24,7 @@ from domain.signals import (
 from domain.snapshot import SystemState, TaskStatus
 from domain.state_manager import HealthChanges, StateManager
 from domain.timebase import seconds
-
-START = seconds(500)
-GOOD: dict[str, SignalValue] = {
-    "battery_level": 1.0,
-    "estop": False,
-    "gps_accuracy": 100.0,
-    "signal_strength": "CONNECTED",
-    "temperature": 20.0,
-}
-
-
-class Robot:
-    """A state manager whose times are seconds after its start."""
-
-    def __init__(self, settings: Iterable[SignalSettings]) -> None:
-        self.health = StateManager(settings, START)
-
-    def read(self, at_s: float, source: str = "pad", **values: SignalValue) -> HealthChanges:
-        items = tuple(Reading(signal, value) for signal, value in values.items())
-        return self.take(at_s, *items, source=source)
-
-    def take(self, at_s: float, *items: Reading, source: str = "pad") -> HealthChanges:
-        readings, now = Readings(items, source), START + seconds(at_s)
-        self.health.check(readings, now)
-        return self.health.receive(readings, now)
-
-    def pass_time(self, at_s: float) -> HealthChanges:
-        return self.health.pass_time(START + seconds(at_s))
-
-    def acknowledge(self, at_s: float, error: str) -> HealthChanges:
-        return self.health.acknowledge(error, START + seconds(at_s))
-
-    def engage(self, at_s: float, engaged: bool = True) -> HealthChanges:
-        return self.health.set_emergency_stop(engaged, START + seconds(at_s))
-
-    @property
-    def errors(self) -> tuple[str, ...]:
-        return self.health.errors
-
-    @property
-    def words(self) -> list[str]:
-        return [reason.message for reason in self.health.system_state(TaskStatus.NO_TASK).reasons]
-
-
-def never_stale() -> list[SignalSettings]:
-    return [replace(item, stale_after=0) for item in default_signals()]
+from tests.support.health_story import START, Robot, never_stale
 
 
 def with_recovery(*signals: str) -> list[SignalSettings]:
@@ -85,7 +39,7 @@ def with_recovery(*signals: str) -> list[SignalSettings]:
 def robot() -> Robot:
     """Return a robot that is well, and whose signals never grow stale."""
     robot = Robot(never_stale())
-    robot.read(0, **GOOD)
+    robot.be_well(0)
     return robot
 
 
@@ -182,7 +136,7 @@ def test_no_reading_releases_the_emergency_stop(robot: Robot) -> None:
     assert robot.words == ["emergency stop is engaged"]
 
     robot.engage(3, engaged=False)
-    assert robot.errors == ()
+    assert not robot.errors
 
 
 def test_releasing_the_emergency_stop_does_not_release_a_pressed_button(robot: Robot) -> None:
@@ -200,7 +154,7 @@ def test_one_source_cannot_release_the_stop_of_another(robot: Robot) -> None:
     assert robot.errors == ("ESTOP",)
 
     robot.read(3, estop=False, source="relay")
-    assert robot.errors == ()
+    assert not robot.errors
 
 
 def test_a_pulse_of_the_stop_within_one_message_is_seen(robot: Robot) -> None:
@@ -291,7 +245,7 @@ def test_what_is_due_at_an_instant_comes_before_what_arrives_at_it(robot: Robot)
 
 def test_a_second_silent_signal_is_a_new_reason_and_no_new_error() -> None:
     robot = Robot(default_signals())
-    robot.read(0, **GOOD)
+    robot.be_well(0)
     robot.read(0.5, temperature=20.0)
     robot.pass_time(2.1)
     changes = robot.pass_time(2.6)
@@ -338,7 +292,7 @@ def test_of_several_readings_all_are_taken_or_none(
 
     with pytest.raises(error):
         robot.take(2, Reading("estop", True), refused)
-    assert robot.errors == ()
+    assert not robot.errors
     assert robot.health.signals() is before
 
 
@@ -408,17 +362,17 @@ def test_a_robot_that_nobody_has_heard_of_is_in_error() -> None:
 
 def test_a_robot_that_is_heard_at_the_start_is_well_at_once() -> None:
     robot = Robot(default_signals())
-    robot.read(0, **GOOD)
+    robot.be_well(0)
 
-    assert robot.errors == ()
+    assert not robot.errors
 
 
 def test_a_robot_that_is_heard_again_stays_in_error_for_the_least_time() -> None:
     robot = Robot(default_signals())
-    robot.read(0, **GOOD)
+    robot.be_well(0)
     robot.pass_time(2.1)
-    robot.read(2.1, **GOOD)
+    robot.be_well(2.1)
     assert robot.errors == (STALE_DATA,)
 
     robot.pass_time(2.21)
-    assert robot.errors == ()
+    assert not robot.errors

@@ -75,3 +75,20 @@ def test_it_shows_what_it_holds() -> None:
     assert held["battery_level"] == 0.42
     assert source.holds("battery_level")
     assert not source.holds("wind_speed")
+
+
+async def test_what_is_due_can_be_taken_first_and_is_not_delivered_again() -> None:
+    clock = ManualClock()
+    source = MockSource(MockSignals(clock.now()), clock)
+    (due,) = source.due()
+    heard: list[Readings] = []
+    running = asyncio.create_task(source.run(heard.append))
+    await clock.advance(0.05)
+
+    assert len(due.items) == 5
+    assert heard == []
+
+    await clock.advance(0.05)
+    assert heard == [due]
+    running.cancel()
+    await asyncio.wait([running])

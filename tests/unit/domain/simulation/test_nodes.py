@@ -531,6 +531,14 @@ def test_a_node_that_dies_a_second_time_is_missed_a_second_time() -> None:
     assert reachability(robot.pass_time(60.0)) == [(3.0, True), (4.0, False)]
 
 
+def test_a_node_that_dies_when_it_is_already_missed_is_not_missed_again() -> None:
+    robot = robot_with(Fault.SILENT)
+    robot.pass_time(10.0)
+    robot.set_fault(BASE, Fault.DIE)
+
+    assert robot.pass_time(60.0) == []
+
+
 def test_a_node_that_falls_silent_twice_at_the_same_time_is_missed_once() -> None:
     robot = robot_with(Fault.SILENT)
     robot.set_fault(BASE, None)

@@ -35,7 +35,7 @@ async def http(supervisor: Supervisor) -> AsyncIterator[httpx.AsyncClient]:
         yield client
 
 
-async def events(http: httpx.AsyncClient, **query: Any) -> dict[str, Any]:
+async def events(http: httpx.AsyncClient, **query: str | int) -> dict[str, Any]:
     answer = await http.get("/events", params=query)
     assert answer.status_code == 200
     found = answer.json()

@@ -1,6 +1,5 @@
 """`WS /ws` as a client sees it, over the real supervisor in virtual time."""
 
-import asyncio
 import json
 from collections.abc import AsyncIterator
 
@@ -16,6 +15,7 @@ from domain.system_model import PartName
 from service.supervisor import Supervisor
 from tests.support.live_robot import make_supervisor, running
 from tests.support.manual_clock import ManualClock
+from tests.support.waiting import until
 from tests.support.websocket import WebSocketClient
 
 PERFORMANCE = ModeRequest(PartName("actuation"), "PERFORMANCE", "operator")
@@ -137,8 +137,8 @@ async def test_a_client_that_comes_back_gets_the_events_it_missed(
     await clock.advance(2)
     newest = supervisor.events.newest
 
-    query = {"topics": "events", "after": known, "epoch": supervisor.epoch}
-    async with WebSocketClient(app, **query) as client:
+    epoch = supervisor.epoch
+    async with WebSocketClient(app, topics="events", after=known, epoch=epoch) as client:
         ids = [(await client.frame("event"))["id"] for _ in range(known, newest)]
 
     assert ids == list(range(known + 1, newest + 1))
@@ -156,9 +156,7 @@ async def test_a_client_of_an_earlier_run_is_told_of_the_gap_and_gets_all_there_
     assert (first["type"], first["id"], first["epoch"]) == ("event", 1, supervisor.epoch)
 
 
-async def test_without_a_cursor_only_new_events_come(
-    app: FastAPI, supervisor: Supervisor
-) -> None:
+async def test_without_a_cursor_only_new_events_come(app: FastAPI, supervisor: Supervisor) -> None:
     known = supervisor.events.newest
     assert known > 0
 
@@ -207,8 +205,7 @@ async def test_a_client_that_does_not_read_at_all_is_dropped_and_told_to_come_la
         await in_step(client)
         client.stop_reading()
         await clock.advance(0.1)
-        while stream_hub(app).dropped == 0:
-            await asyncio.sleep(0)
+        await until(lambda: stream_hub(app).dropped == 1)
         client.go_on_reading()
 
         assert await client.end() == 1013

@@ -1,0 +1,80 @@
+"""Whatever a client sends, the service goes on, and so does the connection where it can."""
+
+import asyncio
+import json
+from typing import Any
+
+import pytest
+import websockets
+from hypothesis import HealthCheck, given, settings
+from hypothesis import strategies as st
+
+from tests.support.process import service
+
+_JSON = st.recursive(
+    st.none() | st.booleans() | st.floats() | st.integers() | st.text(max_size=20),
+    lambda below: (
+        st.lists(below, max_size=4) | st.dictionaries(st.text(max_size=10), below, max_size=4)
+    ),
+    max_leaves=10,
+)
+_NAMES = st.sampled_from(["battery_level", "estop", "gps_accuracy", "signal_strength", "x", ""])
+_READINGS = st.fixed_dictionaries(
+    {"type": st.sampled_from(["reading", "readings", "", None])},
+    optional={
+        "signal": _NAMES | _JSON,
+        "value": _JSON,
+        "stamp": _JSON,
+        "source": _JSON,
+        "x": _JSON,
+    },
+)
+_TEXTS = (
+    st.text(st.characters(codec="utf-8"), max_size=200)
+    | st.builds(json.dumps, _JSON)
+    | st.builds(json.dumps, _READINGS)
+    | st.integers(1, 30_000).map(lambda depth: "[" * depth)
+    | st.integers(1, 5_000).map(lambda digits: "1" * digits)
+)
+MESSAGES = _TEXTS | st.binary(max_size=200)
+
+GOOD = '{"type":"reading","signal":"no_such_signal","value":0}'
+"""Answered by a problem that is told from all others."""
+
+
+async def _bombard(batches: list[list[str | bytes]]) -> None:
+    async with service() as running, websockets.connect(f"{running.stream_url}?topics=events") as c:
+        assert json.loads(await c.recv())["type"] == "hello"
+        for batch in batches:
+            for message in batch:
+                await c.send(message)
+            await c.send(GOOD)
+            while True:
+                frame: dict[str, Any] = json.loads(await asyncio.wait_for(c.recv(), 10))
+                assert frame["type"] in ("problem", "event")
+                assert frame.get("status") != 500
+                if frame.get("code") == "UNKNOWN_SIGNAL" and "no_such_signal" in frame["detail"]:
+                    break
+        assert running.runs
+
+
+def _collect(count: int) -> list[list[str | bytes]]:
+    """Let hypothesis make the messages, so that one process is started for all of them."""
+    found: list[list[str | bytes]] = []
+
+    @settings(max_examples=count, database=None, suppress_health_check=list(HealthCheck))
+    @given(st.lists(MESSAGES, max_size=8))
+    def collect(batch: list[str | bytes]) -> None:
+        found.append(batch)
+
+    collect()
+    return found
+
+
+async def test_malformed_messages_end_neither_the_connection_nor_the_service() -> None:
+    await _bombard(_collect(60))
+
+
+@pytest.mark.soak
+async def test_many_malformed_messages_end_neither_the_connection_nor_the_service() -> None:
+    await _bombard(_collect(5_000))

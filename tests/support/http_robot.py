@@ -1,0 +1,135 @@
+"""The example robot behind its HTTP interface, in virtual time and without a network."""
+
+import asyncio
+from collections.abc import AsyncIterator, Coroutine, Mapping, Sequence
+from contextlib import asynccontextmanager
+from typing import Any, TypeVar
+
+import httpx
+
+from api.app import create_app
+from domain.findings import Finding
+from domain.simulation.mock_signals import MockSignals
+from domain.simulation.node_settings import Fault, NodeSettings
+from domain.simulation.nodes import SimulatedNodes
+from domain.supervision import Supervision, SupervisionSettings
+from domain.system_model import PartName
+from service.backends.simulated import SimulatedBackend
+from service.mock_source import MockSource
+from service.model_file import LoadedModel, read_model
+from service.supervisor import Supervisor
+from tests.support.live_robot import running
+from tests.support.manual_clock import ManualClock, settle
+
+ACTUATION = """\
+actuation:
+  ros__parameters:
+    type: system
+    modes:
+      __DEFAULT__: {drive_base: active, manipulator: inactive}
+      MODERATE: {drive_base: active.SLOW, manipulator: active.WEAK}
+      PERFORMANCE: {drive_base: active.FAST, manipulator: active.STRONG}
+drive_base:
+  ros__parameters:
+    type: node
+    modes:
+      __DEFAULT__: {ros__parameters: {max_speed: 0.1, controller: PID}}
+      SLOW: {ros__parameters: {max_speed: 0.2, controller: PID}}
+      FAST: {ros__parameters: {max_speed: 0.9, controller: MPC}}
+manipulator:
+  ros__parameters:
+    type: node
+    modes:
+      __DEFAULT__: {ros__parameters: {max_torque: 0.1}}
+      WEAK: {ros__parameters: {max_torque: 0.15}}
+      STRONG: {ros__parameters: {max_torque: 0.2}}
+"""
+"""The robot of D4.8, Annex 4, with a torque of its own for WEAK."""
+
+Answer = TypeVar("Answer")
+
+
+class HttpRobot:
+    """One robot: its interface (`http`), its clock, and what can be done to its nodes."""
+
+    def __init__(
+        self,
+        text: str = ACTUATION,
+        *,
+        mock: bool = True,
+        settings: SupervisionSettings | None = None,
+        nodes: Mapping[str, NodeSettings] | None = None,
+        warnings: Sequence[Finding] = (),
+    ) -> None:
+        self.clock = ManualClock()
+        model = read_model(text).model
+        by_name = {PartName(name): setting for name, setting in (nodes or {}).items()}
+        self.backend = SimulatedBackend(SimulatedNodes(model, by_name, 0), self.clock)
+        self.supervisor = Supervisor(
+            LoadedModel(model, tuple(warnings), text),
+            Supervision(model, settings or SupervisionSettings(), 0),
+            self.clock,
+            self.backend,
+            MockSource(MockSignals(0), self.clock) if mock else None,
+            simulated=("nodes", "signals") if mock else ("nodes",),
+        )
+        self.app = create_app(self.supervisor, allowed_hosts=["robot"])
+        transport = httpx.ASGITransport(self.app)
+        self.http = httpx.AsyncClient(transport=transport, base_url="http://robot:8000")
+
+    async def pass_time(self, by_s: float) -> None:
+        """Let virtual time pass."""
+        await self.clock.advance(by_s)
+
+    async def while_time_passes(self, by_s: float, asked: Coroutine[Any, Any, Answer]) -> Answer:
+        """Return the answer to a request that waits for the robot, `by_s` seconds later at most."""
+        task = asyncio.create_task(asked)
+        await settle()
+        await self.clock.advance(by_s)
+        return await task
+
+    async def get(self, path: str) -> Any:  # noqa: ANN401
+        """Return what a successful GET answers."""
+        answer = await self.http.get(path)
+        assert answer.status_code == httpx.codes.OK, answer.text
+        return answer.json()
+
+    async def bring_to(self, part: str, mode: str) -> None:
+        """Bring a part into a mode and let it arrive."""
+        kind = "systems" if part in self.supervisor.model.systems else "nodes"
+        answer = await self.http.post(f"/{kind}/{part}/mode", json={"mode": mode})
+        assert answer.status_code == httpx.codes.ACCEPTED, answer.text
+        await self.pass_time(3)
+        assert (await self.get(answer.headers["location"]))["status"] == "succeeded"
+
+    def break_node(self, node: str, fault: Fault) -> None:
+        """Give a node a fault."""
+        self.backend.set_fault(PartName(node), fault)
+
+
+@asynccontextmanager
+async def http_robot(text: str = ACTUATION, **options: Any) -> AsyncIterator[HttpRobot]:  # noqa: ANN401
+    """Let a robot run as long as the context lasts, with the options of `HttpRobot`."""
+    robot = HttpRobot(text, **options)
+    async with running(robot.supervisor), robot.http:
+        yield robot
+    await robot.app.state.worker.close()
+
+
+def http_scope(method: str, path: str, query: str = "", **headers: str) -> dict[str, Any]:
+    """Return the ASGI scope of a request, for tests that are the server themselves."""
+    named = {"host": "robot", **headers}
+    return {
+        "type": "http",
+        "asgi": {"version": "3.0"},
+        "http_version": "1.1",
+        "method": method,
+        "scheme": "http",
+        "path": path,
+        "raw_path": path.encode(),
+        "root_path": "",
+        "query_string": query.encode(),
+        "headers": [(name.encode(), value.encode()) for name, value in named.items()],
+        "client": ("10.0.0.1", 50_000),
+        "server": ("robot", 80),
+    }

@@ -1,0 +1,74 @@
+"""`/emergency_stop`: a latch that only a person releases."""
+
+from typing import Any
+
+import pytest
+
+from tests.support.http_robot import HttpRobot
+
+PATH = "/emergency_stop"
+
+
+async def test_a_robot_starts_with_the_emergency_stop_released(robot: HttpRobot) -> None:
+    assert await robot.get(PATH) == {
+        "engaged": False,
+        "by": None,
+        "reason": None,
+        "since_at": None,
+        "standstill_at": None,
+    }
+
+
+async def test_who_engages_it_why_and_when_is_kept(robot: HttpRobot) -> None:
+    await robot.pass_time(2)
+
+    answer = await robot.http.put(PATH, json={"engaged": True, "reason": "child on the path"})
+
+    assert answer.status_code == 200
+    assert answer.json() == {
+        "engaged": True,
+        "by": "http:127.0.0.1",
+        "reason": "child on the path",
+        "since_at": "2026-01-01T00:00:02.000Z",
+        "standstill_at": None,
+    }
+    assert (await robot.get("/system_state"))["errors"] == ["ESTOP"]
+
+
+async def test_to_press_twice_is_to_press_once(robot: HttpRobot) -> None:
+    first = await robot.http.put(PATH, json={"engaged": True, "reason": "first"})
+    await robot.pass_time(1)
+
+    second = await robot.http.put(PATH, json={"engaged": True, "reason": "second"})
+
+    assert (second.status_code, second.json()) == (200, first.json())
+
+
+async def test_no_reading_releases_it_and_a_person_does(robot: HttpRobot) -> None:
+    await robot.http.put(PATH, json={"engaged": True})
+    await robot.http.post("/signals/estop", json={"value": False})
+    await robot.pass_time(1)
+    assert (await robot.get(PATH))["engaged"] is True
+
+    answer = await robot.http.put(PATH, json={"engaged": False, "reason": "path is free"})
+
+    assert answer.json()["engaged"] is False
+    assert (await robot.get("/system_state"))["state"] == "IDLE"
+
+
+@pytest.mark.parametrize(
+    "body",
+    [
+        {},
+        {"engaged": "yes"},
+        {"engaged": 1},
+        {"engaged": None},
+        {"engaged": True, "reason": "x" * 501},
+        {"engaged": True, "who": "me"},
+    ],
+)
+async def test_what_is_not_clearly_a_stop_is_refused(body: Any, robot: HttpRobot) -> None:
+    answer = await robot.http.put(PATH, json=body)
+
+    assert answer.status_code == 422
+    assert (await robot.get(PATH))["engaged"] is False

@@ -1,0 +1,61 @@
+"""`/mock`: signals of a robot that is not there."""
+
+import pytest
+
+from tests.support.http_robot import HttpRobot, http_robot
+
+
+async def test_the_mock_tells_what_it_holds_and_publishes(robot: HttpRobot) -> None:
+    items = (await robot.get("/mock"))["items"]
+
+    assert {"signal": "battery_level", "value": 1.0, "publishing": True} in items
+    assert len(items) == 5
+
+
+async def test_another_value_is_held_and_decided_at_once(robot: HttpRobot) -> None:
+    answer = await robot.http.patch("/mock/battery_level", json={"value": 0.3})
+
+    assert answer.json() == {"signal": "battery_level", "value": 0.3, "publishing": True}
+    assert (await robot.get("/system_state"))["errors"] == ["BATTERY_LOW"]
+
+
+async def test_a_signal_that_is_not_published_any_more_becomes_stale(robot: HttpRobot) -> None:
+    answer = await robot.http.patch("/mock/temperature", json={"publishing": False})
+    await robot.pass_time(3)
+
+    assert answer.json()["publishing"] is False
+    assert (await robot.get("/system_state"))["errors"] == ["STALE_DATA"]
+
+    await robot.http.patch("/mock/temperature", json={"publishing": True})
+    await robot.pass_time(1)
+
+    assert (await robot.get("/system_state"))["state"] == "IDLE"
+
+
+@pytest.mark.parametrize("value", [1.5, "full", True])
+async def test_a_value_that_cannot_be_is_not_held_and_publishing_goes_on(
+    value: object, robot: HttpRobot
+) -> None:
+    body = {"value": value, "publishing": False}
+
+    answer = await robot.http.patch("/mock/battery_level", json=body)
+
+    assert answer.status_code == 422
+    assert [fault["pointer"] for fault in answer.json()["errors"]] == ["/value"]
+    held = (await robot.get("/mock"))["items"]
+    assert {"signal": "battery_level", "value": 1.0, "publishing": True} in held
+
+
+async def test_a_signal_that_the_mock_does_not_have_is_not_found(robot: HttpRobot) -> None:
+    answer = await robot.http.patch("/mock/mood", json={"publishing": False})
+
+    assert (answer.status_code, answer.json()["code"]) == (404, "UNKNOWN_SIGNAL")
+
+
+async def test_where_the_mock_does_not_run_there_is_none() -> None:
+    async with http_robot(mock=False) as robot:
+        shown = await robot.http.get("/mock")
+        changed = await robot.http.patch("/mock/battery_level", json={"value": 1})
+
+        assert (shown.status_code, shown.json()["code"]) == (404, "NO_MOCK")
+        assert (changed.status_code, changed.json()["code"]) == (404, "NO_MOCK")

@@ -1,0 +1,206 @@
+"""`/signals` as an operator, or a sensor, uses it."""
+
+from collections.abc import AsyncIterator
+from typing import Any
+
+import pytest
+
+from tests.support.http_robot import HttpRobot, http_robot
+
+GOOD = {
+    "battery_level": 0.9,
+    "estop": False,
+    "gps_accuracy": 100,
+    "signal_strength": "CONNECTED",
+    "temperature": 30,
+}
+
+SIGNAL_FIELDS = {
+    "signal",
+    "value",
+    "unit",
+    "source",
+    "received_at",
+    "age_s",
+    "stale",
+    "error",
+    "pending",
+    "settings",
+}
+
+
+@pytest.fixture
+async def unmocked() -> AsyncIterator[HttpRobot]:
+    async with http_robot(mock=False) as robot:
+        yield robot
+
+
+async def test_the_five_signals_are_listed_with_every_field(robot: HttpRobot) -> None:
+    items = (await robot.get("/signals"))["items"]
+
+    assert {item["signal"] for item in items} == set(GOOD)
+    assert all(set(item) >= SIGNAL_FIELDS for item in items)
+
+
+async def test_the_age_is_that_of_the_moment_of_the_question(unmocked: HttpRobot) -> None:
+    await unmocked.http.post("/signals/temperature", json={"value": 21.5})
+    await unmocked.pass_time(1.25)
+
+    signal = await unmocked.get("/signals/temperature")
+
+    assert (signal["value"], signal["age_s"], signal["source"]) == (21.5, 1.25, "api")
+    assert signal["received_at"] == "2026-01-01T00:00:00.000Z"
+
+
+async def test_a_signal_never_seen_has_no_age_and_is_stale(unmocked: HttpRobot) -> None:
+    signal = await unmocked.get("/signals/temperature")
+
+    assert (signal["value"], signal["age_s"], signal["received_at"]) == (None, None, None)
+    assert signal["stale"] is True
+
+
+async def test_an_error_that_is_on_its_way_tells_how_far_it_is(robot: HttpRobot) -> None:
+    await robot.http.post("/signals/gps_accuracy", json={"value": 250})
+    await robot.pass_time(6)
+
+    pending = (await robot.get("/signals/gps_accuracy"))["pending"]
+
+    assert (pending["error"], pending["needs_s"]) == ("GPS_LOST", 15.0)
+    assert pending["for_s"] == pytest.approx(6, abs=0.2)
+
+
+async def test_a_reading_is_decided_on_arrival(robot: HttpRobot) -> None:
+    answer = await robot.http.post("/signals/battery_level", json={"value": 0.42})
+
+    state = answer.json()
+    assert answer.status_code == 200
+    assert set(state) == {
+        "seq",
+        "at",
+        "state",
+        "error_code",
+        "errors",
+        "reasons",
+        "task_status",
+        "simulated",
+    }
+    assert (state["state"], state["error_code"], state["errors"]) == ("ERROR", 1, ["BATTERY_LOW"])
+    assert state["reasons"][0]["value"] == 0.42
+    assert state["seq"] == robot.supervisor.snapshot_seq
+
+
+async def test_several_readings_are_taken_together(unmocked: HttpRobot) -> None:
+    answer = await unmocked.http.post("/signals", json=GOOD)
+
+    assert answer.json()["state"] == "IDLE"
+
+
+@pytest.mark.parametrize(
+    ("signal", "value", "code"),
+    [
+        ("temperature", "hot", "INVALID_VALUE"),
+        ("temperature", True, "INVALID_VALUE"),
+        ("temperature", None, "INVALID_VALUE"),
+        ("temperature", [1], "INVALID_VALUE"),
+        ("battery_level", 1.5, "INVALID_VALUE"),
+        ("gps_accuracy", -1, "INVALID_VALUE"),
+        ("estop", 1, "INVALID_VALUE"),
+        ("estop", "true", "INVALID_VALUE"),
+        ("signal_strength", "GREAT", "INVALID_VALUE"),
+        ("mood", 1, "UNKNOWN_SIGNAL"),
+    ],
+)
+async def test_one_reading_that_cannot_be_right_lets_none_be_taken(
+    signal: str, value: Any, code: str, unmocked: HttpRobot
+) -> None:
+    await unmocked.http.post("/signals", json=GOOD)
+
+    answer = await unmocked.http.post("/signals", json={"battery_level": 0.1, signal: value})
+
+    assert answer.status_code == 422
+    (fault,) = answer.json()["errors"]
+    assert (fault["pointer"], fault["code"]) == (f"/{signal}", code)
+    assert (await unmocked.get("/signals/battery_level"))["value"] == 0.9
+
+
+@pytest.mark.parametrize("value", ["NaN", "Infinity", "-Infinity", "1e999", '"1"', "true"])
+async def test_what_is_no_number_is_no_temperature(value: str, unmocked: HttpRobot) -> None:
+    answer = await unmocked.http.post("/signals/temperature", content=f'{{"value": {value}}}')
+
+    assert answer.status_code == 422
+    assert [fault["pointer"] for fault in answer.json()["errors"]] == ["/value"]
+    assert (await unmocked.get("/signals/temperature"))["value"] is None
+
+
+async def test_a_signal_that_there_is_not_is_not_found(robot: HttpRobot) -> None:
+    shown = await robot.http.get("/signals/mood")
+    posted = await robot.http.post("/signals/mood", json={"value": 1})
+
+    assert (shown.status_code, shown.json()["code"]) == (404, "UNKNOWN_SIGNAL")
+    assert (posted.status_code, posted.json()["code"]) == (404, "UNKNOWN_SIGNAL")
+
+
+# --- stamps -------------------------------------------------------------------------------------
+
+
+async def test_a_stamp_is_kept_and_shown(unmocked: HttpRobot) -> None:
+    body = {"value": 20, "stamp": "2026-01-01T00:59:59.500+01:00"}
+
+    await unmocked.http.post("/signals/temperature", json=body)
+
+    signal = await unmocked.get("/signals/temperature")
+    assert signal["stamp_at"] == "2025-12-31T23:59:59.500Z"
+    assert signal["age_s"] == 0.0
+
+
+@pytest.mark.parametrize("stamp", ["2026-01-01T00:00:00", "yesterday", "2026-13-01T00:00:00Z", ""])
+async def test_a_stamp_that_is_no_moment_is_refused(stamp: str, unmocked: HttpRobot) -> None:
+    body = {"value": 20, "stamp": stamp}
+
+    answer = await unmocked.http.post("/signals/temperature", json=body)
+
+    assert answer.status_code == 422
+    assert [fault["pointer"] for fault in answer.json()["errors"]] == ["/stamp"]
+
+
+async def test_a_reading_older_than_the_one_that_is_held_is_refused(unmocked: HttpRobot) -> None:
+    for stamp, status in (("2026-01-01T00:00:00Z", 200), ("2025-12-31T23:59:59Z", 409)):
+        body = {"value": 20, "stamp": stamp}
+        answer = await unmocked.http.post("/signals/temperature", json=body)
+
+        assert answer.status_code == status
+
+    assert answer.json()["code"] == "OUTDATED_READING"
+
+
+# --- who measured -------------------------------------------------------------------------------
+
+
+async def test_one_source_of_the_e_stop_cannot_release_anothers(unmocked: HttpRobot) -> None:
+    await unmocked.http.post("/signals", json=GOOD)
+    await unmocked.http.post("/signals/estop", json={"value": True, "source": "left button"})
+    await unmocked.pass_time(1)
+
+    released = await unmocked.http.post("/signals", json={"estop": False, "source": "panel"})
+
+    assert "ESTOP" in released.json()["errors"]
+    assert "left button" in released.json()["reasons"][0]["message"]
+
+
+@pytest.mark.parametrize("source", ["", "x" * 65])
+async def test_a_source_has_a_name_of_reasonable_length(source: str, unmocked: HttpRobot) -> None:
+    one = await unmocked.http.post("/signals/estop", json={"value": True, "source": source})
+    many = await unmocked.http.post("/signals", json={"estop": True, "source": source})
+
+    assert (one.status_code, many.status_code) == (422, 422)
+
+
+async def test_where_the_mock_runs_it_goes_on_with_the_value_that_was_posted(
+    robot: HttpRobot,
+) -> None:
+    await robot.http.post("/signals/battery_level", json={"value": 0.42})
+    await robot.pass_time(3)
+
+    signal = await robot.get("/signals/battery_level")
+
+    assert (signal["value"], signal["stale"]) == (0.42, False)
