@@ -36,6 +36,8 @@ from domain.errors import (
     UnknownSignalError,
 )
 from service.clock import Clock
+from service.robot_file import InvalidRobotFileError
+from service.text_file import UnreadableFileError
 from service.worker import TooComplexError, WorkerBusyError
 
 STATUS_OF: Mapping[type[PilothouseError], HTTPStatus] = {
@@ -60,6 +62,9 @@ STATUS_OF: Mapping[type[PilothouseError], HTTPStatus] = {
     OutdatedReadingError: HTTPStatus.CONFLICT,
     WorkerBusyError: HTTPStatus.TOO_MANY_REQUESTS,
     BackendUnavailableError: HTTPStatus.SERVICE_UNAVAILABLE,
+    # Files are read before anybody is served.
+    InvalidRobotFileError: HTTPStatus.INTERNAL_SERVER_ERROR,
+    UnreadableFileError: HTTPStatus.INTERNAL_SERVER_ERROR,
 }
 
 MEDIA_TYPE = "application/problem+json"

@@ -14,7 +14,7 @@ from uvicorn.protocols.websockets.websockets_sansio_impl import WebSocketsSansIO
 MAX_MESSAGE_BYTES = 65_536
 MAX_HEAD_BYTES = 65_536
 _SEND_BUFFER_BYTES = 65_536
-_PING_INTERVAL_S = 3.0
+_PING_INTERVAL_S = 2.0
 _PING_TIMEOUT_S = 5.0
 _LAST_WORDS_S = 1.0
 _GRACE_S = 1
@@ -111,6 +111,8 @@ def web_server(app: FastAPI, on_started: Callable[[], None]) -> WebServer:
         proxy_headers=False,
         timeout_graceful_shutdown=_GRACE_S,
     )
+    # Here and not when it starts, by when the robot ticks.
+    config.load()
     return WebServer(config, on_started)
 
 

@@ -38,10 +38,11 @@ class ChangeAdmission:
         """
         if isinstance(request, TransitionRequest):
             self._check_legal(request, estop)
-        refusing = self._refusing(request, estop)
-        if refusing:
-            raise BlockedError(part_of(request), refusing)
-        return goal_of(self._model, request, self._facts)
+        goal = goal_of(self._model, request, self._facts)
+        blockers = tuple(self._blockers(request, goal, estop))
+        if _refuse(blockers):
+            raise BlockedError(part_of(request), blockers)
+        return goal
 
     def blockers(self, request: ChangeRequest, estop: Sequence[Blocker]) -> tuple[Blocker, ...]:
         """Return everything that stands against a request, the advisory reasons too."""
@@ -62,11 +63,8 @@ class ChangeAdmission:
             for transition in Transition
             if any(state is not transition.goal for state in states)
             and self._is_legal(transition, states)
-            and not self._refusing(TransitionRequest(part, transition), estop)
+            and not _refuse(self.blockers(TransitionRequest(part, transition), estop))
         )
-
-    def _refusing(self, request: ChangeRequest, estop: Sequence[Blocker]) -> list[Blocker]:
-        return [b for b in self.blockers(request, estop) if b.code not in ADVISORY]
 
     def _lifecycles(self, part: PartName) -> list[LifecycleState]:
         """Return where the nodes below a part rest, or will, if they have a lifecycle."""
@@ -150,6 +148,10 @@ class ChangeAdmission:
             ):
                 return (part, *self._path(child, node))
         return (part, node)
+
+
+def _refuse(blockers: Iterable[Blocker]) -> bool:
+    return any(blocker.code not in ADVISORY for blocker in blockers)
 
 
 def part_of(request: ChangeRequest) -> PartName:

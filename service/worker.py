@@ -15,7 +15,7 @@ from collections.abc import Callable
 from typing import ParamSpec, TypeVar, cast
 
 from domain.errors import PilothouseError
-from service.worker_process import LENGTH_BYTES, PackedError, Reply, length_of, pack
+from service.worker_process import LENGTH_BYTES, ErrorParcel, Reply, length_of, pack
 
 Given = ParamSpec("Given")
 Result = TypeVar("Result")
@@ -96,7 +96,7 @@ class Worker:
                 reply = await self._exchange(pack((function, arguments)))
         finally:
             self._jobs -= 1
-        if isinstance(reply.value, PackedError):
+        if isinstance(reply.value, ErrorParcel):
             raise reply.value.unpacked()
         if reply.outcome == "failed":
             raise JobFailedError(reply.value)

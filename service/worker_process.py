@@ -29,7 +29,7 @@ class Reply(NamedTuple):
     """Done: what it returned. Refused: the error. Failed: the traceback as text."""
 
 
-class PackedError(NamedTuple):
+class ErrorParcel(NamedTuple):
     """An error of our own on its way; their constructors take other arguments than they keep."""
 
     kind: type[PilothouseError]
@@ -37,7 +37,7 @@ class PackedError(NamedTuple):
     facts: dict[str, object]
 
     @classmethod
-    def of(cls, error: PilothouseError) -> "PackedError":
+    def of(cls, error: PilothouseError) -> "ErrorParcel":
         """Pack `error`."""
         return cls(type(error), error.message, vars(error))
 
@@ -83,7 +83,7 @@ def do(job: bytes) -> Reply:
     try:
         return Reply("done", function(*arguments))
     except PilothouseError as error:
-        return Reply("refused", PackedError.of(error))
+        return Reply("refused", ErrorParcel.of(error))
     except MemoryError:
         raise
     except Exception:

@@ -98,8 +98,8 @@ async def test_an_emergency_stop_is_known_everywhere_at_once(tmp_path: Path) -> 
     echo_script.write_text(ECHO)
     times: dict[str, list[float]] = {"bare echo": [], "e-stop to ERROR": []}
     async with AsyncExitStack() as stack:
-        robot = await stack.enter_async_context(service())
-        echo = await stack.enter_async_context(service(command=(sys.executable, str(echo_script))))
+        robot = stack.enter_context(service())
+        echo = stack.enter_context(service(command=(sys.executable, str(echo_script))))
         stop = await stack.enter_async_context(prober(robot.url, "?topics=system_state"))
         control = await stack.enter_async_context(prober(echo.url))
         for number in range(ROUNDS):

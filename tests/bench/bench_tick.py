@@ -59,7 +59,7 @@ async def test_the_tick_keeps_its_period(tmp_path: Path) -> None:
     script, recorded = tmp_path / "recording.py", tmp_path / "periods.json"
     script.write_text(RECORDING)
     command = (sys.executable, str(script), str(recorded))
-    async with service(command=command) as running:
+    with service(command=command) as running:
         async with websockets.connect(running.stream_url) as client:
             await client.recv()
             bare = await asyncio.create_subprocess_exec(
@@ -68,7 +68,7 @@ async def test_the_tick_keeps_its_period(tmp_path: Path) -> None:
             arrivals, seqs = await _follow(client)
             output, _ = await bare.communicate()
         running.send_signal(signal.SIGTERM)
-        await running.ended()
+        running.ended()
     ticks = json.loads(recorded.read_text())
     # The first second is that of the start, in which modules are still being imported.
     rows = {

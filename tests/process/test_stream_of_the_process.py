@@ -4,7 +4,7 @@ import asyncio
 import json
 import socket
 import time
-from collections.abc import AsyncIterator
+from collections.abc import Iterator
 from typing import Any
 from urllib.parse import urlsplit
 
@@ -19,9 +19,9 @@ from tests.support.waiting import until
 READING = '{"type":"reading","signal":"battery_level","value":0.9}'
 
 
-@pytest.fixture
-async def running() -> AsyncIterator[ServiceProcess]:
-    async with service() as process:
+@pytest.fixture(scope="module")
+def running() -> Iterator[ServiceProcess]:
+    with service() as process:
         yield process
 
 
@@ -114,8 +114,9 @@ async def test_a_client_that_comes_back_misses_no_event(running: ServiceProcess)
 async def test_a_client_that_comes_back_after_a_restart_is_told_so(
     running: ServiceProcess,
 ) -> None:
-    async with service() as earlier, websockets.connect(earlier.stream_url) as client:
-        epoch = (await next_frame(client, "hello"))["epoch"]
+    with service() as earlier:
+        async with websockets.connect(earlier.stream_url) as client:
+            epoch = (await next_frame(client, "hello"))["epoch"]
 
     url = f"{running.stream_url}?topics=events&after=5&epoch={epoch}"
     async with websockets.connect(url) as client:

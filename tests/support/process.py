@@ -1,37 +1,40 @@
 """A real `pilothouse serve`, started and ended by a test."""
 
-import asyncio
 import os
 import re
 import signal
+import subprocess
 import sys
+import tempfile
 import time
-from asyncio.subprocess import PIPE, Process
-from collections.abc import AsyncIterator
-from contextlib import asynccontextmanager
+from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
+from typing import IO
 
 from websockets.asyncio.client import ClientConnection
 
-START_TIMEOUT_S = 20.0
-_ADDRESS = re.compile(r"page\s+(http://\S+)/")
-
 COMMAND = (str(Path(sys.executable).with_name("pilothouse")),)
+
+_ADDRESS = re.compile(r"page\s+(http://\S+)/")
+_PATIENCE_S = 20.0
 
 
 class ServiceProcess:
     """A service that listens.
 
     Args:
-        process: The process.
-        url: Where it listens.
-        greeting: What it printed when it began.
+        process: The process, with its output in a pipe.
+        complaints: What it writes its standard error to.
     """
 
-    def __init__(self, process: Process, url: str, greeting: str) -> None:
-        self.url = url
-        self.greeting = greeting
+    def __init__(self, process: subprocess.Popen[str], complaints: IO[str]) -> None:
         self._process = process
+        self._complaints = complaints
+        self.greeting = self._read_greeting()
+        """What it printed when it began."""
+        self.url = _ADDRESS.findall(self.greeting)[0]
+        """Where it listens."""
 
     @property
     def stream_url(self) -> str:
@@ -41,52 +44,67 @@ class ServiceProcess:
     @property
     def runs(self) -> bool:
         """Tell whether it has not ended."""
-        return self._process.returncode is None
+        return self._process.poll() is None
 
     def send_signal(self, number: signal.Signals) -> None:
         """Send SIGTERM, SIGINT, ..."""
         self._process.send_signal(number)
 
-    async def ended(self, within_s: float = 10.0) -> tuple[int, float, str]:
+    def ended(self, within_s: float = 10.0) -> tuple[int, float, str]:
         """Wait for the end; return the exit code, the seconds that took, and its complaints."""
         start = time.monotonic()
-        _, errors = await asyncio.wait_for(self._process.communicate(), within_s)
-        assert self._process.returncode is not None
-        return self._process.returncode, time.monotonic() - start, errors.decode()
+        code = self._process.wait(within_s)
+        return code, time.monotonic() - start, self._complaints_so_far()
 
     def memory_bytes(self) -> int:
         """Return the resident memory."""
         pages = int(Path(f"/proc/{self._process.pid}/statm").read_text().split()[1])
         return pages * os.sysconf("SC_PAGE_SIZE")
 
+    def _read_greeting(self) -> str:
+        """Read up to the line that ends it; the time is limited by that of the test."""
+        lines = []
+        for line in self._process.stdout or ():
+            lines.append(line)
+            if "Ctrl-C" in line:
+                return "".join(lines)
+        raise AssertionError(f"it did not begin to serve:\n{self._complaints_so_far()}")
 
-@asynccontextmanager
-async def service(
-    *arguments: str, command: tuple[str, ...] = COMMAND
-) -> AsyncIterator[ServiceProcess]:
+    def _complaints_so_far(self) -> str:
+        self._complaints.seek(0)
+        return self._complaints.read()
+
+
+@contextmanager
+def service(*arguments: str, command: tuple[str, ...] = COMMAND) -> Iterator[ServiceProcess]:
     """Run `pilothouse serve` on a free port as long as the context lasts.
 
     Args:
         arguments: More options.
         command: What to run instead of `pilothouse`.
     """
-    process = await asyncio.create_subprocess_exec(
-        *command, "serve", "--port", "0", *arguments, stdout=PIPE, stderr=PIPE
-    )
-    try:
-        yield await asyncio.wait_for(_greeted(process), START_TIMEOUT_S)
-    finally:
-        if process.returncode is None:
+    # A pipe that nobody reads would stop the service once it is full.
+    with (
+        tempfile.TemporaryFile("w+") as complaints,
+        subprocess.Popen(
+            [*command, "serve", "--port", "0", *arguments],
+            stdout=subprocess.PIPE,
+            stderr=complaints,
+            text=True,
+        ) as process,
+    ):
+        try:
+            yield ServiceProcess(process, complaints)
+        finally:
             process.kill()
-        await process.communicate()
 
 
-async def run(*arguments: str, within_s: float = 20.0) -> tuple[int, str, str]:
+def run(*arguments: str) -> tuple[int, str, str]:
     """Run `pilothouse` to its end; return the exit code, its output, and what it complained of."""
-    process = await asyncio.create_subprocess_exec(*COMMAND, *arguments, stdout=PIPE, stderr=PIPE)
-    output, errors = await asyncio.wait_for(process.communicate(), within_s)
-    assert process.returncode is not None
-    return process.returncode, output.decode(), errors.decode()
+    done = subprocess.run(
+        [*COMMAND, *arguments], capture_output=True, text=True, timeout=_PATIENCE_S, check=False
+    )
+    return done.returncode, done.stdout, done.stderr
 
 
 async def read_on(client: ClientConnection) -> None:
@@ -97,15 +115,3 @@ async def read_on(client: ClientConnection) -> None:
     """
     while True:
         await client.recv()
-
-
-async def _greeted(process: Process) -> ServiceProcess:
-    assert process.stdout is not None
-    assert process.stderr is not None
-    greeting = ""
-    while line := (await process.stdout.readline()).decode():
-        greeting += line
-        if "Ctrl-C" in line and (found := _ADDRESS.search(greeting)):
-            return ServiceProcess(process, found[1], greeting)
-    errors = (await process.stderr.read()).decode()
-    raise AssertionError(f"it did not begin to serve:\n{greeting}{errors}")

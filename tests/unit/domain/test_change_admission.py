@@ -320,6 +320,15 @@ def test_a_system_of_which_one_node_would_be_activated_is_refused() -> None:
         _admission(S.ACTIVE, S.INACTIVE).admit(PERFORMANCE, ESTOP)
 
 
+def test_a_refusal_tells_everything_that_stands_against_it_the_absent_nodes_too() -> None:
+    """API: a refusal carries the blockers that the list of modes shows at that moment."""
+    admission = _admission(_node(None, reachable=False))
+    with pytest.raises(BlockedError) as refusal:
+        admission.admit(PERFORMANCE, ESTOP)
+    assert refusal.value.blockers == admission.blockers(PERFORMANCE, ESTOP)
+    assert [blocker.code for blocker in refusal.value.blockers] == ["ESTOP", "UNREACHABLE"]
+
+
 def test_estop_is_told_with_the_asked_part_before_the_signal() -> None:
     (blocker,) = _admission().blockers(PERFORMANCE, ESTOP)
     assert blocker == Blocker(

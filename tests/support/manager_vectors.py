@@ -1,0 +1,142 @@
+"""Runs the manager vectors of `conformance/system_modes` against anything that manages a robot.
+
+What they assert is read as facts about how things end, not as the order of messages of the C++.
+What this project does differently on purpose is listed in `OVERRULED`, fact by fact, and in
+docs/conformance.md.
+"""
+
+from collections.abc import Iterator, Mapping
+from typing import Any, Protocol
+
+from domain.lifecycle import TRANSITIONS
+
+Case = dict[str, Any]
+Pair = dict[str, Any]
+Fact = tuple[int, str, Any, Any]
+"""Number of the step, what it is about, what is expected, what was found."""
+
+_UNCONFIGURED = "a mode asked of unconfigured nodes configures and activates them"
+_NO_DETOUR = "parameters are set before the node is activated, and no step is taken twice"
+_NEVER_TOLD = (
+    "a node that never reported a state is asked for nothing: the change waits for it, and fails at "
+    "its deadline naming it"
+)
+
+OVERRULED: Mapping[tuple[str, int, str], str] = {}
+
+TRANSITION_OF_ID: Mapping[int, str] = {rule.id: str(rule.transition) for rule in TRANSITIONS}
+"""Labels by the ids of `lifecycle_msgs/msg/Transition`; shutdown has three."""
+
+LATER = ("rules", "issue94")
+"""Cases whose names hold one of these are about rules."""
+
+
+class Managing(Protocol):
+    """What the vectors need of an implementation; time passes only in `wait`."""
+
+    def request_transition(self, part: str, transition: str) -> bool:
+        """Ask for a transition; return False if it is refused."""
+
+    def request_mode(self, part: str, mode: str) -> bool:
+        """Ask for a mode; return False if it is refused."""
+
+    def wait(self, seconds: float) -> None:
+        """Let time pass."""
+
+    def trigger(self, node: str, transition: str) -> None:
+        """Let somebody else ask a node for a transition."""
+
+    def set_parameters(self, node: str, values: Mapping[str, Any]) -> None:
+        """Change parameters of a node from outside."""
+
+    def set_behaviour(self, node: str, on_transition: str) -> None:
+        """Let transitions of a node end normally (""), in "failure" or in "error"."""
+
+    def actual(self) -> dict[str, Pair]:
+        """Return state, mode ("" for none) and undecidable of every part."""
+
+    def targets(self) -> dict[str, Pair | None]:
+        """Return state and mode ("" for none) that were asked of every part."""
+
+    def node(self, name: str) -> tuple[str, Mapping[str, Any]]:
+        """Return what a node really is in, and the parameters that the model knows of it."""
+
+    def take_requests(self) -> Mapping[str, tuple[set[str], dict[str, Any]]]:
+        """Return transitions and parameters asked of each node since the last call."""
+
+
+def run_case(case: Case, robot: Managing) -> Iterator[Fact]:
+    """Run a case; yield every fact that it asserts and that can be compared."""
+    taken = True
+    for number, step in enumerate(case["steps"]):
+        if "expect" in step:
+            yield from ((number, *fact) for fact in _facts(case, step, robot, taken=taken))
+        elif "do" in step:
+            answer = _do(step, robot)
+            taken = taken if answer is None else answer
+            if "error" in step:
+                yield number, f"{step['label'] or step['id']} is taken", False, taken
+
+
+def _do(step: dict[str, Any], robot: Managing) -> bool | None:
+    """Do one step; return whether a request was taken, None for what is no request."""
+    match step["do"]:
+        case "request_transition":
+            # An id that no transition has is no label either.
+            label = TRANSITION_OF_ID.get(step["id"], str(step["id"]))
+            return robot.request_transition(step["part"], label)
+        case "request_mode":
+            return robot.request_mode(step["part"], step["mode"])
+        case "wait":
+            robot.wait(step["seconds"])
+        case "node_transition":
+            robot.trigger(step["node"], step["label"])
+        case "node_sets_parameters":
+            robot.set_parameters(step["node"], step["parameters"])
+        case "node_behaviour":
+            robot.set_behaviour(step["node"], step["on_transition"])
+        case unknown:
+            raise AssertionError(f"unknown action {unknown}")
+    return None
+
+
+def _facts(
+    case: Case, step: dict[str, Any], robot: Managing, *, taken: bool
+) -> Iterator[tuple[str, Any, Any]]:
+    expect, asserted = step["expect"], step.get("asserted", ())
+    kinds = {node["name"]: node["kind"] for node in case["nodes"]}
+    if "response" in expect:
+        yield "response", expect["response"]["success"], taken
+    # Of nodes without states of their own the C++ reads "active" from parameters; README.
+    if set(kinds.values()) <= {"lifecycle"}:
+        found = robot.actual()
+        for part, want in (expect.get("recommended_actual") or expect["actual"]).items():
+            wanted = {"undecidable": False, **want}
+            yield f"actual of {part}", wanted, {key: found[part][key] for key in wanted}
+    targets = robot.targets()
+    for part, target in expect.get("targets", {}).items():
+        yield f"target of {part}", target, targets[part]
+    for name, truth in expect.get("nodes", {}).items():
+        state, parameters = robot.node(name)
+        if kinds[name] == "lifecycle":
+            yield f"state of {name}", truth["state"], state
+        known = {key: truth["parameters"][key] for key in parameters}
+        yield f"parameters of {name}", known, dict(parameters)
+    requests = robot.take_requests()
+    if "last_requests" in asserted:
+        yield from _requested(expect["last_requests"], requests)
+
+
+def _requested(
+    expected: Mapping[str, list[dict[str, Any]]],
+    found: Mapping[str, tuple[set[str], dict[str, Any]]],
+) -> Iterator[tuple[str, Any, Any]]:
+    """Compare as sets: which transitions were asked for, and what parameters shall be in the end."""
+    for node, asked in expected.items():
+        transitions, parameters = found.get(node, (set(), {}))
+        wanted = {request["transition"] for request in asked if "transition" in request}
+        yield f"transitions asked of {node}", wanted, transitions
+        values: dict[str, Any] = {}
+        for request in asked:
+            values |= request.get("parameters", {})
+        yield f"parameters asked of {node}", values, parameters

@@ -1,0 +1,106 @@
+"""The application as a whole: what holds for every resource."""
+
+import asyncio
+import importlib
+import pkgutil
+from collections.abc import Callable, Iterator
+from typing import Any
+
+import pytest
+from fastapi import APIRouter, FastAPI
+from fastapi.dependencies.models import Dependant
+from fastapi.routing import APIRoute, APIWebSocketRoute
+
+from api import routes
+from api.app import create_app
+from tests.support.http_robot import HttpRobot
+from tests.support.live_robot import make_supervisor
+
+CONTRACT = {
+    "/systems": {"get"},
+    "/systems/{part}": {"get"},
+    "/systems/{part}/state": {"get", "post"},
+    "/systems/{part}/states": {"get"},
+    "/systems/{part}/mode": {"get", "post"},
+    "/systems/{part}/modes": {"get"},
+    "/nodes": {"get"},
+    "/nodes/{part}": {"get"},
+    "/nodes/{part}/state": {"get", "post"},
+    "/nodes/{part}/states": {"get"},
+    "/nodes/{part}/mode": {"get", "post"},
+    "/nodes/{part}/modes": {"get"},
+    "/nodes/{part}/parameters": {"get", "patch"},
+    "/changes": {"get"},
+    "/changes/{change}": {"get", "delete"},
+    "/model": {"get"},
+    "/model/check": {"post"},
+    "/inference": {"post"},
+    "/signals": {"get", "post"},
+    "/signals/{signal}": {"get", "post"},
+    "/system_state": {"get"},
+    "/errors/{error}/acknowledge": {"post"},
+    "/emergency_stop": {"get", "put"},
+    "/mock": {"get"},
+    "/mock/{signal}": {"patch"},
+    "/events": {"get"},
+    "/livez": {"get"},
+    "/readyz": {"get"},
+    "/healthz": {"get"},
+    "/metrics": {"get"},
+}
+"""The contract of this release at the edge; later ones add to it."""
+
+
+@pytest.fixture
+def app() -> FastAPI:
+    return create_app(make_supervisor(), allowed_hosts=[])
+
+
+def test_everything_that_the_contract_names_is_there_and_nothing_else(app: FastAPI) -> None:
+    paths = app.openapi()["paths"]
+
+    assert {path: set(operations) for path, operations in paths.items()} == CONTRACT
+
+
+@pytest.mark.parametrize("module", [found.name for found in pkgutil.iter_modules(routes.__path__)])
+def test_no_handler_runs_in_a_thread(module: str) -> None:
+    # The framework calls plain functions in a thread, where nothing of the robot may be touched.
+    router: APIRouter = importlib.import_module(f"api.routes.{module}").router
+    called = [
+        call
+        for route in router.routes
+        if isinstance(route, APIRoute | APIWebSocketRoute)
+        for call in calls(route.dependant)
+    ]
+
+    assert called
+    assert [call for call in called if not asyncio.iscoroutinefunction(call)] == []
+
+
+async def test_making_an_application_starts_no_task() -> None:
+    before = asyncio.all_tasks()
+
+    create_app(make_supervisor(), allowed_hosts=[])
+
+    assert asyncio.all_tasks() == before
+
+
+async def test_the_worker_is_there_as_long_as_the_application_is_served(
+    robot: HttpRobot,
+) -> None:
+    async with robot.app.router.lifespan_context(robot.app):
+        answer = await robot.http.post("/model/check", content="a: 1")
+
+        assert answer.status_code == 200
+
+
+async def test_nothing_of_what_is_answered_may_be_kept_by_a_browser(robot: HttpRobot) -> None:
+    for path in ("/systems", "/nope", "/openapi.json"):
+        assert (await robot.http.get(path)).headers["cache-control"] == "no-store"
+
+
+def calls(dependant: Dependant) -> Iterator[Callable[..., Any] | None]:
+    """Yield a handler and everything that is called for it."""
+    yield dependant.call
+    for below in dependant.dependencies:
+        yield from calls(below)

@@ -1,0 +1,257 @@
+"""What a page of another site cannot make a browser do to the robot."""
+
+from collections.abc import MutableMapping
+from typing import Any
+
+import pytest
+
+from api.gate import CONTENT_SECURITY_POLICY, Gate, UnexpectedErrors, is_same_origin
+from tests.support.http_robot import HttpRobot, http_scope
+
+Message = MutableMapping[str, Any]
+
+PRESS = '{"engaged": true}'
+JSON = {"content-type": "application/json"}
+
+
+# --- the name by which it is asked --------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    "host",
+    ["robot", "ROBOT:8000", "robot.", "localhost:1", "127.0.0.1", "127.0.0.1:8000", "[::1]:8000"],
+)
+async def test_the_service_answers_to_its_own_names(host: str, robot: HttpRobot) -> None:
+    answer = await robot.http.get("/livez", headers={"host": host})
+
+    assert answer.status_code == 200
+
+
+@pytest.mark.parametrize(
+    "host",
+    ["evil.example", "robot.evil.example", "evil.example:8000", "a@robot", "robot/x", "", "[::2]"],
+)
+async def test_the_service_does_not_answer_to_another_name(host: str, robot: HttpRobot) -> None:
+    answer = await robot.http.get("/livez", headers={"host": host})
+
+    assert (answer.status_code, answer.json()["code"]) == (403, "HOST_NOT_ALLOWED")
+    assert "--allowed-host" in answer.json()["hint"]
+
+
+async def test_two_names_at_once_are_none(robot: HttpRobot) -> None:
+    headers = [("host", "robot"), ("host", "evil.example")]
+
+    assert (await robot.http.get("/livez", headers=headers)).status_code == 403
+
+
+async def test_an_address_of_ipv6_is_allowed_with_or_without_brackets() -> None:
+    gate = Gate(answer_200, allowed_hosts=["fd00::1", "[fd00::2]"])
+
+    for host in ("[fd00::1]:8000", "[fd00::2]"):
+        assert await status_of(gate, http_scope("GET", "/", host=host)) == 200
+
+
+# --- who writes ---------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    "origin",
+    ["http://evil.example", "http://robot", "https://robot:8000", "http://robot:8001", "null", ""],
+)
+async def test_a_foreign_page_cannot_write(origin: str, robot: HttpRobot) -> None:
+    headers = {**JSON, "origin": origin.replace("https://robot:8000", "https://robot:8443")}
+
+    answer = await robot.http.put("/emergency_stop", content=PRESS, headers=headers)
+
+    assert (answer.status_code, answer.json()["code"]) == (403, "FOREIGN_ORIGIN")
+    assert (await robot.get("/emergency_stop"))["engaged"] is False
+
+
+async def test_its_own_page_can_write(robot: HttpRobot) -> None:
+    headers = {**JSON, "origin": "http://robot:8000"}
+
+    answer = await robot.http.put("/emergency_stop", content=PRESS, headers=headers)
+
+    assert answer.status_code == 200
+
+
+async def test_a_foreign_page_may_ask_but_is_not_let_read(robot: HttpRobot) -> None:
+    answer = await robot.http.get("/systems", headers={"origin": "http://evil.example"})
+
+    assert answer.status_code == 200
+    assert "access-control-allow-origin" not in answer.headers
+
+
+@pytest.mark.parametrize(
+    ("origin", "host", "same"),
+    [
+        ("http://robot", "robot", True),
+        ("http://robot", "robot:80", True),
+        ("http://robot:80", "robot", True),
+        ("https://robot", "robot", True),
+        ("https://robot", "robot:443", True),
+        ("http://ROBOT:8000", "robot:8000", True),
+        ("http://[::1]:8000", "[::1]:8000", True),
+        ("http://robot:8000", "robot:8001", False),
+        ("http://robot.evil.example", "robot", False),
+        ("http://localhost:8000", "127.0.0.1:8000", False),
+        ("file://robot", "robot", False),
+        ("null", "robot", False),
+        ("", "robot", False),
+        ("http://robot:x", "robot", False),
+        ("http://[robot", "robot", False),
+    ],
+)
+def test_an_origin_is_ours_if_name_and_port_are(origin: str, host: str, same: bool) -> None:
+    assert is_same_origin(origin, host) is same
+
+
+# --- what a page sends --------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    ("content_type", "status"),
+    [
+        ("application/json", 200),
+        ("application/json; charset=utf-8", 200),
+        ("text/plain", 415),
+        ("application/x-www-form-urlencoded", 415),
+        ("multipart/form-data", 415),
+        ("", 415),
+    ],
+)
+async def test_a_page_says_that_it_sends_json_and_a_form_cannot(
+    content_type: str, status: int, robot: HttpRobot
+) -> None:
+    headers = {"origin": "http://robot:8000", "content-type": content_type}
+
+    answer = await robot.http.put("/emergency_stop", content=PRESS, headers=headers)
+
+    assert answer.status_code == status
+    assert (await robot.get("/emergency_stop"))["engaged"] is (status == 200)
+
+
+async def test_a_page_need_not_name_the_type_of_nothing(robot: HttpRobot) -> None:
+    headers = {"origin": "http://robot:8000"}
+
+    answer = await robot.http.post("/errors/ESTOP/acknowledge", headers=headers)
+
+    assert answer.status_code == 200
+
+
+# --- WebSocket ----------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    "headers",
+    [
+        {"host": "evil.example"},
+        {"host": "robot:8000", "origin": "http://evil.example"},
+        {"host": "robot:8000", "origin": "null"},
+    ],
+)
+async def test_a_websocket_is_guarded_alike(headers: dict[str, str]) -> None:
+    scope = websocket_scope(headers)
+
+    sent = await messages_of(Gate(answer_200, ["robot"]), scope)
+
+    assert (sent[0]["type"], sent[0]["status"]) == ("websocket.http.response.start", 403)
+
+
+async def test_where_the_server_can_only_close_a_handshake_it_is_closed() -> None:
+    # The server then answers 403 by itself.
+    scope = {**websocket_scope({"host": "evil.example"}), "extensions": {}}
+
+    sent = await messages_of(Gate(answer_200, []), scope)
+
+    assert [message["type"] for message in sent] == ["websocket.close"]
+
+
+@pytest.mark.parametrize(
+    "headers", [{"host": "robot:8000"}, {"host": "robot:8000", "origin": "http://robot:8000"}]
+)
+async def test_a_websocket_of_our_own_page_or_of_no_page_gets_through(
+    headers: dict[str, str],
+) -> None:
+    sent = await messages_of(Gate(answer_200, ["robot"]), websocket_scope(headers))
+
+    assert sent[0]["status"] == 200
+
+
+# --- on the way out -----------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("path", ["/", "/systems", "/nope", "/systems/nobody"])
+async def test_every_answer_tells_browsers_to_be_strict(path: str, robot: HttpRobot) -> None:
+    headers = (await robot.http.get(path)).headers
+
+    assert headers["content-security-policy"] == CONTENT_SECURITY_POLICY
+    assert headers["x-content-type-options"] == "nosniff"
+    assert headers["referrer-policy"] == "no-referrer"
+
+
+async def test_a_refusal_tells_browsers_so_too(robot: HttpRobot) -> None:
+    headers = (await robot.http.get("/", headers={"host": "evil.example"})).headers
+
+    assert headers["content-security-policy"] == CONTENT_SECURITY_POLICY
+
+
+# --- what nobody foresaw ------------------------------------------------------------------------
+
+
+async def test_a_fault_is_answered_without_its_inside_and_logged_with_it(
+    caplog: pytest.LogCaptureFixture,
+) -> None:
+    sent = await messages_of(UnexpectedErrors(fail), http_scope("GET", "/x"))
+
+    assert sent[0]["status"] == 500
+    assert b"INTERNAL" in sent[1]["body"]
+    assert b"secret" not in sent[1]["body"]
+    assert "secret" in caplog.text
+
+
+async def test_a_fault_after_the_answer_has_begun_is_left_to_the_server() -> None:
+    with pytest.raises(ValueError, match="secret"):
+        await messages_of(UnexpectedErrors(fail_late), http_scope("GET", "/x"))
+
+
+async def test_a_fault_in_a_websocket_is_left_to_the_server() -> None:
+    with pytest.raises(ValueError, match="secret"):
+        await messages_of(UnexpectedErrors(fail), websocket_scope({}))
+
+
+async def fail(scope: Any, receive: Any, send: Any) -> None:
+    raise ValueError("secret")
+
+
+async def fail_late(scope: Any, receive: Any, send: Any) -> None:
+    await send({"type": "http.response.start", "status": 200, "headers": []})
+    raise ValueError("secret")
+
+
+async def answer_200(scope: Any, receive: Any, send: Any) -> None:
+    await send({"type": "http.response.start", "status": 200, "headers": []})
+
+
+def websocket_scope(headers: dict[str, str]) -> dict[str, Any]:
+    scope = http_scope("GET", "/ws", **headers)
+    del scope["method"]
+    return {**scope, "type": "websocket", "extensions": {"websocket.http.response": {}}}
+
+
+async def messages_of(app: Any, scope: dict[str, Any]) -> list[Message]:
+    sent: list[Message] = []
+
+    async def receive() -> Message:
+        return {"type": "http.request", "body": b"", "more_body": False}
+
+    async def send(message: Message) -> None:
+        sent.append(message)
+
+    await app(scope, receive, send)
+    return sent
+
+
+async def status_of(app: Any, scope: dict[str, Any]) -> int:
+    status: int = (await messages_of(app, scope))[0]["status"]
+    return status

@@ -1,0 +1,87 @@
+"""Values that may be of several types are read strictly, with one clear message."""
+
+import math
+from typing import Any
+
+import pytest
+from pydantic import TypeAdapter, ValidationError
+from pydantic_core import PydanticCustomError
+
+from api.values import (
+    SentParameter,
+    SentSignalValue,
+    read_parameter_value,
+    read_signal_value,
+    split_label,
+)
+
+
+@pytest.mark.parametrize(
+    ("sent", "value"), [(1, 1.0), (0.5, 0.5), (True, True), ("CONNECTED", "CONNECTED"), (-0.0, 0.0)]
+)
+def test_a_signal_is_a_boolean_a_number_or_a_text(sent: Any, value: Any) -> None:
+    found = read_signal_value(sent)
+
+    assert (found, type(found)) == (value, type(value))
+
+
+@pytest.mark.parametrize(
+    "sent", [math.nan, math.inf, -math.inf, 10**400, None, [1], {}, "x" * 5_000]
+)
+def test_a_signal_is_nothing_else(sent: Any) -> None:
+    with pytest.raises(PydanticCustomError):
+        read_signal_value(sent)
+
+
+@pytest.mark.parametrize(
+    ("sent", "value"),
+    [
+        (1, 1),
+        (1.0, 1.0),
+        (True, True),
+        ("PID", "PID"),
+        (2**63 - 1, 2**63 - 1),
+        ([1, 2], (1, 2)),
+        ([0.5, 1], (0.5, 1.0)),
+        ([True, False], (True, False)),
+        (["a"], ("a",)),
+        ([], ()),
+    ],
+)
+def test_a_parameter_keeps_its_type(sent: Any, value: Any) -> None:
+    found = read_parameter_value(sent)
+
+    assert (found, type(found)) == (value, type(value))
+    if isinstance(found, tuple):
+        assert [type(item) for item in found] == [type(item) for item in value]
+
+
+@pytest.mark.parametrize(
+    "sent", [None, {}, math.nan, [math.inf], 2**63, -(2**63) - 1, [1, True], ["a", 1], [[1]], [None]]
+)
+def test_a_parameter_is_nothing_that_ros_has_not(sent: Any) -> None:
+    with pytest.raises(PydanticCustomError):
+        read_parameter_value(sent)
+
+
+@pytest.mark.parametrize("kind", [SentSignalValue, SentParameter])
+def test_one_fault_is_told_once(kind: Any) -> None:
+    with pytest.raises(ValidationError) as raised:
+        TypeAdapter(kind).validate_python(None)
+
+    assert raised.value.error_count() == 1
+
+
+@pytest.mark.parametrize(
+    ("label", "pair"),
+    [
+        ("active.FAST", {"state": "active", "mode": "FAST"}),
+        ("inactive", {"state": "inactive", "mode": None}),
+        ("active.", {"state": "active", "mode": None}),
+        ("active.A.B", {"state": "active", "mode": "A.B"}),
+        (None, None),
+        (1, 1),
+    ],
+)
+def test_a_label_is_split_at_its_first_dot(label: Any, pair: Any) -> None:
+    assert split_label(label) == pair

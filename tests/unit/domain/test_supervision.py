@@ -1,0 +1,648 @@
+"""The core: what one input leads to, and when."""
+
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, replace
+
+import hypothesis.strategies as st
+import pytest
+from hypothesis import given, settings
+
+from domain.change_admission import ADVISORY
+from domain.errors import (
+    BackendUnavailableError,
+    BlockedError,
+    IllegalTransitionError,
+    InvalidValueError,
+    OutdatedReadingError,
+    PilothouseError,
+    UnknownChangeError,
+    UnknownErrorNameError,
+    UnknownModeError,
+    UnknownParameterError,
+    UnknownPartError,
+    UnknownSignalError,
+)
+from domain.lifecycle import LifecycleState, Transition
+from domain.messages import (
+    AcknowledgeRequest,
+    AskFacts,
+    AskTransition,
+    BackendStatus,
+    CancelRequest,
+    ChangeId,
+    Command,
+    EmergencyStopRequest,
+    Event,
+    Input,
+    ModeRequest,
+    NodeAnswer,
+    NodeReport,
+    Outputs,
+    ParametersRequest,
+    Reading,
+    Readings,
+    SignalValue,
+    TimePassed,
+    TransitionRequest,
+)
+from domain.simulation.node_settings import Fault, NodeSettings
+from domain.snapshot import ChangeStatus, SystemState
+from domain.supervision import Supervision, SupervisionSettings
+from domain.system_model import ModeName, PartName
+from domain.timebase import Instant, seconds
+from tests.support.models import ACTUATION, ARM, BASE, actuation_model, nested_model
+from tests.support.virtual_robot import GOOD, VirtualRobot
+
+S, T = LifecycleState, Transition
+GRIPPER = PartName("gripper")
+DOWN = BackendStatus(available=False, reason="no DDS")
+
+
+def _core(start: Instant = 0) -> Supervision:
+    return Supervision(actuation_model(), SupervisionSettings(), start)
+
+
+def _readings(stamp: Instant | None = None, **values: SignalValue) -> Readings:
+    return Readings(tuple(Reading(name, value, stamp) for name, value in values.items()), "test")
+
+
+@pytest.fixture
+def robot() -> VirtualRobot:
+    robot = VirtualRobot(actuation_model())
+    robot.read(**GOOD)
+    return robot
+
+
+def _seen(core: Supervision) -> object:
+    """Return everything that can be seen of the robot."""
+    return (
+        dict(core.parts()),
+        core.changes(),
+        dict(core.signals()),
+        core.system_state(),
+        core.emergency_stop(),
+        [core.parameters(node) for node in core.model.nodes],
+        core.wake_at(),
+    )
+
+
+# --- refusals ------------------------------------------------------------------------------------
+
+REFUSED: list[tuple[Input, type[PilothouseError]]] = [
+    (NodeReport(GRIPPER, state=S.ACTIVE), UnknownPartError),
+    (NodeReport(ACTUATION, state=S.ACTIVE), UnknownPartError),
+    (_readings(speed=1.0), UnknownSignalError),
+    (_readings(battery_level=0.1, temperature="hot"), InvalidValueError),
+    (_readings(stamp=-seconds(9), temperature=20.0), OutdatedReadingError),
+    (ModeRequest(GRIPPER, "FAST"), UnknownPartError),
+    (ModeRequest(BASE, "NO_SUCH"), UnknownModeError),
+    (TransitionRequest(BASE, T.DEACTIVATE), IllegalTransitionError),
+    (ParametersRequest(BASE, {"speed": 1.0}), UnknownParameterError),
+    (ParametersRequest(BASE, {"max_speed": 1}), InvalidValueError),
+    (CancelRequest(ChangeId("c99")), UnknownChangeError),
+    (AcknowledgeRequest("NO_SUCH"), UnknownErrorNameError),
+]
+
+
+@pytest.mark.parametrize(("given_", "error"), REFUSED, ids=lambda value: str(value)[:60])
+def test_a_refused_input_changes_nothing_and_leaves_no_trace(
+    robot: VirtualRobot, given_: Input, error: type[PilothouseError]
+) -> None:
+    robot.give(_readings(stamp=robot.now, temperature=30.0))
+    before = _seen(robot.core)
+    with pytest.raises(error):
+        robot.give(given_)
+    assert _seen(robot.core) == before
+    assert robot.give(TimePassed()) == Outputs()
+
+
+@pytest.mark.parametrize(("given_", "error"), REFUSED, ids=lambda value: str(value)[:60])
+def test_what_was_due_before_a_refused_input_is_delivered_with_the_next_call(
+    robot: VirtualRobot, given_: Input, error: type[PilothouseError]
+) -> None:
+    robot.give(_readings(stamp=robot.now, temperature=30.0))
+    robot.transition("drive_base", "configure")
+    with pytest.raises(error):
+        robot.core.handle(given_, seconds(10.5))
+    outputs = robot.core.handle(TimePassed(), seconds(10.5))
+    stale = [event for event in outputs.events if event.kind == "error.raised"]
+    assert [event.at for event in stale] == [seconds(2) + 1]
+    assert [type(command) for command in outputs.commands] == [AskFacts]
+
+
+def test_what_follows_after_a_refusal_is_not_laid_to_the_one_who_was_refused(
+    robot: VirtualRobot,
+) -> None:
+    with pytest.raises(UnknownModeError):
+        robot.give(ModeRequest(BASE, "NO_SUCH", actor="mallory"))
+    outputs = robot.core.handle(TimePassed(), seconds(3))
+    assert {event.actor for event in outputs.events} == {""}
+
+
+def test_one_bad_reading_refuses_the_good_one_beside_it(robot: VirtualRobot) -> None:
+    with pytest.raises(InvalidValueError):
+        robot.read(battery_level=0.1, temperature="hot")
+    assert robot.core.signal("battery_level").value == 1.0
+
+
+# --- time ----------------------------------------------------------------------------------------
+
+
+def test_nothing_is_due_before_its_time_and_something_is_then(robot: VirtualRobot) -> None:
+    due = robot.core.wake_at()
+    assert due is not None
+    assert robot.core.handle(TimePassed(), due - 1) == Outputs()
+    assert robot.core.handle(TimePassed(), due) != Outputs()
+
+
+def test_the_nearest_deadline_is_next_whoever_sets_it(robot: VirtualRobot) -> None:
+    assert robot.core.wake_at() == seconds(2) + 1
+    robot.core.handle(ParametersRequest(BASE, {"max_speed": 0.4}), 0)
+    assert robot.core.wake_at() == seconds(2)
+
+
+def test_without_readings_or_changes_nothing_is_due() -> None:
+    assert _core().wake_at() is None
+
+
+def test_deadlines_pass_in_order_each_at_its_own_time_however_late_the_call(
+    robot: VirtualRobot,
+) -> None:
+    """The arm is silent after its change; GPS is bad, and then all is silent."""
+    robot.core.handle(_readings(gps_accuracy=300.0), 0)
+    robot.core.handle(TransitionRequest(ARM, T.CONFIGURE), 0)
+    outputs = robot.core.handle(TimePassed(), seconds(3600))
+    kinds = ("error.raised", "change.step_ended", "change.timed_out")
+    assert [(event.at, event.kind) for event in outputs.events if event.kind in kinds] == [
+        (seconds(2) + 1, "error.raised"),
+        (seconds(11), "change.step_ended"),
+        (seconds(11), "change.timed_out"),
+        (seconds(15), "error.raised"),
+    ]
+    assert outputs.commands == (AskFacts(2, ARM),)
+
+
+def test_an_input_in_the_past_counts_as_now(robot: VirtualRobot) -> None:
+    robot.core.handle(TimePassed(), seconds(1))
+    outputs = robot.core.handle(_readings(battery_level=0.1), seconds(0.4))
+    assert {event.at for event in outputs.events} == {seconds(1)}
+    assert robot.core.signal("battery_level").received_at == seconds(1)
+
+
+# --- inputs and their causes ---------------------------------------------------------------------
+
+
+def _root(events: Iterable[Event], event: Event) -> Event:
+    by_id = {other.id: other for other in events}
+    while event.cause is not None:
+        event = by_id[event.cause]
+    return event
+
+
+def _last(robot: VirtualRobot, kind: str) -> Event:
+    return [event for event in robot.events if event.kind == kind][-1]
+
+
+@pytest.mark.parametrize(
+    ("fault", "kind", "root"),
+    [
+        (None, "change.succeeded", "change.requested"),
+        (None, "part.deviation_ended", "change.requested"),
+        (Fault.FAIL, "change.failed", "change.requested"),
+        (Fault.ERROR, "change.failed", "change.requested"),
+        (Fault.REFUSE, "change.failed", "change.requested"),
+    ],
+)
+def test_how_a_change_ended_leads_back_to_who_asked_for_it(
+    robot: VirtualRobot, fault: Fault | None, kind: str, root: str
+) -> None:
+    robot.fault("drive_base", fault)
+    robot.transition("drive_base", "configure")
+    robot.advance(1)
+    assert _root(robot.events, _last(robot, kind)).kind == root
+
+
+def test_what_a_node_does_on_its_own_has_no_cause(robot: VirtualRobot) -> None:
+    robot.give(NodeReport(BASE, state=S.ACTIVE))
+    changed = _last(robot, "part.actual_changed")
+    root = _root(robot.events, changed)
+    assert (root.kind, root.cause) == ("node.reported", None)
+
+
+@pytest.mark.parametrize(
+    ("given_", "kind", "data"),
+    [
+        (
+            NodeReport(BASE, S.ACTIVE, ModeName("FAST"), {"max_speed": 0.9}, reachable=True),
+            "node.reported",
+            {
+                "node": "drive_base",
+                "state": "active",
+                "mode": "FAST",
+                "parameters": {"max_speed": 0.9},
+                "reachable": True,
+            },
+        ),
+        (
+            _readings(battery_level=0.1),
+            "signal.read",
+            {"source": "test", "values": {"battery_level": 0.1}},
+        ),
+        (
+            ModeRequest(BASE, "FAST", "alice"),
+            "change.requested",
+            {"part": "drive_base", "mode": "FAST"},
+        ),
+        (
+            EmergencyStopRequest(True, "smoke", "alice"),
+            "emergency_stop.engaged",
+            {"reason": "smoke"},
+        ),
+        (DOWN, "backend.unavailable", {"reason": "no DDS"}),
+    ],
+    ids=["report", "reading", "change", "stop", "backend"],
+)
+def test_an_input_that_matters_is_recorded_with_what_it_said(
+    robot: VirtualRobot, given_: Input, kind: str, data: Mapping[str, object]
+) -> None:
+    first = robot.give(given_).events[0]
+    assert (first.kind, first.cause, dict(first.data)) == (kind, None, data)
+
+
+def test_who_asked_is_told_with_everything_that_follows(robot: VirtualRobot) -> None:
+    outputs = robot.give(ModeRequest(BASE, "FAST", actor="alice"))
+    assert len(outputs.events) > 1
+    assert {event.actor for event in outputs.events} == {"alice"}
+
+
+def test_who_canceled_a_change_is_told(robot: VirtualRobot) -> None:
+    change = robot.mode("drive_base", "FAST")
+    outputs = robot.give(CancelRequest(change, actor="bob"))
+    assert [(event.kind, event.actor) for event in outputs.events] == [
+        ("change.cancel_requested", "bob"),
+        ("change.canceled", "bob"),
+    ]
+
+
+def test_a_request_answers_with_its_change_and_the_commands_that_begin_it(
+    robot: VirtualRobot,
+) -> None:
+    outputs = robot.core.handle(TransitionRequest(BASE, T.CONFIGURE), 0)
+    assert outputs.change == "c1"
+    assert outputs.commands == (AskTransition(1, BASE, T.CONFIGURE),)
+    assert outputs.parts == {BASE}
+    assert robot.core.changes()[0].status is ChangeStatus.RUNNING
+
+
+def test_a_report_tells_whose_view_it_changed(robot: VirtualRobot) -> None:
+    assert robot.give(NodeReport(BASE, state=S.ACTIVE)).parts == {BASE, ACTUATION}
+
+
+def test_an_answer_to_something_else_is_of_no_account(robot: VirtualRobot) -> None:
+    robot.core.handle(TransitionRequest(BASE, T.CONFIGURE), 0)
+    assert robot.core.handle(NodeAnswer(99, BASE, False, "no"), 0) == Outputs()
+    assert robot.core.handle(NodeAnswer(1, ARM, False, "no"), 0) == Outputs()
+    assert robot.core.changes()[0].status is ChangeStatus.RUNNING
+
+
+# --- emergency stop and ESTOP --------------------------------------------------------------------
+
+
+def test_the_emergency_stop_puts_the_robot_in_error_at_once(robot: VirtualRobot) -> None:
+    outputs = robot.stop()
+    assert outputs.system_state
+    assert robot.core.system_state().errors == ("ESTOP",)
+    assert robot.core.emergency_stop().engaged
+
+
+def test_engaging_twice_keeps_who_did_it_first_and_tells_it_once(robot: VirtualRobot) -> None:
+    robot.stop()
+    before = robot.core.emergency_stop()
+    robot.advance(1)
+    again = EmergencyStopRequest(True, "again", "somebody else")
+    assert robot.core.handle(again, robot.now) == Outputs()
+    assert robot.core.emergency_stop() is before
+
+
+def test_releasing_what_is_not_engaged_is_harmless(robot: VirtualRobot) -> None:
+    assert robot.stop(engaged=False) == Outputs()
+
+
+def test_no_reading_releases_the_emergency_stop(robot: VirtualRobot) -> None:
+    robot.stop()
+    robot.advance(1)
+    robot.read(**GOOD)
+    assert robot.core.system_state().errors == ("ESTOP",)
+    robot.stop(engaged=False)
+    assert robot.core.system_state().state is SystemState.IDLE
+
+
+@pytest.mark.parametrize("by_reading", [True, False])
+def test_under_estop_the_modes_that_are_shown_as_blocked_are_refused_for_that_and_no_others(
+    robot: VirtualRobot, *, by_reading: bool
+) -> None:
+    robot.transition("drive_base", "activate")
+    robot.advance(1)
+    if by_reading:
+        robot.read(estop=True)
+    else:
+        robot.stop()
+    seen = {}
+    for part in robot.model.parts:
+        for view in robot.core.modes(part):
+            seen[f"{part}.{view.mode}"] = view.can_enter
+            try:
+                robot.core.plan(ModeRequest(part, view.mode))
+            except BlockedError as refusal:
+                assert refusal.blockers == view.blockers
+                assert "ESTOP" in {blocker.code for blocker in view.blockers}
+            else:
+                assert view.can_enter
+    assert seen == {
+        "actuation.__DEFAULT__": True,
+        "actuation.MODERATE": False,
+        "actuation.PERFORMANCE": False,
+        "drive_base.__DEFAULT__": True,
+        "drive_base.SLOW": True,
+        "drive_base.FAST": True,
+        "manipulator.__DEFAULT__": False,
+        "manipulator.WEAK": False,
+        "manipulator.STRONG": False,
+    }
+
+
+def test_when_estop_ends_modes_can_be_entered_again(robot: VirtualRobot) -> None:
+    robot.stop()
+    robot.advance(1)
+    robot.read(**GOOD)
+    robot.stop(engaged=False)
+    assert all(view.can_enter for view in robot.core.modes(ACTUATION))
+
+
+def test_under_estop_activate_is_not_available(robot: VirtualRobot) -> None:
+    assert T.ACTIVATE in robot.core.available_transitions(BASE)
+    robot.stop()
+    assert T.ACTIVATE not in robot.core.available_transitions(BASE)
+
+
+def test_in_error_without_estop_changes_stay_possible(robot: VirtualRobot) -> None:
+    robot.read(battery_level=0.1)
+    change = robot.mode("drive_base", "FAST")
+    robot.advance(1)
+    assert robot.change(change).status is ChangeStatus.SUCCEEDED
+
+
+def test_acknowledging_what_is_not_on_changes_nothing(robot: VirtualRobot) -> None:
+    assert robot.give(AcknowledgeRequest("ESTOP")) == Outputs()
+
+
+# --- backend -------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    "request_",
+    [
+        ModeRequest(BASE, "FAST"),
+        TransitionRequest(BASE, T.CONFIGURE),
+        ParametersRequest(BASE, {"max_speed": 0.4}),
+    ],
+    ids=str,
+)
+def test_without_a_backend_no_change_begins(
+    robot: VirtualRobot, request_: ModeRequest | TransitionRequest | ParametersRequest
+) -> None:
+    robot.give(DOWN)
+    before = _seen(robot.core)
+    with pytest.raises(BackendUnavailableError, match="no DDS"):
+        robot.give(request_)
+    assert _seen(robot.core) == before
+
+
+def test_without_a_backend_a_dry_run_is_refused_as_the_request_is(robot: VirtualRobot) -> None:
+    robot.give(DOWN)
+    with pytest.raises(BackendUnavailableError):
+        robot.core.plan(ModeRequest(BASE, "FAST"))
+
+
+def test_without_a_backend_what_does_not_exist_still_does_not_exist(robot: VirtualRobot) -> None:
+    robot.give(DOWN)
+    with pytest.raises(UnknownModeError):
+        robot.give(ModeRequest(BASE, "NO_SUCH"))
+
+
+def test_without_a_backend_health_is_still_judged(robot: VirtualRobot) -> None:
+    robot.give(DOWN)
+    robot.read(battery_level=0.1)
+    assert robot.core.system_state().errors == ("BATTERY_LOW",)
+
+
+def test_a_backend_that_is_back_is_told_and_takes_requests(robot: VirtualRobot) -> None:
+    robot.give(DOWN)
+    outputs = robot.give(BackendStatus(available=True))
+    assert [event.kind for event in outputs.events] == ["backend.available"]
+    robot.mode("drive_base", "FAST")
+
+
+def test_a_backend_that_stays_down_is_told_once_and_its_newest_reason_counts(
+    robot: VirtualRobot,
+) -> None:
+    robot.give(DOWN)
+    assert robot.give(BackendStatus(available=False, reason="still no DDS")) == Outputs()
+    with pytest.raises(BackendUnavailableError, match="still no DDS"):
+        robot.give(ModeRequest(BASE, "FAST"))
+
+
+# --- dry runs ------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    "request_",
+    [
+        ModeRequest(ACTUATION, "PERFORMANCE"),
+        TransitionRequest(ACTUATION, T.ACTIVATE),
+        TransitionRequest(BASE, T.SHUTDOWN),
+        ParametersRequest(BASE, {"max_speed": 0.4}),
+    ],
+    ids=str,
+)
+def test_a_dry_run_shows_the_steps_that_the_change_takes_and_changes_nothing(
+    robot: VirtualRobot, request_: ModeRequest | TransitionRequest | ParametersRequest
+) -> None:
+    before = _seen(robot.core)
+    planned = [(step.node, str(step.action)) for step in robot.core.plan(request_)]
+    assert _seen(robot.core) == before
+    change = robot.give(request_).change
+    assert change is not None
+    robot.advance(3)
+    assert robot.change(change).status is ChangeStatus.SUCCEEDED
+    assert planned == [(step.node, str(step.action)) for step in robot.change(change).steps]
+
+
+def test_a_dry_run_is_refused_as_the_request_would_be(robot: VirtualRobot) -> None:
+    with pytest.raises(IllegalTransitionError):
+        robot.core.plan(TransitionRequest(BASE, T.DEACTIVATE))
+    with pytest.raises(UnknownModeError):
+        robot.core.plan(ModeRequest(BASE, "NO_SUCH"))
+
+
+def test_of_a_node_that_is_not_heard_of_the_last_step_is_shown() -> None:
+    steps = _core().plan(TransitionRequest(BASE, T.ACTIVATE))
+    assert [(step.node, step.action) for step in steps] == [(BASE, T.ACTIVATE)]
+
+
+# --- determinism ---------------------------------------------------------------------------------
+
+
+@dataclass(frozen=True)
+class Given:
+    """One input, and how long after the one before."""
+
+    after_ms: int
+    given: Input
+
+
+@dataclass
+class Run:
+    """All that came out of one core."""
+
+    core: Supervision
+    events: tuple[Event, ...] = ()
+    commands: tuple[Command, ...] = ()
+    refusals: tuple[str, ...] = ()
+
+    def hand(self, given: Input, now: Instant) -> None:
+        try:
+            outputs = self.core.handle(given, now)
+        except PilothouseError as refusal:
+            self.refusals += (refusal.message,)
+            return
+        self.events += outputs.events
+        self.commands += outputs.commands
+
+
+MODEL = nested_model()
+NODES, PARTS = st.sampled_from(list(MODEL.nodes)), st.sampled_from(MODEL.parts)
+MODES = st.sampled_from(["__DEFAULT__", "FAST", "STRONG", "PERFORMANCE", "RACE", "PARKED"])
+INPUTS: st.SearchStrategy[Input] = st.one_of(
+    st.builds(NodeReport, NODES, state=st.sampled_from(list(S)[1:])),
+    st.builds(
+        NodeReport,
+        NODES,
+        parameters=st.fixed_dictionaries({"max_speed": st.sampled_from([0.1, 0.9])}),
+        reachable=st.none() | st.booleans(),
+    ),
+    st.builds(NodeAnswer, st.integers(1, 12), NODES, st.just(False), st.just("no")),  # noqa: FBT003
+    st.builds(ModeRequest, PARTS, MODES),
+    st.builds(TransitionRequest, PARTS, st.sampled_from(T)),
+    st.builds(CancelRequest, st.builds(lambda n: ChangeId(f"c{n}"), st.integers(1, 5))),
+    st.builds(EmergencyStopRequest, st.booleans(), st.just("test")),
+    st.builds(
+        lambda **values: _readings(**{**GOOD, **values}),
+        gps_accuracy=st.sampled_from([100.0, 300.0]),
+        estop=st.booleans(),
+        signal_strength=st.sampled_from(["CONNECTED", "LOW_SIGNAL", "NOT_CONNECTED"]),
+    ),
+)
+SCRIPTS = st.lists(
+    st.builds(Given, st.sampled_from([0, 1, 100, 200, 1_000, 2_000, 2_001, 10_000]), INPUTS),
+    min_size=1,
+    max_size=25,
+)
+
+
+def _run(script: list[Given], start: Instant = 0, extra_ms: Iterable[int] = ()) -> Run:
+    """Hand in a script; time passes besides at `extra_ms` after the start."""
+    run = Run(Supervision(MODEL, SupervisionSettings(), start))
+    inputs: list[tuple[int, int, Input]] = []
+    at = 0
+    for number, step in enumerate(script):
+        at += step.after_ms
+        inputs.append((at, number, step.given))
+    end = at + 30_000
+    inputs += [(extra, -1, TimePassed()) for extra in extra_ms if extra <= end]
+    for at_ms, _, given_ in sorted(inputs, key=lambda item: item[:2]):
+        run.hand(given_, start + at_ms * 1_000_000)
+    run.hand(TimePassed(), start + end * 1_000_000)
+    return run
+
+
+@given(SCRIPTS)
+@settings(max_examples=60)
+def test_the_same_inputs_at_the_same_times_give_the_same_outputs_byte_for_byte(
+    script: list[Given],
+) -> None:
+    one, other = _run(script), _run(script)
+    assert repr((one.events, one.commands)) == repr((other.events, other.commands))
+    assert one.refusals == other.refusals
+
+
+@given(SCRIPTS, st.lists(st.integers(0, 60_000), max_size=40))
+@settings(max_examples=100)
+def test_one_big_step_equals_many_small_ones(script: list[Given], extra_ms: list[int]) -> None:
+    big, small = _run(script), _run(script, extra_ms=extra_ms)
+    assert small.events == big.events
+    assert small.commands == big.commands
+    assert small.refusals == big.refusals
+    assert _seen(small.core) == _seen(big.core)
+
+
+@given(SCRIPTS, st.sampled_from([seconds(1), seconds(86_400 * 365)]))
+@settings(max_examples=60)
+def test_only_differences_of_time_mean_anything(script: list[Given], start: Instant) -> None:
+    here, later = _run(script), _run(script, start)
+    assert [replace(event, at=event.at - start) for event in later.events] == list(here.events)
+    assert later.commands == here.commands
+    for one, other in zip(here.core.changes(), later.core.changes(), strict=True):
+        assert [(s.status, s.error) for s in one.steps] == [(s.status, s.error) for s in other.steps]
+
+
+@given(SCRIPTS)
+@settings(max_examples=60)
+def test_it_wakes_exactly_when_something_happens(script: list[Given]) -> None:
+    run = _run(script)
+    core = run.core
+    for _ in range(20):
+        due = core.wake_at()
+        if due is None:
+            return
+        assert core.handle(TimePassed(), due - 1) == Outputs()
+        assert core.handle(TimePassed(), due) != Outputs()
+
+
+@pytest.mark.parametrize("start_s", [0, 5])
+def test_steps_that_are_not_reached_are_canceled_at_any_time_of_the_clock(start_s: float) -> None:
+    refusing = {"manipulator": NodeSettings(fault=Fault.REFUSE)}
+    robot = VirtualRobot(actuation_model(), nodes=refusing, start=seconds(start_s))
+    robot.read(**GOOD)
+    change = robot.mode("manipulator", "STRONG")
+    robot.advance(1)
+    assert [status for _, _, status in robot.steps(change)] == ["failed", "canceled", "canceled"]
+
+
+# --- what can be seen ----------------------------------------------------------------------------
+
+
+def test_a_robot_of_which_nothing_was_read_is_in_error() -> None:
+    """Unknown is not good."""
+    state = _core().system_state()
+    assert (state.state, state.errors) == (SystemState.ERROR, ("STALE_DATA",))
+
+
+def test_what_is_not_there_is_told(robot: VirtualRobot) -> None:
+    with pytest.raises(UnknownChangeError):
+        robot.core.change("c99")
+    with pytest.raises(UnknownSignalError):
+        robot.core.signal("speed")
+
+
+def test_changes_are_shown_newest_first(robot: VirtualRobot) -> None:
+    older, newer = robot.mode("drive_base", "FAST"), robot.mode("manipulator", "WEAK")
+    assert [change.id for change in robot.core.changes()] == [newer, older]
+
+
+def test_an_absent_node_is_shown_among_the_blockers_and_refuses_nothing() -> None:
+    core = _core()
+    (view, *_) = core.modes(BASE)
+    assert not view.can_enter
+    assert {blocker.code for blocker in view.blockers} <= ADVISORY
+    assert core.handle(ModeRequest(BASE, view.mode), 0).change is not None

@@ -1,0 +1,162 @@
+"""Work beside the loop: one job at a time, and no job can do lasting harm.
+
+These tests start real processes, and wait in real time for them alone.
+"""
+
+import asyncio
+import os
+import signal
+import time
+from collections.abc import AsyncIterator
+
+import pytest
+
+from domain.errors import UnknownPartError
+from service.worker import QUEUE_LENGTH, JobFailedError, TooComplexError, Worker, WorkerBusyError
+
+
+@pytest.fixture
+async def worker() -> AsyncIterator[Worker]:
+    made = Worker()
+    yield made
+    await made.close()
+
+
+def wait_for_ever() -> None:
+    while True:
+        time.sleep(1)
+
+
+def die() -> None:
+    os.kill(os.getpid(), signal.SIGKILL)
+
+
+def take_all_memory() -> int:
+    return len(bytearray(1 << 40))
+
+
+def refuse(name: str) -> None:
+    raise UnknownPartError("node", name, ["drive_base"])
+
+
+def divide_by_zero() -> float:
+    return 1 / 0
+
+
+async def test_a_job_is_done_in_another_process(worker: Worker) -> None:
+    assert await worker.call(os.getpid) != os.getpid()
+
+
+async def test_the_same_process_does_one_job_after_the_other(worker: Worker) -> None:
+    first, second = await asyncio.gather(worker.call(os.getpid), worker.call(os.getpid))
+
+    assert first == second
+
+
+async def test_arguments_and_results_may_be_large(worker: Worker) -> None:
+    text = "x" * 8_000_000
+
+    assert await worker.call(str.upper, text) == "X" * 8_000_000
+
+
+async def test_what_a_job_prints_does_not_get_between_the_results(worker: Worker) -> None:
+    await worker.call(print, "hello")
+
+    assert await worker.call(abs, -1) == 1
+
+
+async def test_an_error_of_ours_arrives_as_it_was_raised(worker: Worker) -> None:
+    with pytest.raises(UnknownPartError, match="there is no node 'x'") as raised:
+        await worker.call(refuse, "x")
+
+    assert (raised.value.name, raised.value.hint) == ("x", "known: drive_base")
+
+
+async def test_a_fault_in_a_job_arrives_with_its_traceback_and_the_next_job_is_done(
+    worker: Worker,
+) -> None:
+    with pytest.raises(JobFailedError, match="in divide_by_zero"):
+        await worker.call(divide_by_zero)
+
+    assert await worker.call(abs, -1) == 1
+
+
+async def test_a_job_that_takes_too_long_is_ended_and_the_next_one_is_done() -> None:
+    worker = Worker(deadline_s=1.0)
+    try:
+        with pytest.raises(TooComplexError, match="not done within 1 s"):
+            await worker.call(wait_for_ever)
+
+        assert await worker.call(abs, -1) == 1
+    finally:
+        await worker.close()
+
+
+@pytest.mark.parametrize("job", [die, take_all_memory])
+async def test_a_job_that_ends_its_process_harms_only_itself(worker: Worker, job: object) -> None:
+    with pytest.raises(TooComplexError, match="ended the process"):
+        await worker.call(job)  # type: ignore[arg-type]
+
+    assert await worker.call(abs, -1) == 1
+
+
+async def test_a_process_that_died_while_idle_is_replaced(worker: Worker) -> None:
+    first = await worker.call(os.getpid)
+    os.kill(first, signal.SIGKILL)
+    while is_there(first):
+        await asyncio.sleep(0.01)
+
+    assert await worker.call(os.getpid) != first
+
+
+async def test_a_queue_that_is_full_takes_no_more(worker: Worker) -> None:
+    jobs = [asyncio.create_task(worker.call(time.sleep, 0.1)) for _ in range(1 + QUEUE_LENGTH)]
+    await asyncio.sleep(0)
+
+    with pytest.raises(WorkerBusyError) as raised:
+        await worker.call(abs, -1)
+
+    assert raised.value.retry_after_s > 0
+    await asyncio.gather(*jobs)
+    assert await worker.call(abs, -1) == 1
+
+
+async def test_a_job_that_nobody_waits_for_any_more_gives_its_result_to_nobody_else(
+    worker: Worker,
+) -> None:
+    await worker.start()
+    job = asyncio.create_task(worker.call(time.sleep, 60))
+    await asyncio.sleep(0.1)
+    job.cancel()
+    with pytest.raises(asyncio.CancelledError):
+        await job
+
+    assert await worker.call(abs, -1) == 1
+
+
+async def test_the_process_ends_with_the_worker_and_a_closed_one_can_be_closed_again() -> None:
+    worker = Worker()
+    process = await worker.call(os.getpid)
+
+    await worker.close()
+    await worker.close()
+
+    assert not is_there(process)
+
+
+async def test_ctrl_c_in_the_terminal_does_not_reach_the_process(worker: Worker) -> None:
+    # A terminal sends SIGINT to the processes of its session's foreground group.
+    assert await worker.call(os.getsid, 0) != os.getsid(0)
+
+
+async def test_the_robots_own_work_comes_first(worker: Worker) -> None:
+    assert await worker.call(os.nice, 0) > os.nice(0)
+
+
+def is_there(process: int) -> bool:
+    """Tell whether a process exists and is not just waiting to be noticed as dead."""
+    try:
+        with open(f"/proc/{process}/stat", encoding="ascii") as file:
+            return file.read().rpartition(") ")[2][0] != "Z"
+    except FileNotFoundError:
+        return False
