@@ -21,7 +21,7 @@ from domain.errors import UnknownPartError
 from domain.lifecycle import LifecycleState
 from domain.messages import NodeReport
 from domain.mode_inference import ModeInference
-from domain.system_model import ModeName, PartName, SmhModel, StateAndMode
+from domain.system_model import ModeName, PartName, SmhModel, StateAndMode, part_name
 from service.model_file import check_model, read_model
 
 
@@ -92,14 +92,15 @@ def _targets(
 ) -> dict[PartName, StateAndMode | None]:
     targets: dict[PartName, StateAndMode | None] = {}
     for name, target in sent.items():
-        if name not in model:
+        part = part_name(name)
+        if part not in model:
             faults.append(_unknown_part("part", name, "targets"))
         elif target is None:
-            targets[PartName(name)] = None
+            targets[part] = None
         elif (state := _state(target.state, ("targets", name), faults)) is not None:
             has_mode = state in (LifecycleState.ACTIVE, LifecycleState.ACTIVATING)
             mode = ModeName(target.mode) if target.mode and has_mode else None
-            targets[PartName(name)] = StateAndMode(state, mode)
+            targets[part] = StateAndMode(state, mode)
     return targets
 
 
@@ -109,12 +110,13 @@ def _reports(
     """Return one report for each node that said anything."""
     reports = []
     for name, node in sent.items():
-        if name not in model.nodes:
+        part = part_name(name)
+        if part not in model.nodes:
             faults.append(_unknown_part("node", name, "nodes"))
         elif node is not None:
             state = None if node.state is None else _state(node.state, ("nodes", name), faults)
             mode = ModeName(node.mode) if node.mode else None
-            reports.append(NodeReport(PartName(name), state, mode, node.parameters))
+            reports.append(NodeReport(part, state, mode, node.parameters))
     return reports
 
 

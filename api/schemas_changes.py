@@ -5,9 +5,9 @@ from typing import Literal
 from pydantic import Field
 
 from api.schemas import Json, Timestamp, timestamp, timestamp_or_none
-from api.schemas_parts import ParameterJson
+from api.schemas_parts import ParameterJson, shown
 from domain.lifecycle import Transition
-from domain.messages import ChangeRequest
+from domain.messages import ChangeRequest, ParametersRequest
 from domain.request_check import describe_request
 from domain.snapshot import ChangeStatus, ChangeView, StepStatus, StepView
 from service.clock import Clock
@@ -84,4 +84,6 @@ class PlanJson(Json):
 
 def shown_request(request: ChangeRequest) -> RequestJson:
     """Return what a request asks as a client reads it."""
-    return RequestJson(describe_request(request))  # type: ignore[arg-type]
+    if isinstance(request, ParametersRequest):
+        return {"parameters": {name: shown(value) for name, value in request.values.items()}}
+    return {key: str(value) for key, value in describe_request(request).items()}

@@ -20,7 +20,6 @@ from domain.snapshot import (
 from domain.timebase import Instant, to_seconds
 from service.clock import Clock
 
-
 MAX_SOURCE = 64
 """Characters of the name of who measured."""
 

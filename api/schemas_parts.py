@@ -194,9 +194,9 @@ class ParameterRowJson(Json):
         known = view.wanted if view.value is None else view.value
         return cls(
             name=view.name,
-            value=shown(view.value),
+            value=None if view.value is None else shown(view.value),
             type=None if known is None else type_of(known),
-            wanted=shown(view.wanted),
+            wanted=None if view.wanted is None else shown(view.wanted),
         )
 
 
@@ -224,7 +224,7 @@ ParametersBody: TypeAlias = Annotated[
 """Values by parameter name."""
 
 
-def shown(value: ParameterValue | None) -> ParameterJson | None:
+def shown(value: ParameterValue) -> ParameterJson:
     """Return a value of a parameter as JSON has it."""
     return list(value) if isinstance(value, tuple) else value  # type: ignore[return-value]
 

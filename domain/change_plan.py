@@ -23,7 +23,6 @@ from domain.system_model import (
     same_value,
 )
 
-
 TOWARDS_REST = (Transition.DEACTIVATE, Transition.CLEANUP, Transition.SHUTDOWN)
 """What is done to those parts of a system that can go; the others are passed by."""
 
@@ -63,8 +62,7 @@ def goal_of(
     """Return what `request` asks of each part; part and mode must be known.
 
     Activating without naming a mode means `__DEFAULT__`. Nodes that a request to a system passes
-    by, such as an unconfigured one when the system is deactivated, keep the state they rest in;
-    of a plain node, nothing is asked but to be active.
+    by, such as an unconfigured one when the system is deactivated, keep the state they rest in.
     """
     if isinstance(request, ParametersRequest):
         return ChangeGoal({}, {request.node: NodeGoal(None, None, dict(request.values))})
@@ -105,10 +103,7 @@ def _pass_by(
     targets: dict[PartName, StateAndMode],
 ) -> None:
     """Let nodes below the asked part be where `request` has nothing to do with them."""
-    for part in [part for part in targets if part in facts and part != request.part]:
-        if not facts[part].has_lifecycle and request.transition is not Transition.ACTIVATE:
-            del targets[part]
-            continue
+    for part in targets.keys() & facts.keys() - {request.part}:
         resting = arrival(facts[part].known_state)
         if _stays(resting, request.transition):
             targets[part] = StateAndMode(resting)

@@ -19,7 +19,7 @@ from domain.system_model import SmhModel, find_errors
 from service.parameter_file import PARAMETERS_KEY, NodeParameters, read_parameter_file
 from service.smh_reader import SmhParts, read_parts
 from service.text_file import read_text_file
-from service.yaml_tree import Mapping, Scalar, read_tree
+from service.yaml_tree import Mapping, Node, Scalar, read_tree
 
 MAX_FINDINGS = 1_000
 """Told of one model; the rest is counted."""
@@ -94,7 +94,8 @@ def _read_all(text: str) -> tuple[SmhModel | None, tuple[Finding, ...]]:
         found = find_errors(parts.nodes, parts.systems)
     else:
         model, found = _build(parts)
-    findings.extend(_placed(file.nodes, finding) for finding in found)
+    places = _Places(file.nodes)
+    findings.extend(places.placed(finding) for finding in found)
     return model, _in_order(findings)
 
 
@@ -124,27 +125,39 @@ def _in_order(findings: Iterable[Finding]) -> tuple[Finding, ...]:
     return (*kept[:-1], last)
 
 
-def _placed(sources: dict[str, NodeParameters], finding: Finding) -> Finding:
-    """Return the finding with line and column of its path, or of what there is of the path."""
-    if not finding.path:
-        return finding
-    source = sources[finding.path[0]]
-    key = _find(source.tree, ".".join(finding.path[1:])) or source.key
-    return replace(finding, line=key.line, column=key.column)
+class _Places:
+    """Finds the place of a path of keys; each map is indexed once."""
 
+    def __init__(self, sources: dict[str, NodeParameters]) -> None:
+        self._sources = sources
+        self._indices: dict[int, dict[str, tuple[Scalar, Node | None]]] = {}
 
-def _find(tree: Mapping, path: str) -> Scalar | None:
-    """Return the key at a dotted path, or the last one towards it; None: there is not even that."""
-    for key, value in tree.entries:
-        name = key.text.removeprefix("/")
-        if name == path:
-            return key
-        if not isinstance(value, Mapping):
-            continue
-        if name == PARAMETERS_KEY:
-            found = _find(value, path)
+    def placed(self, finding: Finding) -> Finding:
+        """Return the finding with line and column of its path, or of what there is of the path."""
+        if not finding.path:
+            return finding
+        source = self._sources[finding.path[0]]
+        key = self._find(source.tree, finding.path[1:]) or source.key
+        return replace(finding, line=key.line, column=key.column)
+
+    def _find(self, tree: Mapping, path: tuple[str, ...]) -> Scalar | None:
+        """Return the key at a path, or the last one towards it; None: there is not even that.
+
+        A key may hold several steps of the path, with dots between.
+        """
+        index = self._index(tree)
+        for length in range(1, len(path) + 1):
+            found = index.get(".".join(path[:length]))
             if found is not None:
-                return found
-        elif path.startswith(f"{name}."):
-            return _find(value, path.removeprefix(f"{name}.")) or key
-    return None
+                key, value = found
+                below = self._find(value, path[length:]) if isinstance(value, Mapping) else None
+                return below or key
+        _, hidden = index.get(PARAMETERS_KEY, (None, None))
+        return self._find(hidden, path) if path and isinstance(hidden, Mapping) else None
+
+    def _index(self, tree: Mapping) -> dict[str, tuple[Scalar, Node | None]]:
+        if id(tree) not in self._indices:
+            self._indices[id(tree)] = {
+                key.text.removeprefix("/"): (key, value) for key, value in tree.entries
+            }
+        return self._indices[id(tree)]

@@ -24,6 +24,9 @@ from service.parameter_file import PARAMETERS_KEY, NodeParameters, Parameter
 from service.smh_block import SmhBlock
 from service.smh_values import fitted, read_part_name, read_rule, read_want
 
+MAX_LINES = 2_000_000
+"""Of all modes, each with what it takes over; a model of 10,000 nodes has 100,000."""
+
 _NAMES_IN_TEXT = re.compile(r"[/\w]+(?:[\s,]+[/\w]+)*")
 
 
@@ -41,8 +44,13 @@ def read_parts(sources: Mapping[str, NodeParameters]) -> SmhParts:
     blocks = [SmhBlock(source) for source in sources.values()]
     with_modes = frozenset(block.name for block in blocks if block.modes)
     parts = SmhParts()
+    lines = 0
     for block in blocks:
-        if block.is_node:
+        lines += len(block.modes) * len(block.modes.get(DEFAULT_MODE, ()))
+        if lines > MAX_LINES:
+            message = f"more than {MAX_LINES:,} lines in all modes, with those of {DEFAULT_MODE}"
+            block.complain(block.key, "TOO_LARGE", message)
+        elif block.is_node:
             parts.nodes[block.name] = _read_node(block)
         else:
             parts.systems[block.name] = _read_system(block, with_modes)

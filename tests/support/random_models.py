@@ -1,6 +1,6 @@
 """Random models, and random histories of what happens to the robots that they describe."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import TypeAlias
 
@@ -13,6 +13,7 @@ from domain.system_model import (
     ModeName,
     NodeModel,
     Parameters,
+    ParameterValue,
     PartName,
     SmhModel,
     StateAndMode,
@@ -32,8 +33,10 @@ Happening: TypeAlias = NodeReport | SetTarget
 
 MODES = [ModeName(name) for name in ("A", "a", "Z", "_B")]
 """Upper case, underscore and lower case: in byte order `A Z _B a`, around `__DEFAULT__`."""
-VALUES = st.sampled_from([0, 1, 1.0, True, "x", (1, 2)])
-PARAMETERS = st.dictionaries(st.sampled_from(["p", "q"]), VALUES, max_size=2)
+VALUES: st.SearchStrategy[ParameterValue] = st.sampled_from([0, 1, 1.0, True, "x", (1, 2)])
+PARAMETERS: st.SearchStrategy[Parameters] = st.dictionaries(
+    st.sampled_from(["p", "q"]), VALUES, max_size=2
+)
 
 
 @st.composite
@@ -72,7 +75,8 @@ def _system_modes(
 
 
 def _wanted(modes: list[ModeName]) -> st.SearchStrategy[StateAndMode]:
-    active = [StateAndMode(LifecycleState.ACTIVE, mode) for mode in modes or [None]]
+    choices: Sequence[ModeName | None] = modes or [None]
+    active = [StateAndMode(LifecycleState.ACTIVE, mode) for mode in choices]
     return st.sampled_from([*active, *active, StateAndMode(LifecycleState.INACTIVE)])
 
 

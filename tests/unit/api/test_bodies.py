@@ -1,7 +1,6 @@
 """Bodies are read up to a limit and taken at their word."""
 
 from collections.abc import AsyncIterator
-from typing import Any
 
 import pytest
 
@@ -70,7 +69,7 @@ def test_what_is_no_json_is_malformed_and_nothing_worse(raw: bytes) -> None:
         (b"1.0", 1.0),
     ],
 )
-def test_what_is_json_is_read(raw: bytes, value: Any) -> None:
+def test_what_is_json_is_read(raw: bytes, value: object) -> None:
     assert parse_json(raw) == value
 
 

@@ -1,14 +1,12 @@
 """What a page of another site cannot make a browser do to the robot."""
 
-from collections.abc import MutableMapping
 from typing import Any
 
 import pytest
+from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
 from api.gate import CONTENT_SECURITY_POLICY, Gate, UnexpectedErrors, is_same_origin
 from tests.support.http_robot import HttpRobot, http_scope
-
-Message = MutableMapping[str, Any]
 
 PRESS = '{"engaged": true}'
 JSON = {"content-type": "application/json"}
@@ -220,16 +218,16 @@ async def test_a_fault_in_a_websocket_is_left_to_the_server() -> None:
         await messages_of(UnexpectedErrors(fail), websocket_scope({}))
 
 
-async def fail(scope: Any, receive: Any, send: Any) -> None:
+async def fail(scope: Scope, receive: Receive, send: Send) -> None:
     raise ValueError("secret")
 
 
-async def fail_late(scope: Any, receive: Any, send: Any) -> None:
+async def fail_late(scope: Scope, receive: Receive, send: Send) -> None:
     await send({"type": "http.response.start", "status": 200, "headers": []})
     raise ValueError("secret")
 
 
-async def answer_200(scope: Any, receive: Any, send: Any) -> None:
+async def answer_200(scope: Scope, receive: Receive, send: Send) -> None:
     await send({"type": "http.response.start", "status": 200, "headers": []})
 
 
@@ -239,7 +237,7 @@ def websocket_scope(headers: dict[str, str]) -> dict[str, Any]:
     return {**scope, "type": "websocket", "extensions": {"websocket.http.response": {}}}
 
 
-async def messages_of(app: Any, scope: dict[str, Any]) -> list[Message]:
+async def messages_of(app: ASGIApp, scope: dict[str, Any]) -> list[Message]:
     sent: list[Message] = []
 
     async def receive() -> Message:
@@ -252,6 +250,6 @@ async def messages_of(app: Any, scope: dict[str, Any]) -> list[Message]:
     return sent
 
 
-async def status_of(app: Any, scope: dict[str, Any]) -> int:
+async def status_of(app: ASGIApp, scope: dict[str, Any]) -> int:
     status: int = (await messages_of(app, scope))[0]["status"]
     return status

@@ -8,7 +8,7 @@ from domain.findings import Blocker
 from domain.lifecycle import LifecycleState, Transition
 from domain.messages import ChangeRequest, ModeRequest, ParametersRequest, TransitionRequest
 from domain.node_facts import NodeFacts
-from domain.system_model import ModeName, PartName, SmhModel, SystemModel
+from domain.system_model import ModeName, Parameters, PartName, SmhModel, SystemModel
 from tests.support.models import ACTUATION, ARM, BASE, actuation_model, inactive, nested_model
 
 S, T = LifecycleState, Transition
@@ -16,7 +16,7 @@ ROBOT = PartName("robot")
 UNTOLD = None
 ESTOP = (Blocker("ESTOP", "e-stop is pressed", ("estop",), value=True, since=7),)
 PERFORMANCE = ModeRequest(ACTUATION, "PERFORMANCE")
-FAST = {"max_speed": 0.9, "controller": "MPC"}
+FAST: Parameters = {"max_speed": 0.9, "controller": "MPC"}
 
 
 def _node(
@@ -147,8 +147,8 @@ def test_a_plain_node_may_be_activated_which_it_is() -> None:
 def test_a_plain_node_does_not_keep_its_system_from_being_configured() -> None:
     """system_modes, launch test `two_mixed_nodes`."""
     admission = _admission(_node(None, plain=True), S.UNCONFIGURED)
-    goal = admission.admit(TransitionRequest(ACTUATION, T.CONFIGURE), ())
-    assert list(goal.nodes) == [ARM]
+    assert T.CONFIGURE in admission.available_transitions(ACTUATION, ())
+    admission.admit(TransitionRequest(ACTUATION, T.CONFIGURE), ())
 
 
 # --- what stands against it ----------------------------------------------------------------------

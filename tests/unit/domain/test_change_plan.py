@@ -157,13 +157,12 @@ def test_a_mode_passes_nothing_by() -> None:
     assert targets["manipulator"] == "inactive"
 
 
-@pytest.mark.parametrize("transition", [T.CONFIGURE, T.DEACTIVATE, T.CLEANUP, T.SHUTDOWN])
-def test_nothing_is_asked_of_a_plain_node_but_to_be_active(transition: Transition) -> None:
+def test_a_plain_node_has_the_target_of_its_system_and_no_way_to_it() -> None:
     """system_modes, launch test `two_mixed_nodes`."""
     facts = {ARM: _facts(S.INACTIVE), BASE: _facts(None, has_lifecycle=False)}
-    goal = goal_of(MODEL, TransitionRequest(ACTUATION, transition), facts)
-    assert set(goal.targets) == {ACTUATION, ARM}
-    assert set(goal.nodes) == {ARM}
+    goal = goal_of(MODEL, TransitionRequest(ACTUATION, T.CONFIGURE), facts)
+    assert goal.targets[BASE] == StateAndMode(S.INACTIVE)
+    assert next_steps(facts[BASE], goal.nodes[BASE]) is None
 
 
 def test_a_plain_node_gets_the_parameters_of_its_mode_when_its_system_is_activated() -> None:
@@ -227,7 +226,11 @@ GOAL_FAST = NodeGoal(S.ACTIVE, ModeName("FAST"), FAST)
         # Parameters alone are set in any state.
         (_facts(S.FINALIZED, SLOW), NodeGoal(None, None, FAST), (SET_FAST,)),
         (_facts(S.INACTIVE, FAST), NodeGoal(None, None, FAST), ()),
-        (_facts(S.INACTIVE, {"a": 1}), NodeGoal(None, None, {"a": 1.0}), (SetParameters({"a": 1.0}),)),
+        (
+            _facts(S.INACTIVE, {"a": 1}),
+            NodeGoal(None, None, {"a": 1.0}),
+            (SetParameters({"a": 1.0}),),
+        ),
         # A plain node is active, and nothing else.
         (_facts(None, has_lifecycle=False), GOAL_FAST, (SET_FAST,)),
         (_facts(None, FAST, has_lifecycle=False), GOAL_FAST, ()),

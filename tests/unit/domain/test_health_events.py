@@ -23,7 +23,7 @@ class Health:
         self.now = 0
         self.last = Outputs()
 
-    def read(self, stamp: int | None = None, **values: SignalValue) -> list[Event]:
+    def read(self, stamp: int | None = None, /, **values: SignalValue) -> list[Event]:
         self.outbox.begin(self.now, "signal.read")
         items = tuple(Reading(name, value, stamp) for name, value in values.items())
         changes = self.manager.receive(Readings(items, "test"), self.now)
@@ -174,9 +174,9 @@ def test_silence_has_no_cause_but_time(health: Health) -> None:
 
 
 def test_a_sender_whose_clock_is_off_is_told_once(health: Health) -> None:
-    events = health.read(stamp=seconds(100), temperature=20.0)
+    events = health.read(seconds(100), temperature=20.0)
     assert _only(events, "signal.skewed").data == {"signal": "temperature"}
-    assert health.read(stamp=seconds(101), temperature=20.0) == []
+    assert health.read(seconds(101), temperature=20.0) == []
 
 
 def test_a_robot_that_is_good_for_the_first_time_is_no_longer_in_error() -> None:

@@ -43,7 +43,7 @@ def _report(inference: ModeInference, node: PartName, label: str) -> set[PartNam
     return inference.report(NodeReport(node, state=wanted.state, parameters=parameters))
 
 
-def _inference(model: SmhModel | None = None, **nodes: str) -> ModeInference:
+def _inference(model: SmhModel | None = None, /, **nodes: str) -> ModeInference:
     inference = ModeInference(model or actuation_model())
     for node, label in nodes.items():
         _report(inference, PartName(node), label)
@@ -222,6 +222,7 @@ ACTIVE_PERFORMANCE, ACTIVE_DEFAULT = active("PERFORMANCE"), active()
         # What was asked without a mode, or with one that is not there, is never reached.
         (StateAndMode(S.ACTIVE), "active.__DEFAULT__", "inactive", "activating.__DEFAULT__"),
         (active("NO_SUCH"), "active.FAST", "active.STRONG", "activating.PERFORMANCE"),
+        (active("NO_SUCH"), "active.FAST", "errorprocessing", "errorprocessing"),
         # No state that can be asked for.
         (S.CONFIGURING, "inactive", "inactive", "unknown"),
         (S.UNKNOWN, "inactive", "inactive", "unknown"),

@@ -43,9 +43,7 @@ def test_a_node_that_cannot_be_reached_is_unknown_whatever_it_said_before() -> N
     assert facts.why_unknown == "is unreachable"
 
 
-@pytest.mark.parametrize(
-    ("reachable", "state"), [(True, ACTIVE), (False, LifecycleState.UNKNOWN)]
-)
+@pytest.mark.parametrize(("reachable", "state"), [(True, ACTIVE), (False, LifecycleState.UNKNOWN)])
 def test_a_plain_node_is_active_while_it_is_reachable(
     *, reachable: bool, state: LifecycleState
 ) -> None:

@@ -100,6 +100,8 @@ def test_what_was_taken_is_not_there_a_second_time() -> None:
     outbox.system_state = True
     taken = outbox.take()
     assert taken.commands == (AskFacts(1, ARM),)
-    assert (taken.change, taken.parts, taken.signals) == ("c1", {ARM}, {"estop"})
+    assert taken.change == ChangeId("c1")
+    assert taken.parts == {ARM}
+    assert taken.signals == {"estop"}
     assert taken.system_state
     assert outbox.take() == Outputs()

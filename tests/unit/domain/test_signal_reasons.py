@@ -81,6 +81,8 @@ def test_an_enumeration_that_is_an_error_at_once_is_told_without_a_time() -> Non
     [
         (["api"], "e-stop is pressed (source api)"),
         (["api", "pad"], "e-stop is pressed (sources api, pad)"),
+        (list("abc"), "e-stop is pressed (sources a, b, c)"),
+        (list("abcd"), "e-stop is pressed (sources a, b, c and 1 more)"),
         (list("abcde"), "e-stop is pressed (sources a, b, c and 2 more)"),
     ],
 )

@@ -196,6 +196,10 @@ def test_a_condition_that_does_not_fit_its_signal_is_refused(
     assert pointer in refusal.value.pointer
 
 
+def test_a_clear_threshold_may_be_the_threshold_itself() -> None:
+    assert declare(low(clear=20.0)).facts()["clear_threshold"] == 20.0
+
+
 @pytest.mark.parametrize(
     ("stale_after", "min_on", "pointer"),
     [(-1, 0, "voltage/stale_after_s"), (0, -1, "voltage/min_on_s")],

@@ -103,8 +103,7 @@ async def test_a_job_that_ends_its_process_harms_only_itself(worker: Worker, job
 async def test_a_process_that_died_while_idle_is_replaced(worker: Worker) -> None:
     first = await worker.call(os.getpid)
     os.kill(first, signal.SIGKILL)
-    while is_there(first):
-        await asyncio.sleep(0.01)
+    await asyncio.to_thread(wait_until_gone, first)
 
     assert await worker.call(os.getpid) != first
 
@@ -151,6 +150,11 @@ async def test_ctrl_c_in_the_terminal_does_not_reach_the_process(worker: Worker)
 
 async def test_the_robots_own_work_comes_first(worker: Worker) -> None:
     assert await worker.call(os.nice, 0) > os.nice(0)
+
+
+def wait_until_gone(process: int) -> None:
+    while is_there(process):
+        time.sleep(0.01)
 
 
 def is_there(process: int) -> bool:

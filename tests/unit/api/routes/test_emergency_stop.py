@@ -1,7 +1,5 @@
 """`/emergency_stop`: a latch that only a person releases."""
 
-from typing import Any
-
 import pytest
 
 from tests.support.http_robot import HttpRobot
@@ -67,7 +65,7 @@ async def test_no_reading_releases_it_and_a_person_does(robot: HttpRobot) -> Non
         {"engaged": True, "who": "me"},
     ],
 )
-async def test_what_is_not_clearly_a_stop_is_refused(body: Any, robot: HttpRobot) -> None:
+async def test_what_is_not_clearly_a_stop_is_refused(body: object, robot: HttpRobot) -> None:
     answer = await robot.http.put(PATH, json=body)
 
     assert answer.status_code == 422

@@ -12,10 +12,11 @@ SLOW_AND_WEAK = {
 }
 
 
-async def infer(robot: HttpRobot, **body: Any) -> Any:
+async def infer(robot: HttpRobot, **body: object) -> dict[str, Any]:
     answer = await robot.http.post("/inference", json=body)
     assert answer.status_code == 200, answer.text
-    return answer.json()
+    found: dict[str, Any] = answer.json()
+    return found
 
 
 @pytest.mark.parametrize("model", [None, ACTUATION])
@@ -106,7 +107,7 @@ async def test_nothing_of_it_touches_the_robot(robot: HttpRobot) -> None:
 )
 @pytest.mark.parametrize("model", [None, ACTUATION])
 async def test_what_is_wrong_in_the_body_is_told_with_its_place(
-    model: str | None, body: Any, pointers: list[str], robot: HttpRobot
+    model: str | None, body: object, pointers: list[str], robot: HttpRobot
 ) -> None:
     if model is not None and isinstance(body, dict):
         body = {**body, "model": model}

@@ -342,7 +342,7 @@ async def test_under_estop_a_refusal_carries_the_blockers_that_the_modes_show(
     ],
 )
 async def test_a_body_that_says_something_impossible_is_told_where(
-    path: str, body: Any, pointer: str, robot: HttpRobot
+    path: str, body: object, pointer: str, robot: HttpRobot
 ) -> None:
     answer = await robot.http.post(path, json=body)
 
@@ -361,7 +361,7 @@ async def test_a_client_that_goes_while_it_waits_leaves_nothing_behind(robot: Ht
         await gone.wait()
         return {"type": "http.disconnect"}
 
-    async def send(message: Any) -> None:
+    async def send(message: object) -> None:
         del message
 
     path = "/nodes/drive_base/mode"

@@ -1,7 +1,6 @@
 """`/signals` as an operator, or a sensor, uses it."""
 
 from collections.abc import AsyncIterator
-from typing import Any
 
 import pytest
 
@@ -111,7 +110,7 @@ async def test_several_readings_are_taken_together(unmocked: HttpRobot) -> None:
     ],
 )
 async def test_one_reading_that_cannot_be_right_lets_none_be_taken(
-    signal: str, value: Any, code: str, unmocked: HttpRobot
+    signal: str, value: object, code: str, unmocked: HttpRobot
 ) -> None:
     await unmocked.http.post("/signals", json=GOOD)
 

@@ -1,0 +1,30 @@
+"""What routes are handed."""
+
+from tests.support.http_robot import HttpRobot, http_scope
+
+
+async def test_who_asks_is_recorded_by_address(robot: HttpRobot) -> None:
+    await robot.http.put("/emergency_stop", json={"engaged": True})
+
+    (event,) = [e for e in robot.supervisor.events.oldest_first() if "engaged" in e.kind]
+
+    assert event.actor == "http:127.0.0.1"
+
+
+async def test_who_asks_over_a_socket_without_addresses_is_unknown(robot: HttpRobot) -> None:
+    scope = {**http_scope("PUT", "/emergency_stop"), "client": None}
+
+    async def receive() -> dict[str, object]:
+        return {"type": "http.request", "body": b'{"engaged": true}', "more_body": False}
+
+    async def send(message: object) -> None:
+        del message
+
+    await robot.app(scope, receive, send)
+
+    assert (await robot.get("/emergency_stop"))["by"] == "http:unknown"
+
+
+async def test_the_part_in_a_path_is_looked_up_by_its_kind(robot: HttpRobot) -> None:
+    assert (await robot.http.get("/nodes/drive_base")).status_code == 200
+    assert (await robot.http.get("/systems/drive_base")).status_code == 404
