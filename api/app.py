@@ -7,6 +7,7 @@ from functools import partial
 from fastapi import FastAPI
 from starlette.middleware import Middleware
 
+from api import posted_models
 from api.distribution import installed_version
 from api.gate import Gate, SecurityHeaders, UnexpectedErrors
 from api.openapi import describe
@@ -72,7 +73,7 @@ def create_app(supervisor: Supervisor, *, allowed_hosts: Sequence[str]) -> FastA
         ],
     )
     app.state.supervisor = supervisor
-    app.state.worker = Worker()
+    app.state.worker = Worker(modules=[posted_models.__name__])
     app.state.model_json = model.encode_model(supervisor)
     add_problem_handlers(app, supervisor.clock)
     for router in _RESOURCES:

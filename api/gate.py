@@ -25,7 +25,6 @@ CONTENT_SECURITY_POLICY = (
 )
 
 _SAFE_METHODS = frozenset({"GET", "HEAD", "OPTIONS"})
-_STARTS = frozenset({"http.response.start", "websocket.http.response.start"})
 
 
 class SecurityHeaders:
@@ -46,7 +45,7 @@ class SecurityHeaders:
         """Add to the headers of the answer what it does not say itself."""
 
         async def send_with_headers(message: Message) -> None:
-            if message["type"] in _STARTS:
+            if message["type"] == "http.response.start":
                 headers = MutableHeaders(scope=message)
                 for name, value in self.HEADERS.items():
                     headers.setdefault(name, value)
@@ -185,11 +184,8 @@ def _is_typed(headers: Headers) -> bool:
 
 
 async def _refuse(problem: Problem, scope: Scope, receive: Receive, send: Send) -> None:
-    if scope["type"] == "websocket" and "websocket.http.response" not in scope.get(
-        "extensions", {}
-    ):
-        # Closed before it was accepted: the server itself answers 403.
-        await receive()
+    if scope["type"] == "websocket":
+        # Closed before it was accepted: the server answers 403. A page is not shown a body anyway.
         await send({"type": "websocket.close", "code": 1008})
-        return
-    await problem_response(problem)(scope, receive, send)
+    else:
+        await problem_response(problem)(scope, receive, send)

@@ -2,12 +2,12 @@
 
 from typing import Annotated, Any
 
-from pydantic import Field
+from pydantic import BeforeValidator, Field
 
 from api.bodies import MAX_MODEL_BYTES
 from api.schemas import Body, FindingJson, Json, StateAndModeJson
 from api.schemas_parts import ActualJson
-from api.values import FromLabel, SentParameter
+from api.values import SentParameter, split_label
 from domain.findings import Finding
 from domain.system_model import NodeModel, SystemModel
 
@@ -31,14 +31,25 @@ class ReportedNodeBody(Body):
     )
 
 
+SentTarget = Annotated[
+    TargetBody | None,
+    BeforeValidator(split_label, json_schema_input_type=str | TargetBody | None),
+]
+SentNode = Annotated[
+    ReportedNodeBody | None,
+    BeforeValidator(split_label, json_schema_input_type=str | ReportedNodeBody | None),
+]
+"""A state and mode may be sent as a label, too."""
+
+
 class InferenceBody(Body):
     """Targets and facts, and the model that they are about."""
 
     model: str | None = Field(
         default=None, max_length=MAX_MODEL_BYTES, description="YAML; left out: the loaded one"
     )
-    targets: dict[str, Annotated[TargetBody | None, FromLabel]] = Field(default_factory=dict)
-    nodes: dict[str, Annotated[ReportedNodeBody | None, FromLabel]] = Field(default_factory=dict)
+    targets: dict[str, SentTarget] = Field(default_factory=dict)
+    nodes: dict[str, SentNode] = Field(default_factory=dict)
 
 
 class DeviationJson(Json):

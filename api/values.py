@@ -3,7 +3,7 @@
 import math
 from typing import Annotated, Any
 
-from pydantic import BeforeValidator, PlainValidator, WithJsonSchema
+from pydantic import PlainValidator, WithJsonSchema
 from pydantic_core import PydanticCustomError
 
 from domain.messages import SignalValue
@@ -106,6 +106,3 @@ SentParameter = Annotated[
     ),
 ]
 """Validates to a `ParameterValue`; 1 is an integer and 1.0 a double, as in ROS 2."""
-
-FromLabel = BeforeValidator(split_label, json_schema_input_type=str | dict[str, str | None])
-"""Lets a state and mode be sent as a label, too."""

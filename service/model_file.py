@@ -7,7 +7,7 @@ Source: deliverable D4.8, 4.1; micro-ROS system_modes, README.
 """
 
 import gc
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -19,7 +19,7 @@ from domain.system_model import SmhModel, find_errors
 from service.parameter_file import PARAMETERS_KEY, NodeParameters, read_parameter_file
 from service.smh_reader import SmhParts, read_parts
 from service.text_file import read_text_file
-from service.yaml_tree import Mapping, Node, Scalar, read_tree
+from service.yaml_tree import Mapping, Node, Scalar, in_order, read_tree
 
 MAX_FINDINGS = 1_000
 """Told of one model; the rest is counted."""
@@ -85,7 +85,7 @@ def _collector_paused() -> Iterator[None]:
 def _read_all(text: str) -> tuple[SmhModel | None, tuple[Finding, ...]]:
     tree = read_tree(text)
     if not tree.is_complete:
-        return None, _in_order(tree.findings)
+        return None, _limited(in_order(text, tree.findings))
     file = read_parameter_file(tree.documents)
     parts = read_parts(file.nodes)
     findings = [*tree.findings, *file.findings, *parts.findings]
@@ -96,7 +96,7 @@ def _read_all(text: str) -> tuple[SmhModel | None, tuple[Finding, ...]]:
         model, found = _build(parts)
     places = _Places(file.nodes)
     findings.extend(places.placed(finding) for finding in found)
-    return model, _in_order(findings)
+    return model, _limited(in_order(text, findings))
 
 
 def _build(parts: SmhParts) -> tuple[SmhModel | None, list[Finding]]:
@@ -112,17 +112,14 @@ def _build(parts: SmhParts) -> tuple[SmhModel | None, list[Finding]]:
     return model, found
 
 
-def _in_order(findings: Iterable[Finding]) -> tuple[Finding, ...]:
-    """Sort findings by place; of too many keep the first, errors before warnings."""
-    ordered = sorted(findings, key=lambda finding: (finding.line or 0, finding.column or 0))
-    if len(ordered) <= MAX_FINDINGS:
-        return tuple(ordered)
-    kept = sorted(ordered, key=lambda finding: finding.severity)[:MAX_FINDINGS]
-    more = len(ordered) - MAX_FINDINGS
-    last = replace(
-        kept[-1], code="MORE_FINDINGS", message=f"and {more + 1} more", part=None, path=()
-    )
-    return (*kept[:-1], last)
+def _limited(findings: list[Finding]) -> tuple[Finding, ...]:
+    """Return the first of too many findings, errors before warnings."""
+    if len(findings) <= MAX_FINDINGS:
+        return tuple(findings)
+    kept = sorted(findings, key=lambda finding: finding.severity)[: MAX_FINDINGS - 1]
+    more = len(findings) - len(kept)
+    last = replace(kept[-1], code="MORE_FINDINGS", message=f"and {more} more", part=None, path=())
+    return (*kept, last)
 
 
 class _Places:

@@ -18,7 +18,7 @@ from domain.timebase import seconds
 from service.parameter_file import scalar_value
 from service.robot_settings import ChangesBlock, NodeBlock, SettingsBlock, SignalsBlock
 from service.text_file import read_text_file
-from service.yaml_tree import Mapping, Node, Scalar, Sequence, finding_at, read_tree
+from service.yaml_tree import Mapping, Node, Scalar, Sequence, finding_at, in_order, read_tree
 
 _CODES = {"extra_forbidden": "UNKNOWN_KEY", "missing": "MISSING_KEY"}
 _WORDS = {"extra_forbidden": "there is no such key", "model_type": "there must be keys below"}
@@ -99,7 +99,7 @@ def read_robot_file(text: str, model: SmhModel) -> RobotSettings:
         if not findings:
             settings = _settings(root, data, model, findings)
     if settings is None or findings:
-        raise InvalidRobotFileError(sorted(findings, key=lambda f: (f.line or 0, f.column or 0)))
+        raise InvalidRobotFileError(in_order(text, findings))
     return settings
 
 

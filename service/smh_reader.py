@@ -158,7 +158,9 @@ def _compare_parts(block: SmhBlock, named: set[PartName]) -> None:
             names = tuple(re.split(r"[\s,]+", names))
         if parameter.name != "parts" or not isinstance(names, tuple):
             continue
-        listed = {part_name(str(name)) for name in names}
+        listed = {part_name(name) for name in names if isinstance(name, str)}
+        if len(listed) != len(names):
+            continue
         more, fewer = sorted(listed - named), sorted(named - listed)
         words = [f"it also lists {', '.join(more)}"] * bool(more)
         words += [f"it lacks {', '.join(fewer)}"] * bool(fewer)

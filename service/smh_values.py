@@ -52,7 +52,7 @@ def fitted(pair: StateAndMode, part: PartName, with_modes: Collection[PartName])
 
 
 def read_rule(block: SmhBlock, name: str, with_modes: Collection[PartName]) -> Rule | None:
-    """Read a rule; None after a complaint."""
+    """Read a rule; None where too little of it can be read."""
     lines, where = block.rules[name], f"rule {name} of {block.name}"
     for key, line in lines.items():
         if key not in _RULE_KEYS:

@@ -11,7 +11,7 @@ import os
 import pickle
 import sys
 from asyncio.subprocess import PIPE, Process
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from typing import ParamSpec, TypeVar, cast
 
 from domain.errors import PilothouseError
@@ -51,12 +51,14 @@ class JobFailedError(Exception):
 class Worker:
     """Does one job at a time in its own process, which is started when there is something to do."""
 
-    def __init__(self, deadline_s: float = DEADLINE_S) -> None:
+    def __init__(self, modules: Sequence[str] = (), deadline_s: float = DEADLINE_S) -> None:
         """Prepare; nothing is started yet.
 
         Args:
+            modules: What the process imports at its start, so that the first job need not.
             deadline_s: How long one job may take.
         """
+        self._modules = tuple(modules)
         self._deadline_s = deadline_s
         self._process: Process | None = None
         self._turn = asyncio.Lock()
@@ -69,9 +71,12 @@ class Worker:
 
     async def close(self) -> None:
         """End the process; a job that it is at fails."""
-        process, self._process = self._process, None
-        if process is not None:
-            await _end(process)
+        if self._process is not None and self._process.returncode is None:
+            self._process.kill()
+        async with self._turn:
+            process, self._process = self._process, None
+            if process is not None:
+                await _end(process)
 
     async def call(
         self, function: Callable[Given, Result], *arguments: Given.args, **_: Given.kwargs
@@ -129,6 +134,7 @@ class Worker:
                 "-c",
                 # Not `-m`: its module would be called __main__ there, and so would its classes.
                 "from service.worker_process import main; main()",
+                *self._modules,
                 stdin=PIPE,
                 stdout=PIPE,
                 env={**os.environ, "PYTHONPATH": path},

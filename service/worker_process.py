@@ -4,6 +4,7 @@ A message is a length and that many bytes of pickle. Only `service.worker` write
 writes only functions of this program and their arguments.
 """
 
+import importlib
 import os
 import pickle
 import struct
@@ -92,7 +93,7 @@ def do(job: bytes) -> Reply:
 
 
 def main() -> None:
-    """Step back behind the robot's own work, then serve."""
+    """Step back behind the robot's own work, import the modules in the arguments, then serve."""
     os.nice(_NICENESS)
     if sys.platform != "win32":
         import resource
@@ -101,6 +102,8 @@ def main() -> None:
     replies = os.fdopen(os.dup(sys.stdout.fileno()), "wb")
     # What a job prints must not end up between the replies.
     os.dup2(sys.stderr.fileno(), sys.stdout.fileno())
+    for module in sys.argv[1:]:
+        importlib.import_module(module)
     try:
         serve(sys.stdin.buffer, replies)
     except MemoryError:

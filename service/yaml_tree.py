@@ -6,8 +6,8 @@ no aliases, so a small file cannot become a large one.
 """
 
 import re
-from collections.abc import Callable
-from dataclasses import dataclass, field
+from collections.abc import Callable, Iterable
+from dataclasses import dataclass, field, replace
 from typing import Any, Literal, TypeAlias
 
 import yaml
@@ -79,6 +79,14 @@ def finding_at(
 ) -> Finding:
     """Return a finding about what stands at `place`."""
     return Finding(severity, code, message, part, (), place.line, place.column)
+
+
+def in_order(text: str, findings: Iterable[Finding]) -> list[Finding]:
+    """Sort findings by place; what libyaml places after the last line is moved to its end."""
+    lines = _LINE_BREAK.split(text)
+    last, end = len(lines), len(lines[-1]) + 1
+    inside = (replace(f, line=last, column=end) if (f.line or 0) > last else f for f in findings)
+    return sorted(inside, key=lambda finding: (finding.line or 0, finding.column or 0))
 
 
 def read_tree(text: str) -> YamlTree:

@@ -44,7 +44,7 @@ async def get_model(request: Request, supervisor: SupervisorDep) -> Response:
 @router.post(
     "/check",
     response_model=ModelCheckJson,
-    openapi_extra={"requestBody": {"content": {_YAML: {"schema": {"type": "string"}}}}},
+    openapi_extra={"requestBody": {"content": {_YAML: {"schema": {}}}}},
 )
 async def check_posted_model(request: Request, worker: WorkerDep) -> Response:
     """Check a model (SMH, YAML): everything that is wrong with it, and what is odd, at once."""

@@ -15,8 +15,9 @@ import pytest
 import requests
 import schemathesis
 from hypothesis import HealthCheck, settings
-from schemathesis import Case
-from schemathesis.checks import CHECKS
+from schemathesis import Case, CheckFunction
+from schemathesis.checks import not_a_server_error
+from schemathesis.specs.openapi.checks import positive_data_acceptance
 
 from api.app import create_app
 from tests.support.http_robot import HttpRobot, http_robot
@@ -24,20 +25,13 @@ from tests.support.live_robot import make_supervisor
 from tests.support.manual_clock import settle
 
 BASE_URL = "http://robot:8000"
-CHECKED = [
-    check
-    for check in CHECKS.get_all()
-    if check.__name__
-    in {
-        "content_type_conformance",
-        "response_headers_conformance",
-        "response_schema_conformance",
-        "status_code_conformance",
-        "negative_data_rejection",
-        "unsupported_method",
-    }
+LEFT_OUT: list[CheckFunction] = [
+    # What is right by its form may name a part that there is not.
+    positive_data_acceptance,
+    # 504 is an answer: the outcome is not known. Everything else is checked in the test.
+    not_a_server_error,
 ]
-EXAMPLES = 200 if os.environ.get("PILOTHOUSE_SOAK") == "1" else 8
+EXAMPLES = 200 if os.environ.get("PILOTHOUSE_SOAK") == "1" else 4
 
 schema = schemathesis.openapi.from_dict(create_app(make_supervisor(), allowed_hosts=[]).openapi())
 
@@ -63,8 +57,8 @@ class Storm:
             self.robot.http.request(
                 str(request.method),
                 str(request.url),
-                headers=[(k, v) for k, v in request.headers.items() if k.lower() != "cookie"],
-                content=request.body,
+                headers={name: str(value) for name, value in request.headers.items()},
+                content=request.body if isinstance(request.body, bytes | str) else None,
             )
         )
         await settle()
@@ -99,7 +93,7 @@ def storm() -> Iterator[Storm]:
 
 @schema.parametrize()
 @settings(max_examples=EXAMPLES, suppress_health_check=list(HealthCheck))
-def test_a_request_of_any_kind_is_answered_as_described(case: Case, storm: Storm) -> None:
+def test_a_request_of_any_kind_is_answered_as_described(case: Case[Any], storm: Storm) -> None:
     before = storm.facts()
     kwargs = case.as_transport_kwargs(base_url=BASE_URL)
     prepared = requests.Request(**kwargs).prepare()
@@ -111,4 +105,4 @@ def test_a_request_of_any_kind_is_answered_as_described(case: Case, storm: Storm
     )
     if not answer.is_success and not waited:
         assert storm.facts() == before
-    case.validate_response(answer, checks=CHECKED)
+    case.validate_response(answer, excluded_checks=LEFT_OUT)

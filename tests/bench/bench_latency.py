@@ -13,7 +13,7 @@ import pytest
 import websockets
 
 from tests.support.bench import quantiles, report
-from tests.support.process import service
+from tests.support.process import connect, service
 
 pytestmark = pytest.mark.bench
 
@@ -87,7 +87,7 @@ class Prober:
 async def prober(url: str, query: str = "") -> AsyncIterator[Prober]:
     parts = urlsplit(url)
     reader, writer = await asyncio.open_connection(parts.hostname, parts.port)
-    async with websockets.connect(f"ws://{parts.netloc}/ws{query}") as client:
+    async with connect(f"ws://{parts.netloc}/ws{query}") as client:
         yield Prober(client, (reader, writer))
     writer.close()
     await writer.wait_closed()

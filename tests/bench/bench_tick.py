@@ -12,7 +12,7 @@ import pytest
 import websockets
 
 from tests.support.bench import quantiles, report
-from tests.support.process import service
+from tests.support.process import connect, service
 
 pytestmark = pytest.mark.bench
 
@@ -60,7 +60,7 @@ async def test_the_tick_keeps_its_period(tmp_path: Path) -> None:
     script.write_text(RECORDING)
     command = (sys.executable, str(script), str(recorded))
     with service(command=command) as running:
-        async with websockets.connect(running.stream_url) as client:
+        async with connect(running.stream_url) as client:
             await client.recv()
             bare = await asyncio.create_subprocess_exec(
                 sys.executable, "-c", BARE, str(SECONDS * 20), stdout=asyncio.subprocess.PIPE

@@ -12,13 +12,13 @@ import httpx
 import pytest
 import websockets
 
-from tests.support.process import read_on, run, service
+from tests.support.process import connect, read_on, run, service
 from tests.support.waiting import until
 
 
 async def test_sigterm_ends_it_in_time_and_clients_are_told_that_it_goes() -> None:
     with service() as running:
-        async with websockets.connect(running.stream_url) as client:
+        async with connect(running.stream_url) as client:
             await client.recv()
 
             running.send_signal(signal.SIGTERM)

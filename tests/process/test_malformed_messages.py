@@ -5,12 +5,11 @@ import json
 from typing import Any
 
 import pytest
-import websockets
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 from websockets.asyncio.client import ClientConnection
 
-from tests.support.process import service
+from tests.support.process import connect, service
 
 _JSON = st.recursive(
     st.none() | st.booleans() | st.floats() | st.integers() | st.text(max_size=20),
@@ -46,7 +45,7 @@ GOOD = json.dumps({"type": "reading", "signal": GOOD_SIGNAL, "value": 0})
 
 async def _bombard(batches: list[list[str | bytes]]) -> None:
     with service() as running:
-        async with websockets.connect(f"{running.stream_url}?topics=events") as client:
+        async with connect(f"{running.stream_url}?topics=events") as client:
             assert json.loads(await client.recv())["type"] == "hello"
             for batch in batches:
                 for message in [*batch, GOOD]:

@@ -12,6 +12,7 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import IO
 
+import websockets
 from websockets.asyncio.client import ClientConnection
 
 COMMAND = (str(Path(sys.executable).with_name("pilothouse")),)
@@ -105,6 +106,15 @@ def run(*arguments: str) -> tuple[int, str, str]:
         [*COMMAND, *arguments], capture_output=True, text=True, timeout=_PATIENCE_S, check=False
     )
     return done.returncode, done.stdout, done.stderr
+
+
+def connect(url: str) -> websockets.connect:
+    """Return a connection to a stream.
+
+    Without a limit to what it keeps: at the usual one it stops to read, and then its own closing
+    handshake takes ten seconds.
+    """
+    return websockets.connect(url, max_queue=None)
 
 
 async def read_on(client: ClientConnection) -> None:

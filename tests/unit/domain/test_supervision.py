@@ -637,6 +637,13 @@ def test_what_is_not_there_is_told(robot: VirtualRobot) -> None:
         robot.core.signal("speed")
 
 
+def test_a_part_is_shown_with_the_change_that_it_is_under(robot: VirtualRobot) -> None:
+    change = robot.mode("drive_base", "FAST")
+    assert robot.core.part(BASE).change == change
+    assert robot.core.part(ARM).change is None
+    assert robot.core.part(BASE) is robot.core.parts()[BASE]
+
+
 def test_changes_are_shown_newest_first(robot: VirtualRobot) -> None:
     older, newer = robot.mode("drive_base", "FAST"), robot.mode("manipulator", "WEAK")
     assert [change.id for change in robot.core.changes()] == [newer, older]

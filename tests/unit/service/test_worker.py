@@ -6,7 +6,9 @@ These tests start real processes, and wait in real time for them alone.
 import asyncio
 import os
 import signal
+import sys
 import time
+from asyncio.subprocess import PIPE
 from collections.abc import AsyncIterator
 
 import pytest
@@ -14,12 +16,27 @@ import pytest
 from domain.errors import UnknownPartError
 from service.worker import QUEUE_LENGTH, JobFailedError, TooComplexError, Worker, WorkerBusyError
 
+HOLDER = """
+import asyncio, os
+from service.worker import Worker
+
+async def main():
+    print(await Worker().call(os.getpid), flush=True)
+    await asyncio.sleep(60)
+
+asyncio.run(main())
+"""
+
 
 @pytest.fixture
 async def worker() -> AsyncIterator[Worker]:
     made = Worker()
     yield made
     await made.close()
+
+
+def is_imported(module: str) -> bool:
+    return module in sys.modules
 
 
 def wait_for_ever() -> None:
@@ -45,6 +62,14 @@ def divide_by_zero() -> float:
 
 async def test_a_job_is_done_in_another_process(worker: Worker) -> None:
     assert await worker.call(os.getpid) != os.getpid()
+
+
+async def test_what_jobs_need_is_imported_before_the_first_one() -> None:
+    worker = Worker(modules=["wave"])
+    try:
+        assert await worker.call(is_imported, "wave")
+    finally:
+        await worker.close()
 
 
 async def test_the_same_process_does_one_job_after_the_other(worker: Worker) -> None:
@@ -143,6 +168,30 @@ async def test_the_process_ends_with_the_worker_and_a_closed_one_can_be_closed_a
     assert not is_there(process)
 
 
+async def test_a_job_does_not_hold_up_the_end() -> None:
+    worker = Worker()
+    await worker.start()
+    job = asyncio.create_task(worker.call(time.sleep, 60))
+    await asyncio.sleep(0.1)
+
+    await worker.close()
+
+    with pytest.raises(TooComplexError):
+        await job
+
+
+async def test_the_process_ends_also_when_ours_is_killed() -> None:
+    ours = await asyncio.create_subprocess_exec(sys.executable, "-c", HOLDER, stdout=PIPE)
+    assert ours.stdout is not None
+    worker = int(await ours.stdout.readline())
+    assert is_there(worker)
+
+    ours.kill()
+    await ours.communicate()
+
+    await asyncio.to_thread(wait_until_gone, worker)
+
+
 async def test_ctrl_c_in_the_terminal_does_not_reach_the_process(worker: Worker) -> None:
     # A terminal sends SIGINT to the processes of its session's foreground group.
     assert await worker.call(os.getsid, 0) != os.getsid(0)
@@ -162,5 +211,5 @@ def is_there(process: int) -> bool:
     try:
         with open(f"/proc/{process}/stat", encoding="ascii") as file:
             return file.read().rpartition(") ")[2][0] != "Z"
-    except FileNotFoundError:
+    except (FileNotFoundError, ProcessLookupError):
         return False
