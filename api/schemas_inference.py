@@ -1,8 +1,8 @@
 """Posted models and facts, and what follows from them."""
 
-from typing import Annotated, Any
+from typing import Any
 
-from pydantic import BeforeValidator, Field
+from pydantic import ConfigDict, Field, model_validator
 
 from api.bodies import MAX_MODEL_BYTES
 from api.schemas import Body, FindingJson, Json, StateAndModeJson
@@ -12,14 +12,32 @@ from domain.findings import Finding
 from domain.system_model import NodeModel, SystemModel
 
 
-class TargetBody(Body):
+def _or_label(schema: dict[str, Any]) -> None:
+    """Describe an object that may be sent as a label."""
+    described = dict(schema)
+    schema.clear()
+    schema["anyOf"] = [{"type": "string", "examples": ["active.FAST"]}, described]
+
+
+class Labelled(Body):
+    """A state and mode, with more, that may be sent as a label: `active.FAST`."""
+
+    model_config = ConfigDict(json_schema_extra=_or_label)
+
+    @model_validator(mode="before")
+    @classmethod
+    def _from_label(cls, sent: object) -> object:
+        return split_label(sent)
+
+
+class TargetBody(Labelled):
     """A lifecycle state and, where there is one, the mode in it."""
 
     state: str
     mode: str | None = None
 
 
-class ReportedNodeBody(Body):
+class ReportedNodeBody(Labelled):
     """What a node is taken to have reported."""
 
     state: str | None = Field(
@@ -31,25 +49,14 @@ class ReportedNodeBody(Body):
     )
 
 
-SentTarget = Annotated[
-    TargetBody | None,
-    BeforeValidator(split_label, json_schema_input_type=str | TargetBody | None),
-]
-SentNode = Annotated[
-    ReportedNodeBody | None,
-    BeforeValidator(split_label, json_schema_input_type=str | ReportedNodeBody | None),
-]
-"""A state and mode may be sent as a label, too."""
-
-
 class InferenceBody(Body):
     """Targets and facts, and the model that they are about."""
 
     model: str | None = Field(
         default=None, max_length=MAX_MODEL_BYTES, description="YAML; left out: the loaded one"
     )
-    targets: dict[str, SentTarget] = Field(default_factory=dict)
-    nodes: dict[str, SentNode] = Field(default_factory=dict)
+    targets: dict[str, TargetBody | None] = Field(default_factory=dict)
+    nodes: dict[str, ReportedNodeBody | None] = Field(default_factory=dict)
 
 
 class DeviationJson(Json):

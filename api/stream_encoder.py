@@ -1,7 +1,9 @@
 """Make the text of frames and events, once for all clients that get the same."""
 
+import asyncio
 from collections.abc import Callable, Iterable, Iterator, Mapping
-from typing import Generic, TypeVar
+from itertools import islice
+from typing import Any, Generic, TypeVar
 
 from pydantic_core import to_json
 
@@ -21,6 +23,7 @@ from service.frame_feed import Frame
 from service.supervisor import PERIOD, Supervisor
 
 _EVENTS_KEPT = 1_000
+_MEMBERS_AT_ONCE = 200
 _PATH = "/ws"
 
 View = TypeVar("View")
@@ -36,7 +39,8 @@ class StreamEncoder:
         self._signals = _Members[SignalView](
             lambda view: StreamedSignalJson.of(view, clock).model_dump_json()
         )
-        self._bodies: dict[tuple[bool, ...], tuple[Frame, _StateText]] = {}
+        self._texts: dict[tuple[bool, ...], tuple[Frame, _StateText]] = {}
+        """The newest of each shape; clients that ask for the same share it."""
         self._events: dict[int, str] = {}
 
     def hello(self, topics: frozenset[str]) -> str:
@@ -48,9 +52,23 @@ class StreamEncoder:
             version=installed_version(),
         ).model_dump_json()
 
+    async def prepare(self, frame: Frame, topics: frozenset[str]) -> None:
+        """Encode a large number of new members a few at a time, and let others run in between.
+
+        The first frame of a robot with 10,000 parts takes longer than a tick may be late.
+        """
+        if "parts" in topics and self._known_text(frame, topics) is None:
+            new = iter(self._parts.new_ones(frame.parts.items()))
+            while self._parts.learn(islice(new, _MEMBERS_AT_ONCE)) == _MEMBERS_AT_ONCE:
+                await asyncio.sleep(0)
+
     def frame(self, frame: Frame, skipped: int, topics: frozenset[str]) -> str:
         """Return a `state` frame; to clients in step with the same topics, the same string."""
-        return self._state_text(frame, "parts" in topics, "signals" in topics).after(skipped)
+        known = self._known_text(frame, topics)
+        if known is None:
+            known = self._encode(frame, topics)
+            self._texts[_shape(frame, topics)] = (frame, known)
+        return known.after(skipped)
 
     def event(self, event: Event) -> str:
         """Return an `event` frame."""
@@ -70,23 +88,20 @@ class StreamEncoder:
         document = problem_of(error, self._clock, _PATH)
         return document.model_copy(update={"type": "problem"}).as_json()
 
-    def _state_text(self, frame: Frame, parts: bool, signals: bool) -> "_StateText":
-        kind = (frame.full, parts, signals)
-        known = self._bodies.get(kind)
-        if known is None or known[0] is not frame:
-            known = self._bodies[kind] = (frame, self._encode(frame, parts, signals))
-        return known[1]
+    def _known_text(self, frame: Frame, topics: frozenset[str]) -> "_StateText | None":
+        known = self._texts.get(_shape(frame, topics))
+        return known[1] if known is not None and known[0] is frame else None
 
-    def _encode(self, frame: Frame, parts: bool, signals: bool) -> "_StateText":
+    def _encode(self, frame: Frame, topics: frozenset[str]) -> "_StateText":
         at = timestamp(self._clock, frame.at)
         state = SystemStateJson.of(
             frame.system_state, frame.seq, frame.at, frame.simulated, self._clock
         )
         members = [f'"system_state":{state.model_dump_json()}']
-        if parts and (frame.full or frame.parts):
-            members.append(f'"parts":{self._parts.text(frame.parts.items())}')
-        if signals and (frame.full or frame.signals):
-            members.append(f'"signals":{self._signals.text(frame.signals.items())}')
+        if "parts" in topics and (frame.full or frame.parts):
+            members.append(f'"parts":{self._parts.text(frame.parts)}')
+        if "signals" in topics and (frame.full or frame.signals):
+            members.append(f'"signals":{self._signals.text(frame.signals)}')
         return _StateText(
             f'{{"type":"state","seq":{frame.seq},"at":"{at}","skipped":', f",{','.join(members)}}}"
         )
@@ -115,6 +130,7 @@ class _StateText:
         self._in_step = f"{head}0{tail}"
 
     def after(self, skipped: int) -> str:
+        """Return the frame for a client that missed so many before it."""
         return self._in_step if skipped == 0 else f"{self._head}{skipped}{self._tail}"
 
 
@@ -128,16 +144,31 @@ class _Members(Generic[View]):
         self._encode = encode
         self._known: dict[str, tuple[View, str]] = {}
 
-    def text(self, views: Iterable[tuple[str, View]]) -> str:
+    def text(self, views: Mapping[Any, View]) -> str:
+        """Return the object that holds these members."""
         return f"{{{','.join(self._each(views))}}}"
 
-    def _each(self, views: Iterable[tuple[str, View]]) -> Iterator[str]:
+    def new_ones(self, views: Iterable[tuple[str, View]]) -> Iterator[tuple[str, View]]:
+        """Yield the members that are not known as they are here."""
         for name, view in views:
             known = self._known.get(name)
             if known is None or known[0] is not view:
-                text = f"{to_json(name).decode()}:{self._encode(view)}"
-                known = self._known[name] = (view, text)
-            yield known[1]
+                yield name, view
+
+    def learn(self, views: Iterable[tuple[str, View]]) -> int:
+        """Encode members; return how many there were."""
+        count = 0
+        for count, (name, view) in enumerate(views, start=1):
+            self._known[name] = (view, f"{to_json(name).decode()}:{self._encode(view)}")
+        return count
+
+    def _each(self, views: Mapping[Any, View]) -> Iterator[str]:
+        self.learn(self.new_ones(views.items()))
+        return (self._known[name][1] for name in views)
+
+
+def _shape(frame: Frame, topics: frozenset[str]) -> tuple[bool, ...]:
+    return frame.full, "parts" in topics, "signals" in topics
 
 
 def _plain(value: object) -> object:

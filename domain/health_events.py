@@ -15,7 +15,8 @@ class HealthEvents:
         self._health = health
         self._outbox = outbox
         self._pending: dict[str, int] = {}
-        self._told: tuple[SystemState, tuple[str, ...]] = (SystemState.IDLE, ())
+        view = health.system_state(TaskStatus.NO_TASK)
+        self._told: tuple[SystemState, tuple[str, ...]] = (view.state, view.errors)
 
     def publish(self, changes: HealthChanges, task_status: TaskStatus) -> None:
         """Record what changed, causes first."""

@@ -81,7 +81,7 @@ def _types_that_differ(node: NodeModel) -> Iterator[Finding]:
     default = node.modes.get(DEFAULT_MODE, {})
     for mode, parameters in node.modes.items():
         for name, value in parameters.items():
-            usual, own = value_type(default[name]), value_type(value)
+            usual, own = value_type(default.get(name, value)), value_type(value)
             if usual != own:
                 message = (
                     f"{node.name} in {mode}: {name} is {own} here and {usual} in {DEFAULT_MODE}; "
@@ -95,7 +95,7 @@ def _never_inferred(node: NodeModel) -> Iterator[Finding]:
     default = node.modes.get(DEFAULT_MODE, {})
     for mode, parameters in node.modes.items():
         for name, value in parameters.items():
-            taken_over = mode != DEFAULT_MODE and default[name] is value
+            taken_over = mode != DEFAULT_MODE and default.get(name) is value
             if not taken_over and _is_never_equal(value):
                 what = "a list" if isinstance(value, tuple) else "not a number"
                 message = (

@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from domain.errors import InvalidValueError, UnknownParameterError, UnknownPartError
 from domain.messages import ChangeRequest, ModeRequest, ParametersRequest, TransitionRequest
 from domain.node_facts import NodeFacts
-from domain.system_model import ParameterValue, PartName, SmhModel
+from domain.system_model import ParameterValue, PartName, SmhModel, value_type
 
 
 def check_request(
@@ -47,22 +47,11 @@ def _check_value(
         return
     if name not in known:
         raise UnknownParameterError(f"parameter of {node}", name, tuple(known))
-    if not _same_type(known[name], value):
-        wanted = _type_in_words(known[name])
-        raise InvalidValueError(f"{name} of {node} is {wanted}, not {value!r}", name)
-
-
-def _same_type(one: ParameterValue, other: ParameterValue) -> bool:
-    """Compare types as ROS 2 does: 1 is no 1.0, and an empty array fits every type of array."""
-    if isinstance(one, tuple) and isinstance(other, tuple):
-        return len({type(item) for item in (*one, *other)}) <= 1
-    return type(one) is type(other)
-
-
-def _type_in_words(value: ParameterValue) -> str:
-    if not isinstance(value, tuple):
-        return f"a {type(value).__name__}"
-    return f"an array of {type(value[0]).__name__}" if value else "an array"
+    wanted, given = value_type(known[name]), value_type(value)
+    arrays = wanted.endswith("[]") and given.endswith("[]")
+    # An empty array fits every type of array: nothing in it says otherwise.
+    if wanted != given and not (arrays and "[]" in (wanted, given)):
+        raise InvalidValueError(f"{name} of {node} is of type {wanted}, not {value!r}", name)
 
 
 def describe_request(request: ChangeRequest) -> dict[str, object]:

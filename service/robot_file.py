@@ -20,7 +20,6 @@ from service.robot_settings import ChangesBlock, NodeBlock, SettingsBlock, Signa
 from service.text_file import read_text_file
 from service.yaml_tree import Mapping, Node, Scalar, Sequence, finding_at, in_order, read_tree
 
-_CODES = {"extra_forbidden": "UNKNOWN_KEY", "missing": "MISSING_KEY"}
 _WORDS = {"extra_forbidden": "there is no such key", "model_type": "there must be keys below"}
 
 
@@ -149,7 +148,7 @@ def _plain(node: Node | None, findings: list[Finding]) -> Any:  # noqa: ANN401  
 def _complaint(root: Node, location: tuple[int | str, ...], kind: str, message: str) -> Finding:
     where = ".".join(str(key) for key in location)
     words = _WORDS.get(kind, message.removeprefix("Value error, "))
-    code = _CODES.get(kind, "INVALID_VALUE")
+    code = "UNKNOWN_KEY" if kind == "extra_forbidden" else "INVALID_VALUE"
     return finding_at(_place(root, location), code, f"{where}: {words}" if where else words)
 
 

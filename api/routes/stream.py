@@ -123,8 +123,10 @@ class _Client:
         taken = frames.take()
         if taken is not None:
             frame, skipped = taken
+            encoder = self._hub.encoder
             self._hub.skipped += skipped
-            await self._send(self._hub.encoder.frame(frame, skipped, topics))
+            await encoder.prepare(frame, topics)
+            await self._send(encoder.frame(frame, skipped, topics))
 
     async def _send(self, text: str) -> None:
         try:

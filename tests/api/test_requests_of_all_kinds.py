@@ -93,7 +93,7 @@ def storm() -> Iterator[Storm]:
 
 @schema.parametrize()
 @settings(max_examples=EXAMPLES, suppress_health_check=list(HealthCheck))
-def test_a_request_of_any_kind_is_answered_as_described(case: Case[Any], storm: Storm) -> None:
+def test_a_request_of_any_kind_is_answered_as_described(case: "Case[Any]", storm: Storm) -> None:
     before = storm.facts()
     kwargs = case.as_transport_kwargs(base_url=BASE_URL)
     prepared = requests.Request(**kwargs).prepare()

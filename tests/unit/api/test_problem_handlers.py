@@ -1,7 +1,11 @@
 """Whatever goes wrong is answered as a problem, also what the framework refuses."""
 
+import asyncio
+import time
+
 import pytest
 
+from service.worker import QUEUE_LENGTH
 from tests.support.http_robot import HttpRobot
 
 
@@ -49,3 +53,15 @@ async def test_what_is_not_read_to_its_end_ends_the_connection(robot: HttpRobot)
 
     assert answer.status_code == 413
     assert answer.headers["connection"] == "close"
+
+
+async def test_too_much_work_at_once_is_put_off_with_a_time(robot: HttpRobot) -> None:
+    worker = robot.app.state.worker
+    jobs = [asyncio.create_task(worker.call(time.sleep, 0.05)) for _ in range(1 + QUEUE_LENGTH)]
+    await asyncio.sleep(0)
+
+    answer = await robot.http.post("/model/check", content="a: 1")
+
+    assert (answer.status_code, answer.json()["code"]) == (429, "BUSY")
+    assert int(answer.headers["retry-after"]) > 0
+    await asyncio.gather(*jobs)

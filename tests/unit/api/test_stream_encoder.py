@@ -1,3 +1,4 @@
+import asyncio
 import json
 from types import MappingProxyType
 from typing import Any
@@ -162,6 +163,35 @@ def test_a_view_that_did_not_change_is_not_encoded_again(
     encoder.frame(frame(2, [views[0], part_view("node_1", "FAST"), views[2]], full=True), 0, ALL)
 
     assert encoded == ["node_1"]
+
+
+async def test_a_large_frame_is_made_in_pieces_between_which_others_run(
+    encoder: StreamEncoder,
+) -> None:
+    views = [part_view(f"node_{number}") for number in range(2_000)]
+    turns: list[None] = []
+
+    async def take_turns() -> None:
+        while True:
+            turns.append(None)
+            await asyncio.sleep(0)
+
+    other = asyncio.create_task(take_turns())
+    published = frame(1, views, full=True)
+    await encoder.prepare(published, ALL)
+    other.cancel()
+
+    assert len(turns) >= 10
+    assert len(read(encoder.frame(published, 0, ALL))["parts"]) == 2_000
+
+
+async def test_a_frame_of_known_parts_is_made_in_one_piece(encoder: StreamEncoder) -> None:
+    views = [part_view(f"node_{number}") for number in range(2_000)]
+    encoder.frame(frame(1, views, full=True), 0, ALL)
+    preparing = encoder.prepare(frame(2, views, full=True), ALL)
+
+    with pytest.raises(StopIteration):
+        preparing.send(None)
 
 
 def test_an_event_has_the_fields_that_the_log_is_read_by(

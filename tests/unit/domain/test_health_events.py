@@ -79,6 +79,7 @@ def _only(events: list[Event], kind: str) -> Event:
 
 def test_a_reading_that_changes_nothing_leaves_no_trace(health: Health) -> None:
     assert health.read(**GOOD) == []
+    assert not health.last.system_state
 
 
 def test_an_error_is_told_with_its_value_its_limit_and_the_reading_that_caused_it(
@@ -156,6 +157,18 @@ def test_what_settled_does_not_cause_the_next_error(health: Health) -> None:
     second = health.read(gps_accuracy=300.0)
     raised = _only(health.keep_reading(15, gps_accuracy=300.0), "error.raised")
     assert raised.cause == second[1].id
+
+
+def test_an_error_that_comes_at_once_is_not_laid_to_what_settled_before(health: Health) -> None:
+    """From NOT_CONNECTED to LOW_SIGNAL there is no gap, and so nothing that began to count."""
+    health.read(signal_strength="LOW_SIGNAL")
+    health.keep_reading(1)
+    health.read(signal_strength="NOT_CONNECTED")
+    health.keep_reading(10, signal_strength="NOT_CONNECTED")
+    low = health.read(signal_strength="LOW_SIGNAL")
+    raised = _only(low, "error.raised")
+    assert raised.data["error"] == "SIGNAL_LOW"
+    assert raised.cause == low[0].id
 
 
 def test_what_led_to_an_error_once_does_not_cause_it_again(health: Health) -> None:

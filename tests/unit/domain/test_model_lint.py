@@ -104,6 +104,10 @@ def test_a_mode_with_a_value_that_is_never_found_equal_is_told_once(value: float
     assert brief(findings) == [("NEVER_INFERRED", ("n", "modes", "__DEFAULT__", "a"))]
 
 
+def test_a_parameter_that_the_default_does_not_have_is_no_matter_of_taste() -> None:
+    assert told(node(default={"a": 1}, X={"a": 2, "b": 3.0})) == []
+
+
 # --- rules ---
 
 

@@ -31,6 +31,14 @@ def test_who_speaks_is_there() -> None:
     assert facts.known_state is INACTIVE
 
 
+def test_a_late_word_of_a_lost_node_does_not_bring_it_back() -> None:
+    """Whether a node can be reached is said by the backend, which hears of it first."""
+    facts = _facts(NodeReport(ARM, reachable=False), NodeReport(ARM, state=ACTIVE))
+    assert facts.known_state is LifecycleState.UNKNOWN
+    facts.take(NodeReport(ARM, reachable=True))
+    assert facts.known_state is ACTIVE
+
+
 def test_a_node_that_is_there_but_told_no_state_is_unknown() -> None:
     facts = _facts(NodeReport(ARM, parameters={"torque": 0.1}))
     assert facts.known_state is LifecycleState.UNKNOWN

@@ -111,6 +111,23 @@ def test_a_value_of_another_type_is_refused_as_ros_2_would(
 
 
 @pytest.mark.parametrize(
+    ("known", "value", "message"),
+    [
+        (0.5, 1, "p of drive_base is of type double, not 1"),
+        ((0.5,), (1,), "p of drive_base is of type double[], not (1,)"),
+        ((), 1, "p of drive_base is of type [], not 1"),
+    ],
+    ids=str,
+)
+def test_the_type_that_is_wanted_is_told(
+    known: ParameterValue, value: ParameterValue, message: str
+) -> None:
+    with pytest.raises(InvalidValueError) as refusal:
+        _check(ParametersRequest(BASE, {"p": value}), known={"p": known})
+    assert refusal.value.message == message
+
+
+@pytest.mark.parametrize(
     ("name", "value"),
     [
         ("max_speed", 0.9),

@@ -77,6 +77,14 @@ def test_errors_are_told_in_the_order_of_their_bits(robot: Robot) -> None:
     assert view.error_code == 35
 
 
+def test_stale_data_comes_after_what_was_read_last() -> None:
+    robot = Robot(default_signals())
+    robot.read(0, temperature=60.0)
+
+    view = robot.health.system_state(TaskStatus.NO_TASK)
+    assert (view.errors, view.error_code) == (("TEMPERATURE_HIGH", STALE_DATA), 96)
+
+
 # --- reasons -------------------------------------------------------------------------------------
 
 

@@ -1,4 +1,5 @@
 import gc
+import re
 from pathlib import Path
 
 import pytest
@@ -229,3 +230,19 @@ def test_lines_moved_and_doubled_are_a_model_or_are_complained_of(data: st.DataO
     place = data.draw(st.integers(0, len(lines)))
 
     assert_harmless("".join([*lines[:place], *moved, *lines[place:]]))
+
+
+def test_every_code_is_explained_in_the_documentation() -> None:
+    modules = [
+        *(PROJECT / "service").glob("*_file.py"),
+        *(PROJECT / "service").glob("smh_*.py"),
+        PROJECT / "service" / "yaml_tree.py",
+        PROJECT / "domain" / "model_lint.py",
+        PROJECT / "domain" / "system_model.py",
+    ]
+    code = re.compile(r'"(ALIAS|CYCLE|[A-Z]+(?:_[A-Z]+)+)"')
+    used = {name for path in modules for name in code.findall(path.read_text(encoding="utf-8"))}
+    page = (PROJECT / "docs" / "reference" / "findings.md").read_text(encoding="utf-8")
+    explained = set(re.findall(r"^\|? ?`([A-Z_]+)`", page, re.MULTILINE))
+
+    assert used - {"UNREADABLE_FILE", "INVALID_ROBOT_FILE"} == explained

@@ -5,6 +5,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from domain.findings import Finding
 from domain.signals import default_signals
 from domain.simulation.node_settings import Fault
 from domain.timebase import seconds
@@ -132,23 +133,20 @@ def test_a_missing_file_is_said_to_be_missing(tmp_path: Path) -> None:
     st.text() | st.lists(st.sampled_from([*"[]{}:-\n ,'", "signals", "mock", "on"])).map("".join)
 )
 def test_any_text_is_a_robot_or_is_complained_of(text: str) -> None:
+    assert all(finding.line is not None for finding in findings_of(text))
+
+
+def findings_of(text: str) -> tuple[Finding, ...]:
     try:
-        settings = read_robot_file(text, MODEL)
+        read_robot_file(text, MODEL).to_signal_settings()
     except InvalidRobotFileError as error:
-        assert all(finding.line is not None for finding in error.findings)
-    else:
-        assert settings.to_signal_settings()
+        return error.findings
+    return ()
 
 
 def test_the_schema_in_the_documentation_is_that_of_the_code() -> None:
     # To renew it, write what is expected here into the file.
-    expected = json.dumps(robot_schema(), indent=2) + "\n"
+    schema = RobotSettings.model_json_schema()
+    expected = {"$schema": "https://json-schema.org/draft/2020-12/schema", **schema}
 
-    assert SCHEMA.read_text(encoding="utf-8") == expected
-
-
-def robot_schema() -> dict[str, object]:
-    return {
-        "$schema": "https://json-schema.org/draft/2020-12/schema",
-        **RobotSettings.model_json_schema(),
-    }
+    assert json.loads(SCHEMA.read_text(encoding="utf-8")) == expected
