@@ -2,7 +2,6 @@
 
 import asyncio
 from collections.abc import Callable, Iterable, Iterator, Mapping
-from itertools import islice
 from typing import Any, Generic, TypeVar
 
 from pydantic_core import to_json
@@ -58,8 +57,9 @@ class StreamEncoder:
         The first frame of a robot with 10,000 parts takes longer than a tick may be late.
         """
         if "parts" in topics and self._known_text(frame, topics) is None:
-            new = iter(self._parts.new_ones(frame.parts.items()))
-            while self._parts.learn(islice(new, _MEMBERS_AT_ONCE)) == _MEMBERS_AT_ONCE:
+            new = list(self._parts.new_ones(frame.parts.items()))
+            for start in range(0, len(new), _MEMBERS_AT_ONCE):
+                self._parts.learn(new[start : start + _MEMBERS_AT_ONCE])
                 await asyncio.sleep(0)
 
     def frame(self, frame: Frame, skipped: int, topics: frozenset[str]) -> str:
@@ -155,12 +155,10 @@ class _Members(Generic[View]):
             if known is None or known[0] is not view:
                 yield name, view
 
-    def learn(self, views: Iterable[tuple[str, View]]) -> int:
-        """Encode members; return how many there were."""
-        count = 0
-        for count, (name, view) in enumerate(views, start=1):
+    def learn(self, views: Iterable[tuple[str, View]]) -> None:
+        """Encode members and keep their text."""
+        for name, view in views:
             self._known[name] = (view, f"{to_json(name).decode()}:{self._encode(view)}")
-        return count
 
     def _each(self, views: Mapping[Any, View]) -> Iterator[str]:
         self.learn(self.new_ones(views.items()))

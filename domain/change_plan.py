@@ -7,7 +7,7 @@ path of transitions) and #60 (no redundant requests).
 """
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import TypeAlias
 
 from domain.lifecycle import LifecycleState, Transition, arrival, path
@@ -45,6 +45,8 @@ class NodeGoal:
     """None: whatever it is in."""
     mode: ModeName | None = None
     parameters: Parameters = field(default_factory=dict)
+    configures: bool = True
+    """False: a node that turns out to be unconfigured is left so; deactivating never configures."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -78,6 +80,8 @@ def goal_of(
     if isinstance(request, TransitionRequest):
         _pass_by(request, facts, targets)
     nodes = {part: _node_goal(model, part, targets[part]) for part in targets if part in facts}
+    if isinstance(request, TransitionRequest) and request.transition is Transition.DEACTIVATE:
+        nodes = {node: replace(goal, configures=False) for node, goal in nodes.items()}
     return ChangeGoal(targets, nodes)
 
 
@@ -135,7 +139,7 @@ def next_steps(facts: NodeFacts, goal: NodeGoal) -> tuple[Action, ...] | None:
         start = arrival(facts.known_state)
         if not facts.has_lifecycle:
             transitions = () if goal.state is start else None
-        else:
+        elif goal.configures or start is not LifecycleState.UNCONFIGURED:
             transitions = path(start, goal.state)
     if transitions is None:
         return None
@@ -162,6 +166,8 @@ def presumed_steps(goal: NodeGoal) -> tuple[Action, ...]:
     """Return the last step towards a goal, for a node of which nothing is known."""
     if goal.state is None or goal.state is LifecycleState.UNKNOWN:
         return (SetParameters(goal.parameters),)
+    if not goal.configures:
+        return (Transition.DEACTIVATE,)
     for transition in Transition:
         if transition.goal is goal.state:
             return (transition,)

@@ -112,16 +112,19 @@ class Changes:
         return identity
 
     def cancel(self, change: ChangeId, now: Instant) -> None:
-        """Begin no further step of a change; nothing happens to one that has ended.
+        """Begin no further step of a change; nothing happens to one whose nodes have all ended.
+
+        One that was superseded has ended, and may still be driving nodes that nobody took over.
 
         Raises:
             UnknownChangeError: There is none of that id.
         """
         found = self.get(change)
+        if found.open:
+            self._outbox.record_input()
         for node in sorted(found.open):
             self._drop(found.pursuits[node], StepStatus.CANCELED, now)
         if found.status is ChangeStatus.RUNNING:
-            self._outbox.record_input()
             self._end(found, ChangeStatus.CANCELED, "canceled on request", now)
 
     def report(self, report: NodeReport, now: Instant) -> None:
@@ -261,7 +264,7 @@ class Changes:
         """End the pursuit of one node, and the change with the last of them."""
         pursuit.outcome, pursuit.error = outcome, error
         if outcome is not StepStatus.SUCCEEDED:
-            waited = pursuit.waiting or not any(step.ended_at for step in pursuit.steps)
+            waited = pursuit.waiting or not any(step.ended_at is not None for step in pursuit.steps)
             pursuit.drop_pending(outcome if waited else StepStatus.CANCELED, now, error)
         del self._pursuits[pursuit.node]
         self._deadlines.clear(pursuit.node)

@@ -28,6 +28,7 @@ class HealthEvents:
             self._pending.pop(error, None)
         for signal in changes.skewed:
             emit("signal.skewed", {"signal": signal})
+        decided: int | None = None
         for reason in changes.raised:
             data = {
                 "error": reason.code,
@@ -35,14 +36,14 @@ class HealthEvents:
                 "value": reason.value,
                 "threshold": reason.threshold,
             }
-            emit("error.raised", data, self._pending.pop(reason.code, None))
+            decided = emit("error.raised", data, self._pending.pop(reason.code, None))
         for error in changes.cleared:
-            emit("error.cleared", {"error": error})
+            decided = emit("error.cleared", {"error": error})
         self._outbox.signals |= changes.signals
         if changes.state_changed:
-            self._tell_state(task_status)
+            self._tell_state(task_status, decided)
 
-    def _tell_state(self, task_status: TaskStatus) -> None:
+    def _tell_state(self, task_status: TaskStatus, cause: int | None) -> None:
         view = self._health.system_state(task_status)
         self._outbox.system_state = True
         if (view.state, view.errors) == self._told:
@@ -54,4 +55,4 @@ class HealthEvents:
             "error_code": view.error_code,
         }
         self._told = (view.state, view.errors)
-        self._outbox.emit("system_state.changed", data)
+        self._outbox.emit("system_state.changed", data, cause)

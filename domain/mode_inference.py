@@ -73,6 +73,14 @@ class _SystemPlan:
         return cls(parts, own, modes)
 
 
+def _is_there(actual: StateAndMode, target: StateAndMode) -> bool:
+    if actual.state is not target.state:
+        return False
+    if target.state is not LifecycleState.ACTIVE or target.mode is None:
+        return True
+    return actual.mode == target.mode
+
+
 class _UndecidableError(Exception):
     """A part of which too little is known; never leaves this module."""
 
@@ -145,16 +153,19 @@ class ModeInference:
         return StateAndMode(actual.state)
 
     def converged(self, part: PartName) -> bool:
-        """Tell whether a part is where it should be, or nothing was asked of it."""
+        """Tell whether a part is where it should be, or nothing was asked of it.
+
+        An active part whose mode is not known is not in `__DEFAULT__`.
+        """
         target = self._targets.get(part)
-        return target is None or self._actual[part].state_and_mode.agrees_with(target)
+        return target is None or _is_there(self._actual[part].state_and_mode, target)
 
     def deviations(self) -> list[tuple[PartName, StateAndMode, StateAndMode]]:
         """Return part, target and actual of each decidable part that is not where it should be."""
         found = []
         for part in sorted(self._targets, key=_by_bytes):
             seen = self.as_seen(part)
-            if seen is not None and not seen.agrees_with(self._targets[part]):
+            if seen is not None and not _is_there(seen, self._targets[part]):
                 found.append((part, self._targets[part], seen))
         return found
 

@@ -17,14 +17,14 @@ class Outbox:
     change nothing leave no trace, and the one that matters is there to be pointed at.
     """
 
-    def __init__(self, first_event_id: int = 1) -> None:
+    def __init__(self) -> None:
         self.change: ChangeId | None = None
         self.parts: set[PartName] = set()
         self.signals: set[str] = set()
         self.system_state = False
         self._commands: list[Command] = []
         self._events: list[Event] = []
-        self._next_event = first_event_id
+        self._next_event = 1
         self._next_request = 1
         self._at: Instant = 0
         self._kind = ""

@@ -8,7 +8,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 
 from domain.change_admission import ChangeAdmission
-from domain.change_plan import next_steps, presumed_steps
+from domain.change_plan import ChangeGoal, next_steps, presumed_steps
 from domain.change_record import ChangeSettings, Step
 from domain.changes import Changes
 from domain.emergency_stop import EmergencyStop
@@ -105,8 +105,7 @@ class Supervision:
             case NodeReport():
                 self._take_report(given)
             case NodeAnswer():
-                self._begin_input("node.answered", {"node": given.node, "reason": given.reason})
-                self._changes.answer(given, self._now)
+                self._take_answer(given)
             case Readings():
                 self._take_readings(given)
             case ModeRequest() | TransitionRequest() | ParametersRequest():
@@ -163,6 +162,13 @@ class Supervision:
         self._views.note_actuals(changed)
         self._changes.report(report, self._now)
 
+    def _take_answer(self, answer: NodeAnswer) -> None:
+        step = self._changes.step_in_flight(answer.node)
+        awaited = step is not None and step.request == answer.request
+        data = {"node": answer.node, "accepted": answer.accepted, "reason": answer.reason}
+        self._begin_input("node.answered", data, cause=step.event if step and awaited else None)
+        self._changes.answer(answer, self._now)
+
     def _take_readings(self, readings: Readings) -> None:
         self._health.check(readings, self._now)
         values = {reading.signal: reading.value for reading in readings.items}
@@ -172,13 +178,16 @@ class Supervision:
 
     def _take_change_request(self, request: ChangeRequest) -> None:
         part = check_request(self.model, self._inference.facts, request)
-        if not self._backend.available:
-            raise BackendUnavailableError(self._backend.reason)
-        goal = self._admission.admit(request, self._estop())
+        goal = self._admit(request)
         data = {"part": part, **describe_request(request)}
         self._begin_input("change.requested", data, request.actor)
         self._outbox.change = self._changes.begin(part, request, goal, self._now)
         self._views.note_actuals(self._outbox.parts)
+
+    def _admit(self, request: ChangeRequest) -> ChangeGoal:
+        if not self._backend.available:
+            raise BackendUnavailableError(self._backend.reason)
+        return self._admission.admit(request, self._estop())
 
     def _take_emergency_stop(self, request: EmergencyStopRequest) -> None:
         latch, now = self._emergency_stop, self._now
@@ -240,7 +249,7 @@ class Supervision:
             PilothouseError: The request would be refused.
         """
         check_request(self.model, self._inference.facts, request)
-        goal = self._admission.admit(request, self._estop())
+        goal = self._admit(request)
         steps = []
         for node, node_goal in goal.nodes.items():
             facts = self._inference.facts[node]

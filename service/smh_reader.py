@@ -46,11 +46,14 @@ def read_parts(sources: Mapping[str, NodeParameters]) -> SmhParts:
     parts = SmhParts()
     lines = 0
     for block in blocks:
-        lines += len(block.modes) * len(block.modes.get(DEFAULT_MODE, ()))
-        if lines > MAX_LINES:
+        own = len(block.modes) * len(block.modes.get(DEFAULT_MODE, ()))
+        if lines + own > MAX_LINES:
             message = f"more than {MAX_LINES:,} lines in all modes, with those of {DEFAULT_MODE}"
             block.complain(block.key, "TOO_LARGE", message)
-        elif block.is_node:
+            block.modes.clear()
+        else:
+            lines += own
+        if block.is_node:
             parts.nodes[block.name] = _read_node(block)
         else:
             parts.systems[block.name] = _read_system(block, with_modes)

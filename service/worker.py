@@ -108,7 +108,11 @@ class Worker:
         return cast("Result", reply.value)
 
     async def _exchange(self, job: bytes) -> Reply:
-        """Send a job and wait for what becomes of it; a process that fails is not used again."""
+        """Send a job and wait for what becomes of it; a process that fails is not used again.
+
+        One that was there before may have died before this job: then a new one is tried.
+        """
+        is_new = self._process is None
         process = await self._running()
         try:
             async with asyncio.timeout(self._deadline_s):
@@ -121,6 +125,8 @@ class Worker:
                 how = f"it was not done within {self._deadline_s:g} s"
                 raise TooComplexError(how) from error
             if isinstance(error, asyncio.IncompleteReadError | ConnectionError):
+                if not is_new:
+                    return await self._exchange(job)
                 raise TooComplexError("it ended the process that worked on it") from error
             raise
 

@@ -10,7 +10,7 @@ from pathlib import Path
 from urllib.parse import urlsplit
 
 import pytest
-import websockets
+from websockets.asyncio.client import ClientConnection
 
 from tests.support.bench import quantiles, report
 from tests.support.process import connect, service
@@ -59,7 +59,7 @@ class Prober:
 
     def __init__(
         self,
-        client: websockets.ClientConnection,
+        client: ClientConnection,
         streams: tuple[asyncio.StreamReader, asyncio.StreamWriter],
     ) -> None:
         self._client = client

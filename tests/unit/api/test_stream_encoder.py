@@ -185,7 +185,7 @@ async def test_a_large_frame_is_made_in_pieces_between_which_others_run(
     assert len(read(encoder.frame(published, 0, ALL))["parts"]) == 2_000
 
 
-async def test_a_frame_of_known_parts_is_made_in_one_piece(encoder: StreamEncoder) -> None:
+async def test_a_large_frame_of_known_parts_is_made_at_once(encoder: StreamEncoder) -> None:
     views = [part_view(f"node_{number}") for number in range(2_000)]
     encoder.frame(frame(1, views, full=True), 0, ALL)
     preparing = encoder.prepare(frame(2, views, full=True), ALL)

@@ -7,7 +7,7 @@ from domain.messages import CancelRequest, ChangeId
 from domain.simulation.node_settings import Fault, NodeSettings
 from domain.snapshot import ChangeStatus, StepStatus
 from domain.timebase import seconds
-from tests.support.models import actuation_model, nested_model
+from tests.support.models import BASE, actuation_model, nested_model
 from tests.support.virtual_robot import GOOD, VirtualRobot
 
 
@@ -260,6 +260,42 @@ def test_a_finalized_part_does_not_keep_the_rest_from_being_deactivated(
     view = robot.change(change)
     assert view.status is ChangeStatus.FAILED
     assert view.reason == "actuation is deactivating, not inactive; manipulator is finalized"
+
+
+def test_deactivating_never_configures_even_if_the_node_falls_back_meanwhile(
+    robot: VirtualRobot,
+) -> None:
+    robot.fault("drive_base", Fault.FAIL)
+    robot.transition("drive_base", "configure")
+    robot.advance(0.1)
+    change = robot.transition("drive_base", "deactivate")
+    robot.advance(2)
+    view = robot.change(change)
+    assert (view.status, view.steps) == (ChangeStatus.FAILED, ())
+    assert view.reason == "drive_base is unconfigured, not inactive"
+
+
+def test_an_active_node_whose_parameters_match_no_mode_deviates_from_the_default(
+    robot: VirtualRobot,
+) -> None:
+    robot.transition("drive_base", "activate")
+    robot.advance(1)
+    robot.nodes.set_parameters(BASE, {"max_speed": 7.7}, robot.now)
+    robot.advance(0)
+    view = robot.core.part(BASE)
+    assert (view.actual.mode, view.converged) == (None, False)
+
+
+def test_canceling_a_superseded_change_stops_the_nodes_that_it_still_drives(
+    robot: VirtualRobot,
+) -> None:
+    older = robot.mode("actuation", "PERFORMANCE")
+    robot.advance(0.1)
+    robot.mode("drive_base", "SLOW")
+    robot.give(CancelRequest(older))
+    robot.advance(2)
+    assert robot.actual("manipulator") == "inactive"
+    assert robot.happened("change.cancel_requested") == [{"change": older}]
 
 
 def test_a_mode_of_a_nested_system_reaches_all_nodes() -> None:
