@@ -89,12 +89,15 @@ def _spread(
     model: SmhModel, part: PartName, wanted: StateAndMode, targets: dict[PartName, StateAndMode]
 ) -> None:
     """Record what is wanted of `part`, and of all parts below it."""
+    if part in targets:
+        # Shared by two systems. What the file says first counts, and no part is gone through twice.
+        return
     targets[part] = wanted
     system = model.systems.get(part)
     if system is None:
         return
     if wanted.state is LifecycleState.ACTIVE:
-        for child, want in system.modes[wanted.mode or DEFAULT_MODE].items():
+        for child, want in system.modes.get(wanted.mode or DEFAULT_MODE, {}).items():
             _spread(model, child, want, targets)
     else:
         for child in system.parts:

@@ -12,12 +12,12 @@ import pickle
 import sys
 from asyncio.subprocess import PIPE, Process
 from collections.abc import Callable, Sequence
-from typing import ParamSpec, TypeVar, cast
+from typing import TypeVar, TypeVarTuple, cast
 
 from domain.errors import PilothouseError
 from service.worker_process import LENGTH_BYTES, ErrorParcel, Reply, length_of, pack
 
-Given = ParamSpec("Given")
+Given = TypeVarTuple("Given")
 Result = TypeVar("Result")
 
 QUEUE_LENGTH = 4
@@ -63,6 +63,7 @@ class Worker:
         self._process: Process | None = None
         self._turn = asyncio.Lock()
         self._jobs = 0
+        self._is_closing = False
 
     async def start(self) -> None:
         """Start the process now, so that the first job need not wait for it."""
@@ -71,21 +72,21 @@ class Worker:
 
     async def close(self) -> None:
         """End the process; a job that it is at fails."""
+        self._is_closing = True
         if self._process is not None and self._process.returncode is None:
             self._process.kill()
         async with self._turn:
             process, self._process = self._process, None
             if process is not None:
                 await _end(process)
+        self._is_closing = False
 
-    async def call(
-        self, function: Callable[Given, Result], *arguments: Given.args, **_: Given.kwargs
-    ) -> Result:
+    async def call(self, function: Callable[[*Given], Result], *arguments: *Given) -> Result:
         """Return what a function returns, computed in the worker.
 
         Args:
             function: One that a module names, since it is sent by its name.
-            arguments: Positional ones only.
+            arguments: What it is called with.
 
         Raises:
             WorkerBusyError: Too many jobs are waiting.
@@ -125,7 +126,7 @@ class Worker:
                 how = f"it was not done within {self._deadline_s:g} s"
                 raise TooComplexError(how) from error
             if isinstance(error, asyncio.IncompleteReadError | ConnectionError):
-                if not is_new:
+                if not is_new and not self._is_closing:
                     return await self._exchange(job)
                 raise TooComplexError("it ended the process that worked on it") from error
             raise

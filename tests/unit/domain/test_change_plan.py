@@ -8,7 +8,16 @@ from domain.change_plan import Action, NodeGoal, SetParameters, goal_of, next_st
 from domain.lifecycle import LifecycleState, Transition, arrival, rule_for
 from domain.messages import ChangeRequest, ModeRequest, ParametersRequest, TransitionRequest
 from domain.node_facts import NodeFacts
-from domain.system_model import ModeName, NodeModel, Parameters, PartName, SmhModel, StateAndMode
+from domain.system_model import (
+    DEFAULT_MODE,
+    ModeName,
+    NodeModel,
+    Parameters,
+    PartName,
+    SmhModel,
+    StateAndMode,
+    SystemModel,
+)
 from tests.support.models import ACTUATION, ARM, BASE, actuation_model, nested_model
 
 S, T = LifecycleState, Transition
@@ -286,3 +295,29 @@ def test_of_an_unknown_node_the_last_step_is_presumed(
     goal: NodeGoal, steps: tuple[Action, ...]
 ) -> None:
     assert presumed_steps(goal) == steps
+
+
+def test_a_system_without_modes_can_be_asked_for_a_transition_and_has_nothing_to_do() -> None:
+    empty = PartName("empty")
+    model = SmhModel({}, {empty: SystemModel(empty, {})})
+
+    goal = goal_of(model, TransitionRequest(empty, Transition.ACTIVATE), {})
+
+    assert (goal.targets, goal.nodes) == ({empty: StateAndMode(LifecycleState.ACTIVE)}, {})
+
+
+def test_parts_that_are_shared_on_every_level_are_gone_through_once() -> None:
+    """Two systems on each of 60 levels, each with both of the level below: 2 to the 60 ways down."""
+    names = [[PartName(f"s{level}{side}") for side in "ab"] for level in range(60)]
+    leaf = PartName("leaf")
+    systems = {}
+    for level, pair in enumerate(names):
+        below = names[level + 1] if level + 1 < len(names) else [leaf]
+        for name in pair:
+            wanted = {part: StateAndMode(LifecycleState.ACTIVE) for part in below}
+            systems[name] = SystemModel(name, {DEFAULT_MODE: wanted})
+    model = SmhModel({leaf: NodeModel(leaf)}, systems)
+
+    goal = goal_of(model, ModeRequest(names[0][0], DEFAULT_MODE), {leaf: NodeFacts()})
+
+    assert len(goal.targets) == 1 + 2 * 59 + 1
