@@ -95,9 +95,13 @@ class StrengthSignal(AnySignal):
     """For how many seconds after the last CONNECTED there has to be NOT_CONNECTED. Left out: 10."""
     low_for_s: Seconds | None = None
     """For how many seconds after the last CONNECTED there has to be LOW_SIGNAL. Left out: 20."""
+    for_s: Seconds | None = None
+    """Both times at once, as far as they are not set by themselves."""
 
     def _condition(self, condition: Condition) -> Condition:
         own = self.lost_for_s if condition.key == "lost" else self.low_for_s
+        if own is None:
+            own = self.for_s
         return replace(condition, for_=_duration(own, condition.for_))
 
 

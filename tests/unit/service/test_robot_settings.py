@@ -51,6 +51,12 @@ def test_signal_strength_has_a_time_for_each_of_its_errors() -> None:
     assert (facts["lost_for_s"], facts["low_for_s"]) == (3.0, 7.0)
 
 
+def test_one_time_holds_for_both_errors_of_the_signal_strength() -> None:
+    facts = signals({"signal_strength": {"lost_for_s": 3, "for_s": 7}})["signal_strength"].facts()
+
+    assert (facts["lost_for_s"], facts["low_for_s"]) == (3.0, 7.0)
+
+
 def test_staleness_can_be_set_for_all_signals_and_for_each() -> None:
     settings = signals(
         {
@@ -120,7 +126,7 @@ def test_a_declared_signal_may_be_there_to_be_looked_at() -> None:
         pytest.param({"battery_level": {"threshold": float("nan")}}, id="not a number"),
         pytest.param({"battery_level": {"for_s": -1}}, id="a negative time"),
         pytest.param({"estop": {"threshold": 1}}, id="a threshold of a switch"),
-        pytest.param({"signal_strength": {"for_s": 1}}, id="a time of one of two errors"),
+        pytest.param({"signal_strength": {"threshold": 1}}, id="a threshold of what is no number"),
         pytest.param({"estop": {"recovery": "never"}}, id="no way to recover"),
         pytest.param({"Motor": {"unit": "A"}}, id="a name in capitals"),
         pytest.param({"motor": {"above": 1, "below": 0, "error": "X"}}, id="above and below"),
