@@ -107,7 +107,7 @@ class EventReader:
             self._at = 0
 
     def take(self, limit: int) -> list[Event | Gap]:
-        """Return what follows: at most `limit` events, after the gap before them if there is one."""
+        """Return what follows: at most `limit` events, and the gap before them."""
         found: list[Event | Gap] = []
         if self._lost is not None:
             found.append(self._lost)

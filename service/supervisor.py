@@ -171,13 +171,14 @@ class Supervisor:
         if view.status is not ChangeStatus.RUNNING or timeout_s <= 0:
             return view
         ended: asyncio.Future[None] = asyncio.get_running_loop().create_future()
-        self._waiting.setdefault(change, set()).add(ended)
+        waiting = self._waiting.setdefault(change, set())
+        waiting.add(ended)
         deadline = self.clock.now() + seconds(timeout_s)
         timer = asyncio.ensure_future(self.clock.sleep_until(deadline))
         try:
             await asyncio.wait({ended, timer}, return_when=asyncio.FIRST_COMPLETED)
         finally:
-            self._waiting.get(change, set()).discard(ended)
+            waiting.discard(ended)
             timer.cancel()
             with suppress(asyncio.CancelledError):
                 await timer
@@ -242,7 +243,7 @@ class Supervisor:
             count += 1
             late = self.clock.now() - (start + count * PERIOD)
             if late >= PERIOD:
-                skipped = late // PERIOD
+                skipped = late // PERIOD + 1
                 count += skipped
                 self.late_ticks += skipped
                 log.warning("%d ticks were skipped: %.0f ms late", skipped, late / 1e6)

@@ -103,5 +103,6 @@ def test_the_core_infers_what_the_vectors_say(case: Case) -> None:
         if what in overruled:
             differing |= {what} if found != expected else set()
             continue
-        assert found == expected, f"step {number}: {what}\n{json.dumps(case['steps'][: number + 1])}"
+        history = json.dumps(case["steps"][: number + 1])
+        assert found == expected, f"step {number}: {what}\n{history}"
     assert differing == overruled, "what does not differ any more is not overruled"

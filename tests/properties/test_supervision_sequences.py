@@ -1,4 +1,4 @@
-"""Whatever is asked, read and broken in whatever order: every change ends, and what is wrong is told.
+"""Whatever is asked, read and broken in any order: every change ends, and what is wrong is told.
 
 `make soak` runs 10,000 sequences, `make test` 500.
 """

@@ -96,7 +96,7 @@ def _facts(
         if part not in found:
             continue
         mode = want["mode"]
-        # The monitor of the C++ shows a node by its parameters alone; a reported mode outranks them.
+        # The C++ monitor shows a node by its parameters alone; a reported mode outranks them.
         if found[part]["kind"] == "node" and want["state"] == "active" and part in seen:
             mode = seen[part].get("mode", mode)
         wanted = {**want, "mode": mode, "undecidable": want.get("undecidable", False)}

@@ -42,6 +42,10 @@ class ManualClock:
         """Set the calendar, as an operator or a time server does; `now` does not change."""
         self._offset += seconds(by_s)
 
+    def stall(self, by_s: float) -> None:
+        """Let time pass in which no task runs, as when something blocks the event loop."""
+        self._now += seconds(by_s)
+
     async def sleep_until(self, deadline: Instant) -> None:
         """Wait until `advance` reaches `deadline`."""
         if deadline <= self._now:
@@ -65,7 +69,7 @@ class ManualClock:
         while self._sleepers and self._sleepers[0][0] <= end:
             deadline, _, woken = heapq.heappop(self._sleepers)
             if not woken.done():
-                self._now = deadline
+                self._now = max(self._now, deadline)
                 woken.set_result(None)
                 await settle()
         self._now = max(self._now, end)

@@ -39,7 +39,11 @@ def actuation_model() -> SmhModel:
     )
     arm = NodeModel(
         ARM,
-        {DEFAULT_MODE: {"max_torque": 0.1}, WEAK: {"max_torque": 0.15}, STRONG: {"max_torque": 0.2}},
+        {
+            DEFAULT_MODE: {"max_torque": 0.1},
+            WEAK: {"max_torque": 0.15},
+            STRONG: {"max_torque": 0.2},
+        },
     )
     actuation = SystemModel(
         ACTUATION,

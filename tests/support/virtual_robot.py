@@ -3,6 +3,7 @@
 from collections.abc import Mapping
 from typing import Any
 
+from domain.lifecycle import Transition
 from domain.messages import (
     ChangeId,
     EmergencyStopRequest,
@@ -16,7 +17,6 @@ from domain.messages import (
     TimePassed,
     TransitionRequest,
 )
-from domain.lifecycle import Transition
 from domain.simulation.node_settings import Fault, NodeSettings
 from domain.simulation.nodes import SimulatedNodes
 from domain.snapshot import ChangeView

@@ -307,7 +307,7 @@ def test_a_system_without_modes_can_be_asked_for_a_transition_and_has_nothing_to
 
 
 def test_parts_that_are_shared_on_every_level_are_gone_through_once() -> None:
-    """Two systems on each of 60 levels, each with both of the level below: 2 to the 60 ways down."""
+    """Two systems on each of 60 levels, each of both of the level below: 2 to the 60 ways down."""
     names = [[PartName(f"s{level}{side}") for side in "ab"] for level in range(60)]
     leaf = PartName("leaf")
     systems = {}

@@ -98,7 +98,8 @@ def test_a_node_whose_callback_fails_is_named(robot: VirtualRobot) -> None:
     robot.fault("drive_base", Fault.FAIL)
     change = robot.transition("drive_base", "configure")
     robot.advance(1)
-    assert robot.change(change).reason == "drive_base: configure: the node went back to unconfigured"
+    reason = "drive_base: configure: the node went back to unconfigured"
+    assert robot.change(change).reason == reason
 
 
 def test_an_error_in_a_callback_fails_the_change(robot: VirtualRobot) -> None:
