@@ -15,7 +15,7 @@ from dataclasses import dataclass
 from importlib import resources
 from pathlib import Path
 
-from api.app import create_app
+from api.app import create_app, prepare
 from api.distribution import installed_version
 from api.metrics import metrics
 from api.model_check import finding_line
@@ -77,6 +77,7 @@ def serve(options: ServeOptions) -> int:
     hosts = (options.host, *options.allowed_hosts)
     app = create_app(supervisor, allowed_hosts=hosts)
     app.state.exposed = exposed
+    prepare(app)
     metrics(app)
     greeting = "\n".join(greet(supervisor, options, url_of(sockets, options.host)))
     server = web_server(app, lambda: print(greeting, flush=True))
