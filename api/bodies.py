@@ -9,7 +9,7 @@ from typing import Any, TypeVar
 
 from pydantic import BaseModel, Field, ValidationError
 
-from api.schemas import Json
+from api.schemas.base import Json
 from domain.errors import PilothouseError
 
 MAX_JSON_BYTES = 256 * 1024

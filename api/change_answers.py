@@ -8,8 +8,8 @@ from typing import Annotated, Any
 from fastapi import Depends, Query, Request, Response
 from pydantic import BaseModel
 
-from api.schemas_changes import ChangeJson, PlanJson, StepJson, shown_request
-from domain.change_admission import part_of
+from api.schemas.changes import ChangeJson, PlanJson, StepJson, shown_request
+from domain.changes.admission import part_of
 from domain.messages import ChangeId, ChangeRequest
 from domain.snapshot import ChangeStatus, ChangeView
 from service.supervisor import Supervisor

@@ -190,7 +190,9 @@ def refusal_lines(problem: Json) -> Iterator[str]:
     yield f"refused: {problem.get('detail') or problem.get('title')}"
     for blocker in problem.get("blockers") or ():
         yield f"  {blocker['code']}: {blocker['message']}{_way(blocker.get('path') or ())}"
-    for fault in problem.get("errors") or ():
+    faults = problem.get("errors") or ()
+    # A single fault is told by the detail already.
+    for fault in faults if len(faults) > 1 else ():
         yield f"  {fault['pointer'] or 'body'}: {fault['message']}"
     if problem.get("hint"):
         yield f"  hint: {problem['hint']}"

@@ -9,7 +9,7 @@ from prometheus_client.core import CounterMetricFamily, GaugeMetricFamily
 from prometheus_client.metrics_core import Metric
 from prometheus_client.registry import Collector
 
-from api.stream_hub import StreamHub, stream_hub
+from api.streaming.hub import StreamHub, stream_hub
 from domain.messages import Event
 from domain.snapshot import ChangeStatus, SystemState
 from domain.timebase import to_seconds

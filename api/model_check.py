@@ -5,10 +5,10 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Literal
 
-from api.schemas_inference import ModelCheckJson
+from api.schemas.inference import ModelCheckJson
 from domain.findings import Finding
-from service.model_file import check_model
-from service.text_file import UnreadableFileError, read_text_file
+from service.files.model_file import check_model
+from service.files.text_file import UnreadableFileError, read_text_file
 
 VALID, INVALID = 0, 1
 

@@ -7,8 +7,8 @@ from collections.abc import Mapping
 from functools import lru_cache
 
 from api.bodies import BodyFault, InvalidBodyError, parse_body, parse_text, pointer_to
-from api.schemas import StateAndModeJson
-from api.schemas_inference import (
+from api.schemas.base import StateAndModeJson
+from api.schemas.inference import (
     DeviationJson,
     InferenceBody,
     InferenceJson,
@@ -16,13 +16,13 @@ from api.schemas_inference import (
     ReportedNodeBody,
     TargetBody,
 )
-from api.schemas_parts import ActualJson
+from api.schemas.parts import ActualJson
 from domain.errors import UnknownPartError
 from domain.lifecycle import LifecycleState
 from domain.messages import NodeReport
 from domain.mode_inference import ModeInference
 from domain.system_model import ModeName, PartName, SmhModel, StateAndMode, part_name
-from service.model_file import check_model, read_model
+from service.files.model_file import check_model, read_model
 
 
 def check_posted(raw: bytes) -> bytes:

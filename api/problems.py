@@ -17,7 +17,7 @@ from api.bodies import (
     MalformedBodyError,
     as_pointer,
 )
-from api.schemas import BlockerJson, FindingJson, Json
+from api.schemas.base import BlockerJson, FindingJson, Json
 from domain.errors import (
     BackendUnavailableError,
     BlockedError,
@@ -36,8 +36,8 @@ from domain.errors import (
     UnknownSignalError,
 )
 from service.clock import Clock
-from service.robot_file import InvalidRobotFileError
-from service.text_file import UnreadableFileError
+from service.files.robot_file import InvalidRobotFileError
+from service.files.text_file import UnreadableFileError
 from service.worker import TooComplexError, WorkerBusyError
 
 STATUS_OF: Mapping[type[PilothouseError], HTTPStatus] = {

@@ -27,11 +27,11 @@ from domain.simulation.nodes import SimulatedNodes
 from domain.supervision import Supervision, SupervisionSettings
 from service.backends.simulated import SimulatedBackend
 from service.clock import Clock, MonotonicClock
+from service.files.model_file import load_model
+from service.files.robot_file import InvalidRobotFileError, RobotSettings, load_robot_file
+from service.files.text_file import UnreadableFileError
 from service.mock_source import MockSource
-from service.model_file import load_model
-from service.robot_file import InvalidRobotFileError, RobotSettings, load_robot_file
 from service.supervisor import Supervisor, TaskFailedError
-from service.text_file import UnreadableFileError
 
 log = logging.getLogger(__name__)
 

@@ -2,7 +2,7 @@
 
 from collections.abc import Iterable, Mapping
 
-from domain.changes import Changes
+from domain.changes.operations import Changes
 from domain.lifecycle import LifecycleState
 from domain.mode_inference import ModeInference
 from domain.outbox import Outbox

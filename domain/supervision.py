@@ -7,14 +7,17 @@ and times, and get the same outputs.
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 
-from domain.change_admission import ChangeAdmission
-from domain.change_plan import ChangeGoal, next_steps, presumed_steps
-from domain.change_record import ChangeSettings, Step
-from domain.changes import Changes
-from domain.emergency_stop import EmergencyStop
+from domain.changes.admission import ChangeAdmission
+from domain.changes.operations import Changes
+from domain.changes.plan import ChangeGoal, next_steps, presumed_steps
+from domain.changes.record import ChangeSettings, Step
+from domain.changes.request_check import check_request, describe_request
 from domain.errors import BackendUnavailableError
 from domain.findings import Blocker
-from domain.health_events import HealthEvents
+from domain.health.emergency_stop import EmergencyStop
+from domain.health.health_events import HealthEvents
+from domain.health.signals import SignalSettings, default_signals
+from domain.health.state_manager import HealthChanges, StateManager
 from domain.lifecycle import LifecycleState, Transition
 from domain.messages import (
     AcknowledgeRequest,
@@ -36,8 +39,6 @@ from domain.messages import (
 from domain.mode_inference import ModeInference
 from domain.outbox import Outbox
 from domain.part_views import PartViews
-from domain.request_check import check_request, describe_request
-from domain.signals import SignalSettings, default_signals
 from domain.snapshot import (
     ChangeView,
     EmergencyStopView,
@@ -49,7 +50,6 @@ from domain.snapshot import (
     SystemStateView,
     TaskStatus,
 )
-from domain.state_manager import HealthChanges, StateManager
 from domain.system_model import PartName, SmhModel
 from domain.timebase import Instant
 

@@ -26,9 +26,9 @@ from domain.system_model import PartName, SmhModel
 from domain.timebase import Instant, seconds, to_seconds
 from service.clock import Clock
 from service.event_log import EventLog
+from service.files.model_file import LoadedModel
 from service.frame_feed import Frame, FrameFeed
 from service.mock_source import MockSource
-from service.model_file import LoadedModel
 from service.ports import NodeBackend
 
 log = logging.getLogger(__name__)

@@ -8,7 +8,7 @@ from fastapi import APIRouter, Query, Response
 
 from api.dependencies import ActorDep, SupervisorDep
 from api.long_lists import json_list
-from api.schemas_changes import ChangeJson, ChangesJson
+from api.schemas.changes import ChangeJson, ChangesJson
 from domain.messages import CancelRequest, ChangeId
 
 router = APIRouter(prefix="/changes", tags=["changes"])

@@ -4,7 +4,7 @@ from fastapi import APIRouter
 
 from api.dependencies import ActorDep, SupervisorDep
 from api.json_route import JsonRoute
-from api.schemas_health import EmergencyStopBody, EmergencyStopJson
+from api.schemas.health import EmergencyStopBody, EmergencyStopJson
 from domain.messages import EmergencyStopRequest
 
 router = APIRouter(prefix="/emergency_stop", tags=["health"], route_class=JsonRoute)

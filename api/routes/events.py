@@ -5,8 +5,8 @@ from typing import Annotated
 
 from fastapi import APIRouter, Query, Response
 
-from api.schemas_stream import EventsJson
-from api.stream_hub import StreamHubDep
+from api.schemas.stream import EventsJson
+from api.streaming.hub import StreamHubDep
 from domain.messages import Event
 from service.event_log import EventLog, EventReader, Gap
 

@@ -5,7 +5,7 @@ from fastapi import APIRouter, Request, Response
 from api.bodies import MAX_MODEL_BYTES, parse_body, read_limited
 from api.dependencies import SupervisorDep, WorkerDep
 from api.posted_models import infer, infer_posted
-from api.schemas_inference import InferenceBody, InferenceJson
+from api.schemas.inference import InferenceBody, InferenceJson
 
 router = APIRouter(tags=["inference"])
 

@@ -8,7 +8,7 @@ from api.bodies import InvalidBodyError
 from api.dependencies import ActorDep, SupervisorDep
 from api.json_route import JsonRoute
 from api.problems import HttpError
-from api.schemas_health import MockBody, MockJson, MockSignalJson
+from api.schemas.health import MockBody, MockJson, MockSignalJson
 from domain.errors import InvalidValueError, UnknownSignalError
 from service.mock_source import MockSource
 from service.supervisor import Supervisor

@@ -5,8 +5,8 @@ from fastapi import APIRouter, Request, Response
 from api.bodies import MAX_MODEL_BYTES, read_limited
 from api.dependencies import SupervisorDep, WorkerDep
 from api.posted_models import check_posted
-from api.schemas import FindingJson
-from api.schemas_inference import ModelCheckJson, ModelJson, NodeModelJson, SystemModelJson
+from api.schemas.base import FindingJson
+from api.schemas.inference import ModelCheckJson, ModelJson, NodeModelJson, SystemModelJson
 from service.supervisor import Supervisor
 
 router = APIRouter(prefix="/model", tags=["model"])

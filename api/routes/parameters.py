@@ -8,7 +8,7 @@ from api.bodies import InvalidBodyError
 from api.change_answers import CHANGE_RESPONSES, ChangeOptionsDep, answer_change
 from api.dependencies import ActorDep, PartDep, SupervisorDep
 from api.json_route import JsonRoute
-from api.schemas_parts import ParameterRowJson, ParametersBody, ParametersJson
+from api.schemas.parts import ParameterRowJson, ParametersBody, ParametersJson
 from domain.errors import UnknownParameterError
 from domain.messages import ParametersRequest
 from domain.system_model import ParameterValue, PartName

@@ -10,7 +10,7 @@ from api.change_answers import CHANGE_RESPONSES, ChangeOptionsDep, answer_change
 from api.dependencies import ActorDep, PartDep, SupervisorDep
 from api.json_route import JsonRoute
 from api.long_lists import json_list
-from api.schemas_parts import (
+from api.schemas.parts import (
     EnterableModeJson,
     ModeBody,
     ModeJson,

@@ -9,8 +9,8 @@ from prometheus_client import CONTENT_TYPE_LATEST, generate_latest
 
 from api.metrics import Metrics, metrics
 from api.problems import Problem, make_problem, problem_response
-from api.schemas import Json
-from api.stream_hub import StreamHubDep
+from api.schemas.base import Json
+from api.streaming.hub import StreamHubDep
 from domain.timebase import Duration, seconds, to_seconds
 from service.supervisor import Supervisor
 

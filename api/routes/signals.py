@@ -8,7 +8,7 @@ from api.bodies import InvalidBodyError
 from api.dependencies import ActorDep, SupervisorDep
 from api.json_route import JsonRoute
 from api.routes.system_state import current_system_state
-from api.schemas_health import MAX_SOURCE, ReadingBody, SignalJson, SignalsJson, SystemStateJson
+from api.schemas.health import MAX_SOURCE, ReadingBody, SignalJson, SignalsJson, SystemStateJson
 from api.values import SentSignalValue
 from domain.errors import InvalidValueError, UnknownSignalError
 from domain.messages import Reading

@@ -12,9 +12,9 @@ from typing import Any
 
 from fastapi import APIRouter, WebSocket, WebSocketDisconnect
 
-from api.stream_hub import StreamHub, StreamHubDep
-from api.stream_messages import read_client_message
-from api.stream_query import StreamQuery, read_stream_query
+from api.streaming.hub import StreamHub, StreamHubDep
+from api.streaming.messages import read_client_message
+from api.streaming.query import StreamQuery, read_stream_query
 from domain.errors import PilothouseError
 from service.event_log import EventReader, Gap
 from service.frame_feed import FrameReader

@@ -3,7 +3,7 @@
 from fastapi import APIRouter
 
 from api.dependencies import ActorDep, SupervisorDep
-from api.schemas_health import SystemStateJson
+from api.schemas.health import SystemStateJson
 from domain.messages import AcknowledgeRequest
 from service.supervisor import Supervisor
 

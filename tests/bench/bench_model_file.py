@@ -4,7 +4,7 @@ import time
 
 import pytest
 
-from service.model_file import read_model
+from service.files.model_file import read_model
 from tests.support.bench import report
 from tests.support.big_model import big_model_text
 

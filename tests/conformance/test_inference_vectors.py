@@ -12,8 +12,8 @@ from domain.lifecycle import LifecycleState
 from domain.messages import NodeReport
 from domain.mode_inference import ModeInference
 from domain.system_model import ModeName, PartName, SmhModel, StateAndMode, part_name
-from service.model_file import load_model, read_model
-from service.text_file import UnreadableFileError
+from service.files.model_file import load_model, read_model
+from service.files.text_file import UnreadableFileError
 from tests.support.inference_vectors import OVERRULED, OVERRULED_FACTS, Case, Parts, run_case
 from tests.support.shared import json_cases, shared_folder
 

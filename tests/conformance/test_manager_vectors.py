@@ -23,7 +23,7 @@ from domain.simulation.node_settings import Fault, NodeSettings
 from domain.simulation.nodes import NodeMessage, SimulatedNodes
 from domain.system_model import PartName, SmhModel, StateAndMode
 from domain.timebase import Instant, seconds
-from service.model_file import read_model
+from service.files.model_file import read_model
 from tests.support.manager_vectors import LATER, OVERRULED, Case, Pair, run_case
 from tests.support.shared import json_cases, shared_folder
 from tests.support.virtual_robot import VirtualRobot

@@ -11,10 +11,10 @@ from dataclasses import replace
 import pytest
 
 from domain.errors import PilothouseError
+from domain.health.signals import default_signals
+from domain.health.state_manager import StateManager
 from domain.messages import Reading, Readings
-from domain.signals import default_signals
 from domain.snapshot import TaskStatus
-from domain.state_manager import StateManager
 from domain.timebase import NANOSECONDS_PER_SECOND, seconds
 from tests.support.polaris import Observation, Send, Vector, play, timeline
 from tests.support.shared import json_cases

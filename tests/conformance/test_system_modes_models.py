@@ -22,8 +22,8 @@ from domain.system_model import (
     StateAndMode,
     SystemModel,
 )
-from service.model_file import load_model, read_model
-from service.text_file import UnreadableFileError
+from service.files.model_file import load_model, read_model
+from service.files.text_file import UnreadableFileError
 from tests.support.shared import json_cases, shared_folder
 
 Case = dict[str, Any]

@@ -7,8 +7,8 @@ Only for signals of which a value meets one condition at most, as those of smart
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 
+from domain.health.signals import STALE_DATA, Comparison, Condition, Recovery, SignalSettings
 from domain.messages import Reading, Readings
-from domain.signals import STALE_DATA, Comparison, Condition, Recovery, SignalSettings
 from domain.timebase import Instant
 
 SECOND = 1_000_000_000

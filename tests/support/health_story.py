@@ -3,10 +3,10 @@
 from collections.abc import Iterable
 from dataclasses import replace
 
+from domain.health.signals import SignalSettings, default_signals
+from domain.health.state_manager import HealthChanges, StateManager
 from domain.messages import Reading, Readings, SignalValue
-from domain.signals import SignalSettings, default_signals
 from domain.snapshot import TaskStatus
-from domain.state_manager import HealthChanges, StateManager
 from domain.timebase import seconds
 
 START = seconds(500)

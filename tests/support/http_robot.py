@@ -15,8 +15,8 @@ from domain.simulation.nodes import SimulatedNodes
 from domain.supervision import Supervision, SupervisionSettings
 from domain.system_model import PartName
 from service.backends.simulated import SimulatedBackend
+from service.files.model_file import LoadedModel, read_model
 from service.mock_source import MockSource
-from service.model_file import LoadedModel, read_model
 from service.supervisor import Supervisor
 from tests.support.live_robot import running
 from tests.support.manual_clock import ManualClock, settle

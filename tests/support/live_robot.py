@@ -10,8 +10,8 @@ from domain.simulation.nodes import SimulatedNodes
 from domain.supervision import Supervision, SupervisionSettings
 from domain.system_model import SmhModel
 from service.backends.simulated import SimulatedBackend
+from service.files.model_file import LoadedModel
 from service.mock_source import MockSource
-from service.model_file import LoadedModel
 from service.supervisor import Supervisor
 from tests.support.manual_clock import ManualClock
 from tests.support.models import actuation_model

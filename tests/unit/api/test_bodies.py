@@ -15,7 +15,7 @@ from api.bodies import (
     pointer_to,
     read_limited,
 )
-from api.schemas_parts import ModeBody
+from api.schemas.parts import ModeBody
 from domain.errors import UnknownSignalError
 
 

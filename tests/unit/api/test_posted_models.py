@@ -6,9 +6,9 @@ import pytest
 
 from api.bodies import InvalidBodyError, MalformedBodyError
 from api.posted_models import check_posted, infer, infer_posted
-from api.schemas_inference import InferenceBody
+from api.schemas.inference import InferenceBody
 from domain.errors import InvalidModelError
-from service.model_file import read_model
+from service.files.model_file import read_model
 from tests.support.http_robot import ACTUATION
 
 MODEL = read_model(ACTUATION).model

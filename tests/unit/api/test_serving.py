@@ -3,7 +3,7 @@ from pathlib import Path
 import pytest
 
 from api.serving import ServeOptions, compose, greet, serve
-from service.robot_file import RobotSettings
+from service.files.robot_file import RobotSettings
 from tests.support.manual_clock import ManualClock
 
 URL = "http://127.0.0.1:8000"

@@ -2,8 +2,8 @@
 
 import pytest
 
-from domain.change_record import ChangeSettings
-from domain.changes import Changes
+from domain.changes.operations import Changes
+from domain.changes.record import ChangeSettings
 from domain.lifecycle import LifecycleState
 from domain.messages import Event, NodeReport
 from domain.mode_inference import ModeInference

@@ -9,10 +9,10 @@ from hypothesis import strategies as st
 
 from domain.errors import OutdatedReadingError
 from domain.findings import Blocker
+from domain.health.signals import STALE_DATA, Recovery, SignalSettings, default_signals
+from domain.health.state_manager import HealthChanges, StateManager
 from domain.messages import Reading, Readings, SignalValue
-from domain.signals import STALE_DATA, Recovery, SignalSettings, default_signals
 from domain.snapshot import SignalView, SystemState, TaskStatus
-from domain.state_manager import HealthChanges, StateManager
 from tests.support.health_reference import SECOND, HealthReference, Moment
 
 START = 1_000

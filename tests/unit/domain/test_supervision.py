@@ -7,7 +7,7 @@ import hypothesis.strategies as st
 import pytest
 from hypothesis import given, settings
 
-from domain.change_admission import ADVISORY
+from domain.changes.admission import ADVISORY
 from domain.errors import (
     BackendUnavailableError,
     BlockedError,

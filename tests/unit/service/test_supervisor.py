@@ -19,8 +19,8 @@ from domain.messages import (
 from domain.snapshot import ChangeStatus, SystemState
 from domain.supervision import Supervision, SupervisionSettings
 from domain.system_model import PartName
+from service.files.model_file import LoadedModel
 from service.frame_feed import Frame
-from service.model_file import LoadedModel
 from service.ports import BackendMessage
 from service.supervisor import Supervisor, TaskFailedError
 from tests.support.live_robot import make_supervisor, running

@@ -6,10 +6,10 @@ from collections.abc import AsyncIterator
 import pytest
 from fastapi import FastAPI
 
-import api.stream_hub
+import api.streaming.hub
 from api.app import create_app
 from api.routes import stream
-from api.stream_hub import stream_hub
+from api.streaming.hub import stream_hub
 from domain.messages import EmergencyStopRequest, ModeRequest
 from domain.system_model import PartName
 from service.supervisor import Supervisor
@@ -215,7 +215,7 @@ async def test_a_client_that_does_not_read_at_all_is_dropped_and_told_to_come_la
 async def test_one_client_too_many_is_told_to_come_later(
     app: FastAPI, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(api.stream_hub, "MAX_CLIENTS", 1)
+    monkeypatch.setattr(api.streaming.hub, "MAX_CLIENTS", 1)
 
     async with WebSocketClient(app) as first, WebSocketClient(app) as second:
         assert await second.end() == 1013

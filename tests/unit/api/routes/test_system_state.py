@@ -2,7 +2,7 @@
 
 from dataclasses import replace
 
-from domain.signals import Recovery, default_signals
+from domain.health.signals import Recovery, default_signals
 from domain.supervision import SupervisionSettings
 from tests.support.http_robot import HttpRobot, http_robot
 

@@ -1,0 +1,174 @@
+"""Make the text of frames and events, once for all clients that get the same."""
+
+import asyncio
+from collections.abc import Callable, Iterable, Iterator, Mapping
+from typing import Any, Generic, TypeVar
+
+from pydantic_core import to_json
+
+from api.distribution import installed_version
+from api.problems import problem_of
+from api.schemas.base import timestamp
+from api.schemas.health import StreamedSignalJson, SystemStateJson
+from api.schemas.parts import PartJson
+from api.schemas.stream import GapJson, HelloJson
+from api.streaming.query import TOPICS
+from domain.errors import PilothouseError
+from domain.messages import Event
+from domain.snapshot import PartView, SignalView
+from domain.timebase import to_seconds
+from service.event_log import Gap
+from service.frame_feed import Frame
+from service.supervisor import PERIOD, Supervisor
+
+_EVENTS_KEPT = 1_000
+_MEMBERS_AT_ONCE = 200
+_PATH = "/ws"
+
+View = TypeVar("View")
+
+
+class StreamEncoder:
+    """Text of what is streamed, kept as long as somebody may still need it."""
+
+    def __init__(self, supervisor: Supervisor) -> None:
+        self._supervisor = supervisor
+        self._clock = clock = supervisor.clock
+        self._parts = _Members[PartView](lambda view: PartJson.of(view, clock).model_dump_json())
+        self._signals = _Members[SignalView](
+            lambda view: StreamedSignalJson.of(view, clock).model_dump_json()
+        )
+        self._texts: dict[tuple[bool, ...], tuple[Frame, _StateText]] = {}
+        """The newest of each shape; clients that ask for the same share it."""
+        self._events: dict[int, str] = {}
+
+    def hello(self, topics: frozenset[str]) -> str:
+        """Return the first frame of a client."""
+        return HelloJson(
+            epoch=self._supervisor.epoch,
+            topics=[topic for topic in TOPICS if topic in topics],
+            period_s=to_seconds(PERIOD),
+            version=installed_version(),
+        ).model_dump_json()
+
+    async def prepare(self, frame: Frame, topics: frozenset[str]) -> None:
+        """Encode a large number of new members a few at a time, and let others run in between.
+
+        The first frame of a robot with 10,000 parts takes longer than a tick may be late.
+        """
+        if "parts" in topics and self._known_text(frame, topics) is None:
+            new = list(self._parts.new_ones(frame.parts.items()))
+            for start in range(0, len(new), _MEMBERS_AT_ONCE):
+                self._parts.learn(new[start : start + _MEMBERS_AT_ONCE])
+                await asyncio.sleep(0)
+
+    def frame(self, frame: Frame, skipped: int, topics: frozenset[str]) -> str:
+        """Return a `state` frame; to clients in step with the same topics, the same string."""
+        known = self._known_text(frame, topics)
+        if known is None:
+            known = self._encode(frame, topics)
+            self._texts[_shape(frame, topics)] = (frame, known)
+        return known.after(skipped)
+
+    def event(self, event: Event) -> str:
+        """Return an `event` frame."""
+        text = self._events.get(event.id)
+        if text is None:
+            text = self._events[event.id] = self._event_text(event)
+            if len(self._events) > _EVENTS_KEPT:
+                del self._events[next(iter(self._events))]
+        return text
+
+    def gap(self, gap: Gap) -> str:
+        """Return a `gap` frame."""
+        return GapJson(first=gap.first, last=gap.last, epoch=gap.epoch).model_dump_json()
+
+    def problem(self, error: PilothouseError) -> str:
+        """Return a `problem` frame: a problem document whose `type` is that of the frame."""
+        document = problem_of(error, self._clock, _PATH)
+        return document.model_copy(update={"type": "problem"}).as_json()
+
+    def _known_text(self, frame: Frame, topics: frozenset[str]) -> "_StateText | None":
+        known = self._texts.get(_shape(frame, topics))
+        return known[1] if known is not None and known[0] is frame else None
+
+    def _encode(self, frame: Frame, topics: frozenset[str]) -> "_StateText":
+        at = timestamp(self._clock, frame.at)
+        state = SystemStateJson.of(
+            frame.system_state, frame.seq, frame.at, frame.simulated, self._clock
+        )
+        members = [f'"system_state":{state.model_dump_json()}']
+        if "parts" in topics and (frame.full or frame.parts):
+            members.append(f'"parts":{self._parts.text(frame.parts)}')
+        if "signals" in topics and (frame.full or frame.signals):
+            members.append(f'"signals":{self._signals.text(frame.signals)}')
+        return _StateText(
+            f'{{"type":"state","seq":{frame.seq},"at":"{at}","skipped":', f",{','.join(members)}}}"
+        )
+
+    def _event_text(self, event: Event) -> str:
+        shown = {
+            "type": "event",
+            "epoch": self._supervisor.epoch,
+            "id": event.id,
+            "at": timestamp(self._clock, event.at),
+            "kind": event.kind,
+            "cause": event.cause,
+            "actor": event.actor,
+            "data": event.data,
+        }
+        # A node may report a parameter that is NaN, which JSON does not know.
+        return to_json(shown, inf_nan_mode="null", fallback=_plain).decode()
+
+
+class _StateText:
+    """A `state` frame; only the number of skipped frames differs between clients."""
+
+    def __init__(self, head: str, tail: str) -> None:
+        self._head = head
+        self._tail = tail
+        self._in_step = f"{head}0{tail}"
+
+    def after(self, skipped: int) -> str:
+        """Return the frame for a client that missed so many before it."""
+        return self._in_step if skipped == 0 else f"{self._head}{skipped}{self._tail}"
+
+
+class _Members(Generic[View]):
+    """Members of a JSON object, kept by name; a view that is the same object is not made again.
+
+    So a frame with 10,000 parts of which none changed is little more than joining strings.
+    """
+
+    def __init__(self, encode: Callable[[View], str]) -> None:
+        self._encode = encode
+        self._known: dict[str, tuple[View, str]] = {}
+
+    def text(self, views: Mapping[Any, View]) -> str:
+        """Return the object that holds these members."""
+        return f"{{{','.join(self._each(views))}}}"
+
+    def new_ones(self, views: Iterable[tuple[str, View]]) -> Iterator[tuple[str, View]]:
+        """Yield the members that are not known as they are here."""
+        for name, view in views:
+            known = self._known.get(name)
+            if known is None or known[0] is not view:
+                yield name, view
+
+    def learn(self, views: Iterable[tuple[str, View]]) -> None:
+        """Encode members and keep their text."""
+        for name, view in views:
+            self._known[name] = (view, f"{to_json(name).decode()}:{self._encode(view)}")
+
+    def _each(self, views: Mapping[Any, View]) -> Iterator[str]:
+        self.learn(self.new_ones(views.items()))
+        return (self._known[name][1] for name in views)
+
+
+def _shape(frame: Frame, topics: frozenset[str]) -> tuple[bool, ...]:
+    return frame.full, "parts" in topics, "signals" in topics
+
+
+def _plain(value: object) -> object:
+    """Return what JSON can hold instead of `value`, such as a read-only mapping."""
+    return dict(value) if isinstance(value, Mapping) else str(value)

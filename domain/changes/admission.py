@@ -1,0 +1,159 @@
+"""Whether a change may begin: what is illegal, and what stands against it.
+
+`GET .../modes` shows what the admission of a request would say, since both come from here.
+"""
+
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import replace
+
+from domain.changes.plan import TOWARDS_REST, ChangeGoal, NodeGoal, goal_of, next_steps
+from domain.errors import BlockedError, IllegalTransitionError
+from domain.findings import Blocker
+from domain.lifecycle import LifecycleState, Transition, arrival, is_legal_request
+from domain.messages import ChangeRequest, ModeRequest, TransitionRequest
+from domain.node_facts import NodeFacts
+from domain.system_model import PartName, SmhModel
+
+ADVISORY = frozenset({"UNREACHABLE", "UNKNOWN_STATE"})
+"""Shown, but not refused: an absent node may come back before the deadline."""
+
+
+class ChangeAdmission:
+    """Judges requests by what is known of the nodes at this moment."""
+
+    def __init__(self, model: SmhModel, facts: Mapping[PartName, NodeFacts]) -> None:
+        self._model = model
+        self._facts = facts
+
+    def admit(self, request: ChangeRequest, estop: Sequence[Blocker]) -> ChangeGoal:
+        """Return what the request means, if it may begin.
+
+        Args:
+            request: Its part, mode and parameters are known.
+            estop: Why ESTOP is on; empty when it is not.
+
+        Raises:
+            IllegalTransitionError: No path leads from where the part is.
+            BlockedError: Something stands against it.
+        """
+        if isinstance(request, TransitionRequest):
+            self._check_legal(request, estop)
+        goal = goal_of(self._model, request, self._facts)
+        blockers = tuple(self._blockers(request, goal, estop))
+        if _refuse(blockers):
+            raise BlockedError(part_of(request), blockers)
+        return goal
+
+    def blockers(self, request: ChangeRequest, estop: Sequence[Blocker]) -> tuple[Blocker, ...]:
+        """Return everything that stands against a request, the advisory reasons too."""
+        goal = goal_of(self._model, request, self._facts)
+        return tuple(self._blockers(request, goal, estop))
+
+    def available_transitions(
+        self, part: PartName, estop: Sequence[Blocker]
+    ) -> tuple[Transition, ...]:
+        """Return the transitions that would be accepted now and lead somewhere else.
+
+        Wider than `get_available_transitions` of ROS 2 by the paths that a request implies: an
+        unconfigured part may be asked to activate, and is configured on the way.
+        """
+        states = self._lifecycles(part)
+        return tuple(
+            transition
+            for transition in Transition
+            if any(state is not transition.goal for state in states)
+            and self._is_legal(transition, states)
+            and not _refuse(self.blockers(TransitionRequest(part, transition), estop))
+        )
+
+    def _lifecycles(self, part: PartName) -> list[LifecycleState]:
+        """Return where the nodes below a part rest, or will, if they have a lifecycle."""
+        below = [self._facts[node] for node in self._model.nodes_below(part)]
+        return [arrival(facts.known_state) for facts in below if facts.has_lifecycle]
+
+    def _check_legal(self, request: TransitionRequest, estop: Sequence[Blocker]) -> None:
+        states = self._lifecycles(request.part)
+        if not self._is_legal(request.transition, states):
+            state = states[0] if len(set(states)) == 1 else None
+            if not states:
+                state = LifecycleState.ACTIVE
+            available = self.available_transitions(request.part, estop)
+            raise IllegalTransitionError(request.part, request.transition, state, available)
+
+    @staticmethod
+    def _is_legal(transition: Transition, states: Sequence[LifecycleState]) -> bool:
+        """Judge by all nodes below: towards rest one that can go is enough, otherwise all must.
+
+        An unknown node refuses nothing. A finalized one is told by a blocker, since no transition
+        leads out of it; towards rest it is passed by. Plain nodes are active, and nothing else.
+        """
+        if not states:
+            return transition is Transition.ACTIVATE
+        if transition in TOWARDS_REST:
+            return any(
+                state is LifecycleState.UNKNOWN or is_legal_request(transition, state)
+                for state in states
+            )
+        passing = (LifecycleState.UNKNOWN, LifecycleState.FINALIZED)
+        return all(state in passing or is_legal_request(transition, state) for state in states)
+
+    def _blockers(
+        self, request: ChangeRequest, goal: ChangeGoal, estop: Sequence[Blocker]
+    ) -> Iterable[Blocker]:
+        part = part_of(request)
+        resting = isinstance(request, TransitionRequest) and request.transition in TOWARDS_REST
+        if estop and any(self._activates(node, want) for node, want in goal.nodes.items()):
+            for reason in estop:
+                yield replace(reason, path=(part, *reason.path))
+        for node, want in goal.nodes.items():
+            blocker = self._blocker_of_node(part, node, want, resting=resting)
+            if blocker is not None:
+                yield blocker
+
+    def _activates(self, node: PartName, goal: NodeGoal) -> bool:
+        """Tell whether a node would be activated; one of unknown state might be."""
+        if goal.state is not LifecycleState.ACTIVE:
+            return False
+        facts = self._facts[node]
+        if facts.known_state is LifecycleState.UNKNOWN:
+            return facts.has_lifecycle
+        return Transition.ACTIVATE in (next_steps(facts, goal) or ())
+
+    def _blocker_of_node(
+        self, part: PartName, node: PartName, goal: NodeGoal, *, resting: bool
+    ) -> Blocker | None:
+        facts = self._facts[node]
+        state = facts.known_state
+        path = self._path(part, node)
+        if state is LifecycleState.UNKNOWN:
+            code = "UNREACHABLE" if facts.reachable is False else "UNKNOWN_STATE"
+            return Blocker(code, f"{node} {facts.why_unknown}", path)
+        if resting or goal.state is state:
+            return None
+        if state is LifecycleState.FINALIZED:
+            message = f"{node} is finalized: it must be started anew"
+            return Blocker("FINALIZED", message, path, str(state))
+        if state is LifecycleState.ERROR_PROCESSING:
+            message = f"{node} is processing an error"
+            return Blocker("ERROR_PROCESSING", message, path, str(state))
+        return None
+
+    def _path(self, part: PartName, node: PartName) -> tuple[str, ...]:
+        """Return one way down from the asked part to the node."""
+        if part == node:
+            return (part,)
+        for child in self._model.systems[part].parts:
+            if child == node or (
+                child in self._model.systems and child in self._model.ancestors[node]
+            ):
+                return (part, *self._path(child, node))
+        return (part, node)
+
+
+def _refuse(blockers: Iterable[Blocker]) -> bool:
+    return any(blocker.code not in ADVISORY for blocker in blockers)
+
+
+def part_of(request: ChangeRequest) -> PartName:
+    """Return the part that a request asks something of."""
+    return request.part if isinstance(request, ModeRequest | TransitionRequest) else request.node

@@ -1,0 +1,343 @@
+"""Changes of state, mode and parameters as operations: steps, deadlines and a verified end.
+
+A step is done when the node reports that it is there; an answer only says that it was taken. Nodes
+go side by side, each with one step in flight. A step in flight is never recalled: what comes next
+for its node waits for its end or its deadline.
+"""
+
+from collections.abc import Callable, Mapping
+
+from domain.changes.plan import ChangeGoal, SetParameters, next_steps, presumed_steps
+from domain.changes.record import Change, ChangeSettings, Pursuit, Step
+from domain.changes.step_judgement import judge_report
+from domain.deadlines import Deadlines
+from domain.errors import UnknownChangeError
+from domain.lifecycle import LifecycleState, Transition
+from domain.messages import (
+    AskFacts,
+    AskParameters,
+    AskTransition,
+    ChangeId,
+    ChangeRequest,
+    NodeAnswer,
+    NodeReport,
+)
+from domain.mode_inference import ModeInference
+from domain.outbox import Outbox
+from domain.snapshot import ChangeStatus, StepStatus
+from domain.system_model import PartName
+from domain.timebase import Duration, Instant, to_seconds
+
+KEPT_CHANGES = 1_000
+_MAX_STEPS = 16
+"""Of one node in one change; more only if somebody else keeps moving the node."""
+
+
+class Changes:
+    """All changes, running and ended, and the nodes that they drive."""
+
+    def __init__(
+        self,
+        inference: ModeInference,
+        settings: ChangeSettings,
+        outbox: Outbox,
+        is_stopped: Callable[[], bool],
+    ) -> None:
+        self._inference = inference
+        self._settings = settings
+        self._outbox = outbox
+        self._is_stopped = is_stopped
+        self._changes: dict[ChangeId, Change] = {}
+        self._running: dict[ChangeId, Change] = {}
+        self._pursuits: dict[PartName, Pursuit] = {}
+        self._in_flight: dict[PartName, Step] = {}
+        self._change_of: dict[PartName, ChangeId] = {}
+        self._deadlines: Deadlines[PartName] = Deadlines()
+        self._count = 0
+
+    # --- what can be seen ------------------------------------------------------------------------
+
+    def get(self, change: str) -> Change:
+        """Return a change.
+
+        Raises:
+            UnknownChangeError: There is none of that id, or it is forgotten.
+        """
+        found = self._changes.get(ChangeId(change))
+        if found is None:
+            hint = f"the last {KEPT_CHANGES} changes are kept; see GET /changes"
+            raise UnknownChangeError("change", change, (), hint)
+        return found
+
+    def all(self) -> tuple[Change, ...]:
+        """Return the changes that are kept, the newest first."""
+        return tuple(reversed(self._changes.values()))
+
+    def change_of(self, part: PartName) -> ChangeId | None:
+        """Return the running change that a part is under."""
+        return self._change_of.get(part)
+
+    def wake_at(self) -> Instant | None:
+        """Return the next deadline."""
+        return self._deadlines.next()
+
+    def step_in_flight(self, node: PartName) -> Step | None:
+        """Return the step that a node is at."""
+        return self._in_flight.get(node)
+
+    # --- inputs ----------------------------------------------------------------------------------
+
+    def begin(
+        self, part: PartName, request: ChangeRequest, goal: ChangeGoal, now: Instant
+    ) -> ChangeId:
+        """Begin an admitted change; it may have ended already when this returns."""
+        self._count += 1
+        identity = ChangeId(f"c{self._count}")
+        cause = self._outbox.record_input()
+        change = Change(identity, part, request, dict(goal.targets), now, cause)
+        nodes = {*goal.nodes, *self._inference.model.nodes_below(part)}
+        self._supersede(nodes, change, now)
+        self._changes[identity] = self._running[identity] = change
+        for name in {part, *goal.targets, *goal.nodes}:
+            self._change_of[name] = identity
+            self._outbox.parts.add(name)
+        self._outbox.parts |= self._inference.set_targets(goal.targets)
+        for node, node_goal in goal.nodes.items():
+            self._pursuits[node] = change.pursuits[node] = Pursuit(identity, node, node_goal)
+            change.open.add(node)
+        for node in goal.nodes:
+            self._advance(node, now)
+        self._conclude(change, now)
+        self._forget_old()
+        return identity
+
+    def cancel(self, change: ChangeId, now: Instant) -> None:
+        """Begin no further step of a change; nothing happens to one whose nodes have all ended.
+
+        One that was superseded has ended, and may still be driving nodes that nobody took over.
+
+        Raises:
+            UnknownChangeError: There is none of that id.
+        """
+        found = self.get(change)
+        if found.open:
+            self._outbox.record_input()
+        for node in sorted(found.open):
+            self._drop(found.pursuits[node], StepStatus.CANCELED, now)
+        if found.status is ChangeStatus.RUNNING:
+            self._end(found, ChangeStatus.CANCELED, "canceled on request", now)
+
+    def report(self, report: NodeReport, now: Instant) -> None:
+        """Judge the step in flight by a report that the inference has taken in, and go on."""
+        step = self._in_flight.get(report.node)
+        if step is not None:
+            verdict = judge_report(step, report, self._inference.facts[report.node])
+            if verdict is not None:
+                self._end_step(step, verdict.status, verdict.error, now)
+        self._advance(report.node, now)
+
+    def answer(self, answer: NodeAnswer, now: Instant) -> None:
+        """End the step in flight if the node refused it."""
+        step = self._in_flight.get(answer.node)
+        if step is not None and step.request == answer.request and not answer.accepted:
+            reason = f"refused: {answer.reason}" if answer.reason else "refused"
+            self._end_step(step, StepStatus.FAILED, reason, now)
+            self._advance(answer.node, now)
+
+    def pass_time(self, now: Instant) -> None:
+        """Handle every deadline up to now."""
+        while (node := self._deadlines.pop_due(now)) is not None:
+            if node in self._in_flight:
+                self._step_is_late(self._in_flight[node], now)
+            elif node in self._pursuits:
+                self._waited_long_enough(self._pursuits[node], now)
+
+    # --- one node --------------------------------------------------------------------------------
+
+    def _advance(self, node: PartName, now: Instant) -> None:
+        """Begin the next step of a node, if it has one and nothing is in flight."""
+        pursuit = self._pursuits.get(node)
+        if pursuit is None or node in self._in_flight:
+            return
+        facts = self._inference.facts[node]
+        state = facts.known_state
+        passing = pursuit.goal.state is not None and not state.is_primary
+        if state is LifecycleState.UNKNOWN or passing:
+            self._wait(pursuit, now)
+            return
+        actions = next_steps(facts, pursuit.goal)
+        if actions is None:
+            why = "has no lifecycle" if not facts.has_lifecycle else f"is {state}"
+            self._finish(pursuit, StepStatus.FAILED, f"{node} {why}: no way to the goal", now)
+            return
+        pursuit.plan(actions)
+        step = pursuit.next_step()
+        if step is None:
+            self._finish(pursuit, StepStatus.SUCCEEDED, None, now)
+        elif len(pursuit.steps) > _MAX_STEPS:
+            self._finish(pursuit, StepStatus.FAILED, f"{node} does not stay where it is put", now)
+        elif step.action is Transition.ACTIVATE and self._is_stopped():
+            why = f"{node} is not activated under ESTOP"
+            self._finish(pursuit, StepStatus.FAILED, why, now)
+        else:
+            self._begin_step(pursuit, step, now)
+
+    def _begin_step(self, pursuit: Pursuit, step: Step, now: Instant) -> None:
+        node, action = step.node, step.action
+        step.status, step.started_at = StepStatus.RUNNING, now
+        step.start_state = self._inference.facts[node].known_state
+        step.request = self._outbox.next_request()
+        pursuit.waiting = False
+        self._in_flight[node] = step
+        data = {"change": step.change, "node": node, "action": step.action_name}
+        step.event = self._outbox.emit("change.step_started", data)
+        if isinstance(action, SetParameters):
+            self._outbox.command(AskParameters(step.request, node, action.values))
+        else:
+            self._outbox.command(AskTransition(step.request, node, action))
+        self._deadlines.set(node, now + self._allowed(step))
+
+    def _allowed(self, step: Step) -> Duration:
+        if isinstance(step.action, SetParameters):
+            return self._settings.parameters_deadline
+        return self._settings.transition_deadline
+
+    def _end_step(self, step: Step, status: StepStatus, error: str | None, now: Instant) -> None:
+        """Record the end of a step; its pursuit ends with it unless it succeeded."""
+        step.end(status, now, error)
+        del self._in_flight[step.node]
+        self._deadlines.clear(step.node)
+        data = {
+            "change": step.change,
+            "node": step.node,
+            "action": step.action_name,
+            "status": str(status),
+            "error": error,
+        }
+        self._outbox.emit("change.step_ended", data)
+        pursuit = self._pursuits.get(step.node)
+        if pursuit is None or pursuit.change != step.change or status is StepStatus.SUCCEEDED:
+            return
+        self._finish(pursuit, status, f"{step.node}: {step.action_name}: {error}", now)
+
+    def _step_is_late(self, step: Step, now: Instant) -> None:
+        """Ask for the real state before saying that a step timed out."""
+        facts = self._inference.facts[step.node]
+        after = f"within {to_seconds(self._allowed(step)):g} s"
+        if facts.reachable is False:
+            self._end_step(step, StepStatus.FAILED, f"the node {facts.why_unknown}", now)
+        elif step.facts_asked:
+            error = f"not done {after}, and asked for its state the node did not answer"
+            self._end_step(step, StepStatus.TIMED_OUT, error, now)
+        else:
+            step.facts_asked = True
+            self._ask_facts(step.node, now)
+            return
+        self._advance(step.node, now)
+
+    def _ask_facts(self, node: PartName, now: Instant) -> None:
+        self._outbox.command(AskFacts(self._outbox.next_request(), node))
+        self._deadlines.set(node, now + self._settings.facts_deadline)
+
+    def _wait(self, pursuit: Pursuit, now: Instant) -> None:
+        """Wait for a node to be heard of, or to come to rest, as long as a transition may take."""
+        if not pursuit.waiting:
+            pursuit.waiting, pursuit.facts_asked = True, False
+            self._deadlines.set(pursuit.node, now + self._settings.transition_deadline)
+            if not pursuit.steps:
+                pursuit.plan(presumed_steps(pursuit.goal))
+
+    def _waited_long_enough(self, pursuit: Pursuit, now: Instant) -> None:
+        facts, node = self._inference.facts[pursuit.node], pursuit.node
+        state = facts.known_state
+        if state is LifecycleState.UNKNOWN:
+            self._finish(pursuit, StepStatus.FAILED, f"{node} {facts.why_unknown}", now)
+        elif pursuit.facts_asked:
+            self._finish(pursuit, StepStatus.TIMED_OUT, f"{node} is still {state}", now)
+        else:
+            pursuit.facts_asked = True
+            self._ask_facts(node, now)
+
+    def _finish(
+        self, pursuit: Pursuit, outcome: StepStatus, error: str | None, now: Instant
+    ) -> None:
+        """End the pursuit of one node, and the change with the last of them."""
+        pursuit.outcome, pursuit.error = outcome, error
+        if outcome is not StepStatus.SUCCEEDED:
+            waited = pursuit.waiting or not any(step.ended_at is not None for step in pursuit.steps)
+            pursuit.drop_pending(outcome if waited else StepStatus.CANCELED, now, error)
+        del self._pursuits[pursuit.node]
+        self._deadlines.clear(pursuit.node)
+        change = self._changes[pursuit.change]
+        change.open.discard(pursuit.node)
+        self._conclude(change, now)
+
+    # --- whole changes ---------------------------------------------------------------------------
+
+    def _supersede(self, nodes: set[PartName], newer: Change, now: Instant) -> None:
+        """Drop what drives `nodes`; changes that lose a node so end, their other nodes go on."""
+        for node in sorted(nodes & self._pursuits.keys()):
+            self._drop(self._pursuits[node], StepStatus.SUPERSEDED, now)
+        reason = f"superseded by change {newer.id} of {newer.part}"
+        for change in list(self._running.values()):
+            if nodes & change.pursuits.keys():
+                self._end(change, ChangeStatus.SUPERSEDED, reason, now)
+
+    def _drop(self, pursuit: Pursuit, status: StepStatus, now: Instant) -> None:
+        pursuit.outcome = status
+        pursuit.drop_pending(status, now)
+        del self._pursuits[pursuit.node]
+        if pursuit.node not in self._in_flight:
+            self._deadlines.clear(pursuit.node)
+        self._changes[pursuit.change].open.discard(pursuit.node)
+
+    def _conclude(self, change: Change, now: Instant) -> None:
+        """End a running change when its last node has ended; success is verified."""
+        if change.open or change.status is not ChangeStatus.RUNNING:
+            return
+        for outcome, status in _UNHAPPY_ENDS.items():
+            errors = change.errors_of(outcome)
+            if errors:
+                self._end(change, status, "; ".join(errors), now)
+                return
+        missed = self._missed_target(change)
+        status = ChangeStatus.FAILED if missed else ChangeStatus.SUCCEEDED
+        self._end(change, status, missed, now)
+
+    def _missed_target(self, change: Change) -> str | None:
+        """Return in what the asked part is not where it should be, though every step was done."""
+        target = change.targets.get(change.part)
+        if target is None or self._inference.converged(change.part):
+            return None
+        actual = self._inference.actual(change.part)
+        words = f"{change.part} is {actual.state_and_mode.label}, not {target.label}"
+        others = [
+            f"{node} is {self._inference.actual(node).state_and_mode.label}"
+            for node in self._inference.model.nodes_below(change.part)
+            if node != change.part and self._inference.actual(node).state is not target.state
+        ]
+        return "; ".join([actual.reason or words, *others])
+
+    def _end(self, change: Change, status: ChangeStatus, reason: str | None, now: Instant) -> None:
+        change.status, change.reason, change.ended_at = status, reason, now
+        del self._running[change.id]
+        for name in {change.part, *change.targets, *change.pursuits}:
+            if self._change_of.get(name) == change.id:
+                del self._change_of[name]
+                self._outbox.parts.add(name)
+        data = {"change": change.id, "part": change.part, "reason": reason}
+        self._outbox.emit(f"change.{status}", data)
+
+    def _forget_old(self) -> None:
+        """Keep the newest changes, and whatever still runs or drives a node."""
+        if len(self._changes) > KEPT_CHANGES:
+            for identity, change in list(self._changes.items()):
+                if change.status is not ChangeStatus.RUNNING and not change.open:
+                    del self._changes[identity]
+                    return
+
+
+_UNHAPPY_ENDS: Mapping[StepStatus, ChangeStatus] = {
+    StepStatus.FAILED: ChangeStatus.FAILED,
+    StepStatus.TIMED_OUT: ChangeStatus.TIMED_OUT,
+}

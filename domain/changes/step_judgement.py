@@ -1,0 +1,70 @@
+"""Whether a report ends the step that a node is at, and how."""
+
+from dataclasses import dataclass
+
+from domain.changes.plan import SetParameters
+from domain.changes.record import Step
+from domain.lifecycle import LifecycleState, Transition, rule_for
+from domain.messages import NodeReport
+from domain.node_facts import NodeFacts
+from domain.snapshot import StepStatus
+from domain.system_model import Parameters, same_value
+
+
+@dataclass(frozen=True, slots=True)
+class Verdict:
+    """How a step ended."""
+
+    status: StepStatus
+    error: str | None = None
+
+
+_DONE = Verdict(StepStatus.SUCCEEDED)
+
+
+def judge_report(step: Step, report: NodeReport, facts: NodeFacts) -> Verdict | None:
+    """Return how `report` ends `step`; None: it goes on.
+
+    Args:
+        step: In flight; it remembers here that its node was seen on the way.
+        report: The newest report of its node.
+        facts: What is known of the node, `report` included.
+    """
+    if isinstance(step.action, SetParameters):
+        return _judge_parameters(step, step.action.values, report, facts)
+    return _judge_transition(step, step.action, report)
+
+
+def _judge_parameters(
+    step: Step, values: Parameters, report: NodeReport, facts: NodeFacts
+) -> Verdict | None:
+    if report.parameters is None:
+        return None
+    known = facts.parameters
+    wrong = [n for n, v in values.items() if n not in known or not same_value(known[n], v)]
+    if not wrong:
+        return _DONE
+    if step.facts_asked:
+        return Verdict(StepStatus.TIMED_OUT, f"not taken over: {', '.join(wrong)}")
+    return None
+
+
+def _judge_transition(step: Step, transition: Transition, report: NodeReport) -> Verdict | None:
+    """Follow the lifecycle table; falling back counts as failure once the node was on the way."""
+    rule = rule_for(step.start_state, transition)
+    if rule is None or report.state is None:
+        return None
+    state = report.state
+    if state is rule.success:
+        return _DONE
+    if state is LifecycleState.ERROR_PROCESSING:
+        return Verdict(StepStatus.FAILED, "the node ran into an error (errorprocessing)")
+    if state is rule.via:
+        step.seen_on_the_way = True
+    elif state is not rule.start:
+        return Verdict(StepStatus.FAILED, f"the node is {state} instead of {rule.success}")
+    elif step.seen_on_the_way:
+        return Verdict(StepStatus.FAILED, f"the node went back to {state}")
+    if step.facts_asked:
+        return Verdict(StepStatus.TIMED_OUT, f"the node is still {state}")
+    return None

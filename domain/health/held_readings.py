@@ -1,0 +1,114 @@
+"""What a signal was last read as, by whom, and which late readings are refused.
+
+Age is judged by when a reading arrived. A sender's stamp only tells the order of its readings.
+"""
+
+from dataclasses import dataclass
+
+from domain.health.signals import SignalSettings
+from domain.messages import Reading, SignalValue
+from domain.timebase import Duration, Instant, seconds
+
+MAX_SKEW = seconds(1.0)
+"""A stamp further from our clock than this says that a clock is wrong."""
+
+MAX_QUIET_SOURCES = 64
+"""Sources of a stop that do not press it are remembered up to this number, the latest ones."""
+
+
+@dataclass(frozen=True, slots=True)
+class HeldReading:
+    """The last reading of one source."""
+
+    value: SignalValue
+    source: str
+    received_at: Instant
+    stamp: Instant | None
+    newest_stamp: Instant | None
+    """Of all its readings; stamps that are too far ahead of our clock do not count."""
+    since: Instant
+    """When it was first read as this value, without another in between."""
+
+    @property
+    def skewed(self) -> bool:
+        """Tell whether the sender's clock differs from ours by more than a second."""
+        return self.stamp is not None and abs(self.stamp - self.received_at) > MAX_SKEW
+
+
+class HeldReadings:
+    """The readings held of one signal.
+
+    All sources of a signal speak for the same thing, so the last reading counts. Sources of a stop
+    are kept apart: it is pressed while one of them presses it, and each stream of stamps is
+    ordered by itself.
+    """
+
+    def __init__(self, settings: SignalSettings) -> None:
+        self._settings = settings
+        self._by_source: dict[str, HeldReading] = {}
+        self.newest: HeldReading | None = None
+        """The reading that arrived last, of whatever source."""
+
+    def copy(self) -> "HeldReadings":
+        """Return a copy to try readings on."""
+        copy = HeldReadings(self._settings)
+        copy._by_source = dict(self._by_source)
+        copy.newest = self.newest
+        return copy
+
+    @property
+    def value(self) -> SignalValue | None:
+        """Return the value that counts: the last one, or true while a source presses a stop."""
+        if self.pressing:
+            return True
+        return None if self.newest is None else self.newest.value
+
+    @property
+    def pressing(self) -> tuple[HeldReading, ...]:
+        """Return the readings that press a stop, the longest first; none of another signal."""
+        if not self._settings.spec.is_stop:
+            return ()
+        pressing = [held for held in self._by_source.values() if held.value is True]
+        return tuple(sorted(pressing, key=lambda held: (held.since, held.source)))
+
+    def behind(self, reading: Reading, source: str) -> Duration | None:
+        """Return by how much a reading is too old to be taken; None: it may be taken.
+
+        Worse news is taken however late, and pressing a stop is never refused.
+        """
+        held = self._by_source.get(self._key(source))
+        if held is None or held.newest_stamp is None or reading.stamp is None:
+            return None
+        if reading.stamp >= held.newest_stamp:
+            return None
+        presses = self._settings.spec.is_stop and reading.value is True
+        if presses or self._settings.is_worse(reading.value, held.value):
+            return None
+        return held.newest_stamp - reading.stamp
+
+    def take(self, reading: Reading, source: str, now: Instant) -> None:
+        """Hold a checked reading that arrived at `now`."""
+        key = self._key(source)
+        # Put at the end, so that the order of the dictionary is that of arrival.
+        held = self._by_source.pop(key, None)
+        stamps = [] if held is None or held.newest_stamp is None else [held.newest_stamp]
+        if reading.stamp is not None and reading.stamp <= now + MAX_SKEW:
+            stamps.append(reading.stamp)
+        self.newest = self._by_source[key] = HeldReading(
+            value=reading.value,
+            source=source,
+            received_at=now,
+            stamp=reading.stamp,
+            newest_stamp=max(stamps, default=None),
+            since=held.since if held is not None and held.value == reading.value else now,
+        )
+        self._forget_long_quiet_source()
+
+    def _key(self, source: str) -> str:
+        return source if self._settings.spec.is_stop else ""
+
+    def _forget_long_quiet_source(self) -> None:
+        """Keep senders that invent source names from filling the memory."""
+        quiet = [key for key, held in self._by_source.items() if held.value is not True]
+        if len(quiet) > MAX_QUIET_SOURCES:
+            del self._by_source[quiet[0]]

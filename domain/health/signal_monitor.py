@@ -1,0 +1,210 @@
+"""Watches one signal: what is held of it, for how long it has been bad, and whether it is stale."""
+
+from collections.abc import Iterator
+from types import MappingProxyType
+
+from domain.findings import Blocker, Fact
+from domain.health.error_slot import ErrorSlot
+from domain.health.held_readings import HeldReadings
+from domain.health.signal_reasons import kept_reason, pressed_reason, stale_reason, value_reason
+from domain.health.signals import STALE_DATA, Condition, Recovery, SignalSettings
+from domain.messages import Reading
+from domain.snapshot import SignalView
+from domain.timebase import Duration, Instant, to_seconds
+
+
+class SignalMonitor:
+    """One signal and its two errors: that of its value, and STALE_DATA.
+
+    What is judged follows from what was read and from the instant of the last `judge`. The caller
+    calls that at each `wake_at` in turn, before anything that happens then or later.
+
+    A reading is good when it meets no condition. "For 15 s" counts from the last good reading, or
+    from the start where there was none; all conditions of a signal share that timer. When the value
+    goes from one error to another without a good reading between, the second follows at once.
+
+    A stop is as fresh as the newest reading of any source. Were each source to be fresh, one that
+    spoke once, as a person does by hand, would make the robot stale for ever.
+    """
+
+    def __init__(self, settings: SignalSettings, start: Instant) -> None:
+        self.settings = settings
+        self.readings = HeldReadings(settings)
+        self._last_good = start
+        self._cause: Condition | None = None
+        self._bad_for: Duration = 0
+        self._engaged_since: Instant | None = None
+        self._facts = MappingProxyType(settings.facts())
+        self._value_slot = ErrorSlot(settings.min_on, settings.recovery)
+        self._stale_slot = ErrorSlot(settings.min_on, Recovery.AUTOMATIC)
+        if settings.stale_after:
+            # Nobody has to see this one for a while: a first reading ends it at once.
+            self._stale_slot.begin_with(STALE_DATA, start)
+        self.view = self._make_view(start)
+        """The same object as long as nothing changed."""
+
+    # --- what happens ----------------------------------------------------------------------------
+
+    def receive(self, reading: Reading, source: str, now: Instant) -> None:
+        """Take a checked reading that arrived at `now`."""
+        self.readings.take(reading, source, now)
+        if not self._met_by_readings():
+            self._last_good = now
+        self.judge(now)
+
+    def set_engaged(self, *, engaged: bool, now: Instant) -> None:
+        """Press or release a stop besides its sources; it takes effect at once."""
+        if engaged is not (self._engaged_since is not None):
+            self._engaged_since = now if engaged else None
+            self.judge(now)
+
+    def acknowledge(self, error: str, now: Instant) -> None:
+        """Acknowledge `error` if it is the one that is on."""
+        if self._value_slot.error == error:
+            self._value_slot.acknowledge()
+            self.judge(now)
+
+    def judge(self, now: Instant) -> None:
+        """Judge what is held as of `now`."""
+        cause = self._find_cause(now)
+        if cause is not self._cause:
+            self._cause = cause
+            waited = [c.for_ for c in self.settings.conditions if self._is_due(c, now)]
+            self._bad_for = max(waited, default=0)
+        self._value_slot.update(None if cause is None else cause.error, now)
+        self._stale_slot.update(STALE_DATA if self._is_stale(now) else None, now)
+        view = self._make_view(now)
+        if view != self.view:
+            self.view = view
+
+    def wake_at(self) -> Instant | None:
+        """Return the next instant at which time alone changes something; None: never."""
+        due = [self._last_good + condition.for_ for condition in self._waiting()]
+        others = (self._stale_at(), self._value_slot.wake_at, self._stale_slot.wake_at)
+        return min((*due, *(at for at in others if at is not None)), default=None)
+
+    # --- what can be seen ------------------------------------------------------------------------
+
+    @property
+    def errors(self) -> frozenset[str]:
+        """Return the errors that are on."""
+        errors = (self._value_slot.error, self._stale_slot.error)
+        return frozenset(error for error in errors if error is not None)
+
+    @property
+    def present(self) -> frozenset[str]:
+        """Return the errors that are on and whose cause is still there."""
+        causes = (self._value_slot.cause, self._stale_slot.cause)
+        return frozenset(cause for cause in causes if cause is not None)
+
+    def reasons(self) -> Iterator[Blocker]:
+        """Tell why the errors are on, one reason per cause."""
+        value = self.readings.value
+        if self._value_slot.error is not None and self._cause is None:
+            yield self._reason(self._value_slot, kept_reason(self.settings, self._value_slot))
+        elif self._cause is not None and self.settings.spec.is_stop:
+            yield from self._stop_reasons(self._value_slot)
+        elif self._cause is not None and value is not None:
+            message = value_reason(self.settings, self._cause, value, self._bad_for)
+            threshold = self._cause.threshold
+            yield self._reason(self._value_slot, message, value, threshold)
+        if self._stale_slot.cause is not None:
+            message = stale_reason(self.settings, is_seen=self.readings.newest is not None)
+            limit = to_seconds(self.settings.stale_after)
+            yield self._reason(self._stale_slot, message, threshold=limit)
+        elif self._stale_slot.error is not None:
+            yield self._reason(self._stale_slot, kept_reason(self.settings, self._stale_slot))
+
+    def _stop_reasons(self, slot: ErrorSlot) -> Iterator[Blocker]:
+        if self._engaged_since is not None:
+            message = "emergency stop is engaged"
+            yield self._reason(slot, message, value=True, since=self._engaged_since)
+        if pressing := self.readings.pressing:
+            message = pressed_reason(self.readings, self.settings.spec)
+            yield self._reason(slot, message, value=True, since=pressing[0].since)
+
+    def _reason(
+        self,
+        slot: ErrorSlot,
+        message: str,
+        value: Fact = None,
+        threshold: Fact = None,
+        since: Instant | None = None,
+    ) -> Blocker:
+        return Blocker(
+            code=slot.error or "",
+            message=message,
+            path=(self.settings.spec.name,),
+            value=value,
+            threshold=threshold,
+            since=slot.since if since is None else since,
+        )
+
+    def _make_view(self, now: Instant) -> SignalView:
+        newest = self.readings.newest
+        pressing = self.readings.pressing
+        coming = min(self._waiting(), key=lambda condition: condition.for_, default=None)
+        return SignalView(
+            signal=self.settings.spec.name,
+            value=self.readings.value,
+            unit=self.settings.spec.unit,
+            source=pressing[0].source if pressing else newest.source if newest else None,
+            received_at=newest.received_at if newest else None,
+            stamp=newest.stamp if newest else None,
+            stale=self._is_stale(now),
+            error=self._value_slot.error,
+            pending_error=coming.error if coming else None,
+            pending_since=self._last_good if coming else None,
+            pending_needs=coming.for_ if coming else None,
+            skewed=newest.skewed if newest else False,
+            settings=self._facts,
+        )
+
+    # --- what is judged --------------------------------------------------------------------------
+
+    def _met_by_readings(self) -> list[Condition]:
+        """Return the conditions that the value held meets, the most urgent first."""
+        value = self.readings.value
+        if value is None:
+            return []
+        return [
+            condition
+            for condition in self.settings.conditions
+            if condition.is_met_by(value, error_is_on=condition is self._cause)
+        ]
+
+    def _met(self) -> list[Condition]:
+        """Return the conditions that are met, an engaged emergency stop meeting all."""
+        if self._engaged_since is not None:
+            return list(self.settings.conditions)
+        return self._met_by_readings()
+
+    def _is_due(self, condition: Condition, now: Instant) -> bool:
+        return self._engaged_since is not None or now - self._last_good >= condition.for_
+
+    def _find_cause(self, now: Instant) -> Condition | None:
+        """Return the most urgent condition that is met and due, or that already was an error."""
+        met = self._met()
+        for condition in met:
+            if condition is self._cause or self._is_due(condition, now):
+                return condition
+        return met[0] if met and self._cause is not None else None
+
+    def _waiting(self) -> list[Condition]:
+        """Return the conditions that are met and would be the cause if they were due."""
+        met = self._met()
+        return met[: met.index(self._cause)] if self._cause in met else met
+
+    def _stale_at(self) -> Instant | None:
+        """Return when the value held becomes stale; None: it is, or it never does."""
+        newest = self.readings.newest
+        if not self.settings.stale_after or newest is None or self._stale_slot.cause is not None:
+            return None
+        # Strictly older, so the instant after that of the limit.
+        return newest.received_at + self.settings.stale_after + 1
+
+    def _is_stale(self, now: Instant) -> bool:
+        if not self.settings.stale_after:
+            return False
+        newest = self.readings.newest
+        return newest is None or now - newest.received_at > self.settings.stale_after

@@ -1,0 +1,105 @@
+"""Says in words why an error of a signal is on."""
+
+from domain.health.error_slot import ErrorSlot
+from domain.health.held_readings import HeldReadings
+from domain.health.signals import (
+    RATIO,
+    Condition,
+    SignalKind,
+    SignalSettings,
+    SignalSpec,
+)
+from domain.messages import SignalValue
+from domain.timebase import Duration, to_seconds
+
+_NAMED_SOURCES = 3
+
+
+def value_reason(
+    settings: SignalSettings, condition: Condition, value: SignalValue, bad_for: Duration
+) -> str:
+    """Say what is wrong with a value.
+
+    Args:
+        settings: The signal's.
+        condition: The one whose error is on.
+        value: The reading held.
+        bad_for: For how long at least there was no good reading when the error came.
+
+    Returns:
+        As in "battery 42 % is below 50 %".
+    """
+    spec = settings.spec
+    if spec.kind is SignalKind.NUMBER:
+        return _number_reason(spec, condition, float(value), min(bad_for, condition.for_))
+    said = str(value).lower() if isinstance(value, bool) else value
+    if not bad_for:
+        return f"{_label(spec)} is {said}"
+    good = _good_members(settings)
+    if not good:
+        return f"{_label(spec)} has been {said} for {_duration(bad_for)}"
+    return f"{_label(spec)} is {said}, not {' or '.join(good)} for {_duration(bad_for)}"
+
+
+def pressed_reason(readings: HeldReadings, spec: SignalSpec) -> str:
+    """Say who presses a stop, as in "e-stop is pressed (source api)"."""
+    sources = [held.source for held in readings.pressing]
+    named = ", ".join(sources[:_NAMED_SOURCES])
+    more = len(sources) - _NAMED_SOURCES
+    if more > 0:
+        named += f" and {more} more"
+    return f"{_label(spec)} is pressed (source{'s' if len(sources) > 1 else ''} {named})"
+
+
+def stale_reason(settings: SignalSettings, *, is_seen: bool) -> str:
+    """Say that there is no reading, or none that is young enough."""
+    if not is_seen:
+        return f"no reading of {settings.spec.name} yet"
+    return f"no reading of {settings.spec.name} for {_duration(settings.stale_after)}"
+
+
+def kept_reason(settings: SignalSettings, slot: ErrorSlot) -> str:
+    """Say why an error is still on although its cause is gone."""
+    gone = f"{_label(settings.spec)} no longer causes {slot.error}, which"
+    if slot.waits_for_acknowledgement:
+        return f"{gone} waits to be acknowledged"
+    return f"{gone} stays on for at least {_duration(settings.min_on)}"
+
+
+def _number_reason(spec: SignalSpec, condition: Condition, value: float, bad_for: Duration) -> str:
+    # Between the two thresholds, it is the clear threshold that the value has not reached.
+    is_beyond = condition.is_met_by(value)
+    limit = float(condition.threshold) if is_beyond else condition.clear_limit
+    comparison = f"{condition.comparison} {_quantity(spec, limit)}"
+    subject = f"{_label(spec)} {_quantity(spec, value, limit)}"
+    if not is_beyond:
+        return f"{subject} is still {comparison}"
+    if not bad_for:
+        return f"{subject} is {comparison}"
+    return f"{subject} has been {comparison} for {_duration(bad_for)}"
+
+
+def _quantity(spec: SignalSpec, value: float, other: float | None = None) -> str:
+    """Write a number with its unit, with as many digits as tell it from `other`."""
+    scale, unit = (100.0, "%") if spec.unit == RATIO else (1.0, spec.unit)
+    for digits in (6, 9, 12, 17):
+        text = f"{value * scale:.{digits}g}"
+        if other is None or text != f"{other * scale:.{digits}g}":
+            break
+    return f"{text} {unit}".rstrip()
+
+
+def _duration(duration: Duration) -> str:
+    return f"{to_seconds(duration):g} s"
+
+
+def _good_members(settings: SignalSettings) -> list[str]:
+    return [
+        member
+        for member in settings.spec.members
+        if not any(condition.is_met_by(member) for condition in settings.conditions)
+    ]
+
+
+def _label(spec: SignalSpec) -> str:
+    return spec.label or spec.name

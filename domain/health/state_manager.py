@@ -1,0 +1,297 @@
+"""Judges the health of the robot from its signals: which errors are on, and why.
+
+Source: smart_polaris, `gem_state_manager`, whose error bits and thresholds are the defaults. Unlike
+there, everything is decided when a reading arrives or a time is reached, and not at the next cycle.
+"""
+
+from collections.abc import Iterable, Iterator, Mapping
+from contextlib import contextmanager
+from dataclasses import dataclass, field, replace
+from types import MappingProxyType
+
+from domain.errors import (
+    InvalidValueError,
+    OutdatedReadingError,
+    UnknownErrorNameError,
+    UnknownSignalError,
+)
+from domain.findings import Blocker
+from domain.health.held_readings import HeldReadings
+from domain.health.signal_monitor import SignalMonitor
+from domain.health.signals import ESTOP, ESTOP_SIGNAL, STALE_DATA, STALE_DATA_BIT, SignalSettings
+from domain.messages import Reading, Readings
+from domain.snapshot import SignalView, SystemState, SystemStateView, TaskStatus
+from domain.timebase import Instant, to_seconds
+
+
+@dataclass(frozen=True, slots=True)
+class HealthChanges:
+    """What a call changed.
+
+    An error in both `raised` and `cleared` was cleared first if it is on now, else raised first.
+    """
+
+    raised: tuple[Blocker, ...] = ()
+    """One per error that came on: its most urgent reason."""
+    cleared: tuple[str, ...] = ()
+    pending: tuple[tuple[str, str], ...] = ()
+    """Signal and error that began to count."""
+    settled: tuple[tuple[str, str], ...] = ()
+    """Signal and error that stopped counting without becoming one."""
+    signals: frozenset[str] = frozenset()
+    """Signals whose view changed."""
+    skewed: tuple[str, ...] = ()
+    """Signals whose sender's clock began to differ from ours."""
+    state_changed: bool = False
+    """Whether the errors or their reasons differ."""
+
+
+@dataclass(frozen=True, slots=True)
+class _Seen:
+    """What was to be seen at one moment."""
+
+    errors: tuple[str, ...]
+    reasons: tuple[Blocker, ...]
+    views: Mapping[str, SignalView]
+
+
+@dataclass(slots=True)
+class _Gathered:
+    """Changes while they are being gathered."""
+
+    raised: list[Blocker] = field(default_factory=list)
+    cleared: list[str] = field(default_factory=list)
+    pending: list[tuple[str, str]] = field(default_factory=list)
+    settled: list[tuple[str, str]] = field(default_factory=list)
+    signals: set[str] = field(default_factory=set)
+    skewed: list[str] = field(default_factory=list)
+    state_changed: bool = False
+
+    def add(self, before: _Seen, after: _Seen) -> None:
+        """Add the difference between two moments."""
+        for error in after.errors:
+            if error not in before.errors:
+                self.raised.append(next(r for r in after.reasons if r.code == error))
+        self.cleared += [error for error in before.errors if error not in after.errors]
+        for name, view in after.views.items():
+            if view is not before.views[name]:
+                self._add_view(before.views[name], view)
+        self.state_changed |= before.reasons != after.reasons
+
+    def build(self) -> HealthChanges:
+        """Return what was gathered."""
+        return HealthChanges(
+            tuple(self.raised),
+            tuple(self.cleared),
+            tuple(self.pending),
+            tuple(self.settled),
+            frozenset(self.signals),
+            tuple(self.skewed),
+            self.state_changed,
+        )
+
+    def _add_view(self, before: SignalView, after: SignalView) -> None:
+        name = after.signal
+        self.signals.add(name)
+        if before.pending_error != after.pending_error:
+            if before.pending_error not in (None, after.error):
+                self.settled.append((name, before.pending_error))
+            if after.pending_error is not None:
+                self.pending.append((name, after.pending_error))
+        if after.skewed and not before.skewed:
+            self.skewed.append(name)
+
+
+class StateManager:
+    """The signals of the robot, and what follows from them.
+
+    Deterministic: errors and reasons follow from what was received when, whatever the instants at
+    which anybody lets time pass. What is due at an instant comes before what arrives at it.
+
+    Every call's `now` is that of one monotonic clock and never falls.
+    """
+
+    def __init__(self, settings: Iterable[SignalSettings], start: Instant) -> None:
+        """Begin at `start` with nothing received.
+
+        Raises:
+            InvalidValueError: A signal or an error is declared twice, or `estop` is missing.
+        """
+        declared = tuple(settings)
+        self._bits = _error_bits(declared)
+        self._monitors = {item.spec.name: SignalMonitor(item, start) for item in declared}
+        self._seen = self._look()
+        self._wake_at = self._next_wake()
+        """Kept, since it is asked for at every input of the core."""
+
+    # --- what happens ----------------------------------------------------------------------------
+
+    def check(self, readings: Readings, now: Instant) -> None:
+        """Refuse readings of which one cannot be taken; nothing is changed.
+
+        Raises:
+            UnknownSignalError: A signal is not declared.
+            InvalidValueError: A value is of the wrong type, not finite or out of range; the pointer
+                is the name of its signal.
+            OutdatedReadingError: A newer reading of the signal is held, and this one is no worse.
+        """
+        trial: dict[str, HeldReadings] = {}
+        for reading in self._checked(readings):
+            name = reading.signal
+            held = trial.setdefault(name, self._monitors[name].readings.copy())
+            behind = held.behind(reading, readings.source)
+            if behind is not None:
+                raise OutdatedReadingError(name, to_seconds(behind))
+            held.take(reading, readings.source, now)
+
+    def receive(self, readings: Readings, now: Instant) -> HealthChanges:
+        """Take readings that `check` did not refuse."""
+        checked = self._checked(readings)
+        with self._gathering(now) as gathered:
+            for reading in checked:
+                self._monitors[reading.signal].receive(reading, readings.source, now)
+        return gathered.build()
+
+    def set_emergency_stop(self, engaged: bool, now: Instant) -> HealthChanges:
+        """Let the emergency stop be a cause of ESTOP, which no reading releases, or end that."""
+        with self._gathering(now) as gathered:
+            self._monitors[ESTOP_SIGNAL].set_engaged(engaged=engaged, now=now)
+        return gathered.build()
+
+    def acknowledge(self, error: str, now: Instant) -> HealthChanges:
+        """Acknowledge an error: it ends when its cause is gone, which may be now.
+
+        An error that is not on, or that ends by itself, needs none; nothing is remembered then.
+
+        Raises:
+            UnknownErrorNameError: There is no error of this name.
+        """
+        if error not in self._bits:
+            raise UnknownErrorNameError("error", error, tuple(self._bits))
+        with self._gathering(now) as gathered:
+            for monitor in self._monitors.values():
+                monitor.acknowledge(error, now)
+        return gathered.build()
+
+    def pass_time(self, now: Instant) -> HealthChanges:
+        """Let happen what is due up to `now`, each thing at its own instant."""
+        with self._gathering(now) as gathered:
+            pass
+        return gathered.build()
+
+    def wake_at(self) -> Instant | None:
+        """Return the earliest instant at which time alone changes something; None: never."""
+        return self._wake_at
+
+    # --- what can be seen ------------------------------------------------------------------------
+
+    @property
+    def errors(self) -> tuple[str, ...]:
+        """Return the errors that are on, in the order of their bits."""
+        return self._seen.errors
+
+    def system_state(self, task_status: TaskStatus) -> SystemStateView:
+        """Return the state of the robot with its reasons, the most urgent first.
+
+        ERROR while an error is on, else RUNNING while there is a task, be it paused, else IDLE.
+
+        Source: smart_polaris, `state_manager.cpp`.
+        """
+        error_code = 0
+        for error in self.errors:
+            error_code |= self._bits[error]
+        if error_code:
+            state = SystemState.ERROR
+        elif task_status is TaskStatus.NO_TASK:
+            state = SystemState.IDLE
+        else:
+            state = SystemState.RUNNING
+        return SystemStateView(state, error_code, self.errors, self._seen.reasons, task_status)
+
+    def signal(self, name: str) -> SignalView:
+        """Return one signal; the same object as long as nothing changed.
+
+        Raises:
+            UnknownSignalError: It is not declared.
+        """
+        return self._monitor(name).view
+
+    def signals(self) -> Mapping[str, SignalView]:
+        """Return all signals as declared; the same object as long as nothing changed."""
+        return self._seen.views
+
+    # --- inside ----------------------------------------------------------------------------------
+
+    def _monitor(self, name: str) -> SignalMonitor:
+        monitor = self._monitors.get(name)
+        if monitor is None:
+            raise UnknownSignalError("signal", name, tuple(self._monitors))
+        return monitor
+
+    def _checked(self, readings: Readings) -> list[Reading]:
+        checked = []
+        for reading in readings.items:
+            value = self._monitor(reading.signal).settings.spec.checked(reading.value)
+            checked.append(Reading(reading.signal, value, reading.stamp))
+        return checked
+
+    @contextmanager
+    def _gathering(self, now: Instant) -> Iterator[_Gathered]:
+        """Let time pass up to `now`, then let the body happen, and gather what changes."""
+        gathered = _Gathered()
+        while (due := self.wake_at()) is not None and due <= now:
+            for monitor in self._monitors.values():
+                monitor.judge(due)
+            self._gather(gathered)
+        yield gathered
+        self._gather(gathered)
+
+    def _next_wake(self) -> Instant | None:
+        due = (monitor.wake_at() for monitor in self._monitors.values())
+        return min((at for at in due if at is not None), default=None)
+
+    def _gather(self, gathered: _Gathered) -> None:
+        before = self._seen
+        now = self._look()
+        if all(view is before.views[name] for name, view in now.views.items()):
+            # Whoever holds the mapping sees by its identity that it is still the same.
+            now = replace(now, views=before.views)
+        self._seen = now
+        self._wake_at = self._next_wake()
+        gathered.add(before, now)
+
+    def _look(self) -> _Seen:
+        on = frozenset[str]().union(*(monitor.errors for monitor in self._monitors.values()))
+        views = {name: monitor.view for name, monitor in self._monitors.items()}
+        return _Seen(
+            errors=tuple(error for error in self._bits if error in on),
+            reasons=self._reasons(),
+            views=MappingProxyType(views),
+        )
+
+    def _reasons(self) -> tuple[Blocker, ...]:
+        """Tell why errors are on: the stop first, then by bit, and last what is merely kept on."""
+        ranked = []
+        order = {error: position for position, error in enumerate(self._bits)}
+        for monitor in self._monitors.values():
+            for reason in monitor.reasons():
+                is_kept = reason.code not in monitor.present
+                ranked.append(((is_kept, reason.code != ESTOP, order[reason.code]), reason))
+        ranked.sort(key=lambda item: item[0])
+        return tuple(reason for _, reason in ranked)
+
+
+def _error_bits(declared: tuple[SignalSettings, ...]) -> Mapping[str, int]:
+    """Return the bit of each error, in the order of bits."""
+    names = [item.spec.name for item in declared]
+    conditions = [condition for item in declared for condition in item.conditions]
+    errors = [STALE_DATA, *(condition.error for condition in conditions)]
+    for kind, given in (("signal", names), ("error", errors)):
+        twice = sorted({name for name in given if given.count(name) > 1})
+        if twice:
+            raise InvalidValueError(f"{kind} {twice[0]} is declared twice", twice[0])
+    if ESTOP_SIGNAL not in names:
+        raise InvalidValueError(f"signal {ESTOP_SIGNAL} is not declared", ESTOP_SIGNAL)
+    bits = [(condition.bit, condition.error) for condition in conditions]
+    ordered = sorted([(STALE_DATA_BIT, STALE_DATA), *bits], key=lambda item: item[0])
+    return {error: bit for bit, error in ordered}

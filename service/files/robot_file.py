@@ -1,0 +1,168 @@
+"""Robot files: what can be set about a robot besides its model, as YAML.
+
+The keys are documented by docs/reference/robot-file.schema.json.
+"""
+
+from pathlib import Path
+from typing import Any, Literal
+
+from pydantic import Field, ValidationError
+
+from domain.changes.record import ChangeSettings
+from domain.errors import InvalidValueError, PilothouseError
+from domain.findings import Finding
+from domain.health.signals import SignalSettings
+from domain.simulation.node_settings import NodeSettings
+from domain.system_model import PartName, SmhModel
+from domain.timebase import seconds
+from service.files.parameter_file import scalar_value
+from service.files.robot_settings import ChangesBlock, NodeBlock, SettingsBlock, SignalsBlock
+from service.files.text_file import read_text_file
+from service.files.yaml_tree import Mapping, Node, Scalar, Sequence, finding_at, in_order, read_tree
+
+_WORDS = {"extra_forbidden": "there is no such key", "model_type": "there must be keys below"}
+
+
+class InvalidRobotFileError(PilothouseError):
+    """A robot file with faults; `findings` hold all of them."""
+
+    code = "INVALID_ROBOT_FILE"
+
+    def __init__(self, findings: list[Finding]) -> None:
+        more = f" (and {len(findings) - 1} more)" if len(findings) > 1 else ""
+        super().__init__(f"the robot file is invalid: {findings[0].message}{more}")
+        self.findings = tuple(findings)
+
+
+class RobotSettings(SettingsBlock):
+    """Settings of a robot. What is left out keeps its usual value."""
+
+    backend: Literal["simulated"] = "simulated"
+    """Through what nodes are reached."""
+    mock: bool | None = None
+    """Whether signals are mocked. Left out: as the service is told, which mocks them with simulated
+    nodes."""
+    signals: SignalsBlock = SignalsBlock()
+    """When a signal is an error."""
+    nodes: dict[str, NodeBlock] = Field(default_factory=dict)
+    """The simulated nodes that differ from the usual, by name."""
+    changes: ChangesBlock = ChangesBlock()
+    """Deadlines of changes."""
+
+    def to_signal_settings(self) -> tuple[SignalSettings, ...]:
+        """Return all signals: the usual five as they are set here, then the declared ones.
+
+        Raises:
+            InvalidValueError: A threshold cannot be reached, or lies on the wrong side of the
+                other; `pointer` is `<signal>/<setting>`.
+        """
+        return self.signals.to_domain()
+
+    def to_node_settings(self) -> dict[PartName, NodeSettings]:
+        """Return the nodes that are named here."""
+        return {PartName(name): node.to_domain() for name, node in self.nodes.items()}
+
+    def to_change_settings(self) -> ChangeSettings:
+        """Return the deadlines of changes."""
+        return ChangeSettings(
+            transition_deadline=seconds(self.changes.transition_deadline_s),
+            parameters_deadline=seconds(self.changes.parameters_deadline_s),
+        )
+
+
+def load_robot_file(path: Path, model: SmhModel) -> RobotSettings:
+    """Read the settings of the robot that `model` describes from a file.
+
+    Raises:
+        UnreadableFileError: There is no such file, or it is not a text.
+        InvalidRobotFileError: A key or value is wrong, or names a node that is not in the model.
+    """
+    return read_robot_file(read_text_file(path), model)
+
+
+def read_robot_file(text: str, model: SmhModel) -> RobotSettings:
+    """Read settings from YAML; scalars mean what they mean in a model.
+
+    Raises:
+        InvalidRobotFileError: A key or value is wrong, or names a node that is not in the model.
+    """
+    tree = read_tree(text)
+    findings = list(tree.findings)
+    root = tree.documents[0] if tree.documents else Mapping(1, 1)
+    if len(tree.documents) > 1 and tree.documents[1] is not None:
+        message = "a robot file is one document"
+        findings.append(finding_at(tree.documents[1], "INVALID_VALUE", message))
+    settings = None
+    if root is not None and not findings:
+        data = _plain(root, findings)
+        if not findings:
+            settings = _settings(root, data, model, findings)
+    if settings is None or findings:
+        raise InvalidRobotFileError(in_order(text, findings))
+    return settings
+
+
+def _settings(
+    root: Node, data: object, model: SmhModel, findings: list[Finding]
+) -> RobotSettings | None:
+    """Return the settings, or None and findings."""
+    try:
+        settings = RobotSettings.model_validate(data)
+        settings.to_signal_settings()
+    except ValidationError as error:
+        findings.extend(
+            _complaint(root, fault["loc"], fault["type"], fault["msg"])
+            for fault in error.errors(include_url=False, include_input=False)
+        )
+        return None
+    except InvalidValueError as error:
+        location = ("signals", *error.pointer.split("/"))
+        findings.append(finding_at(_place(root, location), "INVALID_VALUE", error.message))
+        return None
+    for name in settings.nodes:
+        if name not in model.nodes:
+            what = "a system" if name in model.systems else "not in the model"
+            message = f"there is no node {name!r}; it is {what}"
+            place = _place(root, ("nodes", name))
+            findings.append(finding_at(place, "UNKNOWN_NODE", message))
+    return settings
+
+
+def _plain(node: Node | None, findings: list[Finding]) -> Any:  # noqa: ANN401  # as in JSON
+    """Return a tree as plain values."""
+    match node:
+        case Scalar():
+            value = scalar_value(node)
+            if value is None:
+                message = "there is no value here; leave the key out"
+                findings.append(finding_at(node, "EMPTY_VALUE", message))
+            return value
+        case Sequence():
+            return [_plain(item, findings) for item in node.items]
+        case Mapping():
+            return {key.text: _plain(value, findings) for key, value in node.entries}
+        case None:
+            return None
+
+
+def _complaint(root: Node, location: tuple[int | str, ...], kind: str, message: str) -> Finding:
+    where = ".".join(str(key) for key in location)
+    words = _WORDS.get(kind, message.removeprefix("Value error, "))
+    code = "UNKNOWN_KEY" if kind == "extra_forbidden" else "INVALID_VALUE"
+    return finding_at(_place(root, location), code, f"{where}: {words}" if where else words)
+
+
+def _place(root: Node, location: tuple[int | str, ...]) -> Node:
+    """Return the last thing on the way to `location` that is in the file."""
+    place, tree = root, root
+    for step in location:
+        if not isinstance(tree, Mapping):
+            break
+        found = next(((key, value) for key, value in tree.entries if key.text == step), None)
+        if found is None:
+            break
+        place = found[0]
+        if found[1] is None:
+            break
+        tree = found[1]
+    return place

@@ -1,0 +1,78 @@
+"""The parameters of one part of an SMH file, sorted by what they are about."""
+
+from collections import defaultdict
+
+from domain.findings import Finding
+from domain.system_model import ModeName, PartName
+from service.files.parameter_file import PARAMETERS_KEY, NodeParameters, Parameter
+from service.files.yaml_tree import Node, finding_at
+
+_RESERVED_NAMES = frozenset(("state", "states", "mode", "modes", "parameters"))
+
+
+class SmhBlock:
+    """What is written about one part; `type`, `parts`, `modes` and `rules` mean something."""
+
+    def __init__(self, source: NodeParameters) -> None:
+        self.name = PartName(source.name)
+        self.findings: list[Finding] = []
+        self.key = source.key
+        self.type: Parameter | None = None
+        self.parts: list[Parameter] = []
+        self.modes: dict[ModeName, list[tuple[str, Parameter]]] = {}
+        """Of each mode what is written in it: name below the mode, and the parameter."""
+        self.rules: dict[str, dict[str, Parameter]] = defaultdict(dict)
+        for parameter in source.parameters:
+            self._sort(parameter)
+        self.is_node = self._tell_kind()
+        if self.name.rpartition("/")[2] in _RESERVED_NAMES:
+            message = (
+                f"{self.name}: the last word of a name must not be one of "
+                f"{', '.join(sorted(_RESERVED_NAMES))}, which stand for something in addresses"
+            )
+            self.complain(self.key, "RESERVED_NAME", message)
+
+    def complain(self, place: Node, code: str, message: str) -> None:
+        """Add an error."""
+        self.findings.append(finding_at(place, code, message, self.name))
+
+    def warn(self, place: Node, code: str, message: str) -> None:
+        """Add a warning."""
+        self.findings.append(finding_at(place, code, message, self.name, "warning"))
+
+    def _sort(self, parameter: Parameter) -> None:
+        first, _, rest = parameter.name.partition(".")
+        if parameter.name == "type":
+            self.type = parameter
+        elif first == "parts":
+            self.parts.append(parameter)
+        elif first == "modes":
+            mode, _, below = rest.partition(".")
+            if below:
+                self.modes.setdefault(ModeName(mode), []).append((below, parameter))
+            else:
+                what = f"mode {rest} of {self.name}" if rest else f"modes of {self.name}"
+                self._complain_of_block(parameter, what)
+        elif first == "rules":
+            rule, _, below = rest.partition(".")
+            if below:
+                self.rules[rule][below] = parameter
+            else:
+                what = f"rule {rest} of {self.name}" if rest else f"rules of {self.name}"
+                self._complain_of_block(parameter, what)
+
+    def _complain_of_block(self, parameter: Parameter, what: str) -> None:
+        self.complain(parameter.key, "NOT_A_BLOCK", f"{what}: there must be keys below")
+
+    def _tell_kind(self) -> bool:
+        """Tell nodes from systems; where the type is missing, by what the modes hold."""
+        if self.type is None:
+            message = f"{self.name} has no type; write type: node or type: system"
+            self.complain(self.key, "MISSING_TYPE", message)
+            return any(
+                PARAMETERS_KEY in below for lines in self.modes.values() for below, _ in lines
+            )
+        if self.type.value not in (None, "node", "system"):
+            message = f"{self.name} has type {self.type.value!r} and is taken as a system"
+            self.warn(self.type.place, "UNKNOWN_TYPE", message)
+        return self.type.value == "node"

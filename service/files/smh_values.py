@@ -1,0 +1,124 @@
+"""What stands in the modes and rules of systems: names of parts, states and modes.
+
+Source: micro-ROS system_modes, `mode.cpp` (`StateAndMode::from_string`), `mode_inference.cpp`, and
+`mode_handling.cpp` (`add_rule`).
+"""
+
+import difflib
+from collections.abc import Collection
+
+from domain.lifecycle import LifecycleState
+from domain.system_model import (
+    DEFAULT_MODE,
+    ModeName,
+    ParameterValue,
+    PartName,
+    Rule,
+    StateAndMode,
+)
+from service.files.parameter_file import Parameter
+from service.files.smh_block import SmhBlock
+from service.files.yaml_tree import Node
+
+_LABELS = [str(state) for state in LifecycleState]
+_RULE_KEYS = ("if_target", "if_part", "new_target")
+
+
+def read_want(
+    block: SmhBlock, where: str, text: ParameterValue, place: Node
+) -> StateAndMode | None:
+    """Read what a mode wants of a part; None after a complaint."""
+    label, dot, mode = text.rpartition(".") if isinstance(text, str) else ("", "", "")
+    want = _pair(block, where, label if dot else text, mode if dot else "", place)
+    if want is not None and not want.state.is_primary:
+        message = f"{where}: no part rests in {want.state}"
+        block.warn(place, "TRANSITIONAL_STATE", message)
+    return want
+
+
+def read_part_name(block: SmhBlock, where: str, text: str, place: Node) -> PartName:
+    """Read the name of a part; C++ takes it as it stands, and finds none with a slash before it."""
+    name = text.removeprefix("/")
+    if name != text:
+        block.warn(place, "LEADING_SLASH", f"{where}: write {name} without a slash before it")
+    return PartName(name)
+
+
+def fitted(pair: StateAndMode, part: PartName, with_modes: Collection[PartName]) -> StateAndMode:
+    """Return `active` with `__DEFAULT__` for a part with modes, and without a mode for others."""
+    if pair.state is not LifecycleState.ACTIVE or pair.mode not in (None, DEFAULT_MODE):
+        return pair
+    return StateAndMode(pair.state, DEFAULT_MODE if part in with_modes else None)
+
+
+def read_rule(block: SmhBlock, name: str, with_modes: Collection[PartName]) -> Rule | None:
+    """Read a rule; None where too little of it can be read."""
+    lines, where = block.rules[name], f"rule {name} of {block.name}"
+    for key, line in lines.items():
+        if key not in _RULE_KEYS:
+            message = f"{where}: there is no key {key!r} in a rule; known: {', '.join(_RULE_KEYS)}"
+            block.complain(line.key, "UNKNOWN_RULE_KEY", message)
+    missing = [key for key in _RULE_KEYS if key not in lines]
+    if missing:
+        place = next(iter(lines.values())).key
+        block.complain(place, "INCOMPLETE_RULE", f"{where} lacks {', '.join(missing)}")
+    if_target, new_target = (
+        _read_rule_target(block, f"{where}, {key}", lines.get(key), with_modes)
+        for key in ("if_target", "new_target")
+    )
+    if_part = _read_if_part(block, f"{where}, if_part", lines.get("if_part"), with_modes)
+    if if_target is None or if_part is None or new_target is None:
+        return None
+    return Rule(name, if_target, if_part, new_target)
+
+
+def _read_rule_target(
+    block: SmhBlock, where: str, line: Parameter | None, with_modes: Collection[PartName]
+) -> StateAndMode | None:
+    if line is None or line.value is None:
+        return None
+    pair = _read_rule_pair(block, where, line.value, line.place)
+    return None if pair is None else fitted(pair, block.name, with_modes)
+
+
+def _read_if_part(
+    block: SmhBlock, where: str, line: Parameter | None, with_modes: Collection[PartName]
+) -> tuple[PartName, StateAndMode] | None:
+    if line is None or line.value is None:
+        return None
+    items = line.value if isinstance(line.value, tuple) else ()
+    if len(items) < 2 or not isinstance(items[0], str):
+        message = f"{where} must be a list of a part and a state, as in [drive_base, inactive]"
+        block.complain(line.place, "INVALID_RULE", message)
+        return None
+    if len(items) > 2:
+        block.warn(line.place, "INVALID_RULE", f"{where}: all but the first two are ignored")
+    part = read_part_name(block, where, items[0], line.place)
+    pair = _read_rule_pair(block, where, items[1], line.place)
+    return None if pair is None else (part, fitted(pair, part, with_modes))
+
+
+def _read_rule_pair(
+    block: SmhBlock, where: str, text: ParameterValue, place: Node
+) -> StateAndMode | None:
+    label, _, mode = text.partition(".") if isinstance(text, str) else (text, "", "")
+    return _pair(block, where, label, mode, place)
+
+
+def _pair(
+    block: SmhBlock, where: str, label: ParameterValue, mode: str, place: Node
+) -> StateAndMode | None:
+    """Put state and mode together; only active has a mode."""
+    if label not in _LABELS:
+        near = difflib.get_close_matches(str(label).lower(), _LABELS, n=1)
+        hint = f"is {near[0]} meant?" if near else "states are active, inactive, unconfigured, ..."
+        message = f"{where}: there is no state {label!r}; {hint}"
+        block.complain(place, "UNKNOWN_STATE", message)
+        return None
+    state = LifecycleState(str(label))
+    if mode and state is not LifecycleState.ACTIVE:
+        block.warn(
+            place, "INERT_MODE", f"{where}: mode {mode} has no effect, as only active has modes"
+        )
+        return StateAndMode(state)
+    return StateAndMode(state, ModeName(mode) if mode else None)

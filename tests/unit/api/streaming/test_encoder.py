@@ -1,0 +1,248 @@
+import asyncio
+import json
+from types import MappingProxyType
+from typing import Any
+
+import pytest
+
+from api.streaming.encoder import StreamEncoder
+from domain.errors import BlockedError
+from domain.findings import Blocker
+from domain.messages import Event
+from domain.snapshot import PartView
+from domain.timebase import seconds
+from service.event_log import Gap
+from service.supervisor import Supervisor
+from tests.support.frames import event, frame, part_view, signal_view
+from tests.support.live_robot import make_supervisor
+
+ALL = frozenset({"system_state", "parts", "signals", "events"})
+ARM = part_view("arm")
+BATTERY = signal_view("battery_level", 0.8)
+
+
+@pytest.fixture
+def supervisor() -> Supervisor:
+    return make_supervisor()
+
+
+@pytest.fixture
+def encoder(supervisor: Supervisor) -> StreamEncoder:
+    return StreamEncoder(supervisor)
+
+
+def read(text: str) -> dict[str, Any]:
+    found = json.loads(text)
+    assert isinstance(found, dict)
+    return found
+
+
+def test_the_first_frame_says_what_to_expect(
+    encoder: StreamEncoder, supervisor: Supervisor
+) -> None:
+    hello = read(encoder.hello(frozenset({"signals", "parts"})))
+
+    assert hello.pop("version").count(".") == 2
+    assert hello == {
+        "type": "hello",
+        "epoch": supervisor.epoch,
+        "topics": ["parts", "signals"],
+        "period_s": 0.05,
+    }
+
+
+def test_a_full_frame_holds_everything_with_the_fields_of_a_request(
+    encoder: StreamEncoder,
+) -> None:
+    shown = read(encoder.frame(frame(20, [ARM], [BATTERY], full=True), 0, ALL))
+
+    assert (shown["type"], shown["seq"], shown["skipped"]) == ("state", 20, 0)
+    assert shown["at"] == "2026-01-01T00:00:01.000Z"
+    assert shown["system_state"]["state"] == "IDLE"
+    assert shown["system_state"]["seq"] == 20
+    assert shown["system_state"]["simulated"] == ["nodes"]
+    assert shown["parts"]["arm"]["target"] == {"state": "active", "mode": "__DEFAULT__"}
+    assert shown["parts"]["arm"]["converged"] is True
+    assert shown["signals"]["battery_level"]["value"] == 0.8
+
+
+def test_a_frame_holds_no_ages(encoder: StreamEncoder) -> None:
+    text = encoder.frame(frame(20, [ARM], [BATTERY], full=True), 0, ALL)
+
+    assert "age_s" not in text
+
+
+def test_what_did_not_change_is_left_out(encoder: StreamEncoder) -> None:
+    shown = read(encoder.frame(frame(2), 0, ALL))
+
+    assert set(shown) == {"type", "seq", "at", "skipped", "system_state"}
+
+
+def test_a_full_frame_of_a_robot_without_parts_says_so(encoder: StreamEncoder) -> None:
+    shown = read(encoder.frame(frame(2, full=True), 0, ALL))
+
+    assert (shown["parts"], shown["signals"]) == ({}, {})
+
+
+@pytest.mark.parametrize(
+    ("topics", "members"),
+    [
+        ({"system_state"}, set()),
+        ({"parts"}, {"parts"}),
+        ({"signals", "events"}, {"signals"}),
+    ],
+)
+def test_only_the_topics_that_were_asked_for_are_sent_beside_the_system_state(
+    encoder: StreamEncoder, topics: set[str], members: set[str]
+) -> None:
+    full = frame(2, [ARM], [BATTERY], full=True)
+
+    shown = read(encoder.frame(full, 0, frozenset(topics)))
+
+    assert set(shown) - {"type", "seq", "at", "skipped"} == {"system_state", *members}
+
+
+def test_clients_in_step_get_the_very_same_text(encoder: StreamEncoder) -> None:
+    published = frame(2, [ARM])
+
+    first = encoder.frame(published, 0, ALL)
+
+    assert encoder.frame(published, 0, ALL | {"task"}) is first
+
+
+def test_a_client_that_missed_frames_is_told_how_many(encoder: StreamEncoder) -> None:
+    published = frame(9, [ARM], full=True)
+    in_step = read(encoder.frame(published, 0, ALL))
+
+    behind = read(encoder.frame(published, 7, ALL))
+
+    assert behind == {**in_step, "skipped": 7}
+
+
+def test_a_frame_of_another_moment_is_another_text(encoder: StreamEncoder) -> None:
+    encoder.frame(frame(2, [ARM]), 0, ALL)
+
+    shown = read(encoder.frame(frame(3, [part_view("arm", "STRONG")]), 0, ALL))
+
+    assert shown["seq"] == 3
+    assert shown["parts"]["arm"]["actual"]["mode"] == "STRONG"
+
+
+def test_the_full_and_the_short_form_of_one_moment_do_not_get_mixed_up(
+    encoder: StreamEncoder,
+) -> None:
+    short, full = frame(2), frame(2, [ARM], full=True)
+
+    texts = [encoder.frame(f, 0, ALL) for f in (short, full, short, full)]
+
+    assert ["parts" in read(text) for text in texts] == [False, True, False, True]
+
+
+def test_a_part_with_quotes_in_its_name_is_still_json(encoder: StreamEncoder) -> None:
+    odd = part_view('arm "left"\n')
+
+    shown = read(encoder.frame(frame(2, [odd]), 0, ALL))
+
+    assert list(shown["parts"]) == ['arm "left"\n']
+
+
+def test_a_view_that_did_not_change_is_not_encoded_again(
+    encoder: StreamEncoder, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    views = [part_view(f"node_{n}") for n in range(3)]
+    encoder.frame(frame(1, views, full=True), 0, ALL)
+    encoded: list[str] = []
+
+    def encode(view: PartView) -> str:
+        encoded.append(view.name)
+        return "{}"
+
+    members = encoder._parts  # noqa: SLF001 - the point of the class is what it does not do
+    monkeypatch.setattr(members, "_encode", encode)
+
+    encoder.frame(frame(2, [views[0], part_view("node_1", "FAST"), views[2]], full=True), 0, ALL)
+
+    assert encoded == ["node_1"]
+
+
+async def test_a_large_frame_is_made_in_pieces_between_which_others_run(
+    encoder: StreamEncoder,
+) -> None:
+    views = [part_view(f"node_{number}") for number in range(2_000)]
+    turns: list[None] = []
+
+    async def take_turns() -> None:
+        while True:
+            turns.append(None)
+            await asyncio.sleep(0)
+
+    other = asyncio.create_task(take_turns())
+    published = frame(1, views, full=True)
+    await encoder.prepare(published, ALL)
+    other.cancel()
+
+    assert len(turns) >= 10
+    assert len(read(encoder.frame(published, 0, ALL))["parts"]) == 2_000
+
+
+async def test_a_large_frame_of_known_parts_is_made_at_once(encoder: StreamEncoder) -> None:
+    views = [part_view(f"node_{number}") for number in range(2_000)]
+    encoder.frame(frame(1, views, full=True), 0, ALL)
+    preparing = encoder.prepare(frame(2, views, full=True), ALL)
+
+    with pytest.raises(StopIteration):
+        preparing.send(None)
+
+
+def test_an_event_has_the_fields_that_the_log_is_read_by(
+    encoder: StreamEncoder, supervisor: Supervisor
+) -> None:
+    assert read(encoder.event(event(88, "change.succeeded"))) == {
+        "type": "event",
+        "epoch": supervisor.epoch,
+        "id": 88,
+        "at": "2026-01-01T00:01:28.000Z",
+        "kind": "change.succeeded",
+        "cause": 87,
+        "actor": "test",
+        "data": {"number": 88},
+    }
+
+
+def test_an_event_is_encoded_once(encoder: StreamEncoder) -> None:
+    assert encoder.event(event(1)) is encoder.event(event(1))
+
+
+def test_old_events_are_not_kept_for_ever(encoder: StreamEncoder) -> None:
+    first = encoder.event(event(1))
+    for number in range(2, 1_500):
+        encoder.event(event(number))
+
+    assert encoder.event(event(1)) is not first
+
+
+def test_an_event_may_hold_what_json_does_not_know(encoder: StreamEncoder) -> None:
+    data = MappingProxyType({"speed": float("nan"), "nested": MappingProxyType({"a": (1, 2)})})
+
+    shown = read(encoder.event(Event(1, seconds(1), "node.reported", None, "", data)))
+
+    assert shown["data"] == {"speed": None, "nested": {"a": [1, 2]}}
+
+
+def test_a_gap_says_from_where_to_where(encoder: StreamEncoder) -> None:
+    assert read(encoder.gap(Gap(4, 15, "E1"))) == {
+        "type": "gap",
+        "from": 4,
+        "to": 15,
+        "epoch": "E1",
+    }
+
+
+def test_a_problem_is_the_document_of_a_request_as_a_frame(encoder: StreamEncoder) -> None:
+    blocker = Blocker("ESTOP", "e-stop is pressed", ("arm", "estop"))
+
+    shown = read(encoder.problem(BlockedError("arm", [blocker])))
+
+    assert (shown["type"], shown["status"], shown["code"]) == ("problem", 409, "BLOCKED")
+    assert shown["instance"] == "/ws"
+    assert shown["blockers"][0]["code"] == "ESTOP"

@@ -1,0 +1,188 @@
+import pytest
+
+from domain.health.held_readings import MAX_QUIET_SOURCES, HeldReadings
+from domain.health.signals import SignalSettings, default_signals
+from domain.messages import Reading, SignalValue
+from domain.timebase import seconds
+
+SETTINGS = {item.spec.name: item for item in default_signals()}
+NOW = seconds(1000)
+
+
+def battery() -> HeldReadings:
+    return HeldReadings(SETTINGS["battery_level"])
+
+
+def estop() -> HeldReadings:
+    return HeldReadings(SETTINGS["estop"])
+
+
+def level(value: float, stamp: int | None = None) -> Reading:
+    return Reading("battery_level", value, stamp)
+
+
+def pressed(value: bool, stamp: int | None = None) -> Reading:
+    return Reading("estop", value, stamp)
+
+
+def test_the_last_reading_counts_whoever_sent_it() -> None:
+    held = battery()
+    held.take(level(0.9), "pad", NOW)
+    held.take(level(0.4), "relay", NOW + 1)
+
+    assert held.value == 0.4
+    assert held.newest is not None
+    assert held.newest.source == "relay"
+
+
+def test_a_stop_is_pressed_until_everyone_who_presses_it_lets_go() -> None:
+    held = estop()
+    held.take(pressed(True), "pad", NOW)
+    held.take(pressed(True), "relay", NOW + 1)
+    held.take(pressed(False), "pad", NOW + 2)
+    assert held.value is True
+
+    held.take(pressed(False), "relay", NOW + 3)
+    assert held.value is False
+
+
+def test_a_stop_names_who_presses_it_the_longest_first() -> None:
+    held = estop()
+    for source, at in (("relay", 1), ("pad", 2), ("relay", 3)):
+        held.take(pressed(True), source, NOW + at)
+
+    assert [(item.source, item.since) for item in held.pressing] == [
+        ("relay", NOW + 1),
+        ("pad", NOW + 2),
+    ]
+
+
+def test_nothing_is_known_before_the_first_reading() -> None:
+    assert (estop().value, estop().newest, battery().value) == (None, None, None)
+
+
+@pytest.mark.parametrize(
+    ("held_stamp", "stamp", "behind"),
+    [
+        (0, 0, None),
+        (0, 1, None),
+        (0, -1, 1),
+        (seconds(1), seconds(1) - 1, 1),
+        # More than a second ahead of our clock, a stamp does not count as the newest.
+        (seconds(1) + 1, 0, None),
+    ],
+)
+def test_a_reading_is_outdated_when_its_stamp_is_older_than_the_newest(
+    held_stamp: int, stamp: int, behind: int | None
+) -> None:
+    held = battery()
+    held.take(level(0.9, NOW + held_stamp), "pad", NOW)
+
+    assert held.behind(level(0.9, NOW + stamp), "pad") == behind
+
+
+def test_a_reading_without_a_stamp_is_never_outdated() -> None:
+    held = battery()
+    held.take(level(0.9, NOW), "pad", NOW)
+
+    assert held.behind(level(0.9), "pad") is None
+
+
+def test_readings_without_a_stamp_do_not_hide_the_newest_stamp() -> None:
+    held = battery()
+    held.take(level(0.9, NOW), "pad", NOW)
+    held.take(level(0.9), "pad", NOW + 1)
+
+    assert held.behind(level(0.9, NOW - 5), "pad") == 5
+
+
+WORSE = [
+    ("battery_level", 0.8, 0.79, 0.81),
+    ("temperature", 20.0, 20.1, 19.9),
+    ("gps_accuracy", 100.0, 101.0, 99.0),
+    ("signal_strength", "LOW_SIGNAL", "NOT_CONNECTED", "CONNECTED"),
+]
+
+
+@pytest.mark.parametrize(("signal", "value", "worse", "better"), WORSE)
+def test_late_news_is_taken_only_when_it_is_worse(
+    signal: str, value: SignalValue, worse: SignalValue, better: SignalValue
+) -> None:
+    held = HeldReadings(SETTINGS[signal])
+    held.take(Reading(signal, value, NOW), "pad", NOW)
+
+    assert held.behind(Reading(signal, worse, NOW - 1), "pad") is None
+    assert held.behind(Reading(signal, value, NOW - 1), "pad") == 1
+    assert held.behind(Reading(signal, better, NOW - 1), "pad") == 1
+
+
+def test_late_news_does_not_make_the_newest_stamp_older() -> None:
+    held = battery()
+    held.take(level(0.9, NOW), "pad", NOW)
+    held.take(level(0.4, NOW - 10), "pad", NOW)
+
+    assert held.behind(level(0.9, NOW - 5), "pad") == 5
+
+
+def test_late_news_of_a_signal_without_errors_is_never_worse() -> None:
+    held = HeldReadings(SignalSettings(SETTINGS["battery_level"].spec))
+    held.take(level(0.9, NOW), "pad", NOW)
+
+    assert held.behind(level(0.1, NOW - 1), "pad") == 1
+
+
+def test_pressing_a_stop_is_never_outdated_and_letting_go_can_be() -> None:
+    held = estop()
+    held.take(pressed(True, NOW), "pad", NOW)
+
+    assert held.behind(pressed(True, NOW - 1), "pad") is None
+    assert held.behind(pressed(False, NOW - 1), "pad") == 1
+
+
+def test_the_stamps_of_two_sources_of_a_stop_are_not_compared() -> None:
+    held = estop()
+    held.take(pressed(False, NOW), "pad", NOW)
+
+    assert held.behind(pressed(False, NOW - 1), "relay") is None
+
+
+@pytest.mark.parametrize(
+    ("offset", "skewed"),
+    [
+        (seconds(1), False),
+        (seconds(1) + 1, True),
+        (-seconds(1), False),
+        (-seconds(1) - 1, True),
+        (None, False),
+    ],
+)
+def test_a_clock_is_wrong_when_it_differs_by_more_than_a_second(
+    offset: int | None, skewed: bool
+) -> None:
+    held = battery()
+    held.take(level(0.9, None if offset is None else NOW + offset), "pad", NOW)
+
+    assert held.newest is not None
+    assert held.newest.skewed is skewed
+
+
+def test_trying_readings_on_a_copy_changes_nothing() -> None:
+    held = battery()
+    held.take(level(0.9, NOW), "pad", NOW)
+    held.copy().take(level(0.2, NOW + 5), "pad", NOW)
+
+    assert held.value == 0.9
+    assert held.behind(level(0.9, NOW + 1), "pad") is None
+
+
+def test_a_sender_that_invents_source_names_cannot_release_a_stop_or_fill_the_memory() -> None:
+    held = estop()
+    held.take(pressed(True, NOW), "pad", NOW)
+    held.take(pressed(False, NOW), "old", NOW)
+    for number in range(MAX_QUIET_SOURCES):
+        held.take(pressed(False, NOW), f"invented {number}", NOW)
+
+    assert held.value is True
+    # Forgotten: the source that has been quiet for longest, and with it the order of its stamps.
+    assert held.behind(pressed(False, NOW - 1), "old") is None
+    assert held.behind(pressed(False, NOW - 1), "invented 0") == 1

@@ -1,0 +1,248 @@
+from dataclasses import replace
+
+import pytest
+
+from domain.health.signal_monitor import SignalMonitor
+from domain.health.signals import (
+    STALE_DATA,
+    Comparison,
+    Condition,
+    Recovery,
+    SignalKind,
+    SignalSettings,
+    SignalSpec,
+    default_signals,
+)
+from domain.messages import Reading, SignalValue
+from domain.timebase import seconds
+
+START = seconds(500)
+DEFAULTS = {item.spec.name: item for item in default_signals()}
+
+
+class Story:
+    """One signal whose times are seconds after the start; it never grows stale."""
+
+    def __init__(self, settings: SignalSettings) -> None:
+        self.monitor = SignalMonitor(replace(settings, stale_after=0, min_on=0), START)
+
+    def read(self, at_s: float, value: SignalValue) -> None:
+        name = self.monitor.settings.spec.name
+        self.monitor.receive(Reading(name, value), "pad", START + seconds(at_s))
+
+    def error(self, at_s: float) -> str | None:
+        self.monitor.judge(START + seconds(at_s))
+        return self.monitor.view.error
+
+    @property
+    def wakes_at_s(self) -> float | None:
+        at = self.monitor.wake_at()
+        return None if at is None else (at - START) / seconds(1)
+
+
+def test_the_limit_belongs_to_the_time() -> None:
+    gps = Story(DEFAULTS["gps_accuracy"])
+    gps.read(0, 100.0)
+    gps.read(1, 201.0)
+
+    gps.monitor.judge(START + seconds(15) - 1)
+    assert gps.monitor.view.error is None
+    assert gps.error(15) == "GPS_LOST"
+
+
+def test_silence_after_the_last_good_reading_counts_as_bad() -> None:
+    gps = Story(DEFAULTS["gps_accuracy"])
+    gps.read(0, 100.0)
+    gps.read(20, 201.0)
+
+    assert gps.error(20) == "GPS_LOST"
+
+
+def test_the_time_counts_from_the_start_if_nothing_was_ever_good() -> None:
+    gps = Story(DEFAULTS["gps_accuracy"])
+    gps.read(14, 201.0)
+
+    assert gps.wakes_at_s == 15
+
+
+def test_one_good_reading_starts_the_time_again() -> None:
+    gps = Story(DEFAULTS["gps_accuracy"])
+    for at_s, value in ((1, 201.0), (14, 200.0), (14.1, 201.0)):
+        gps.read(at_s, value)
+
+    assert gps.wakes_at_s == 29
+
+
+def test_what_is_counted_is_shown_with_how_long_it_takes() -> None:
+    gps = Story(DEFAULTS["gps_accuracy"])
+    gps.read(3, 100.0)
+    gps.read(4, 201.0)
+
+    view = gps.monitor.view
+    assert (view.pending_error, view.pending_since, view.pending_needs) == (
+        "GPS_LOST",
+        START + seconds(3),
+        seconds(15),
+    )
+
+
+def test_weak_and_lost_share_one_timer() -> None:
+    radio = Story(DEFAULTS["signal_strength"])
+    radio.read(0, "CONNECTED")
+    radio.read(1, "LOW_SIGNAL")
+    assert radio.monitor.view.pending_error == "SIGNAL_LOW"
+    assert radio.wakes_at_s == 20
+
+    radio.read(5, "NOT_CONNECTED")
+    assert radio.monitor.view.pending_error == "SIGNAL_LOST"
+    assert radio.wakes_at_s == 10
+
+
+def test_a_weak_signal_after_a_lost_one_is_an_error_at_once() -> None:
+    radio = Story(DEFAULTS["signal_strength"])
+    radio.read(0, "NOT_CONNECTED")
+    assert radio.error(10) == "SIGNAL_LOST"
+
+    radio.read(11, "LOW_SIGNAL")
+    assert radio.monitor.view.error == "SIGNAL_LOW"
+    radio.read(12, "NOT_CONNECTED")
+    assert radio.monitor.view.error == "SIGNAL_LOST"
+    radio.read(13, "CONNECTED")
+    assert radio.monitor.view.error is None
+
+
+def test_a_weak_signal_after_a_connected_one_has_its_time_even_while_the_old_error_is_kept() -> (
+    None
+):
+    settings = replace(DEFAULTS["signal_strength"], recovery=Recovery.ACKNOWLEDGE)
+    radio = Story(settings)
+    radio.read(0, "NOT_CONNECTED")
+    radio.error(10)
+    radio.read(11, "CONNECTED")
+    radio.read(12, "LOW_SIGNAL")
+    assert radio.monitor.view.error == "SIGNAL_LOST"
+    assert radio.monitor.view.pending_error == "SIGNAL_LOW"
+
+    assert radio.error(31) == "SIGNAL_LOW"
+
+
+def test_an_error_that_is_on_ends_at_the_clear_threshold() -> None:
+    low = Condition("BATTERY_LOW", Comparison.BELOW, 0.5, clear_threshold=0.55)
+    battery = Story(replace(DEFAULTS["battery_level"], conditions=(low,)))
+    errors = []
+    for at_s, value in enumerate((0.52, 0.49, 0.54, 0.55, 0.52)):
+        battery.read(at_s, value)
+        errors.append(battery.monitor.view.error)
+
+    assert errors == [None, "BATTERY_LOW", "BATTERY_LOW", None, None]
+
+
+def test_the_time_begins_again_between_the_thresholds_only_while_the_error_is_off() -> None:
+    lost = Condition("GPS_LOST", Comparison.ABOVE, 200.0, clear_threshold=150.0, for_=seconds(15))
+    gps = Story(replace(DEFAULTS["gps_accuracy"], conditions=(lost,)))
+    gps.read(0, 201.0)
+    gps.read(10, 180.0)
+    gps.read(11, 201.0)
+    assert gps.wakes_at_s == 25
+
+    assert gps.error(25) == "GPS_LOST"
+    gps.read(26, 180.0)
+    assert gps.monitor.view.error == "GPS_LOST"
+
+
+def test_a_graver_error_of_the_same_signal_has_its_own_time() -> None:
+    spec = SignalSpec("motor_temperature", SignalKind.NUMBER)
+    severe = Condition("MOTOR_BURNING", Comparison.ABOVE, 90.0, for_=seconds(5), key="burning")
+    mild = Condition("MOTOR_HOT", Comparison.ABOVE, 70.0, key="hot")
+    motor = Story(SignalSettings(spec, (severe, mild)))
+    motor.read(0, 20.0)
+    motor.read(1, 95.0)
+    assert motor.monitor.view.error == "MOTOR_HOT"
+    assert motor.monitor.view.pending_error == "MOTOR_BURNING"
+    assert motor.wakes_at_s == 5
+
+    assert motor.error(5) == "MOTOR_BURNING"
+    assert motor.wakes_at_s is None
+
+
+def test_an_engaged_stop_is_not_delayed_by_what_delays_its_readings() -> None:
+    pressed = Condition("ESTOP", Comparison.EQUAL, threshold=True, for_=seconds(1))
+    stop = Story(replace(DEFAULTS["estop"], conditions=(pressed,)))
+    stop.read(0, False)
+    stop.read(0.5, True)
+    assert stop.monitor.view.error is None
+
+    stop.monitor.set_engaged(engaged=True, now=START + seconds(0.6))
+    assert stop.monitor.view.error == "ESTOP"
+
+
+def test_readings_go_on_being_judged_while_the_stop_is_engaged() -> None:
+    pressed = Condition("ESTOP", Comparison.EQUAL, threshold=True, for_=seconds(1))
+    stop = Story(replace(DEFAULTS["estop"], conditions=(pressed,)))
+    stop.monitor.set_engaged(engaged=True, now=START)
+    stop.read(9, False)
+    stop.monitor.set_engaged(engaged=False, now=START + seconds(9.1))
+    stop.read(9.5, True)
+
+    assert stop.wakes_at_s == 10
+
+
+def test_engaging_twice_keeps_when_it_was_engaged_first() -> None:
+    stop = Story(DEFAULTS["estop"])
+    for at_s in (1, 2):
+        stop.monitor.set_engaged(engaged=True, now=START + seconds(at_s))
+
+    assert [reason.since for reason in stop.monitor.reasons()] == [START + seconds(1)]
+
+
+def test_a_reading_is_stale_when_it_is_strictly_older_than_the_limit() -> None:
+    monitor = SignalMonitor(DEFAULTS["temperature"], START)
+    monitor.receive(Reading("temperature", 20.0), "pad", START)
+    limit = START + seconds(2)
+
+    monitor.judge(limit)
+    assert not monitor.view.stale
+    assert monitor.wake_at() == limit + 1
+
+    monitor.judge(limit + 1)
+    assert monitor.view.stale
+    assert monitor.errors == {STALE_DATA}
+
+
+@pytest.mark.parametrize(("stale_after", "errors"), [(seconds(2), {STALE_DATA}), (0, set())])
+def test_a_signal_never_seen_is_good_only_where_staleness_is_off(
+    stale_after: int, errors: set[str]
+) -> None:
+    monitor = SignalMonitor(replace(DEFAULTS["temperature"], stale_after=stale_after), START)
+
+    assert monitor.errors == errors
+    assert monitor.view.stale is bool(errors)
+
+
+def test_a_stop_is_as_fresh_as_its_newest_reading_of_any_source() -> None:
+    monitor = SignalMonitor(DEFAULTS["estop"], START)
+    monitor.receive(Reading("estop", False), "a person, once", START)
+    monitor.receive(Reading("estop", False), "relay", START + seconds(1.9))
+    monitor.judge(START + seconds(3))
+
+    assert not monitor.view.stale
+
+
+def test_a_pressed_stop_is_shown_with_who_presses_it() -> None:
+    monitor = SignalMonitor(DEFAULTS["estop"], START)
+    monitor.receive(Reading("estop", True), "pad", START)
+    monitor.receive(Reading("estop", False), "relay", START + 1)
+
+    assert (monitor.view.value, monitor.view.source) == (True, "pad")
+    assert monitor.view.received_at == START + 1
+
+
+def test_the_view_is_the_same_object_until_something_changes() -> None:
+    monitor = SignalMonitor(DEFAULTS["temperature"], START)
+    monitor.receive(Reading("temperature", 20.0), "pad", START)
+    before = monitor.view
+    monitor.judge(START + seconds(1))
+    assert monitor.view is before
+
+    monitor.receive(Reading("temperature", 20.0), "pad", START + seconds(1))
+    assert monitor.view is not before

@@ -1,0 +1,125 @@
+import pytest
+
+from domain.health.error_slot import ErrorSlot
+from domain.health.held_readings import HeldReadings
+from domain.health.signal_reasons import kept_reason, pressed_reason, stale_reason, value_reason
+from domain.health.signals import (
+    Comparison,
+    Condition,
+    Recovery,
+    SignalKind,
+    SignalSettings,
+    SignalSpec,
+    default_signals,
+)
+from domain.messages import Reading, SignalValue
+from domain.timebase import seconds
+
+DEFAULTS = {item.spec.name: item for item in default_signals()}
+
+WORDS: list[tuple[str, int, SignalValue, float, str]] = [
+    ("battery_level", 0, 0.42, 0, "battery 42 % is below 50 %"),
+    ("battery_level", 0, 0.29, 0, "battery 29 % is below 50 %"),
+    ("battery_level", 0, 0.4999999, 0, "battery 49.99999 % is below 50 %"),
+    ("temperature", 0, 60.0, 0, "temperature 60 °C is above 55 °C"),
+    ("temperature", 0, 1e308, 0, "temperature 1e+308 °C is above 55 °C"),
+    ("gps_accuracy", 0, 250.0, 15, "GPS accuracy 250 mm has been above 200 mm for 15 s"),
+    (
+        "signal_strength",
+        0,
+        "NOT_CONNECTED",
+        10,
+        "signal strength is NOT_CONNECTED, not CONNECTED for 10 s",
+    ),
+    (
+        "signal_strength",
+        1,
+        "LOW_SIGNAL",
+        10,
+        "signal strength is LOW_SIGNAL, not CONNECTED for 10 s",
+    ),
+]
+
+
+@pytest.mark.parametrize(("signal", "condition", "value", "bad_for_s", "words"), WORDS)
+def test_a_value_is_told_with_its_limit_and_unit(
+    signal: str, condition: int, value: SignalValue, bad_for_s: float, words: str
+) -> None:
+    settings = DEFAULTS[signal]
+
+    said = value_reason(settings, settings.conditions[condition], value, seconds(bad_for_s))
+
+    assert said == words
+
+
+def test_a_value_between_the_two_thresholds_is_told_with_the_one_it_has_to_reach() -> None:
+    condition = Condition("BATTERY_LOW", Comparison.BELOW, 0.5, clear_threshold=0.55)
+    settings = SignalSettings(DEFAULTS["battery_level"].spec, (condition,))
+
+    assert value_reason(settings, condition, 0.52, 0) == "battery 52 % is still below 55 %"
+
+
+@pytest.mark.parametrize(
+    ("for_s", "words"), [(0, "bumper is true"), (3, "bumper has been true for 3 s")]
+)
+def test_a_declared_boolean_is_told_by_its_name(for_s: float, words: str) -> None:
+    condition = Condition("BUMPED", Comparison.EQUAL, threshold=True, for_=seconds(for_s))
+    settings = SignalSettings(SignalSpec("bumper", SignalKind.BOOLEAN), (condition,))
+
+    assert value_reason(settings, condition, True, condition.for_) == words
+
+
+def test_an_enumeration_that_is_an_error_at_once_is_told_without_a_time() -> None:
+    condition = Condition("GEAR_LOST", Comparison.EQUAL, "N")
+    spec = SignalSpec("gear", SignalKind.ENUMERATION, members=("D", "N"))
+
+    assert value_reason(SignalSettings(spec, (condition,)), condition, "N", 0) == "gear is N"
+
+
+@pytest.mark.parametrize(
+    ("sources", "words"),
+    [
+        (["api"], "e-stop is pressed (source api)"),
+        (["api", "pad"], "e-stop is pressed (sources api, pad)"),
+        (list("abc"), "e-stop is pressed (sources a, b, c)"),
+        (list("abcd"), "e-stop is pressed (sources a, b, c and 1 more)"),
+        (list("abcde"), "e-stop is pressed (sources a, b, c and 2 more)"),
+    ],
+)
+def test_a_pressed_stop_is_told_with_who_presses_it(sources: list[str], words: str) -> None:
+    readings = HeldReadings(DEFAULTS["estop"])
+    for at, source in enumerate(sources):
+        readings.take(Reading("estop", True), source, at)
+
+    assert pressed_reason(readings, DEFAULTS["estop"].spec) == words
+
+
+@pytest.mark.parametrize(
+    ("is_seen", "words"),
+    [(True, "no reading of temperature for 2 s"), (False, "no reading of temperature yet")],
+)
+def test_a_silent_signal_is_told_apart_from_one_never_heard(is_seen: bool, words: str) -> None:
+    assert stale_reason(DEFAULTS["temperature"], is_seen=is_seen) == words
+
+
+@pytest.mark.parametrize(
+    ("recovery", "words"),
+    [
+        (
+            Recovery.AUTOMATIC,
+            "battery no longer causes BATTERY_LOW, which stays on for at least 0.2 s",
+        ),
+        (
+            Recovery.ACKNOWLEDGE,
+            "battery no longer causes BATTERY_LOW, which waits to be acknowledged",
+        ),
+    ],
+)
+def test_an_error_without_a_cause_is_told_with_what_keeps_it_on(
+    recovery: Recovery, words: str
+) -> None:
+    slot = ErrorSlot(seconds(0.2), recovery)
+    slot.update("BATTERY_LOW", 0)
+    slot.update(None, 1)
+
+    assert kept_reason(DEFAULTS["battery_level"], slot) == words

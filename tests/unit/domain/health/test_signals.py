@@ -1,0 +1,233 @@
+import math
+
+import pytest
+
+from domain.errors import InvalidValueError
+from domain.health.signals import (
+    DECLARED_BIT,
+    Comparison,
+    Condition,
+    Recovery,
+    SignalKind,
+    SignalSettings,
+    SignalSpec,
+    default_signals,
+)
+from domain.messages import SignalValue
+from domain.timebase import seconds
+
+DEFAULTS = {item.spec.name: item for item in default_signals()}
+
+# smart_polaris, README and SystemStateStamped.msg
+TABLE = [
+    ("battery_level", "BATTERY_LOW", 1, "below", 0.5, 0.0),
+    ("estop", "ESTOP", 2, "equal", True, 0.0),
+    ("gps_accuracy", "GPS_LOST", 4, "above", 200.0, 15.0),
+    ("signal_strength", "SIGNAL_LOST", 8, "equal", "NOT_CONNECTED", 10.0),
+    ("signal_strength", "SIGNAL_LOW", 16, "equal", "LOW_SIGNAL", 20.0),
+    ("temperature", "TEMPERATURE_HIGH", 32, "above", 55.0, 0.0),
+]
+
+
+def test_the_defaults_are_the_table_of_smart_polaris() -> None:
+    rows = [
+        (item.spec.name, c.error, c.bit, c.comparison.value, c.threshold, c.for_ / seconds(1))
+        for item in default_signals()
+        for c in item.conditions
+    ]
+
+    assert sorted(rows, key=lambda row: row[2]) == TABLE
+
+
+def test_every_signal_is_stale_after_two_seconds_and_shows_errors_for_a_fifth_of_one() -> None:
+    for item in default_signals():
+        assert item.stale_after == seconds(2)
+        assert item.min_on == seconds(0.2)
+        assert item.recovery is Recovery.AUTOMATIC
+
+
+TAKEN: list[tuple[str, object, SignalValue]] = [
+    ("battery_level", 0, 0.0),
+    ("battery_level", 1, 1.0),
+    ("battery_level", -0.0, 0.0),
+    ("temperature", -40, -40.0),
+    ("temperature", 1e308, 1e308),
+    ("gps_accuracy", 5e-324, 5e-324),
+    ("estop", True, True),
+    ("signal_strength", "LOW_SIGNAL", "LOW_SIGNAL"),
+]
+
+
+@pytest.mark.parametrize(("signal", "value", "held"), TAKEN)
+def test_a_possible_value_is_taken(signal: str, value: object, held: SignalValue) -> None:
+    checked = DEFAULTS[signal].spec.checked(value)
+
+    assert checked == held
+    assert type(checked) is type(held)
+    assert not str(checked).startswith("-0.0")
+
+
+REFUSED: list[tuple[str, object, str]] = [
+    ("battery_level", math.nan, "battery_level must be a finite number, not nan"),
+    ("battery_level", math.inf, "battery_level must be a finite number, not inf"),
+    ("temperature", -math.inf, "temperature must be a finite number, not -inf"),
+    ("temperature", 10**400, "temperature must be a finite number, not inf"),
+    ("battery_level", 1.5, "battery_level must be at most 1, not 1.5"),
+    ("battery_level", math.nextafter(1, 2), "battery_level must be at most 1, not"),
+    ("battery_level", -5e-324, "battery_level must be at least 0, not -5e-324"),
+    ("gps_accuracy", -1, "gps_accuracy must be at least 0, not -1.0"),
+    ("battery_level", True, "battery_level must be a number, not True"),
+    ("battery_level", "0.5", "battery_level must be a number, not '0.5'"),
+    ("battery_level", None, "battery_level must be a number, not None"),
+    ("estop", 1, "estop must be true or false, not 1"),
+    ("estop", 0.0, "estop must be true or false, not 0.0"),
+    ("estop", "true", "estop must be true or false, not 'true'"),
+    ("signal_strength", 7, "must be one of CONNECTED, LOW_SIGNAL, NOT_CONNECTED, not 7"),
+    ("signal_strength", "connected", "must be one of CONNECTED, LOW_SIGNAL, NOT_CONNECTED, not"),
+    ("signal_strength", ["CONNECTED"], "must be one of CONNECTED, LOW_SIGNAL, NOT_CONNECTED"),
+]
+
+
+@pytest.mark.parametrize(("signal", "value", "message"), REFUSED)
+def test_an_impossible_value_is_refused_by_name(signal: str, value: object, message: str) -> None:
+    with pytest.raises(InvalidValueError) as refusal:
+        DEFAULTS[signal].spec.checked(value)
+
+    assert message in refusal.value.message
+    assert refusal.value.pointer == signal
+
+
+def test_a_refusal_does_not_repeat_a_page_of_text() -> None:
+    with pytest.raises(InvalidValueError) as refusal:
+        DEFAULTS["estop"].spec.checked("x" * 100_000)
+
+    assert len(refusal.value.message) < 100
+
+
+VOLTAGE = SignalSpec("voltage", SignalKind.NUMBER, "V", minimum=0.0, maximum=60.0)
+LOW = Condition("VOLTAGE_LOW", Comparison.BELOW, 20.0)
+
+
+@pytest.mark.parametrize(
+    ("value", "while_off", "while_on"),
+    [(19.9, True, True), (20.0, False, True), (21.9, False, True), (22.0, False, False)],
+)
+def test_an_error_that_is_on_ends_only_at_the_clear_threshold(
+    value: float, while_off: bool, while_on: bool
+) -> None:
+    condition = Condition("VOLTAGE_LOW", Comparison.BELOW, 20.0, clear_threshold=22.0)
+
+    assert condition.is_met_by(value) is while_off
+    assert condition.is_met_by(value, error_is_on=True) is while_on
+
+
+def test_a_declared_error_has_the_bit_that_all_declared_ones_share() -> None:
+    assert LOW.bit == DECLARED_BIT == 128
+
+
+def test_worse_is_judged_on_both_sides_where_both_are_errors() -> None:
+    high = Condition("VOLTAGE_HIGH", Comparison.ABOVE, 30.0, key="high")
+    settings = SignalSettings(VOLTAGE, (LOW, high))
+
+    assert settings.is_worse(31.0, 25.0)
+    assert settings.is_worse(19.0, 25.0)
+    assert not settings.is_worse(25.0, 31.0)
+
+
+FACTS = {
+    "battery_level": {
+        "threshold": 0.5,
+        "clear_threshold": 0.5,
+        "for_s": 0.0,
+        "stale_after_s": 2.0,
+        "min_on_s": 0.2,
+        "recovery": "automatic",
+        "minimum": 0.0,
+        "maximum": 1.0,
+    },
+    "signal_strength": {
+        "lost_for_s": 10.0,
+        "low_for_s": 20.0,
+        "stale_after_s": 2.0,
+        "min_on_s": 0.2,
+        "recovery": "automatic",
+        "members": "CONNECTED, LOW_SIGNAL, NOT_CONNECTED",
+    },
+    "estop": {"for_s": 0.0, "stale_after_s": 2.0, "min_on_s": 0.2, "recovery": "automatic"},
+}
+
+
+@pytest.mark.parametrize("signal", FACTS)
+def test_settings_can_be_shown_as_plain_values(signal: str) -> None:
+    assert DEFAULTS[signal].facts() == FACTS[signal]
+
+
+def declare(*conditions: Condition, spec: SignalSpec = VOLTAGE) -> SignalSettings:
+    return SignalSettings(spec, conditions)
+
+
+def low(threshold: SignalValue = 20.0, clear: float | None = None, for_: int = 0) -> Condition:
+    return Condition("LOW", Comparison.BELOW, threshold, clear, for_)
+
+
+RELAY = SignalSpec("relay", SignalKind.BOOLEAN)
+UNFIT = [
+    (VOLTAGE, low(threshold=-1.0), "voltage/threshold"),
+    (VOLTAGE, low(threshold=math.nan), "voltage/threshold"),
+    (VOLTAGE, low(threshold=True), "voltage/threshold"),
+    (VOLTAGE, low(clear=61.0), "voltage/clear_threshold"),
+    (VOLTAGE, low(clear=19.0), "voltage/clear_threshold"),
+    (VOLTAGE, low(for_=-1), "voltage/for_s"),
+    (VOLTAGE, Condition("ODD", Comparison.EQUAL, 20.0), "voltage/threshold"),
+    (RELAY, Condition("ODD", Comparison.ABOVE, threshold=True), "relay/threshold"),
+    (RELAY, Condition("ODD", Comparison.EQUAL, 1.0), "relay/threshold"),
+    (RELAY, Condition("ODD", Comparison.EQUAL, threshold=True, clear_threshold=0.5), "relay/clear"),
+    (DEFAULTS["signal_strength"].spec, Condition("ODD", Comparison.EQUAL, "GONE"), "strength/thr"),
+]
+
+
+@pytest.mark.parametrize(("spec", "condition", "pointer"), UNFIT)
+def test_a_condition_that_does_not_fit_its_signal_is_refused(
+    spec: SignalSpec, condition: Condition, pointer: str
+) -> None:
+    with pytest.raises(InvalidValueError) as refusal:
+        declare(condition, spec=spec)
+
+    assert pointer in refusal.value.pointer
+
+
+def test_a_clear_threshold_may_be_the_threshold_itself() -> None:
+    assert declare(low(clear=20.0)).facts()["clear_threshold"] == 20.0
+
+
+@pytest.mark.parametrize(
+    ("stale_after", "min_on", "pointer"),
+    [(-1, 0, "voltage/stale_after_s"), (0, -1, "voltage/min_on_s")],
+)
+def test_a_time_is_not_negative(stale_after: int, min_on: int, pointer: str) -> None:
+    with pytest.raises(InvalidValueError) as refusal:
+        SignalSettings(VOLTAGE, (low(),), stale_after, min_on)
+
+    assert refusal.value.pointer == pointer
+
+
+def test_two_conditions_are_told_apart_by_their_keys() -> None:
+    with pytest.raises(InvalidValueError, match="must differ"):
+        declare(low(), Condition("HIGH", Comparison.ABOVE, 30.0))
+
+
+@pytest.mark.parametrize(
+    "make",
+    [
+        lambda: SignalSpec("gear", SignalKind.ENUMERATION),
+        lambda: SignalSpec("gear", SignalKind.ENUMERATION, members=("D", "D")),
+        lambda: SignalSpec("gear", SignalKind.NUMBER, members=("D",)),
+        lambda: SignalSpec("gear", SignalKind.NUMBER, is_stop=True),
+    ],
+)
+def test_a_signal_that_contradicts_itself_is_refused(make: object) -> None:
+    assert callable(make)
+    with pytest.raises(InvalidValueError) as refusal:
+        make()
+
+    assert refusal.value.pointer == "gear"

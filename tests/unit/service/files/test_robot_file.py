@@ -1,0 +1,152 @@
+import json
+from pathlib import Path
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from domain.findings import Finding
+from domain.health.signals import default_signals
+from domain.simulation.node_settings import Fault
+from domain.timebase import seconds
+from service.files.model_file import load_model
+from service.files.robot_file import (
+    InvalidRobotFileError,
+    RobotSettings,
+    load_robot_file,
+    read_robot_file,
+)
+from service.files.text_file import UnreadableFileError
+from tests.support.models import actuation_model
+from tests.support.shared import PROJECT
+
+MODEL = actuation_model()
+EXAMPLES = PROJECT / "examples" / "robots"
+SCHEMA = PROJECT / "docs" / "reference" / "robot-file.schema.json"
+
+
+def faults(text: str) -> list[tuple[int | None, int | None, str]]:
+    with pytest.raises(InvalidRobotFileError) as caught:
+        read_robot_file(text, MODEL)
+    return [(f.line, f.column, f.code) for f in caught.value.findings]
+
+
+@pytest.mark.parametrize("text", ["", "# nothing is different here\n"])
+def test_a_robot_of_which_nothing_is_said_is_as_usual(text: str) -> None:
+    settings = read_robot_file(text, MODEL)
+
+    assert settings == RobotSettings()
+    assert settings.to_signal_settings() == default_signals()
+    assert settings.to_node_settings() == {}
+    assert settings.to_change_settings().transition_deadline == seconds(10)
+    assert settings.to_change_settings().parameters_deadline == seconds(2)
+
+
+def test_what_is_said_holds() -> None:
+    settings = read_robot_file(
+        """
+backend: simulated
+mock: off
+signals: {stale_after_s: 0}
+nodes: {manipulator: {fault: fail}}
+changes: {transition_deadline_s: 4}
+""",
+        MODEL,
+    )
+
+    assert settings.mock is False
+    assert {signal.stale_after for signal in settings.to_signal_settings()} == {0}
+    assert settings.to_node_settings()["manipulator"].fault is Fault.FAIL  # type: ignore[index]
+    assert settings.to_change_settings().transition_deadline == seconds(4)
+
+
+@pytest.mark.parametrize(
+    ("robot", "model"),
+    [
+        ("gem_e2", PROJECT / "examples" / "models" / "gem_e2.yaml"),
+        ("actuation_with_faults", PROJECT / "service" / "example" / "actuation.yaml"),
+    ],
+)
+def test_the_robots_among_the_examples_load(robot: str, model: Path) -> None:
+    settings = load_robot_file(EXAMPLES / f"{robot}.yaml", load_model(model).model)
+
+    assert settings.to_signal_settings()
+    assert settings.to_node_settings()
+
+
+def test_no_robot_among_the_examples_is_forgotten() -> None:
+    assert sorted(path.stem for path in EXAMPLES.iterdir()) == ["actuation_with_faults", "gem_e2"]
+
+
+@pytest.mark.parametrize(
+    ("text", "fault"),
+    [
+        pytest.param("backend: simulatd\n", (1, 1, "INVALID_VALUE"), id="an unknown backend"),
+        pytest.param("bakend: simulated\n", (1, 1, "UNKNOWN_KEY"), id="an unknown key"),
+        pytest.param(
+            "signals:\n  battery_level:\n    treshold: 0.3\n", (3, 5, "UNKNOWN_KEY"), id="deep down"
+        ),
+        pytest.param(
+            "signals:\n  battery_level:\n    threshold: 3\n",
+            (3, 5, "INVALID_VALUE"),
+            id="a threshold that cannot be reached",
+        ),
+        pytest.param(
+            "signals:\n  motor: {above: 3}\n", (2, 3, "INVALID_VALUE"), id="an error without a name"
+        ),
+        pytest.param("nodes:\n  tail: {}\n", (2, 3, "UNKNOWN_NODE"), id="an unknown node"),
+        pytest.param("nodes:\n  actuation: {}\n", (2, 3, "UNKNOWN_NODE"), id="a system as node"),
+        pytest.param("signals:\n", (1, 9, "EMPTY_VALUE"), id="a key without a value"),
+        pytest.param("signals: 3\n", (1, 1, "INVALID_VALUE"), id="a value for a block"),
+        pytest.param("- mock\n", (1, 1, "INVALID_VALUE"), id="a list"),
+        pytest.param("mock: on\n---\nmock: off\n", (3, 1, "INVALID_VALUE"), id="two documents"),
+        pytest.param("mock: on\nmock: off\n", (2, 1, "DUPLICATE_KEY"), id="a key twice"),
+        pytest.param("mock: *on\n", (1, 7, "ALIAS"), id="an alias"),
+        pytest.param("mock: [\n", (2, 1, "YAML_SYNTAX"), id="no YAML"),
+    ],
+)
+def test_a_fault_is_told_with_its_place(text: str, fault: tuple[int, int, str]) -> None:
+    assert faults(text) == [fault]
+
+
+def test_all_faults_are_told_at_once() -> None:
+    text = "backend: x\nmock: 3\nsignals: {estop: {for_s: 1}}\n"
+
+    assert [code for _, _, code in faults(text)] == [
+        "INVALID_VALUE",
+        "INVALID_VALUE",
+        "UNKNOWN_KEY",
+    ]
+
+
+def test_the_error_says_what_is_wrong_first() -> None:
+    with pytest.raises(InvalidRobotFileError, match=r"there is no node 'tail'.*\(and 1 more\)"):
+        read_robot_file("nodes: {tail: {}, horn: {}}", MODEL)
+
+
+def test_a_missing_file_is_said_to_be_missing(tmp_path: Path) -> None:
+    with pytest.raises(UnreadableFileError, match=r"gone\.yaml"):
+        load_robot_file(tmp_path / "gone.yaml", MODEL)
+
+
+@given(
+    st.text() | st.lists(st.sampled_from([*"[]{}:-\n ,'", "signals", "mock", "on"])).map("".join)
+)
+def test_any_text_is_a_robot_or_is_complained_of(text: str) -> None:
+    assert all(finding.line is not None for finding in findings_of(text))
+
+
+def findings_of(text: str) -> tuple[Finding, ...]:
+    try:
+        read_robot_file(text, MODEL).to_signal_settings()
+    except InvalidRobotFileError as error:
+        return error.findings
+    return ()
+
+
+def test_the_schema_in_the_documentation_is_that_of_the_code() -> None:
+    # To renew it, write what is expected here into the file.
+    schema = RobotSettings.model_json_schema()
+    expected = {"$schema": "https://json-schema.org/draft/2020-12/schema", **schema}
+
+    assert json.loads(SCHEMA.read_text(encoding="utf-8")) == expected
