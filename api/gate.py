@@ -82,11 +82,19 @@ class Gate:
                 return
         await self._app(scope, receive, send)
 
+    def _is_ours(self, host: str, scope: Scope) -> bool:
+        """Tell whether a name is one of ours, or the very address that the request came to.
+
+        An address cannot be made to resolve to another one, so it opens no way to a foreign page.
+        """
+        address, _ = scope.get("server") or ("", None)
+        return bool(host) and (host in self._hosts or host == _bare(address))
+
     def _find_fault(self, scope: Scope) -> Problem | None:
         headers = Headers(scope=scope)
         path = scope["path"]
         hosts = headers.getlist("host")
-        if len(hosts) != 1 or _bare(hosts[0]) not in self._hosts:
+        if len(hosts) != 1 or not self._is_ours(_bare(hosts[0]), scope):
             named = hosts[0] if hosts else ""
             hint = "a further name is allowed with `pilothouse serve --allowed-host NAME`"
             return make_problem(

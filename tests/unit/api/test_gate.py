@@ -49,6 +49,16 @@ async def test_an_address_of_ipv6_is_allowed_with_or_without_brackets() -> None:
         assert await status_of(gate, http_scope("GET", "/", host=host)) == 200
 
 
+async def test_the_address_that_a_request_came_to_is_ours_and_another_is_not() -> None:
+    """As of a service that listens on all addresses of the robot."""
+    gate = Gate(answer_200, allowed_hosts=["0.0.0.0"])
+    scope = {"server": ("192.168.7.2", 8000)}
+
+    for host, status in (("192.168.7.2:8000", 200), ("192.168.7.3:8000", 403)):
+        request = {**http_scope("GET", "/", host=host), **scope}
+        assert await status_of(gate, request) == status
+
+
 # --- who writes ---------------------------------------------------------------------------------
 
 
