@@ -17,6 +17,18 @@ from domain.system_model import PartName, SmhModel
 ADVISORY = frozenset({"UNREACHABLE", "UNKNOWN_STATE"})
 """Shown, but not refused: an absent node may come back before the deadline."""
 
+MAX_BLOCKERS = 100
+"""Of one request; thousands of absent nodes say no more than a hundred of them."""
+
+_CODES = {
+    LifecycleState.FINALIZED: "FINALIZED",
+    LifecycleState.ERROR_PROCESSING: "ERROR_PROCESSING",
+}
+_WORDS = {
+    LifecycleState.FINALIZED: "is finalized: it must be started anew",
+    LifecycleState.ERROR_PROCESSING: "is processing an error",
+}
+
 
 class ChangeAdmission:
     """Judges requests by what is known of the nodes at this moment."""
@@ -39,15 +51,15 @@ class ChangeAdmission:
         if isinstance(request, TransitionRequest):
             self._check_legal(request, estop)
         goal = goal_of(self._model, request, self._facts)
-        blockers = tuple(self._blockers(request, goal, estop))
+        blockers = self._blockers(request, goal, estop)
         if _refuse(blockers):
             raise BlockedError(part_of(request), blockers)
         return goal
 
     def blockers(self, request: ChangeRequest, estop: Sequence[Blocker]) -> tuple[Blocker, ...]:
-        """Return everything that stands against a request, the advisory reasons too."""
+        """Return what stands against a request, the advisory reasons too."""
         goal = goal_of(self._model, request, self._facts)
-        return tuple(self._blockers(request, goal, estop))
+        return self._blockers(request, goal, estop)
 
     def available_transitions(
         self, part: PartName, estop: Sequence[Blocker]
@@ -99,16 +111,19 @@ class ChangeAdmission:
 
     def _blockers(
         self, request: ChangeRequest, goal: ChangeGoal, estop: Sequence[Blocker]
-    ) -> Iterable[Blocker]:
+    ) -> tuple[Blocker, ...]:
+        """Find what stands against a request: what refuses it first, and not more than is read."""
         part = part_of(request)
         resting = isinstance(request, TransitionRequest) and request.transition in TOWARDS_REST
+        codes = [(self._code(node, want, resting), node) for node, want in goal.nodes.items()]
+        found = sorted(
+            ((code, node) for code, node in codes if code is not None),
+            key=lambda item: item[0] in ADVISORY,
+        )
+        blockers = [self._blocker(part, node, code) for code, node in found[:MAX_BLOCKERS]]
         if estop and any(self._activates(node, want) for node, want in goal.nodes.items()):
-            for reason in estop:
-                yield replace(reason, path=(part, *reason.path))
-        for node, want in goal.nodes.items():
-            blocker = self._blocker_of_node(part, node, want, resting=resting)
-            if blocker is not None:
-                yield blocker
+            blockers = [replace(why, path=(part, *why.path)) for why in estop] + blockers
+        return tuple(blockers)
 
     def _activates(self, node: PartName, goal: NodeGoal) -> bool:
         """Tell whether a node would be activated; one of unknown state might be."""
@@ -119,24 +134,22 @@ class ChangeAdmission:
             return facts.has_lifecycle
         return Transition.ACTIVATE in (next_steps(facts, goal) or ())
 
-    def _blocker_of_node(
-        self, part: PartName, node: PartName, goal: NodeGoal, *, resting: bool
-    ) -> Blocker | None:
+    def _code(self, node: PartName, goal: NodeGoal, resting: bool) -> str | None:
+        """Return what stands against bringing a node to its goal; None: nothing."""
         facts = self._facts[node]
         state = facts.known_state
-        path = self._path(part, node)
         if state is LifecycleState.UNKNOWN:
-            code = "UNREACHABLE" if facts.reachable is False else "UNKNOWN_STATE"
-            return Blocker(code, f"{node} {facts.why_unknown}", path)
+            return "UNREACHABLE" if facts.reachable is False else "UNKNOWN_STATE"
         if resting or goal.state is state:
             return None
-        if state is LifecycleState.FINALIZED:
-            message = f"{node} is finalized: it must be started anew"
-            return Blocker("FINALIZED", message, path, str(state))
-        if state is LifecycleState.ERROR_PROCESSING:
-            message = f"{node} is processing an error"
-            return Blocker("ERROR_PROCESSING", message, path, str(state))
-        return None
+        return _CODES.get(state)
+
+    def _blocker(self, part: PartName, node: PartName, code: str) -> Blocker:
+        facts = self._facts[node]
+        known = facts.known_state
+        value = None if code in ADVISORY else str(known)
+        words = facts.why_unknown if code in ADVISORY else _WORDS[known]
+        return Blocker(code, f"{node} {words}", self._path(part, node), value)
 
     def _path(self, part: PartName, node: PartName) -> tuple[str, ...]:
         """Return one way down from the asked part to the node."""

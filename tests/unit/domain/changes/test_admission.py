@@ -9,6 +9,7 @@ from domain.lifecycle import LifecycleState, Transition
 from domain.messages import ChangeRequest, ModeRequest, ParametersRequest, TransitionRequest
 from domain.node_facts import NodeFacts
 from domain.system_model import ModeName, Parameters, PartName, SmhModel, SystemModel
+from tests.support.big_model import big_model
 from tests.support.models import ACTUATION, ARM, BASE, actuation_model, inactive, nested_model
 
 S, T = LifecycleState, Transition
@@ -345,3 +346,15 @@ def test_what_would_be_refused_under_estop_is_not_shown_as_available() -> None:
         T.CLEANUP,
         T.SHUTDOWN,
     ]
+
+
+def test_of_many_blockers_what_refuses_comes_first_and_the_rest_is_cut() -> None:
+    model = big_model(200)
+    facts = {node: _node(None) for node in model.nodes}
+    last = list(model.nodes)[-1]
+    facts[last] = _node(S.FINALIZED)
+
+    blockers = ChangeAdmission(model, facts).blockers(ModeRequest(model.parts[0], "FAST"), ())
+
+    assert (len(blockers), blockers[0].code, blockers[0].path[-1]) == (100, "FINALIZED", last)
+    assert {blocker.code for blocker in blockers[1:]} == {"UNKNOWN_STATE"}
