@@ -15,6 +15,11 @@ MAX_SKEW = seconds(1.0)
 MAX_QUIET_SOURCES = 64
 """Sources of a stop that do not press it are remembered up to this number, the latest ones."""
 
+MAX_PRESSING_SOURCES = 1_000
+"""Beyond this, further sources that press a stop are remembered as one, which nobody releases."""
+
+_FURTHER_SOURCES = "further sources"
+
 
 @dataclass(frozen=True, slots=True)
 class HeldReading:
@@ -89,6 +94,9 @@ class HeldReadings:
     def take(self, reading: Reading, source: str, now: Instant) -> None:
         """Hold a checked reading that arrived at `now`."""
         key = self._key(source)
+        if reading.value is True and key not in self._by_source and self._is_full:
+            # No source has an empty name, so none can let go for the others.
+            key, source = "", _FURTHER_SOURCES
         # Put at the end, so that the order of the dictionary is that of arrival.
         held = self._by_source.pop(key, None)
         stamps = [] if held is None or held.newest_stamp is None else [held.newest_stamp]
@@ -106,6 +114,10 @@ class HeldReadings:
 
     def _key(self, source: str) -> str:
         return source if self._settings.spec.is_stop else ""
+
+    @property
+    def _is_full(self) -> bool:
+        return len(self._by_source) >= MAX_PRESSING_SOURCES + MAX_QUIET_SOURCES
 
     def _forget_long_quiet_source(self) -> None:
         """Keep senders that invent source names from filling the memory."""

@@ -1,6 +1,6 @@
 import pytest
 
-from domain.health.held_readings import MAX_QUIET_SOURCES, HeldReadings
+from domain.health.held_readings import MAX_PRESSING_SOURCES, MAX_QUIET_SOURCES, HeldReadings
 from domain.health.signals import SignalSettings, default_signals
 from domain.messages import Reading, SignalValue
 from domain.timebase import seconds
@@ -186,3 +186,18 @@ def test_a_sender_that_invents_source_names_cannot_release_a_stop_or_fill_the_me
     # Forgotten: the source that has been quiet for longest, and with it the order of its stamps.
     assert held.behind(pressed(False, NOW - 1), "old") is None
     assert held.behind(pressed(False, NOW - 1), "invented 0") == 1
+
+
+def test_a_sender_that_presses_by_ever_new_names_is_heard_and_cannot_fill_the_memory() -> None:
+    held = estop()
+    for number in range(MAX_PRESSING_SOURCES + MAX_QUIET_SOURCES):
+        held.take(pressed(True, NOW), f"invented {number}", NOW)
+    held.take(pressed(True, NOW), "one more", NOW)
+    held.take(pressed(True, NOW), "another", NOW)
+
+    for number in range(MAX_PRESSING_SOURCES + MAX_QUIET_SOURCES):
+        held.take(pressed(False, NOW), f"invented {number}", NOW)
+    for name in ("one more", "another", "further sources"):
+        held.take(pressed(False, NOW), name, NOW)
+
+    assert [reading.source for reading in held.pressing] == ["further sources"]
