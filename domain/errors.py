@@ -16,7 +16,9 @@
     |   +-- OutdatedReadingError
     +-- BackendUnavailableError       nothing that nodes could be reached through
 
-A refused input changes nothing.
+Below the same root, `service` and `api` add what only they can meet: files that cannot be read
+(`service/files/`), a worker that is busy (`service/worker.py`), bodies that are malformed
+(`api/bodies.py`). A refused input changes nothing.
 """
 
 from collections.abc import Sequence
