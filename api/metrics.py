@@ -10,10 +10,8 @@ from prometheus_client.metrics_core import Metric
 from prometheus_client.registry import Collector
 
 from api.streaming.hub import StreamHub, stream_hub
-from domain.messages import Event
 from domain.snapshot import ChangeStatus, SystemState
 from domain.timebase import to_seconds
-from service.event_log import EventReader
 from service.supervisor import Supervisor
 
 _MAX_PARTS = 1_000
@@ -95,8 +93,6 @@ class _ServiceCollector(Collector):
 
     def __init__(self, hub: StreamHub) -> None:
         self._hub = hub
-        self._events = EventReader(hub.supervisor.events, after=0)
-        self._ended = dict.fromkeys(_ENDS, 0)
 
     def collect(self) -> Iterator[Metric]:
         supervisor = self._hub.supervisor
@@ -116,19 +112,10 @@ class _ServiceCollector(Collector):
             "Frames that clients were too slow for",
             value=self._hub.skipped,
         )
-        self._count_changes()
         changes = CounterMetricFamily("pilothouse_changes", "Changes that ended", labels=["status"])
-        for status, number in self._ended.items():
-            changes.add_metric([status], number)
+        for status in _ENDS:
+            changes.add_metric([status], supervisor.ended_changes[status])
         yield changes
-
-    def _count_changes(self) -> None:
-        """Count what ended since the last time, by the log: nothing has to be told to us."""
-        while found := self._events.take(limit=1_000):
-            for item in found:
-                area, _, status = item.kind.partition(".") if isinstance(item, Event) else ("",) * 3
-                if area == "change" and status in self._ended:
-                    self._ended[status] += 1
 
 
 def _gauge(

@@ -98,9 +98,7 @@ def _targets(
         elif target is None:
             targets[part] = None
         elif (state := _state(target.state, ("targets", name), faults)) is not None:
-            has_mode = state in (LifecycleState.ACTIVE, LifecycleState.ACTIVATING)
-            mode = ModeName(target.mode) if target.mode and has_mode else None
-            targets[part] = StateAndMode(state, mode)
+            targets[part] = StateAndMode.parse(f"{state}.{target.mode or ''}")
     return targets
 
 

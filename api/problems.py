@@ -38,7 +38,7 @@ from domain.errors import (
 from service.clock import Clock
 from service.files.robot_file import InvalidRobotFileError
 from service.files.text_file import UnreadableFileError
-from service.worker import TooComplexError, WorkerBusyError
+from service.worker import TooComplexError, WorkerBusyError, WorkerClosedError
 
 STATUS_OF: Mapping[type[PilothouseError], HTTPStatus] = {
     PilothouseError: HTTPStatus.INTERNAL_SERVER_ERROR,
@@ -61,6 +61,7 @@ STATUS_OF: Mapping[type[PilothouseError], HTTPStatus] = {
     BlockedError: HTTPStatus.CONFLICT,
     OutdatedReadingError: HTTPStatus.CONFLICT,
     WorkerBusyError: HTTPStatus.TOO_MANY_REQUESTS,
+    WorkerClosedError: HTTPStatus.SERVICE_UNAVAILABLE,
     BackendUnavailableError: HTTPStatus.SERVICE_UNAVAILABLE,
     # Files are read before anybody is served.
     InvalidRobotFileError: HTTPStatus.INTERNAL_SERVER_ERROR,

@@ -7,10 +7,13 @@ from pydantic import PlainValidator, WithJsonSchema
 from pydantic_core import PydanticCustomError
 
 from domain.messages import SignalValue
-from domain.system_model import ParameterValue
+from domain.parameters import ParameterValue
 
 MAX_TEXT = 4_096
 """Characters of a text in a value."""
+
+MAX_ITEMS = 1_024
+"""Of a list in a value."""
 
 _SCALARS = (bool, int, float, str)
 _INT64 = range(-(2**63), 2**63)
@@ -44,12 +47,18 @@ def read_parameter_value(value: object) -> ParameterValue:
     A list of integers and doubles is one of doubles, since who writes `[0.5, 1]` means that.
 
     Raises:
-        PydanticCustomError: No value of a parameter.
+        PydanticCustomError: No value of a parameter, or one that is too long.
     """
+    if isinstance(value, list) and len(value) > MAX_ITEMS:
+        message = f"a parameter is a list of at most {MAX_ITEMS} items"
+        raise PydanticCustomError("invalid_parameter", message)
     items: list[Any] = value if isinstance(value, list) else [value]
     kinds = {type(item) for item in items}
     if kinds == {int, float}:
         items, kinds = [float(item) for item in items], {float}
+    if kinds == {str} and max(map(len, items)) > MAX_TEXT:
+        message = f"a text of a parameter has at most {MAX_TEXT} characters"
+        raise PydanticCustomError("invalid_parameter", message)
     if len(kinds) > 1 or not all(_is_scalar(item) for item in items):
         raise PydanticCustomError(
             "invalid_parameter",
@@ -85,7 +94,7 @@ _PARAMETER_SCALARS: list[dict[str, Any]] = [
     {"type": "boolean"},
     {"type": "integer", "minimum": _INT64[0], "maximum": _INT64[-1]},
     {"type": "number"},
-    {"type": "string"},
+    {"type": "string", "maxLength": MAX_TEXT},
 ]
 
 SentSignalValue = Annotated[
@@ -100,7 +109,10 @@ SentParameter = Annotated[
         {
             "anyOf": [
                 *_PARAMETER_SCALARS,
-                *({"type": "array", "items": scalar} for scalar in _PARAMETER_SCALARS),
+                *(
+                    {"type": "array", "items": scalar, "maxItems": MAX_ITEMS}
+                    for scalar in _PARAMETER_SCALARS
+                ),
             ]
         }
     ),

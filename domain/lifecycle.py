@@ -112,9 +112,6 @@ TRANSITIONS: tuple[TransitionRule, ...] = (
 ERROR_PROCESSED = LifecycleState.UNCONFIGURED
 """Where a node goes from `errorprocessing` when its error handling succeeds."""
 
-ERROR_NOT_PROCESSED = LifecycleState.FINALIZED
-"""Where a node goes from `errorprocessing` when its error handling fails."""
-
 _GOALS: Mapping[Transition, LifecycleState] = {
     rule.transition: rule.success for rule in TRANSITIONS
 }
@@ -159,19 +156,6 @@ def arrival(state: LifecycleState) -> LifecycleState:
 def is_legal_request(transition: Transition, start: LifecycleState) -> bool:
     """Tell whether `transition` may be requested of a node that rests in `start`."""
     return start in _REQUESTS[transition]
-
-
-def available_transitions(state: LifecycleState) -> tuple[Transition, ...]:
-    """Return the transitions that lead somewhere else and may be requested in `state`.
-
-    Wider than `get_available_transitions` of ROS 2 by the paths that a request implies: an
-    unconfigured node may be asked to activate, and is configured on the way.
-    """
-    return tuple(
-        transition
-        for transition in Transition
-        if is_legal_request(transition, state) and transition.goal is not state
-    )
 
 
 def path(start: LifecycleState, goal: LifecycleState) -> tuple[Transition, ...] | None:

@@ -9,7 +9,8 @@ from dataclasses import dataclass
 from typing import NewType, TypeAlias
 
 from domain.lifecycle import LifecycleState, Transition
-from domain.system_model import ModeName, Parameters, ParameterValue, PartName
+from domain.parameters import Parameters, ParameterValue
+from domain.system_model import ModeName, PartName
 from domain.timebase import Instant
 
 ChangeId = NewType("ChangeId", str)

@@ -17,6 +17,7 @@ from domain.errors import UnknownPartError
 from domain.lifecycle import LifecycleState
 from domain.messages import NodeReport
 from domain.node_facts import NodeFacts
+from domain.parameters import same_value
 from domain.snapshot import Actual
 from domain.system_model import (
     DEFAULT_MODE,
@@ -26,7 +27,6 @@ from domain.system_model import (
     SmhModel,
     StateAndMode,
     SystemModel,
-    same_value,
 )
 
 Wanted: TypeAlias = tuple[tuple[PartName, LifecycleState, ModeName | None], ...]
@@ -93,8 +93,13 @@ class ModeInference:
         self._facts = {name: NodeFacts() for name in model.nodes}
         self._targets: dict[PartName, StateAndMode] = {}
         self._plans = {name: _SystemPlan.of(system) for name, system in model.systems.items()}
-        self._modes = {
-            name: sorted(node.modes, key=_by_bytes) for name, node in model.nodes.items()
+        self._by_rank = {
+            name: sorted(node.modes, key=lambda mode: (mode != DEFAULT_MODE, _by_bytes(mode)))
+            for name, node in model.nodes.items()
+        }
+        self._has_lists = {
+            name: any(isinstance(v, tuple) for mode in node.modes.values() for v in mode.values())
+            for name, node in model.nodes.items()
         }
         self._actual: dict[PartName, Actual] = {}
         for node in model.nodes:
@@ -199,33 +204,32 @@ class ModeInference:
             return Actual(state)
         if facts.mode is not None:
             return Actual(state, facts.mode)
-        mode = self.matching_mode(name)
+        mode = self._matching_mode(name)
         if mode is None:
-            reason = f"the parameters of {name} match no mode" if self._modes[name] else None
+            reason = f"the parameters of {name} match no mode" if self._by_rank[name] else None
             return Actual(state, reason=reason)
         return Actual(state, mode, mode_inferred=True)
 
-    def matching_mode(self, name: PartName) -> ModeName | None:
-        """Return the mode that a node's parameters match: target mode first, then `__DEFAULT__`."""
+    def _matching_mode(self, name: PartName) -> ModeName | None:
+        """Return the mode that a node's parameters match: target mode first, then `__DEFAULT__`.
+
+        The target is recognised whatever its values are. Modes that nobody asked for are not
+        guessed from lists, as in system_modes.
+        """
         node = self.model.nodes[name]
         target = self._targets.get(name)
-        for mode in self._candidates(node, target.mode if target else None):
-            if self._matches(node, mode):
+        asked = target.mode if target is not None else None
+        if asked is not None and asked in node.modes and self._matches(node, asked):
+            return asked
+        for mode in self._by_rank[name]:
+            if self._matches(node, mode) and not self._has_lists[name]:
                 return mode
         return None
 
-    def _candidates(self, node: NodeModel, target: ModeName | None) -> Iterable[ModeName]:
-        if target is not None and target in node.modes:
-            yield target
-        if node.modes:
-            yield DEFAULT_MODE
-        yield from self._modes[node.name]
-
     def _matches(self, node: NodeModel, mode: ModeName) -> bool:
-        """Compare all parameters; arrays never match, as in system_modes."""
         known = self._facts[node.name].parameters
         return all(
-            name in known and same_value(known[name], value) and not isinstance(value, tuple)
+            name in known and same_value(known[name], value)
             for name, value in node.modes[mode].items()
         )
 

@@ -8,17 +8,16 @@ from collections.abc import Hashable, Iterator, Mapping
 
 from domain.findings import Finding
 from domain.lifecycle import LifecycleState
+from domain.parameters import ParameterValue, value_type
 from domain.system_model import (
     DEFAULT_MODE,
     ModeName,
     NodeModel,
-    ParameterValue,
     PartName,
     Rule,
     SmhModel,
     StateAndMode,
     SystemModel,
-    value_type,
 )
 
 
@@ -97,16 +96,16 @@ def _never_inferred(node: NodeModel) -> Iterator[Finding]:
         for name, value in parameters.items():
             taken_over = mode != DEFAULT_MODE and default.get(name) is value
             if not taken_over and _is_never_equal(value):
-                what = "a list" if isinstance(value, tuple) else "not a number"
                 message = (
-                    f"{node.name} in {mode}: {name} is {what}, which is never found equal, so that "
-                    "no mode with it is inferred from parameters"
+                    f"{node.name} in {mode}: {name} is not a number, which is never found equal; "
+                    "the mode is never recognised by its parameters"
                 )
                 yield _warning("NEVER_INFERRED", message, node.name, "modes", mode, name)
 
 
 def _is_never_equal(value: ParameterValue) -> bool:
-    return isinstance(value, tuple) or value != value
+    items = value if isinstance(value, tuple) else (value,)
+    return any(item != item for item in items)
 
 
 # --- rules ---------------------------------------------------------------------------------------

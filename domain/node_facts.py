@@ -8,7 +8,8 @@ from dataclasses import dataclass, field
 
 from domain.lifecycle import LifecycleState
 from domain.messages import NodeReport
-from domain.system_model import ModeName, ParameterValue, same_value
+from domain.parameters import ParameterValue, same_value
+from domain.system_model import ModeName
 
 
 @dataclass(slots=True)

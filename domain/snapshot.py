@@ -11,7 +11,8 @@ from typing import Literal
 from domain.findings import Blocker, Fact
 from domain.lifecycle import LifecycleState, Transition
 from domain.messages import ChangeId, ChangeRequest, SignalValue
-from domain.system_model import ModeName, ParameterValue, PartName, StateAndMode
+from domain.parameters import ParameterValue
+from domain.system_model import ModeName, PartName, StateAndMode
 from domain.timebase import Duration, Instant
 
 

@@ -6,6 +6,7 @@ and times, and get the same outputs.
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from itertools import islice
 
 from domain.changes.admission import ChangeAdmission
 from domain.changes.operations import Changes
@@ -38,6 +39,7 @@ from domain.messages import (
 )
 from domain.mode_inference import ModeInference
 from domain.outbox import Outbox
+from domain.parameters import value_type
 from domain.part_views import PartViews
 from domain.snapshot import (
     ChangeView,
@@ -145,7 +147,14 @@ class Supervision:
         self._outbox.begin(self._now, kind, data, actor, cause)
 
     def _take_report(self, report: NodeReport) -> None:
-        """Infer first, so that a change is judged by what the report made so."""
+        """Infer first, so that a change is judged by what the report made so.
+
+        Raises:
+            InvalidValueError: A parameter has a value of a type that parameters do not have.
+            UnknownPartError: The node is not in the model.
+        """
+        for value in (report.parameters or {}).values():
+            value_type(value)
         step = self._changes.step_in_flight(report.node)
         data: dict[str, object] = {"node": report.node}
         if report.state is not None:
@@ -266,9 +275,17 @@ class Supervision:
         """
         return self._changes.get(identity).view()
 
-    def changes(self) -> tuple[ChangeView, ...]:
-        """Return the changes that are kept, the newest first."""
-        return tuple(change.view() for change in self._changes.all())
+    def changes(
+        self, limit: int | None = None, part: PartName | None = None
+    ) -> tuple[ChangeView, ...]:
+        """Return the changes that are kept, the newest first.
+
+        Args:
+            limit: At most so many.
+            part: Only those that were asked of this part.
+        """
+        kept = (c for c in self._changes.all() if part is None or c.part == part)
+        return tuple(change.view() for change in islice(kept, limit))
 
     def signal(self, name: str) -> SignalView:
         """Return one signal.

@@ -10,11 +10,12 @@ from collections.abc import Collection, Iterable, Mapping
 from dataclasses import dataclass, field
 from itertools import chain
 from types import MappingProxyType
-from typing import NewType, TypeAlias
+from typing import NewType
 
 from domain.errors import InvalidModelError, UnknownModeError, UnknownPartError
 from domain.findings import Finding
 from domain.lifecycle import LifecycleState
+from domain.parameters import Parameters
 
 PartName = NewType("PartName", str)
 """Name of a system or a node, without a leading slash; may hold slashes (`left/arm`)."""
@@ -29,21 +30,6 @@ def part_name(name: str) -> PartName:
     return PartName(name.lstrip("/"))
 
 
-ParameterValue: TypeAlias = (
-    bool
-    | int
-    | float
-    | str
-    | tuple[bool, ...]
-    | tuple[int, ...]
-    | tuple[float, ...]
-    | tuple[str, ...]
-)
-"""A value of a ROS 2 parameter; 1 and 1.0 are different, as their types are."""
-
-Parameters: TypeAlias = Mapping[str, ParameterValue]
-
-
 MAX_LEVELS = 64
 """Of systems in systems. No robot comes near, and no walk through a model has to fear more."""
 
@@ -52,24 +38,6 @@ MAX_ANCESTORS = 1_000_000
 
 _MAX_CYCLES_TOLD = 100
 _MAX_NAMES_TOLD = 12
-
-
-def same_value(one: ParameterValue, other: ParameterValue) -> bool:
-    """Tell whether two parameter values are equal in type and value."""
-    return one == other and value_type(one) == value_type(other)
-
-
-def value_type(value: ParameterValue) -> str:
-    """Return the type of a parameter value in the words of ROS 2, as in `double` or `int[]`.
-
-    Source: `rcl_interfaces/msg/ParameterType`.
-    """
-    if isinstance(value, tuple):
-        return f"{_TYPE_NAMES[type(value[0])]}[]" if value else "[]"
-    return _TYPE_NAMES[type(value)]
-
-
-_TYPE_NAMES: Mapping[type, str] = {bool: "bool", int: "int", float: "double", str: "string"}
 
 
 @dataclass(frozen=True, slots=True)

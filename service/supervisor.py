@@ -6,11 +6,13 @@ lets time pass where nothing arrives.
 
 import asyncio
 import logging
+from collections import Counter
 from collections.abc import Callable, Coroutine, Sequence
 from contextlib import suppress
 
 from domain.errors import PilothouseError
 from domain.findings import Finding
+from domain.health.signals import ESTOP_SIGNAL
 from domain.messages import (
     ChangeId,
     Input,
@@ -34,7 +36,9 @@ from service.ports import NodeBackend
 log = logging.getLogger(__name__)
 
 PERIOD = seconds(0.05)
-_FRAMES_PER_FULL = 20
+_UNNAMED = "api"
+"""Source of readings whose sender does not say who measured."""
+_TICKS_PER_FULL = 20
 """One complete frame a second, so that a client that lost something is soon right again."""
 
 
@@ -68,10 +72,12 @@ class Supervisor:
         self.last_tick_at: Instant | None = None
         self.on_tick: list[Callable[[float], None]] = []
         """Called with the seconds since the tick before; must return at once."""
+        self.ended_changes: Counter[str] = Counter()
+        """Changes that ended so far, by how they ended."""
         self._loaded = loaded
         self._backend = backend
         self._seq = 0
-        self._since_full = 0
+        self._ticks = 0
         self._changed_parts: set[PartName] = set()
         self._changed_signals: set[str] = set()
         self._waiting: dict[ChangeId, set[asyncio.Future[None]]] = {}
@@ -136,21 +142,30 @@ class Supervisor:
         return outputs
 
     def submit_readings(
-        self, items: Sequence[Reading], source: str = "api", actor: str = ""
+        self, items: Sequence[Reading], source: str | None = None, actor: str = ""
     ) -> Outputs:
         """Hand in readings from outside; where the mock runs, it goes on with their values.
+
+        Args:
+            items: All are taken, or none is.
+            source: Who measured; None: a sender without a name, for whom the mock stands where it
+                runs. A named source of `estop` is kept apart from the mock's own.
+            actor: Who sent them.
 
         Raises:
             PilothouseError: One of them is refused; none was taken.
         """
-        if self.mock is None:
-            return self.submit(Readings(tuple(items), source, actor))
-        for readings in self.mock.due():
+        mock = self.mock
+        if mock is None:
+            return self.submit(Readings(tuple(items), source or _UNNAMED, actor))
+        for readings in mock.due():
             self.submit(readings)
-        outputs = self.submit(Readings(tuple(items), self.mock.source, actor))
+        stands_in = source is None and all(mock.holds(item.signal) for item in items)
+        own = mock.source if stands_in else source or _UNNAMED
+        outputs = self.submit(Readings(tuple(items), own, actor))
         for item in items:
-            if self.mock.holds(item.signal):
-                self.mock.hold(item.signal, item.value)
+            if mock.holds(item.signal) and (stands_in or item.signal != ESTOP_SIGNAL):
+                mock.hold(item.signal, item.value)
         return outputs
 
     def hold_mock(self, signal: str, value: SignalValue, actor: str = "") -> Outputs:
@@ -202,6 +217,7 @@ class Supervisor:
         for event in outputs.events:
             self.events.append(event)
             if event.kind in _ENDS:
+                self.ended_changes[event.kind.removeprefix("change.")] += 1
                 self._wake_waiting(event.data["change"])
         if outputs.system_state and self._seq:
             self._publish()
@@ -211,10 +227,9 @@ class Supervisor:
             if not ended.done():
                 ended.set_result(None)
 
-    def _publish(self) -> None:
-        """Publish one frame: what changed since the last one, or once a second everything."""
-        full = self._since_full == 0 or self.frames.wants_full
-        self._since_full = (self._since_full + 1) % _FRAMES_PER_FULL
+    def _publish(self, *, full: bool = False) -> None:
+        """Publish one frame: everything, or what changed since the last one."""
+        full = full or self.frames.wants_full
         self._seq += 1
         core = self.core
         frame = Frame(
@@ -256,7 +271,8 @@ class Supervisor:
                 observe(to_seconds(now - self.last_tick_at))
         self.last_tick_at = now
         self.submit(TimePassed())
-        self._publish()
+        self._publish(full=self._ticks % _TICKS_PER_FULL == 0)
+        self._ticks += 1
 
 
 _ENDS = frozenset(f"change.{status}" for status in ChangeStatus if status != ChangeStatus.RUNNING)

@@ -44,6 +44,15 @@ class TooComplexError(PilothouseError):
         super().__init__(f"this is too complex: {how}")
 
 
+class WorkerClosedError(PilothouseError):
+    """Work for a service that is ending."""
+
+    code = "ENDING"
+
+    def __init__(self) -> None:
+        super().__init__("the service is ending, and begins no more work of this kind")
+
+
 class JobFailedError(Exception):
     """A fault in the program, met in the worker; the message is its traceback."""
 
@@ -63,23 +72,26 @@ class Worker:
         self._process: Process | None = None
         self._turn = asyncio.Lock()
         self._jobs = 0
-        self._is_closing = False
+        self._is_closed = False
 
     async def start(self) -> None:
-        """Start the process now, so that the first job need not wait for it."""
+        """Start the process now, so that the first job need not wait for it.
+
+        Raises:
+            WorkerClosedError: `close` was called.
+        """
         async with self._turn:
             await self._running()
 
     async def close(self) -> None:
-        """End the process; a job that it is at fails."""
-        self._is_closing = True
+        """End the process for good: the job that it is at, those that wait and any new one fail."""
+        self._is_closed = True
         if self._process is not None and self._process.returncode is None:
             self._process.kill()
         async with self._turn:
             process, self._process = self._process, None
             if process is not None:
                 await _end(process)
-        self._is_closing = False
 
     async def call(self, function: Callable[[*Given], Result], *arguments: *Given) -> Result:
         """Return what a function returns, computed in the worker.
@@ -90,6 +102,7 @@ class Worker:
 
         Raises:
             WorkerBusyError: Too many jobs are waiting.
+            WorkerClosedError: `close` was called, before or while it was done.
             TooComplexError: It took too long, or ended the process.
             PilothouseError: Raised by the function.
             JobFailedError: The function has a fault.
@@ -126,13 +139,21 @@ class Worker:
                 how = f"it was not done within {self._deadline_s:g} s"
                 raise TooComplexError(how) from error
             if isinstance(error, asyncio.IncompleteReadError | ConnectionError):
-                if not is_new and not self._is_closing:
+                if self._is_closed:
+                    raise WorkerClosedError from error
+                if not is_new:
                     return await self._exchange(job)
                 raise TooComplexError("it ended the process that worked on it") from error
             raise
 
     async def _running(self) -> Process:
-        """Return the process, or a new one if there is none or it has died."""
+        """Return the process, or a new one if there is none or it has died.
+
+        Raises:
+            WorkerClosedError: `close` was called, maybe while the process started; it then ends it.
+        """
+        if self._is_closed:
+            raise WorkerClosedError
         if self._process is None or self._process.returncode is not None:
             path = os.pathsep.join(entry or os.getcwd() for entry in sys.path)
             self._process = await asyncio.create_subprocess_exec(
@@ -147,6 +168,8 @@ class Worker:
                 env={**os.environ, "PYTHONPATH": path},
                 start_new_session=True,
             )
+            if self._is_closed:
+                raise WorkerClosedError
         return self._process
 
 

@@ -1,7 +1,6 @@
 """Changes: what became of what was asked."""
 
 from collections.abc import Iterator
-from itertools import islice
 from typing import Annotated
 
 from fastapi import APIRouter, Query, Response
@@ -9,7 +8,9 @@ from fastapi import APIRouter, Query, Response
 from api.dependencies import ActorDep, SupervisorDep
 from api.long_lists import json_list
 from api.schemas.changes import ChangeJson, ChangesJson
+from domain.errors import UnknownPartError
 from domain.messages import CancelRequest, ChangeId
+from domain.system_model import PartName
 
 router = APIRouter(prefix="/changes", tags=["changes"])
 
@@ -21,10 +22,15 @@ _DEFAULT_CHANGES = 100
 async def list_changes(
     supervisor: SupervisorDep,
     limit: Annotated[int, Query(ge=1, le=MAX_CHANGES)] = _DEFAULT_CHANGES,
+    part: Annotated[
+        str | None, Query(description="Only changes that were asked of this system or node")
+    ] = None,
 ) -> Response:
     """List changes, the newest first."""
+    if part is not None and part not in supervisor.model:
+        raise UnknownPartError("part", part, supervisor.model.parts)
     clock = supervisor.clock
-    views = islice(supervisor.core.changes(), limit)
+    views = supervisor.core.changes(limit, None if part is None else PartName(part))
     texts: Iterator[str] = (ChangeJson.of(view, clock).model_dump_json() for view in views)
     return await json_list(texts)
 

@@ -22,7 +22,8 @@ async def set_emergency_stop(
 ) -> EmergencyStopJson:
     """Engage or release the emergency stop; to do so twice changes nothing.
 
-    This is a software stop. It is not safety-rated, and replaces no hardware stop.
+    This is a software stop. It is not safety-rated, and replaces no hardware stop. In this version
+    a restart of the service releases it, since it is not stored.
     """
     supervisor.submit(EmergencyStopRequest(body.engaged, body.reason, actor))
     return EmergencyStopJson.of(supervisor.core.emergency_stop(), supervisor.clock)

@@ -11,7 +11,8 @@ from api.json_route import JsonRoute
 from api.schemas.parts import ParameterRowJson, ParametersBody, ParametersJson
 from domain.errors import UnknownParameterError
 from domain.messages import ParametersRequest
-from domain.system_model import ParameterValue, PartName
+from domain.parameters import ParameterValue
+from domain.system_model import PartName
 from service.supervisor import Supervisor
 
 router = APIRouter(prefix="/nodes", tags=["nodes"], route_class=JsonRoute)

@@ -15,9 +15,6 @@ from domain.messages import Reading
 
 router = APIRouter(prefix="/signals", tags=["health"], route_class=JsonRoute)
 
-SOURCE = "api"
-"""Of readings whose sender does not say who measured."""
-
 
 @router.get("")
 async def list_signals(supervisor: SupervisorDep) -> SignalsJson:
@@ -46,9 +43,10 @@ async def post_readings(
     """Hand in one reading of each of several signals; all are taken, or none is.
 
     They are decided on arrival; the answer is the system state that follows. A text by the name
-    `source` tells who measured, unless there is a signal of that name.
+    `source` tells who measured, unless there is a signal of that name. A sender without a name is
+    `api`, or the mock where the mock runs.
     """
-    values, source = dict(body), SOURCE
+    values, source = dict(body), None
     if "source" not in supervisor.core.signals() and isinstance(values.get("source"), str):
         source = str(values.pop("source"))
         if not 0 < len(source) <= MAX_SOURCE:
@@ -69,7 +67,8 @@ async def post_reading(
     """Hand in a reading; it is decided on arrival, and the system state that follows is returned.
 
     `stamp` is shown and never makes a reading younger or older; a reading older than the one that
-    is held is refused, unless it is worse.
+    is held is refused, unless it is worse. A sender without a `source` is `api`, or the mock where
+    the mock runs.
     """
     reading = body.reading(signal, supervisor.clock)
     try:

@@ -188,11 +188,14 @@ class ReadingBody(Body):
         max_length=64,
         description="When the sender took it: RFC 3339 with an offset, as in `...+01:00` or `...Z`",
     )
-    source: str = Field(
-        default="api",
+    source: str | None = Field(
+        default=None,
         min_length=1,
         max_length=MAX_SOURCE,
-        description="Who measured; several sources of `estop` cannot release each other",
+        description=(
+            "Who measured; several sources of `estop` cannot release each other. A sender without"
+            " a name is `api`, or the mock where the mock runs"
+        ),
     )
 
     def reading(self, signal: str, clock: Clock) -> Reading:

@@ -1,6 +1,6 @@
 """Systems and nodes as clients see them, and what clients ask of them."""
 
-from typing import Annotated, Literal, TypeAlias
+from typing import Annotated, Literal, TypeAlias, cast
 
 from pydantic import Field
 
@@ -14,8 +14,8 @@ from api.schemas.base import (
 )
 from api.values import SentParameter
 from domain.lifecycle import LifecycleState, Transition
+from domain.parameters import ParameterValue, value_type
 from domain.snapshot import Actual, EffectiveTarget, ModeView, ParameterView, PartView
-from domain.system_model import ParameterValue
 from service.clock import Clock
 
 ParameterType: TypeAlias = Literal[
@@ -195,7 +195,7 @@ class ParameterRowJson(Json):
         return cls(
             name=view.name,
             value=None if view.value is None else shown(view.value),
-            type=None if known is None else type_of(known),
+            type=type_of(known),
             wanted=None if view.wanted is None else shown(view.wanted),
         )
 
@@ -229,22 +229,6 @@ def shown(value: ParameterValue) -> ParameterJson:
     return list(value) if isinstance(value, tuple) else value  # type: ignore[return-value]
 
 
-def type_of(value: ParameterValue) -> ParameterType | None:
+def type_of(value: ParameterValue | None) -> ParameterType | None:
     """Return the type of a value as ROS 2 calls it; None: an empty array could be of any."""
-    if isinstance(value, tuple):
-        return _ARRAYS[type(value[0])] if value else None
-    return _SCALARS[type(value)]
-
-
-_SCALARS: dict[type, ParameterType] = {
-    bool: "bool",
-    int: "integer",
-    float: "double",
-    str: "string",
-}
-_ARRAYS: dict[type, ParameterType] = {
-    bool: "bool_array",
-    int: "integer_array",
-    float: "double_array",
-    str: "string_array",
-}
+    return None if value is None or value == () else cast("ParameterType", value_type(value))

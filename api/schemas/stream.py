@@ -5,8 +5,7 @@ from typing import Any, Literal
 from pydantic import ConfigDict, Field
 
 from api.schemas.base import Json, Timestamp
-from api.schemas.health import ReadingBody, StreamedSignalJson, SystemStateJson
-from api.schemas.parts import PartJson
+from api.schemas.health import ReadingBody
 
 
 class HelloJson(Json):
@@ -17,22 +16,6 @@ class HelloJson(Json):
     topics: list[str]
     period_s: float = Field(description="Time between two `state` frames")
     version: str
-
-
-class StateFrameJson(Json):
-    """What is published at one moment.
-
-    `parts` and `signals` are there in the first frame, after a skip, once a second, and whenever
-    they changed; then with the changed members only.
-    """
-
-    type: Literal["state"] = "state"
-    seq: int = Field(description="Rises by one per published frame")
-    at: Timestamp
-    skipped: int = Field(description="Frames that this client missed before this one")
-    system_state: SystemStateJson
-    parts: dict[str, PartJson] | None = None
-    signals: dict[str, StreamedSignalJson] | None = None
 
 
 class EventJson(Json):

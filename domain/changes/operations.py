@@ -5,7 +5,7 @@ go side by side, each with one step in flight. A step in flight is never recalle
 for its node waits for its end or its deadline.
 """
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 
 from domain.changes.plan import ChangeGoal, SetParameters, next_steps, presumed_steps
 from domain.changes.record import Change, ChangeSettings, Pursuit, Step
@@ -29,6 +29,10 @@ from domain.system_model import PartName
 from domain.timebase import Duration, Instant, to_seconds
 
 KEPT_CHANGES = 1_000
+KEPT_PURSUITS = 50_000
+"""Of all changes together, so that the memory of large ones is bounded as well."""
+_TOLD_ERRORS = 20
+"""In the reason of one change; more would be read by nobody."""
 _MAX_STEPS = 16
 """Of one node in one change; more only if somebody else keeps moving the node."""
 
@@ -298,7 +302,7 @@ class Changes:
         for outcome, status in _UNHAPPY_ENDS.items():
             errors = change.errors_of(outcome)
             if errors:
-                self._end(change, status, "; ".join(errors), now)
+                self._end(change, status, _joined(errors), now)
                 return
         missed = self._missed_target(change)
         status = ChangeStatus.FAILED if missed else ChangeStatus.SUCCEEDED
@@ -316,7 +320,7 @@ class Changes:
             for node in self._inference.model.nodes_below(change.part)
             if node != change.part and self._inference.actual(node).state is not target.state
         ]
-        return "; ".join([actual.reason or words, *others])
+        return _joined([actual.reason or words, *others])
 
     def _end(self, change: Change, status: ChangeStatus, reason: str | None, now: Instant) -> None:
         change.status, change.reason, change.ended_at = status, reason, now
@@ -330,11 +334,21 @@ class Changes:
 
     def _forget_old(self) -> None:
         """Keep the newest changes, and whatever still runs or drives a node."""
-        if len(self._changes) > KEPT_CHANGES:
-            for identity, change in list(self._changes.items()):
-                if change.status is not ChangeStatus.RUNNING and not change.open:
-                    del self._changes[identity]
-                    return
+        excess = len(self._changes) - KEPT_CHANGES
+        kept = sum(len(change.pursuits) for change in self._changes.values())
+        for identity, change in list(self._changes.items())[:-1]:
+            if excess <= 0 and kept <= KEPT_PURSUITS:
+                return
+            if change.status is not ChangeStatus.RUNNING and not change.open:
+                del self._changes[identity]
+                excess -= 1
+                kept -= len(change.pursuits)
+
+
+def _joined(reasons: Sequence[str]) -> str:
+    more = len(reasons) - _TOLD_ERRORS
+    told = [*reasons[:_TOLD_ERRORS], *([f"and {more} more"] if more > 0 else [])]
+    return "; ".join(told)
 
 
 _UNHAPPY_ENDS: Mapping[StepStatus, ChangeStatus] = {

@@ -13,15 +13,8 @@ from typing import TypeAlias
 from domain.lifecycle import LifecycleState, Transition, arrival, path
 from domain.messages import ChangeRequest, ModeRequest, ParametersRequest, TransitionRequest
 from domain.node_facts import NodeFacts
-from domain.system_model import (
-    DEFAULT_MODE,
-    ModeName,
-    Parameters,
-    PartName,
-    SmhModel,
-    StateAndMode,
-    same_value,
-)
+from domain.parameters import Parameters, same_value
+from domain.system_model import DEFAULT_MODE, ModeName, PartName, SmhModel, StateAndMode
 
 TOWARDS_REST = (Transition.DEACTIVATE, Transition.CLEANUP, Transition.SHUTDOWN)
 """What is done to those parts of a system that can go; the others are passed by."""
@@ -32,6 +25,8 @@ class SetParameters:
     """The step that sets parameters, all or none."""
 
     values: Parameters
+    mode: ModeName | None = None
+    """The mode that a node which reports its mode has to report, for the step to be done."""
 
 
 Action: TypeAlias = Transition | SetParameters
@@ -148,7 +143,7 @@ def next_steps(facts: NodeFacts, goal: NodeGoal) -> tuple[Action, ...] | None:
         return None
     if not _parameters_missing(facts, goal):
         return transitions
-    setting = SetParameters(goal.parameters)
+    setting = SetParameters(goal.parameters, goal.mode)
     if transitions and transitions[-1] is Transition.ACTIVATE:
         return (*transitions[:-1], setting, transitions[-1])
     return (*transitions, setting)

@@ -6,7 +6,8 @@ from collections.abc import Mapping
 from domain.errors import InvalidValueError, UnknownParameterError, UnknownPartError
 from domain.messages import ChangeRequest, ModeRequest, ParametersRequest, TransitionRequest
 from domain.node_facts import NodeFacts
-from domain.system_model import ParameterValue, PartName, SmhModel, value_type
+from domain.parameters import ParameterValue, fits_type, value_type
+from domain.system_model import PartName, SmhModel
 
 
 def check_request(
@@ -47,11 +48,9 @@ def _check_value(
         return
     if name not in known:
         raise UnknownParameterError(f"parameter of {node}", name, tuple(known))
-    wanted, given = value_type(known[name]), value_type(value)
-    arrays = wanted.endswith("[]") and given.endswith("[]")
-    # An empty array fits every type of array: nothing in it says otherwise.
-    if wanted != given and not (arrays and "[]" in (wanted, given)):
-        raise InvalidValueError(f"{name} of {node} is of type {wanted}, not {value!r}", name)
+    if not fits_type(known[name], value):
+        wanted = value_type(known[name])
+        raise InvalidValueError(f"{name} of {node} is of type {wanted}, not {value!r:.40}", name)
 
 
 def describe_request(request: ChangeRequest) -> dict[str, object]:

@@ -7,8 +7,8 @@ from domain.changes.record import Step
 from domain.lifecycle import LifecycleState, Transition, rule_for
 from domain.messages import NodeReport
 from domain.node_facts import NodeFacts
+from domain.parameters import same_value
 from domain.snapshot import StepStatus
-from domain.system_model import Parameters, same_value
 
 
 @dataclass(frozen=True, slots=True)
@@ -31,17 +31,20 @@ def judge_report(step: Step, report: NodeReport, facts: NodeFacts) -> Verdict | 
         facts: What is known of the node, `report` included.
     """
     if isinstance(step.action, SetParameters):
-        return _judge_parameters(step, step.action.values, report, facts)
+        return _judge_parameters(step, step.action, report, facts)
     return _judge_transition(step, step.action, report)
 
 
 def _judge_parameters(
-    step: Step, values: Parameters, report: NodeReport, facts: NodeFacts
+    step: Step, action: SetParameters, report: NodeReport, facts: NodeFacts
 ) -> Verdict | None:
-    if report.parameters is None:
+    """Done when all values are there, and a node that reports its mode reports the new one."""
+    if report.parameters is None and report.mode is None:
         return None
     known = facts.parameters
-    wrong = [n for n, v in values.items() if n not in known or not same_value(known[n], v)]
+    wrong = [n for n, v in action.values.items() if n not in known or not same_value(known[n], v)]
+    if action.mode is not None and facts.mode not in (None, action.mode):
+        wrong.append(f"mode {facts.mode}")
     if not wrong:
         return _DONE
     if step.facts_asked:

@@ -7,7 +7,8 @@ from domain.timebase import Instant
 class EmergencyStop:
     """The latch with who set it, why and since when.
 
-    Both acts are idempotent: repeating one keeps who did it first. It starts released.
+    Both acts are idempotent: repeating one keeps who did it first. It starts released, since it is
+    not stored yet.
 
     Source: ISO 13850, which wants a stop to stay until it is reset by hand.
     """

@@ -45,9 +45,9 @@ class HealthEvents:
 
     def _tell_state(self, task_status: TaskStatus, cause: int | None) -> None:
         view = self._health.system_state(task_status)
-        self._outbox.system_state = True
         if (view.state, view.errors) == self._told:
             return
+        self._outbox.system_state = True
         data = {
             "state": str(view.state),
             "was": str(self._told[0]),

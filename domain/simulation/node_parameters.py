@@ -3,7 +3,8 @@
 from collections.abc import Mapping
 
 from domain.errors import InvalidValueError, PilothouseError, UnknownParameterError
-from domain.system_model import NodeModel, Parameters, ParameterValue
+from domain.parameters import Parameters, ParameterValue, fits_type, value_type
+from domain.system_model import NodeModel
 
 
 def declared_parameters(node: NodeModel) -> dict[str, ParameterValue]:
@@ -31,11 +32,9 @@ def find_refusal(declared: Parameters, values: Parameters) -> PilothouseError | 
     for name, value in values.items():
         if name not in declared:
             return UnknownParameterError("parameter", name, tuple(declared))
-        if not _same_type(declared[name], value):
-            wanted = _type_name(declared[name])
-            return InvalidValueError(
-                f"{name} is of type {wanted}, not {_type_name(value)}", pointer=name
-            )
+        if not fits_type(declared[name], value):
+            wanted = value_type(declared[name])
+            return InvalidValueError(f"{name} is of type {wanted}, not {value_type(value)}", name)
     return None
 
 
@@ -44,20 +43,3 @@ _START_VALUES: Mapping[type, ParameterValue] = {bool: False, int: 0, float: 0.0,
 
 def _start_value(value: ParameterValue) -> ParameterValue:
     return () if isinstance(value, tuple) else _START_VALUES[type(value)]
-
-
-def _same_type(one: ParameterValue, other: ParameterValue) -> bool:
-    if isinstance(one, tuple) and isinstance(other, tuple):
-        # An empty array fits every type of array: nothing in it says otherwise.
-        return len({type(item) for item in (*one, *other)}) <= 1
-    return type(one) is type(other)
-
-
-_TYPE_NAMES: Mapping[type, str] = {bool: "bool", int: "integer", float: "double", str: "string"}
-
-
-def _type_name(value: ParameterValue) -> str:
-    """Return the name of the type in ROS 2."""
-    if isinstance(value, tuple):
-        return f"{_TYPE_NAMES[type(value[0])]}_array" if value else "array"
-    return _TYPE_NAMES[type(value)]

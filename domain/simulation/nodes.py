@@ -22,9 +22,10 @@ from domain.messages import (
     NodeAnswer,
     NodeReport,
 )
+from domain.parameters import Parameters, ParameterValue
 from domain.simulation.node_parameters import declared_parameters, find_refusal, start_parameters
 from domain.simulation.node_settings import NOTICED_AFTER, SLOWDOWN, Fault, NodeSettings
-from domain.system_model import Parameters, ParameterValue, PartName, SmhModel
+from domain.system_model import PartName, SmhModel
 from domain.timebase import Duration, Instant
 
 NodeMessage: TypeAlias = NodeReport | NodeAnswer

@@ -3,9 +3,10 @@
 from collections.abc import Callable
 
 from domain.messages import BackendStatus, Command
+from domain.parameters import Parameters
 from domain.simulation.node_settings import Fault
 from domain.simulation.nodes import SimulatedNodes
-from domain.system_model import Parameters, PartName
+from domain.system_model import PartName
 from service.clock import Clock
 from service.pacing import Pacer
 from service.ports import BackendMessage

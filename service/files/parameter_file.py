@@ -13,7 +13,7 @@ from dataclasses import dataclass, field
 from functools import lru_cache
 
 from domain.findings import Finding
-from domain.system_model import ParameterValue
+from domain.parameters import ParameterValue
 from service.files.yaml_tree import STRING_TAG, Mapping, Node, Scalar, Sequence, finding_at
 
 PARAMETERS_KEY = "ros__parameters"

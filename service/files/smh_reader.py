@@ -10,11 +10,11 @@ from collections.abc import Collection, Mapping
 from dataclasses import dataclass, field
 
 from domain.findings import Finding
+from domain.parameters import ParameterValue
 from domain.system_model import (
     DEFAULT_MODE,
     ModeName,
     NodeModel,
-    ParameterValue,
     PartName,
     StateAndMode,
     SystemModel,

@@ -8,14 +8,8 @@ import difflib
 from collections.abc import Collection
 
 from domain.lifecycle import LifecycleState
-from domain.system_model import (
-    DEFAULT_MODE,
-    ModeName,
-    ParameterValue,
-    PartName,
-    Rule,
-    StateAndMode,
-)
+from domain.parameters import ParameterValue
+from domain.system_model import DEFAULT_MODE, ModeName, PartName, Rule, StateAndMode
 from service.files.parameter_file import Parameter
 from service.files.smh_block import SmhBlock
 from service.files.yaml_tree import Node

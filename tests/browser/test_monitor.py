@@ -2,6 +2,7 @@
 
 import re
 import time
+from urllib.parse import urlsplit
 
 import pytest
 
@@ -55,6 +56,37 @@ def test_a_system_changes_its_mode_and_both_nodes_follow(
     expect(row(desktop, "manipulator")).to_contain_text("active.STRONG", timeout=15_000)
     expect(row(desktop, "actuation")).to_contain_text("active.PERFORMANCE (*)")
     expect(desktop.locator("ph-change")).to_contain_text("succeeded after")
+    assert complaints.messages == []
+
+
+def test_of_two_changes_of_a_part_the_panel_shows_the_newer(
+    desktop: Page, service: Service, complaints: Complaints
+) -> None:
+    for mode in ("PERFORMANCE", "MODERATE"):
+        service.request("POST", "/systems/actuation/mode?wait=15", {"mode": mode})
+    desktop.reload()
+    expect(desktop.locator("ph-change")).to_contain_text("mode MODERATE, asked at")
+    expect(desktop.locator("ph-change")).to_contain_text("succeeded after")
+    assert complaints.messages == []
+
+
+def test_the_changes_that_others_ask_for_are_shown_at_few_requests(
+    desktop: Page, service: Service, complaints: Complaints
+) -> None:
+    change = desktop.locator("ph-change")
+    expect(desktop.get_by_role("button", name="MODERATE")).to_be_enabled()
+    asked: list[str] = []
+    desktop.on("request", lambda request: asked.append(urlsplit(request.url).path))
+    begin = time.monotonic()
+    for transition in ("cleanup", "configure", "activate"):
+        path = "/systems/actuation/state?wait=15"
+        service.request("POST", path, {"transition": transition})
+        expect(change).to_contain_text(f"{transition}, asked at")
+        expect(change).to_contain_text("succeeded after")
+    desktop.wait_for_timeout(1000)
+    seconds = time.monotonic() - begin
+    assert asked.count("/systems") == asked.count("/nodes") == 0
+    assert 3 <= asked.count("/systems/actuation/state") <= 2 * seconds + 1
     assert complaints.messages == []
 
 

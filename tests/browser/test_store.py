@@ -60,10 +60,17 @@ def test_parts_that_a_frame_leaves_out_stay_as_they_were(page: Page) -> None:
 
 
 def test_an_answer_to_a_request_never_takes_a_part_back_behind_the_stream(page: Page) -> None:
-    old = {"name": "a", "kind": "node", "reachable": True, **DEVIATING, "deviation_since_at": AT}
-    state = fold(page, frame(parts={"a": ACTIVE}), {"type": "structure", "items": [old]})
-    assert state["parts"]["a"]["converged"] is True
-    assert state["parts"]["a"]["kind"] == "node"
+    old = {"name": "a", "kind": "node", "reachable": False, "change": None, **DEVIATING}
+    new = {"name": "a", "kind": "node", "reachable": True, "change": "c2", **ACTIVE}
+    state = fold(page, frame(parts={"a": new}), {"type": "structure", "items": [old]})
+    streamed = fold(page, frame(parts={"a": new}))
+    assert state["parts"] == streamed["parts"]
+
+
+def test_an_answer_tells_of_parts_that_no_frame_has_told_yet(page: Page) -> None:
+    told = {"name": "b", "kind": "node", "reachable": True, "change": None, **ACTIVE}
+    state = fold(page, {"type": "structure", "items": [told]})
+    assert state["parts"] == {"b": told}
 
 
 def test_a_deviation_is_as_old_as_the_first_frame_that_tells_it(page: Page) -> None:

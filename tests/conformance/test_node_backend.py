@@ -13,9 +13,10 @@ import pytest
 
 from domain.lifecycle import LifecycleState, Transition
 from domain.messages import AskFacts, AskParameters, AskTransition, NodeAnswer, NodeReport
+from domain.parameters import ParameterValue
 from domain.simulation.node_settings import Fault
 from domain.simulation.nodes import SimulatedNodes
-from domain.system_model import ParameterValue, PartName
+from domain.system_model import PartName
 from service.backends.simulated import SimulatedBackend
 from service.ports import BackendMessage, NodeBackend
 from tests.support.manual_clock import ManualClock

@@ -6,11 +6,11 @@ The shape of the measurements of micro-ROS system_modes: 10,000 nodes are under 
 from collections.abc import Mapping
 
 from domain.lifecycle import LifecycleState
+from domain.parameters import Parameters
 from domain.system_model import (
     DEFAULT_MODE,
     ModeName,
     NodeModel,
-    Parameters,
     PartName,
     SmhModel,
     StateAndMode,

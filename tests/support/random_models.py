@@ -8,12 +8,11 @@ import hypothesis.strategies as st
 
 from domain.lifecycle import LifecycleState
 from domain.messages import NodeReport
+from domain.parameters import Parameters, ParameterValue
 from domain.system_model import (
     DEFAULT_MODE,
     ModeName,
     NodeModel,
-    Parameters,
-    ParameterValue,
     PartName,
     SmhModel,
     StateAndMode,

@@ -5,9 +5,10 @@ from itertools import count
 
 from domain.lifecycle import LifecycleState, Transition
 from domain.messages import AskFacts, AskParameters, AskTransition, NodeAnswer, NodeReport
+from domain.parameters import Parameters
 from domain.simulation.node_settings import Fault, NodeSettings
 from domain.simulation.nodes import NodeMessage, SimulatedNodes
-from domain.system_model import Parameters, PartName, SmhModel
+from domain.system_model import PartName, SmhModel
 from domain.timebase import Instant, seconds, to_seconds
 from tests.support.models import actuation_model
 

@@ -66,7 +66,7 @@ function title() {
   if (document.title !== text) document.title = text;
 }
 
-/** Load what frames do not carry; what fails is loaded again with the next event or contact. */
+/** Ask for what no frame has told yet; what fails is asked for again with the next contact. */
 async function load(paths, use) {
   try {
     use(await Promise.all(paths.map((path) => request("GET", path))));
@@ -107,11 +107,8 @@ function resync({ epoch }) {
 
 connection.addEventListener("frame", ({ detail: frame }) => {
   if (frame.type === "hello") resync(frame);
-  if (frame.type === "event") {
-    panel.refresh();
-    if (frame.kind.startsWith("emergency_stop")) loadLatch();
-    if (frame.kind.startsWith("change")) loadStructure();
-  }
+  if (frame.type === "event" && frame.kind.startsWith("emergency_stop")) loadLatch();
+  panel.hear(frame);
   if (frame.type === "state") clock.observe(frame.at, localNow());
   const isFirst = state.systemState === null;
   take(frame);

@@ -69,13 +69,10 @@ const FOLDERS = {
     return { ...state, lastEventId, events: keep([...state.events, note]) };
   },
 
+  /** A part that was streamed is newer than any answer, and whole. */
   structure(state, { items }) {
     const parts = {};
-    for (const item of items) {
-      const streamed = state.parts[item.name];
-      const { target, effective_target, actual, converged } = streamed ?? item;
-      parts[item.name] = { ...item, target, effective_target, actual, converged };
-    }
+    for (const item of items) parts[item.name] = state.parts[item.name] ?? item;
     return { ...state, parts };
   },
 

@@ -11,6 +11,7 @@ from api.app import create_app
 from domain.messages import EmergencyStopRequest, ModeRequest, Reading
 from domain.system_model import PartName
 from service.supervisor import Supervisor
+from tests.support.frames import event
 from tests.support.live_robot import make_supervisor, running
 from tests.support.manual_clock import ManualClock
 from tests.support.websocket import WebSocketClient
@@ -99,6 +100,19 @@ async def test_the_metrics_count_how_changes_ended(
 
         assert await metric(http, "pilothouse_changes_total", status="succeeded") == 2
         assert await metric(http, "pilothouse_changes_total", status="failed") == 0
+
+
+async def test_a_change_is_counted_however_much_happened_since_the_last_question(
+    http: httpx.AsyncClient, supervisor: Supervisor, clock: ManualClock
+) -> None:
+    async with running(supervisor):
+        supervisor.submit(ModeRequest(PartName("actuation"), "PERFORMANCE", "operator"))
+        await clock.advance(2)
+    log = supervisor.events
+    for number in range(log.newest + 1, log.newest + 10_002):
+        log.append(event(number))
+
+    assert await metric(http, "pilothouse_changes_total", status="succeeded") == 1
 
 
 async def test_the_metrics_tell_the_period_of_the_tick(

@@ -54,6 +54,22 @@ def test_bodies_that_routes_read_themselves_are_described(document: dict[str, An
     assert "application/yaml" in check
 
 
+@pytest.mark.parametrize(
+    ("method", "path", "told"),
+    [
+        ("put", "/emergency_stop", "a restart of the service releases it"),
+        ("post", "/signals", "or the mock where the mock runs"),
+        ("post", "/signals/{signal}", "or the mock where the mock runs"),
+    ],
+)
+def test_what_an_operator_could_be_surprised_by_is_told(
+    method: str, path: str, told: str, document: dict[str, Any]
+) -> None:
+    description = document["paths"][path][method]["description"]
+
+    assert told in " ".join(description.split())
+
+
 def references(value: object) -> list[str]:
     if isinstance(value, dict):
         own = [value["$ref"]] if isinstance(value.get("$ref"), str) else []

@@ -31,6 +31,33 @@ def test_a_mode_belongs_only_to_active() -> None:
     assert (answer.parts["actuation"].state, answer.parts["actuation"].mode) == ("inactive", None)
 
 
+@pytest.mark.parametrize(
+    ("target", "mode"),
+    [
+        ("active.FAST", "FAST"),
+        ("activating.FAST", "FAST"),
+        ({"state": "active", "mode": "A.B"}, "A.B"),
+        ({"state": "active", "mode": ""}, None),
+        ({"state": "inactive", "mode": "FAST"}, None),
+    ],
+)
+def test_a_target_has_a_mode_only_where_a_label_would(target: object, mode: str | None) -> None:
+    nodes = {"drive_base": "errorprocessing"}
+    body = InferenceBody.model_validate({"targets": {"drive_base": target}, "nodes": nodes})
+
+    (deviation,) = infer(MODEL, body).deviations
+
+    assert deviation.target.mode == mode
+
+
+def test_a_label_is_no_state() -> None:
+    target = {"state": "active.FAST", "mode": None}
+    body = InferenceBody.model_validate({"targets": {"drive_base": target}})
+
+    with pytest.raises(InvalidBodyError, match=r"no lifecycle state 'active\.FAST'"):
+        infer(MODEL, body)
+
+
 def test_an_integer_is_no_double() -> None:
     node = {"state": "active", "parameters": {"max_torque": 1}}
     model = read_model(ACTUATION.replace("max_torque: 0.1}", "max_torque: 1.0}")).model

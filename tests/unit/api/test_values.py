@@ -7,6 +7,8 @@ from pydantic import TypeAdapter, ValidationError
 from pydantic_core import PydanticCustomError
 
 from api.values import (
+    MAX_ITEMS,
+    MAX_TEXT,
     SentParameter,
     SentSignalValue,
     read_parameter_value,
@@ -61,6 +63,24 @@ def test_a_parameter_keeps_its_type(sent: object, value: object) -> None:
 )
 def test_a_parameter_is_nothing_that_ros_has_not(sent: object) -> None:
     with pytest.raises(PydanticCustomError):
+        read_parameter_value(sent)
+
+
+@pytest.mark.parametrize("sent", ["x" * MAX_TEXT, ["x" * MAX_TEXT], [0] * MAX_ITEMS])
+def test_a_parameter_may_be_as_long_as_said(sent: object) -> None:
+    assert read_parameter_value(sent)
+
+
+@pytest.mark.parametrize(
+    ("sent", "message"),
+    [
+        ("x" * (MAX_TEXT + 1), "4096 characters"),
+        (["a", "x" * (MAX_TEXT + 1)], "4096 characters"),
+        ([0] * (MAX_ITEMS + 1), "1024 items"),
+    ],
+)
+def test_a_parameter_that_is_too_long_is_told_the_limit(sent: object, message: str) -> None:
+    with pytest.raises(PydanticCustomError, match=message):
         read_parameter_value(sent)
 
 

@@ -11,7 +11,6 @@ from domain.lifecycle import (
     Transition,
     TransitionRule,
     arrival,
-    available_transitions,
     is_legal_request,
     path,
     rule_for,
@@ -127,21 +126,6 @@ def test_there_is_no_way_to_or_from_a_state_in_which_nothing_rests() -> None:
 )
 def test_a_node_on_its_way_arrives_when_nothing_goes_wrong(state: str, ends_in: str) -> None:
     assert arrival(S(state)) == ends_in
-
-
-@pytest.mark.parametrize(
-    ("state", "available"),
-    [
-        ("unconfigured", ["configure", "activate", "shutdown"]),
-        ("inactive", ["cleanup", "activate", "shutdown"]),
-        ("active", ["cleanup", "deactivate", "shutdown"]),
-        ("finalized", []),
-        ("unknown", []),
-        ("activating", []),
-    ],
-)
-def test_an_operator_is_offered_what_leads_somewhere_else(state: str, available: list[str]) -> None:
-    assert list(available_transitions(S(state))) == available
 
 
 @pytest.mark.parametrize(

@@ -8,12 +8,12 @@ from domain.errors import UnknownPartError
 from domain.lifecycle import LifecycleState
 from domain.messages import NodeReport
 from domain.mode_inference import ModeInference
+from domain.parameters import Parameters
 from domain.snapshot import Actual
 from domain.system_model import (
     DEFAULT_MODE,
     ModeName,
     NodeModel,
-    Parameters,
     PartName,
     SmhModel,
     StateAndMode,
@@ -135,12 +135,16 @@ def test_all_parameters_of_a_mode_must_be_there_with_type_and_value(
     assert inference.actual(node).mode == mode
 
 
-def test_arrays_never_match() -> None:
-    """system_modes, `params_match`."""
+def test_a_mode_with_lists_is_recognised_when_it_was_asked_for_and_not_guessed() -> None:
+    """system_modes, `params_match`, never finds lists equal; what was asked for must be found."""
     node = PartName("n")
     inference = ModeInference(SmhModel({node: NodeModel(node, {DEFAULT_MODE: {"p": (1,)}})}, {}))
     inference.report(NodeReport(node, state=S.ACTIVE, parameters={"p": (1,)}))
-    assert inference.matching_mode(node) is None
+    assert inference.actual(node).mode is None
+    inference.set_targets({node: active()})
+    assert inference.actual(node).mode == DEFAULT_MODE
+    inference.report(NodeReport(node, parameters={"p": (1.0,)}))
+    assert inference.actual(node).mode is None
 
 
 @pytest.mark.parametrize(

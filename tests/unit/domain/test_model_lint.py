@@ -5,11 +5,11 @@ import pytest
 
 from domain.findings import Finding
 from domain.model_lint import lint
+from domain.parameters import Parameters
 from domain.system_model import (
     DEFAULT_MODE,
     ModeName,
     NodeModel,
-    Parameters,
     PartName,
     Rule,
     SmhModel,
@@ -94,10 +94,10 @@ def test_a_parameter_that_changes_its_type_is_told() -> None:
     findings = told(node(default={"speed": 0.5, "gain": 1}, FAST={"speed": 1, "gain": 2}))
 
     assert brief(findings) == [("TYPE_DIFFERS", ("n", "modes", "FAST", "speed"))]
-    assert "speed is int here and double in __DEFAULT__" in findings[0].message
+    assert "speed is integer here and double in __DEFAULT__" in findings[0].message
 
 
-@pytest.mark.parametrize("value", [(1, 2), float("nan")])
+@pytest.mark.parametrize("value", [(1.0, float("nan")), float("nan")])
 def test_a_mode_with_a_value_that_is_never_found_equal_is_told_once(value: float) -> None:
     findings = told(node(default={"a": value, "b": 1}, X={"a": value, "b": 2}))
 

@@ -10,15 +10,12 @@ from domain.system_model import (
     MAX_LEVELS,
     ModeName,
     NodeModel,
-    ParameterValue,
     PartName,
     Rule,
     SmhModel,
     StateAndMode,
     SystemModel,
     part_name,
-    same_value,
-    value_type,
 )
 from tests.support.models import (
     ACTUATION,
@@ -95,35 +92,6 @@ def test_no_mode_and_the_default_mode_mean_the_same(one: str, other: str, agree:
 
     assert pair[0].agrees_with(pair[1]) is agree
     assert pair[1].agrees_with(pair[0]) is agree
-
-
-@pytest.mark.parametrize(
-    ("one", "other", "same"),
-    [
-        (1, 1, True),
-        (1, 1.0, False),
-        (1, True, False),
-        ("1", 1, False),
-        ((1, 2), (1, 2), True),
-        ((1, 2), (1.0, 2.0), False),
-        ((True,), (1,), False),
-        ((), (), True),
-        (float("nan"), float("nan"), False),
-    ],
-)
-def test_values_are_the_same_only_with_the_same_type(
-    one: ParameterValue, other: ParameterValue, same: bool
-) -> None:
-    assert same_value(one, other) is same
-
-
-def test_types_are_called_as_in_ros_2() -> None:
-    values: tuple[ParameterValue, ...] = (True, 1, 1.0, "a", (True,), (1,), (1.0,), ("a",))
-
-    assert [value_type(value) for value in values] == [
-        *("bool", "int", "double", "string"),
-        *("bool[]", "int[]", "double[]", "string[]"),
-    ]
 
 
 def test_a_name_as_ros_2_writes_it_has_slashes_before_it() -> None:

@@ -112,6 +112,41 @@ async def test_a_posted_reading_is_what_the_mock_goes_on_with(
     assert supervisor.core.system_state().errors == ("BATTERY_LOW",)
 
 
+async def test_a_named_source_of_estop_is_kept_apart_from_the_mock_and_from_others(
+    clock: ManualClock, supervisor: Supervisor
+) -> None:
+    supervisor.submit_readings([Reading("estop", value=True)], source="panel")
+    supervisor.submit_readings([Reading("estop", value=False)], source="remote")
+    supervisor.submit_readings([Reading("estop", value=False)])
+    await clock.advance(1)
+    assert supervisor.core.system_state().errors == ("ESTOP",)
+    supervisor.submit_readings([Reading("estop", value=False)], source="panel")
+    await clock.advance(1)
+    assert supervisor.core.system_state().errors == ()
+
+
+async def test_changing_reasons_make_no_more_frames_and_errors_do(
+    clock: ManualClock, supervisor: Supervisor
+) -> None:
+    supervisor.submit_readings([Reading("temperature", 60.0)])
+    recorded = Recorded(supervisor)
+    with supervisor.frames.watch(recorded):
+        for number in range(80):
+            supervisor.submit_readings([Reading("temperature", 60.0 + number)])
+            await clock.advance(0.0125)
+    assert len(recorded.frames) == 20
+    assert [frame.full for frame in recorded.frames].count(True) == 1
+
+
+async def test_ended_changes_are_counted_by_how_they_ended(
+    clock: ManualClock, supervisor: Supervisor
+) -> None:
+    supervisor.submit(ModeRequest(ACTUATION, PERFORMANCE))
+    supervisor.submit(ModeRequest(ACTUATION, "MODERATE"))
+    await clock.advance(3)
+    assert supervisor.ended_changes == {"superseded": 1, "succeeded": 1}
+
+
 async def test_a_refused_reading_leaves_the_mock_as_it_was(
     clock: ManualClock, supervisor: Supervisor
 ) -> None:

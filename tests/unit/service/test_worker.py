@@ -8,13 +8,21 @@ import os
 import signal
 import sys
 import time
-from asyncio.subprocess import PIPE
+from asyncio.subprocess import PIPE, Process
 from collections.abc import AsyncIterator
+from typing import Any
 
 import pytest
 
 from domain.errors import UnknownPartError
-from service.worker import QUEUE_LENGTH, JobFailedError, TooComplexError, Worker, WorkerBusyError
+from service.worker import (
+    QUEUE_LENGTH,
+    JobFailedError,
+    TooComplexError,
+    Worker,
+    WorkerBusyError,
+    WorkerClosedError,
+)
 
 HOLDER = """
 import asyncio, os
@@ -175,8 +183,42 @@ async def test_a_job_does_not_hold_up_the_end() -> None:
 
     await worker.close()
 
-    with pytest.raises(TooComplexError):
+    with pytest.raises(WorkerClosedError):
         await job
+
+
+@pytest.mark.parametrize("has_process", [True, False])
+async def test_jobs_that_wait_at_the_end_fail_at_once_and_start_nothing(
+    monkeypatch: pytest.MonkeyPatch, *, has_process: bool
+) -> None:
+    worker = Worker()
+    if has_process:
+        await worker.start()
+    started = 0
+    create = asyncio.create_subprocess_exec
+
+    async def counted(*command: str, **options: Any) -> Process:  # noqa: ANN401
+        nonlocal started
+        started += 1
+        return await create(*command, **options)
+
+    monkeypatch.setattr(asyncio, "create_subprocess_exec", counted)
+    jobs = [asyncio.create_task(worker.call(time.sleep, 60)) for _ in range(3)]
+    await asyncio.sleep(0)
+
+    async with asyncio.timeout(5):
+        await worker.close()
+        ends = await asyncio.gather(*jobs, return_exceptions=True)
+
+    assert [type(end) for end in ends] == [WorkerClosedError] * 3
+    assert started == (0 if has_process else 1)
+
+
+async def test_a_closed_worker_takes_no_more_jobs(worker: Worker) -> None:
+    await worker.close()
+
+    with pytest.raises(WorkerClosedError):
+        await worker.call(abs, -1)
 
 
 async def test_the_process_ends_also_when_ours_is_killed() -> None:

@@ -32,6 +32,11 @@ class PartPanel extends HTMLElement {
     this.watch.refresh();
   }
 
+  /** Take a frame of the stream: what it tells of the part's changes, and that there is news. */
+  hear(frame) {
+    this.watch.hear(frame);
+  }
+
   update(view) {
     this.view = view;
     const part = view.state.parts[view.selected];

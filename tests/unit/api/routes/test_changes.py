@@ -1,5 +1,9 @@
 """`/changes` as an operator uses it."""
 
+import pytest
+
+from domain.snapshot import ChangeView
+from domain.system_model import PartName
 from tests.support.http_robot import HttpRobot
 
 CHANGE_FIELDS = {
@@ -46,6 +50,44 @@ async def test_the_newest_change_comes_first(robot: HttpRobot) -> None:
     assert len(ids) == 3
     assert newest == ids[:2]
     assert ids == sorted(ids, reverse=True)
+
+
+async def test_the_changes_of_one_part_are_listed_alone(robot: HttpRobot) -> None:
+    await robot.bring_to("drive_base", "SLOW")
+    await robot.bring_to("manipulator", "WEAK")
+    await robot.bring_to("drive_base", "FAST")
+
+    found = (await robot.get("/changes?part=drive_base"))["items"]
+    newest = (await robot.get("/changes?part=drive_base&limit=1"))["items"]
+
+    assert [item["request"]["mode"] for item in found] == ["FAST", "SLOW"]
+    assert newest == found[:1]
+
+
+async def test_a_part_without_changes_has_none_and_one_that_there_is_not_is_not_found(
+    robot: HttpRobot,
+) -> None:
+    unknown = await robot.http.get("/changes?part=wings")
+
+    assert (await robot.get("/changes?part=actuation"))["items"] == []
+    assert (unknown.status_code, unknown.json()["code"]) == (404, "UNKNOWN_PART")
+
+
+async def test_no_more_changes_are_shown_to_the_list_than_are_listed(
+    robot: HttpRobot, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    asked: list[int | None] = []
+    changes = robot.supervisor.core.changes
+
+    def counted(limit: int | None = None, part: PartName | None = None) -> tuple[ChangeView, ...]:
+        asked.append(limit)
+        return changes(limit, part)
+
+    monkeypatch.setattr(robot.supervisor.core, "changes", counted)
+
+    await robot.get("/changes?limit=2")
+
+    assert asked == [2]
 
 
 async def test_a_canceled_change_begins_no_further_step_and_leaves_the_target(

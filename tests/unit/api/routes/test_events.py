@@ -1,5 +1,6 @@
 """`GET /events`: the log for those who ask now and then."""
 
+import asyncio
 from collections.abc import AsyncIterator
 from typing import Any
 
@@ -7,8 +8,10 @@ import httpx
 import pytest
 
 from api.app import create_app
-from domain.messages import ModeRequest
+from api.streaming.encoder import StreamEncoder
+from domain.messages import Event, ModeRequest
 from domain.system_model import PartName
+from service.event_log import EventReader, Gap
 from service.supervisor import Supervisor
 from tests.support.frames import event
 from tests.support.live_robot import make_supervisor, running
@@ -95,6 +98,74 @@ async def test_a_kind_is_found_however_far_behind_the_cursor_it_is(
     found = await events(http, kind="change.succeeded", after=0, limit=1)
 
     assert [item["kind"] for item in found["items"]] == ["change.succeeded"]
+
+
+async def test_a_rare_kind_is_found_without_a_look_at_the_log_for_each_event(
+    http: httpx.AsyncClient, supervisor: Supervisor, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    log = supervisor.events
+    for number in range(log.newest + 1, 5_000):
+        log.append(event(number))
+    log.append(event(5_000, "test.rare"))
+    looks = 0
+    take = EventReader.take
+
+    def counted(reader: EventReader, limit: int) -> list[Event | Gap]:
+        nonlocal looks
+        looks += 1
+        return take(reader, limit)
+
+    monkeypatch.setattr(EventReader, "take", counted)
+
+    found = await events(http, kind="test.rare", after=0, limit=1)
+
+    assert ids(found) == [5_000]
+    assert looks <= 10
+
+
+async def test_others_get_their_turn_while_a_large_answer_is_made(
+    http: httpx.AsyncClient, supervisor: Supervisor, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    log = supervisor.events
+    for number in range(log.newest + 1, 2_001):
+        log.append(event(number))
+    encoded = 0
+    seen_by_another: set[int] = set()
+    encode = StreamEncoder.event
+
+    def counted(encoder: StreamEncoder, given: Event) -> str:
+        nonlocal encoded
+        encoded += 1
+        return encode(encoder, given)
+
+    async def another() -> None:
+        while encoded < 1_000:
+            seen_by_another.add(encoded)
+            await asyncio.sleep(0)
+
+    monkeypatch.setattr(StreamEncoder, "event", counted)
+
+    await asyncio.gather(events(http, after=0, limit=1_000), another())
+
+    assert len(seen_by_another - {0}) >= 3
+
+
+async def test_what_happens_while_a_large_answer_is_made_is_left_for_the_next_question(
+    http: httpx.AsyncClient, supervisor: Supervisor
+) -> None:
+    log = supervisor.events
+    newest = 2_000
+    for number in range(log.newest + 1, newest + 1):
+        log.append(event(number))
+
+    async def more() -> None:
+        for number in range(newest + 1, newest + 100):
+            await asyncio.sleep(0)
+            log.append(event(number))
+
+    found, _ = await asyncio.gather(events(http, limit=1_000), more())
+
+    assert ids(found)[-1] == found["newest"]
 
 
 async def test_the_stream_tells_the_very_same(

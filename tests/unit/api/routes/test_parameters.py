@@ -61,6 +61,8 @@ async def test_one_is_taken_as_a_double_where_the_node_has_a_double(robot: HttpR
         ('{"max_speed": {"x": 1}}', "/max_speed", "INVALID_PARAMETER"),
         ('{"max_speed": [1, "x"]}', "/max_speed", "INVALID_PARAMETER"),
         ('{"max_speed": 9223372036854775808}', "/max_speed", "INVALID_PARAMETER"),
+        (json.dumps({"controller": "x" * 4_097}), "/controller", "INVALID_PARAMETER"),
+        (json.dumps({"max_speed": [1.0] * 1_025}), "/max_speed", "INVALID_PARAMETER"),
         ('{"wings/left": 1.0}', "/wings~1left", "UNKNOWN_PARAMETER"),
         ("{}", "", "TOO_SHORT"),
         ("[]", "", "DICT_TYPE"),

@@ -203,3 +203,41 @@ async def test_where_the_mock_runs_it_goes_on_with_the_value_that_was_posted(
     signal = await robot.get("/signals/battery_level")
 
     assert (signal["value"], signal["stale"]) == (0.42, False)
+
+
+async def test_where_the_mock_runs_it_stands_in_for_senders_without_a_name(
+    robot: HttpRobot,
+) -> None:
+    for path, body in (("/signals/estop", {"value": True}), ("/signals", {"estop": True})):
+        pressed = await robot.http.post(path, json=body)
+        released = await robot.http.post("/signals", json={"estop": False})
+
+        assert "mock" in pressed.json()["reasons"][0]["message"]
+        assert released.json()["errors"] == []
+
+
+async def test_a_sender_with_a_name_keeps_it_where_the_mock_runs(robot: HttpRobot) -> None:
+    one = await robot.http.post("/signals/estop", json={"value": True, "source": "left button"})
+    many = await robot.http.post("/signals", json={"estop": True, "source": "right button"})
+
+    assert "left button" in one.json()["reasons"][0]["message"]
+    assert "right button" in many.json()["reasons"][0]["message"]
+
+
+async def test_where_no_mock_runs_a_sender_without_a_name_is_the_api(unmocked: HttpRobot) -> None:
+    await unmocked.http.post("/signals", json={"temperature": 31})
+    await unmocked.http.post("/signals/battery_level", json={"value": 0.42, "source": None})
+
+    for signal in ("battery_level", "temperature"):
+        assert (await unmocked.get(f"/signals/{signal}"))["source"] == "api"
+
+
+async def test_the_mock_does_not_release_a_stop_that_was_pressed_under_a_name(
+    robot: HttpRobot,
+) -> None:
+    await robot.http.post("/signals/estop", json={"value": True, "source": "left button"})
+    await robot.pass_time(3)
+
+    released = await robot.http.post("/signals/estop", json={"value": False})
+
+    assert "ESTOP" in released.json()["errors"]

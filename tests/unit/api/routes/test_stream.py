@@ -249,6 +249,21 @@ async def test_what_is_wrong_with_the_address_is_told_before_it_is_closed(
     assert words in problem["detail"]
 
 
+@pytest.mark.parametrize(
+    ("named", "told"), [({}, "mock"), ({"source": "left button"}, "left button")]
+)
+async def test_the_mock_stands_in_for_a_client_that_does_not_say_who_measured(
+    named: dict[str, str], told: str, app: FastAPI, supervisor: Supervisor
+) -> None:
+    async with WebSocketClient(app) as client:
+        await in_step(client)
+
+        client.send({"type": "reading", "signal": "estop", "value": True, **named})
+        await until(lambda: bool(supervisor.core.system_state().errors))
+
+    assert told in supervisor.core.system_state().reasons[0].message
+
+
 async def test_a_reading_over_the_stream_counts_like_any_other(
     app: FastAPI, supervisor: Supervisor
 ) -> None:

@@ -4,8 +4,9 @@ import pytest
 
 from api.schemas.parts import ModeJson, ParameterRowJson, PartJson, StateJson, type_of
 from domain.lifecycle import LifecycleState, Transition
+from domain.parameters import ParameterValue
 from domain.snapshot import Actual, EffectiveTarget, ParameterView, PartView
-from domain.system_model import ModeName, ParameterValue, PartName, StateAndMode
+from domain.system_model import ModeName, PartName, StateAndMode
 from domain.timebase import seconds
 from tests.support.manual_clock import ManualClock
 
@@ -52,9 +53,10 @@ def test_state_and_mode_tell_the_target_as_a_label() -> None:
         ((1.0,), "double_array"),
         (("x",), "string_array"),
         ((), None),
+        (None, None),
     ],
 )
-def test_types_are_called_as_in_ros(value: ParameterValue, name: str | None) -> None:
+def test_types_are_called_as_in_ros(value: ParameterValue | None, name: str | None) -> None:
     assert type_of(value) == name
 
 

@@ -12,10 +12,10 @@ def test_a_reading_is_read() -> None:
     assert (given.signal, given.value, given.source) == ("estop", True, "pendant")
 
 
-def test_who_does_not_say_who_measured_is_the_api() -> None:
+def test_who_measured_may_be_left_out() -> None:
     text = '{"type":"reading","signal":"battery_level","value":1}'
 
-    assert read_client_message({"text": text}).source == "api"
+    assert read_client_message({"text": text}).source is None
 
 
 def test_a_binary_message_is_not_read() -> None:

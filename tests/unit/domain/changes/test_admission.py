@@ -8,7 +8,8 @@ from domain.findings import Blocker
 from domain.lifecycle import LifecycleState, Transition
 from domain.messages import ChangeRequest, ModeRequest, ParametersRequest, TransitionRequest
 from domain.node_facts import NodeFacts
-from domain.system_model import ModeName, Parameters, PartName, SmhModel, SystemModel
+from domain.parameters import Parameters
+from domain.system_model import ModeName, PartName, SmhModel, SystemModel
 from tests.support.big_model import big_model
 from tests.support.models import ACTUATION, ARM, BASE, actuation_model, inactive, nested_model
 

@@ -1,13 +1,18 @@
 """Changes, told as what an operator asks for and sees."""
 
+from typing import Any
+
 import pytest
 
-from domain.errors import UnknownChangeError
-from domain.messages import CancelRequest, ChangeId
+from domain.changes.operations import KEPT_CHANGES
+from domain.errors import InvalidValueError, UnknownChangeError
+from domain.lifecycle import LifecycleState
+from domain.messages import CancelRequest, ChangeId, NodeReport
 from domain.simulation.node_settings import Fault, NodeSettings
 from domain.snapshot import ChangeStatus, StepStatus
+from domain.system_model import DEFAULT_MODE, NodeModel, SmhModel
 from domain.timebase import seconds
-from tests.support.models import BASE, actuation_model, nested_model
+from tests.support.models import ACTUATION, BASE, FAST, SLOW, actuation_model, nested_model
 from tests.support.virtual_robot import GOOD, VirtualRobot
 
 
@@ -323,3 +328,50 @@ def test_every_event_of_a_change_points_at_what_caused_it(robot: VirtualRobot) -
         event = by_id[event.cause]
     assert kinds == ["change.succeeded", "node.reported", "change.step_started", "change.requested"]
     assert robot.change(change).cause == event.id
+
+
+def test_a_node_that_reports_its_mode_late_is_asked_once_and_waited_for(
+    robot: VirtualRobot,
+) -> None:
+    robot.mode("drive_base", "FAST")
+    robot.advance(2)
+    robot.give(NodeReport(BASE, mode=FAST))
+    change = robot.mode("drive_base", "SLOW")
+    robot.advance(0.5)
+    assert robot.steps(change) == [("drive_base", "set_parameters", "running")]
+    robot.give(NodeReport(BASE, mode=SLOW))
+    assert robot.change(change).status is ChangeStatus.SUCCEEDED
+
+
+def test_a_report_with_a_value_that_is_none_of_a_parameter_is_refused_whole(
+    robot: VirtualRobot,
+) -> None:
+    before = robot.core.part(BASE)
+    bad: dict[str, Any] = {"max_speed": 0.9, "controller": None}
+    with pytest.raises(InvalidValueError):
+        robot.give(NodeReport(BASE, state=LifecycleState.ACTIVE, parameters=bad))
+    assert robot.core.part(BASE) is before
+
+
+def test_a_mode_with_lists_is_reached_and_verified() -> None:
+    limits = NodeModel(BASE, {DEFAULT_MODE: {"limits": (1.0, 2.0)}, FAST: {"limits": (3.0,)}})
+    robot = VirtualRobot(SmhModel({BASE: limits}, {}))
+    robot.read(**GOOD)
+    change = robot.mode("drive_base", "FAST")
+    robot.advance(2)
+    assert robot.change(change).status is ChangeStatus.SUCCEEDED
+    assert robot.actual("drive_base") == "active.FAST"
+
+
+def test_changes_are_kept_up_to_a_number_and_the_oldest_are_forgotten(
+    robot: VirtualRobot,
+) -> None:
+    first = robot.transition("drive_base", "configure")
+    robot.advance(1)
+    for _ in range(KEPT_CHANGES):
+        newest = robot.transition("drive_base", "configure")
+    with pytest.raises(UnknownChangeError):
+        robot.change(first)
+    assert len(robot.core.changes()) == KEPT_CHANGES
+    assert [change.id for change in robot.core.changes(limit=1)] == [newest]
+    assert robot.core.changes(part=ACTUATION) == ()

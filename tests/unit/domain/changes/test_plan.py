@@ -8,11 +8,11 @@ from domain.changes.plan import Action, NodeGoal, SetParameters, goal_of, next_s
 from domain.lifecycle import LifecycleState, Transition, arrival, rule_for
 from domain.messages import ChangeRequest, ModeRequest, ParametersRequest, TransitionRequest
 from domain.node_facts import NodeFacts
+from domain.parameters import Parameters
 from domain.system_model import (
     DEFAULT_MODE,
     ModeName,
     NodeModel,
-    Parameters,
     PartName,
     SmhModel,
     StateAndMode,
@@ -25,7 +25,7 @@ LIDAR, ROBOT = PartName("lidar"), PartName("robot")
 MODEL = actuation_model()
 FAST: Parameters = {"max_speed": 0.9, "controller": "MPC"}
 SLOW: Parameters = {"max_speed": 0.2, "controller": "PID"}
-SET_FAST = SetParameters(FAST)
+SET_FAST = SetParameters(FAST, ModeName("FAST"))
 
 
 def _facts(
@@ -233,7 +233,7 @@ GOAL_FAST = NodeGoal(S.ACTIVE, ModeName("FAST"), FAST)
         (_facts(S.FINALIZED), NodeGoal(S.INACTIVE), None),
         (_facts(S.FINALIZED), NodeGoal(S.FINALIZED), ()),
         # Parameters alone are set in any state.
-        (_facts(S.FINALIZED, SLOW), NodeGoal(None, None, FAST), (SET_FAST,)),
+        (_facts(S.FINALIZED, SLOW), NodeGoal(None, None, FAST), (SetParameters(FAST),)),
         (_facts(S.INACTIVE, FAST), NodeGoal(None, None, FAST), ()),
         (
             _facts(S.INACTIVE, {"a": 1}),
@@ -286,7 +286,7 @@ def test_steps_that_are_done_lead_to_the_goal(
         (NodeGoal(S.UNCONFIGURED), (T.CLEANUP,)),
         (GOAL_FAST, (T.ACTIVATE,)),
         (NodeGoal(S.FINALIZED), (T.SHUTDOWN,)),
-        (NodeGoal(None, None, FAST), (SET_FAST,)),
+        (NodeGoal(None, None, FAST), (SetParameters(FAST),)),
         (NodeGoal(S.CONFIGURING), ()),
     ],
     ids=str,

@@ -15,7 +15,8 @@ from domain.errors import (
 from domain.lifecycle import Transition
 from domain.messages import ChangeRequest, ModeRequest, ParametersRequest, TransitionRequest
 from domain.node_facts import NodeFacts
-from domain.system_model import ParameterValue, PartName
+from domain.parameters import ParameterValue
+from domain.system_model import PartName
 from tests.support.models import ACTUATION, ARM, BASE, actuation_model
 
 MODEL = actuation_model()
@@ -114,8 +115,8 @@ def test_a_value_of_another_type_is_refused_as_ros_2_would(
     ("known", "value", "message"),
     [
         (0.5, 1, "p of drive_base is of type double, not 1"),
-        ((0.5,), (1,), "p of drive_base is of type double[], not (1,)"),
-        ((), 1, "p of drive_base is of type [], not 1"),
+        ((0.5,), (1,), "p of drive_base is of type double_array, not (1,)"),
+        ((), 1, "p of drive_base is of type array, not 1"),
     ],
     ids=str,
 )

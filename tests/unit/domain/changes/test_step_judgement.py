@@ -8,8 +8,8 @@ from domain.changes.step_judgement import Verdict, judge_report
 from domain.lifecycle import TRANSITIONS, LifecycleState, Transition, TransitionRule
 from domain.messages import ChangeId, NodeReport
 from domain.node_facts import NodeFacts
+from domain.parameters import ParameterValue
 from domain.snapshot import StepStatus
-from domain.system_model import ParameterValue
 from tests.support.models import BASE
 
 S, T = LifecycleState, Transition

@@ -10,17 +10,10 @@ from domain.errors import (
 )
 from domain.lifecycle import TRANSITIONS, LifecycleState, Transition, TransitionRule, rule_for
 from domain.messages import AskTransition, NodeAnswer, NodeReport
+from domain.parameters import Parameters, ParameterValue
 from domain.simulation.node_settings import Fault, NodeSettings
 from domain.simulation.nodes import NodeMessage, SimulatedNodes
-from domain.system_model import (
-    DEFAULT_MODE,
-    ModeName,
-    NodeModel,
-    Parameters,
-    ParameterValue,
-    PartName,
-    SmhModel,
-)
+from domain.system_model import DEFAULT_MODE, ModeName, NodeModel, PartName, SmhModel
 from domain.timebase import seconds
 from tests.support.models import ARM, BASE, actuation_model
 from tests.support.simulated_robot import SimulatedRobot, answers, states

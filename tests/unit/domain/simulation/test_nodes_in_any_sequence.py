@@ -11,9 +11,10 @@ from hypothesis import strategies as st
 from domain.errors import PilothouseError
 from domain.lifecycle import ERROR_PROCESSED, TRANSITIONS, LifecycleState, Transition
 from domain.messages import AskFacts, AskParameters, AskTransition, NodeAnswer, NodeReport
+from domain.parameters import Parameters
 from domain.simulation.node_settings import Fault, NodeSettings
 from domain.simulation.nodes import NodeMessage, SimulatedNodes
-from domain.system_model import Parameters, PartName
+from domain.system_model import PartName
 from domain.timebase import Duration, Instant, seconds
 from tests.support.models import ARM, BASE, actuation_model
 
