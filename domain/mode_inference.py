@@ -28,6 +28,7 @@ from domain.system_model import (
     StateAndMode,
     SystemModel,
 )
+from domain.timebase import Instant
 
 Wanted: TypeAlias = tuple[tuple[PartName, LifecycleState, ModeName | None], ...]
 """What one mode wants of each part, in the order in which parts are visited."""
@@ -108,8 +109,12 @@ class ModeInference:
         for system in sorted(model.systems, key=self._depth.__getitem__, reverse=True):
             self._actual[system] = self._infer_system(system)
 
-    def report(self, report: NodeReport) -> set[PartName]:
+    def report(self, report: NodeReport, now: Instant | None = None) -> set[PartName]:
         """Take in a report; return the parts whose actual state or mode is different now.
+
+        Args:
+            report: What a node said.
+            now: When it arrived; None: it does not matter, as for facts that are posted.
 
         Raises:
             UnknownPartError: The node is not in the model.
@@ -117,7 +122,7 @@ class ModeInference:
         facts = self._facts.get(report.node)
         if facts is None:
             raise UnknownPartError("node", report.node, tuple(self._facts))
-        return self._infer((report.node,)) if facts.take(report) else set()
+        return self._infer((report.node,)) if facts.take(report, now) else set()
 
     def set_targets(self, targets: Mapping[PartName, StateAndMode | None]) -> set[PartName]:
         """Record what is pursued for parts; return the parts whose actual is different now.

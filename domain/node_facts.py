@@ -10,6 +10,7 @@ from domain.lifecycle import LifecycleState
 from domain.messages import NodeReport
 from domain.parameters import ParameterValue, same_value
 from domain.system_model import ModeName
+from domain.timebase import Instant
 
 
 @dataclass(slots=True)
@@ -21,12 +22,19 @@ class NodeFacts:
     parameters: dict[str, ParameterValue] = field(default_factory=dict)
     reachable: bool | None = None
     has_lifecycle: bool = True
+    state_since: Instant | None = None
+    """Since when the node is in its known state; None: nobody said when."""
 
-    def take(self, report: NodeReport) -> bool:
+    def take(self, report: NodeReport, now: Instant | None = None) -> bool:
         """Take over what the report says; return whether anything is different now.
 
         Leaving `active` ends the reported mode, as it does in system_modes.
+
+        Args:
+            report: What the node said.
+            now: When it arrived; None: it does not matter.
         """
+        known = self.known_state
         before = (self.state, self.mode, self.reachable, self.has_lifecycle)
         if report.reachable is not None:
             self.reachable = report.reachable
@@ -40,6 +48,8 @@ class NodeFacts:
                 self.mode = None
         if report.mode is not None:
             self.mode = report.mode
+        if self.known_state is not known or self.state_since is None:
+            self.state_since = now
         changed = before != (self.state, self.mode, self.reachable, self.has_lifecycle)
         for name, value in (report.parameters or {}).items():
             if name not in self.parameters or not same_value(self.parameters[name], value):

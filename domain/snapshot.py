@@ -76,7 +76,7 @@ class PartView:
     reachable: bool
     """Of a system: all its nodes are."""
     change: ChangeId | None
-    """The running change that this part is under."""
+    """The change that this part is under; it may be superseded, and still drive this part."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -166,7 +166,7 @@ class Supervision:
         if report.reachable is not None:
             data["reachable"] = report.reachable
         self._begin_input("node.reported", data, cause=step.event if step else None)
-        changed = self._inference.report(report)
+        changed = self._inference.report(report, self._now)
         self._views.note_reachable(report.node)
         self._views.note_actuals(changed)
         self._changes.report(report, self._now)

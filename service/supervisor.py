@@ -80,6 +80,7 @@ class Supervisor:
         self._ticks = 0
         self._changed_parts: set[PartName] = set()
         self._changed_signals: set[str] = set()
+        self._ending = False
         self._waiting: dict[ChangeId, set[asyncio.Future[None]]] = {}
 
     @property
@@ -183,7 +184,7 @@ class Supervisor:
             UnknownChangeError: There is no such change.
         """
         view = self.core.change(change)
-        if view.status is not ChangeStatus.RUNNING or timeout_s <= 0:
+        if view.status is not ChangeStatus.RUNNING or timeout_s <= 0 or self._ending:
             return view
         ended: asyncio.Future[None] = asyncio.get_running_loop().create_future()
         waiting = self._waiting.setdefault(change, set())
@@ -198,6 +199,12 @@ class Supervisor:
             with suppress(asyncio.CancelledError):
                 await timer
         return self.core.change(change)
+
+    def stop_waiting(self) -> None:
+        """Let everybody who waits for a change go, since the service ends."""
+        self._ending = True
+        for change in list(self._waiting):
+            self._wake_waiting(change)
 
     def _deliver(self, given: Input) -> None:
         """Take what an adapter reports; one bad report must not end the adapter."""

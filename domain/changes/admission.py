@@ -153,7 +153,8 @@ class ChangeAdmission:
         known = facts.known_state
         value = None if code in ADVISORY else str(known)
         words = facts.why_unknown if code in ADVISORY else _WORDS[known]
-        return Blocker(code, f"{node} {words}", self._path(part, node), value)
+        path = self._path(part, node)
+        return Blocker(code, f"{node} {words}", path, value, since=facts.state_since)
 
     def _path(self, part: PartName, node: PartName) -> tuple[str, ...]:
         """Return one way down from the asked part to the node."""

@@ -110,6 +110,7 @@ class Changes:
             self._pursuits[node] = change.pursuits[node] = Pursuit(identity, node, node_goal)
             change.open.add(node)
         for node in goal.nodes:
+            self._foresee(self._pursuits[node])
             self._advance(node, now)
         self._conclude(change, now)
         self._forget_old()
@@ -186,6 +187,13 @@ class Changes:
         else:
             self._begin_step(pursuit, step, now)
 
+    def _foresee(self, pursuit: Pursuit) -> None:
+        """Plan what will be done, though it may have to wait; what is then known decides anew."""
+        facts = self._inference.facts[pursuit.node]
+        unknown = facts.known_state is LifecycleState.UNKNOWN
+        steps = presumed_steps(pursuit.goal) if unknown else next_steps(facts, pursuit.goal)
+        pursuit.plan(steps or ())
+
     def _begin_step(self, pursuit: Pursuit, step: Step, now: Instant) -> None:
         node, action = step.node, step.action
         step.status, step.started_at = StepStatus.RUNNING, now
@@ -248,8 +256,6 @@ class Changes:
         if not pursuit.waiting:
             pursuit.waiting, pursuit.facts_asked = True, False
             self._deadlines.set(pursuit.node, now + self._settings.transition_deadline)
-            if not pursuit.steps:
-                pursuit.plan(presumed_steps(pursuit.goal))
 
     def _waited_long_enough(self, pursuit: Pursuit, now: Instant) -> None:
         facts, node = self._inference.facts[pursuit.node], pursuit.node
@@ -257,7 +263,8 @@ class Changes:
         if state is LifecycleState.UNKNOWN:
             self._finish(pursuit, StepStatus.FAILED, f"{node} {facts.why_unknown}", now)
         elif pursuit.facts_asked:
-            self._finish(pursuit, StepStatus.TIMED_OUT, f"{node} is still {state}", now)
+            why = f"{node} is still {state}; nothing was begun"
+            self._finish(pursuit, StepStatus.FAILED, why, now)
         else:
             pursuit.facts_asked = True
             self._ask_facts(node, now)
@@ -275,6 +282,7 @@ class Changes:
         change = self._changes[pursuit.change]
         change.open.discard(pursuit.node)
         self._conclude(change, now)
+        self._release(change)
 
     # --- whole changes ---------------------------------------------------------------------------
 
@@ -293,7 +301,9 @@ class Changes:
         del self._pursuits[pursuit.node]
         if pursuit.node not in self._in_flight:
             self._deadlines.clear(pursuit.node)
-        self._changes[pursuit.change].open.discard(pursuit.node)
+        change = self._changes[pursuit.change]
+        change.open.discard(pursuit.node)
+        self._release(change)
 
     def _conclude(self, change: Change, now: Instant) -> None:
         """End a running change when its last node has ended; success is verified."""
@@ -325,12 +335,18 @@ class Changes:
     def _end(self, change: Change, status: ChangeStatus, reason: str | None, now: Instant) -> None:
         change.status, change.reason, change.ended_at = status, reason, now
         del self._running[change.id]
-        for name in {change.part, *change.targets, *change.pursuits}:
+        self._release(change)
+        data = {"change": change.id, "part": change.part, "reason": reason}
+        self._outbox.emit(f"change.{status}", data)
+
+    def _release(self, change: Change) -> None:
+        """Let go of the parts of a change that has ended, but for nodes that it still drives."""
+        if change.status is ChangeStatus.RUNNING:
+            return
+        for name in {change.part, *change.targets, *change.pursuits} - change.open:
             if self._change_of.get(name) == change.id:
                 del self._change_of[name]
                 self._outbox.parts.add(name)
-        data = {"change": change.id, "part": change.part, "reason": reason}
-        self._outbox.emit(f"change.{status}", data)
 
     def _forget_old(self) -> None:
         """Keep the newest changes, and whatever still runs or drives a node."""

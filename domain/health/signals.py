@@ -61,6 +61,8 @@ class SignalSpec:
     maximum: float | None = None
     members: tuple[str, ...] = ()
     """Of an enumeration, from good to bad."""
+    codes: tuple[int, ...] = ()
+    """Numbers that stand for the members, as in a ROS message; empty: there are none."""
     is_stop: bool = False
     """True stops the robot: one source cannot release what another presses, and a reading that
     presses is never refused.
@@ -93,6 +95,8 @@ class SignalSpec:
             case SignalKind.ENUMERATION:
                 if isinstance(value, str) and value in self.members:
                     return value
+                if not isinstance(value, bool) and value in self.codes:
+                    return self.members[self.codes.index(value)]
                 raise self._invalid(f"one of {', '.join(self.members)}", value)
 
     def _checked_number(self, value: object) -> float:
@@ -262,6 +266,7 @@ _DEFAULT_SIGNALS = (
             SignalKind.ENUMERATION,
             label="signal strength",
             members=("CONNECTED", "LOW_SIGNAL", "NOT_CONNECTED"),
+            codes=(1, 2, 0),
         ),
         (
             Condition(

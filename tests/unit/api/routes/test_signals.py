@@ -205,15 +205,15 @@ async def test_where_the_mock_runs_it_goes_on_with_the_value_that_was_posted(
     assert (signal["value"], signal["stale"]) == (0.42, False)
 
 
+@pytest.mark.parametrize(
+    ("path", "body"), [("/signals/estop", {"value": True}), ("/signals", {"estop": True})]
+)
 async def test_where_the_mock_runs_it_stands_in_for_senders_without_a_name(
-    robot: HttpRobot,
+    path: str, body: dict[str, bool], robot: HttpRobot
 ) -> None:
-    for path, body in (("/signals/estop", {"value": True}), ("/signals", {"estop": True})):
-        pressed = await robot.http.post(path, json=body)
-        released = await robot.http.post("/signals", json={"estop": False})
+    pressed = await robot.http.post(path, json=body)
 
-        assert "mock" in pressed.json()["reasons"][0]["message"]
-        assert released.json()["errors"] == []
+    assert "mock" in pressed.json()["reasons"][0]["message"]
 
 
 async def test_a_sender_with_a_name_keeps_it_where_the_mock_runs(robot: HttpRobot) -> None:

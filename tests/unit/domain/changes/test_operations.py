@@ -12,7 +12,7 @@ from domain.simulation.node_settings import Fault, NodeSettings
 from domain.snapshot import ChangeStatus, StepStatus
 from domain.system_model import DEFAULT_MODE, NodeModel, SmhModel
 from domain.timebase import seconds
-from tests.support.models import ACTUATION, BASE, FAST, SLOW, actuation_model, nested_model
+from tests.support.models import ACTUATION, ARM, BASE, FAST, SLOW, actuation_model, nested_model
 from tests.support.virtual_robot import GOOD, VirtualRobot
 
 
@@ -375,3 +375,43 @@ def test_changes_are_kept_up_to_a_number_and_the_oldest_are_forgotten(
     assert len(robot.core.changes()) == KEPT_CHANGES
     assert [change.id for change in robot.core.changes(limit=1)] == [newest]
     assert robot.core.changes(part=ACTUATION) == ()
+
+
+def test_a_node_that_a_superseded_change_still_drives_says_so_until_it_is_there(
+    robot: VirtualRobot,
+) -> None:
+    older = robot.mode("actuation", "PERFORMANCE")
+    robot.advance(0.1)
+    robot.mode("drive_base", "SLOW")
+    assert robot.core.part(ARM).change == older
+    assert robot.core.part(ACTUATION).change is None
+    robot.advance(2)
+    assert robot.core.part(ARM).change is None
+
+
+def test_what_waits_for_a_step_in_flight_shows_what_it_will_do(robot: VirtualRobot) -> None:
+    robot.transition("drive_base", "configure")
+    robot.advance(0.1)
+    change = robot.mode("drive_base", "SLOW")
+    assert robot.steps(change)[-1] == ("drive_base", "activate", "pending")
+
+
+def test_a_step_that_was_never_begun_did_not_time_out() -> None:
+    robot = VirtualRobot(
+        actuation_model(), nodes={"drive_base": NodeSettings(configure=seconds(60))}
+    )
+    robot.read(**GOOD)
+    robot.transition("drive_base", "configure")
+    robot.advance(1)
+    change = robot.transition("drive_base", "shutdown")
+    robot.advance(30)
+    assert robot.change(change).status is ChangeStatus.FAILED
+    assert robot.change(change).reason == "drive_base is still configuring; nothing was begun"
+
+
+def test_a_blocker_says_since_when(robot: VirtualRobot) -> None:
+    robot.advance(3)
+    robot.transition("drive_base", "shutdown")
+    robot.advance(5)
+    (blocker,) = robot.core.modes(BASE)[0].blockers
+    assert (blocker.code, blocker.since) == ("FINALIZED", seconds(3.2))

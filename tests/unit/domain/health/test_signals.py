@@ -231,3 +231,22 @@ def test_a_signal_that_contradicts_itself_is_refused(make: object) -> None:
         make()
 
     assert refusal.value.pointer == "gear"
+
+
+@pytest.mark.parametrize(
+    ("code", "member"),
+    [(0, "NOT_CONNECTED"), (1, "CONNECTED"), (2, "LOW_SIGNAL"), (2.0, "LOW_SIGNAL")],
+)
+def test_the_signal_strength_may_be_given_by_its_number(code: float, member: str) -> None:
+    """smart_polaris, `SignalStrengthStamped.msg`."""
+    strength = next(s.spec for s in default_signals() if s.spec.name == "signal_strength")
+
+    assert strength.checked(code) == member
+
+
+@pytest.mark.parametrize("value", [3, 1.5, -1, True, False, "1"])
+def test_what_is_no_number_of_a_signal_strength_is_refused(value: object) -> None:
+    strength = next(s.spec for s in default_signals() if s.spec.name == "signal_strength")
+
+    with pytest.raises(InvalidValueError):
+        strength.checked(value)
