@@ -130,6 +130,7 @@ async def run_service(
             supervising = tasks.create_task(supervisor.run(), name="supervisor")
             serving = tasks.create_task(_serve_until(stopping, server, sockets), name="web server")
             await stopping.wait()
+            supervisor.stop_waiting()
             server.should_exit = True
             await serving
             supervising.cancel()

@@ -25,5 +25,5 @@ async def set_emergency_stop(
     This is a software stop. It is not safety-rated, and replaces no hardware stop. In this version
     a restart of the service releases it, since it is not stored.
     """
-    supervisor.submit(EmergencyStopRequest(body.engaged, body.reason, actor))
+    supervisor.submit(EmergencyStopRequest(body.engaged, body.reason or "", actor))
     return EmergencyStopJson.of(supervisor.core.emergency_stop(), supervisor.clock)

@@ -227,7 +227,7 @@ class EmergencyStopBody(Body):
     """Engage or release the emergency stop."""
 
     engaged: bool
-    reason: str = Field(default="", max_length=500)
+    reason: str | None = Field(default=None, max_length=500)
 
 
 class MockBody(Body):

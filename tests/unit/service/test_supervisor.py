@@ -194,6 +194,18 @@ async def test_whoever_waits_too_short_gets_the_change_as_it_is(
     assert (await waiting).status is ChangeStatus.RUNNING
 
 
+async def test_when_the_service_ends_nobody_waits_any_longer(
+    clock: ManualClock, supervisor: Supervisor
+) -> None:
+    change = supervisor.submit(ModeRequest(ACTUATION, PERFORMANCE)).change
+    assert change is not None
+    waiting = asyncio.ensure_future(supervisor.change_ended(change, 60))
+    await clock.advance(0.1)
+    supervisor.stop_waiting()
+    assert (await waiting).status is ChangeStatus.RUNNING
+    assert (await supervisor.change_ended(change, 60)).status is ChangeStatus.RUNNING
+
+
 async def test_waiting_for_an_unknown_change_is_an_error(supervisor: Supervisor) -> None:
     with pytest.raises(UnknownChangeError):
         await supervisor.change_ended(ChangeId("c9"), 1)
