@@ -57,6 +57,8 @@ def _hint(model: SmhModel, kind: str, part: str, path: str) -> str | None:
     """Say where the part is, or what the longest known part at the begin of the name has."""
     if part in model:
         other = "node" if kind == "system" else "system"
+        if other == "system" and path.endswith("/parameters"):
+            return f"{part} is a system, which has no parameters of its own: see /systems/{part}"
         return f"{part} is a {other}: see {path.replace(f'/{kind}s/', f'/{other}s/', 1)}"
     name = part
     while "/" in name:

@@ -28,3 +28,12 @@ async def test_who_asks_over_a_socket_without_addresses_is_unknown(robot: HttpRo
 async def test_the_part_in_a_path_is_looked_up_by_its_kind(robot: HttpRobot) -> None:
     assert (await robot.http.get("/nodes/drive_base")).status_code == 200
     assert (await robot.http.get("/systems/drive_base")).status_code == 404
+
+
+async def test_parameters_of_a_system_lead_to_the_system_and_to_no_dead_end(
+    robot: HttpRobot,
+) -> None:
+    hint = (await robot.http.get("/nodes/actuation/parameters")).json()["hint"]
+
+    assert hint.endswith("see /systems/actuation")
+    assert (await robot.http.get("/systems/actuation")).status_code == 200
