@@ -275,8 +275,10 @@ class Changes:
         """End the pursuit of one node, and the change with the last of them."""
         pursuit.outcome, pursuit.error = outcome, error
         if outcome is not StepStatus.SUCCEEDED:
-            waited = pursuit.waiting or not any(step.ended_at is not None for step in pursuit.steps)
-            pursuit.drop_pending(outcome if waited else StepStatus.CANCELED, now, error)
+            step = pursuit.next_step()
+            if step is not None and not any(s.status is outcome for s in pursuit.steps):
+                step.end(outcome, now, error)
+            pursuit.drop_pending(StepStatus.CANCELED, now)
         del self._pursuits[pursuit.node]
         self._deadlines.clear(pursuit.node)
         change = self._changes[pursuit.change]

@@ -88,11 +88,11 @@ class Pursuit:
         """Return the first step that has not begun."""
         return next((step for step in self.steps if step.status is StepStatus.PENDING), None)
 
-    def drop_pending(self, status: StepStatus, now: Instant, error: str | None = None) -> None:
+    def drop_pending(self, status: StepStatus, now: Instant) -> None:
         """End all steps that have not begun."""
         for step in self.steps:
             if step.status is StepStatus.PENDING:
-                step.end(status, now, error)
+                step.end(status, now)
 
 
 @dataclass(slots=True)

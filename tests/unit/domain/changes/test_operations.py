@@ -238,6 +238,8 @@ def test_under_an_emergency_stop_a_running_change_activates_nothing_and_fails(
     assert view.status is ChangeStatus.FAILED
     assert view.reason is not None
     assert "drive_base is not activated under ESTOP" in view.reason
+    failed = [(node, action) for node, action, status in robot.steps(change) if status == "failed"]
+    assert failed == [("manipulator", "activate"), ("drive_base", "activate")]
     assert robot.actual("drive_base") == "inactive"
     assert robot.actual("manipulator") == "inactive"
 

@@ -69,15 +69,15 @@ def test_another_plan_replaces_what_waits_and_keeps_what_was_done() -> None:
     assert {(step.change, step.node) for step in pursuit.steps} == {(C1, BASE)}
 
 
-def test_steps_that_will_not_be_begun_end_with_the_reason_and_others_stay() -> None:
+def test_steps_that_will_not_be_begun_end_and_others_stay() -> None:
     pursuit = _pursuit(CONFIGURE, SET, ACTIVATE)
     pursuit.steps[0].end(StepStatus.SUCCEEDED, 1)
     pursuit.steps[1].status = StepStatus.RUNNING
-    pursuit.drop_pending(StepStatus.CANCELED, 9, "canceled")
+    pursuit.drop_pending(StepStatus.CANCELED, 9)
     assert [(step.status, step.ended_at, step.error) for step in pursuit.steps] == [
         (StepStatus.SUCCEEDED, 1, None),
         (StepStatus.RUNNING, None, None),
-        (StepStatus.CANCELED, 9, "canceled"),
+        (StepStatus.CANCELED, 9, None),
     ]
 
 
