@@ -92,7 +92,8 @@ def model_of(case: Case) -> SmhModel:
 @pytest.mark.parametrize("case", [c for suite in SUITES for c in cases(suite)])
 def test_the_core_infers_what_the_vectors_say(case: Case) -> None:
     if case["name"] in OVERRULED:
-        pytest.skip(OVERRULED[case["name"]])
+        assert _differs(case), f"it passes and is not overruled: {OVERRULED[case['name']]}"
+        return
     if any("load" in step.get("expect", {}) for step in case["steps"]):
         with pytest.raises((InvalidModelError, UnreadableFileError)):
             model_of(case)
@@ -106,3 +107,12 @@ def test_the_core_infers_what_the_vectors_say(case: Case) -> None:
         history = json.dumps(case["steps"][: number + 1])
         assert found == expected, f"step {number}: {what}\n{history}"
     assert differing == overruled, "what does not differ any more is not overruled"
+
+
+def _differs(case: Case) -> bool:
+    """Tell whether the model is refused, or a fact is another one."""
+    try:
+        core = Core(model_of(case))
+    except InvalidModelError:
+        return True
+    return any(expected != found for _, _, expected, found in run_case(case, core))
