@@ -284,7 +284,7 @@ class Changes:
         change = self._changes[pursuit.change]
         change.open.discard(pursuit.node)
         self._conclude(change, now)
-        self._release(change)
+        self._let_go(change, {pursuit.node})
 
     # --- whole changes ---------------------------------------------------------------------------
 
@@ -305,7 +305,7 @@ class Changes:
             self._deadlines.clear(pursuit.node)
         change = self._changes[pursuit.change]
         change.open.discard(pursuit.node)
-        self._release(change)
+        self._let_go(change, {pursuit.node})
 
     def _conclude(self, change: Change, now: Instant) -> None:
         """End a running change when its last node has ended; success is verified."""
@@ -337,15 +337,15 @@ class Changes:
     def _end(self, change: Change, status: ChangeStatus, reason: str | None, now: Instant) -> None:
         change.status, change.reason, change.ended_at = status, reason, now
         del self._running[change.id]
-        self._release(change)
+        self._let_go(change, {change.part, *change.targets, *change.pursuits})
         data = {"change": change.id, "part": change.part, "reason": reason}
         self._outbox.emit(f"change.{status}", data)
 
-    def _release(self, change: Change) -> None:
-        """Let go of the parts of a change that has ended, but for nodes that it still drives."""
+    def _let_go(self, change: Change, parts: set[PartName]) -> None:
+        """Let go of parts of a change that has ended, but for nodes that it still drives."""
         if change.status is ChangeStatus.RUNNING:
             return
-        for name in {change.part, *change.targets, *change.pursuits} - change.open:
+        for name in parts - change.open:
             if self._change_of.get(name) == change.id:
                 del self._change_of[name]
                 self._outbox.parts.add(name)

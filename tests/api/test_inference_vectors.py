@@ -148,9 +148,11 @@ def service() -> Iterator[Service]:
 
 @pytest.mark.parametrize("case", [case for suite in SUITES for case in cases(suite)])
 def test_the_interface_infers_what_the_vectors_say(case: Case, service: Service) -> None:
-    if case["name"] in OVERRULED:
-        pytest.skip(OVERRULED[case["name"]])
     remote = Remote(service, text_of(case))
+    if case["name"] in OVERRULED:
+        reason = OVERRULED[case["name"]]
+        assert not remote.is_valid or _differs(case, remote), f"not overruled any more: {reason}"
+        return
     if any("load" in step.get("expect", {}) for step in case["steps"]):
         assert not remote.is_valid
         return
@@ -159,3 +161,7 @@ def test_the_interface_infers_what_the_vectors_say(case: Case, service: Service)
         if what not in overruled:
             steps = json.dumps(case["steps"][: number + 1])
             assert found == expected, f"step {number}: {what}\n{steps}"
+
+
+def _differs(case: Case, remote: Remote) -> bool:
+    return any(expected != found for _, _, expected, found in run_case(case, remote))
