@@ -120,7 +120,12 @@ def _syntax_error(error: yaml.MarkedYAMLError) -> Finding:
     message = ": ".join(words for words in (error.context, error.problem) if words)
     mark = error.problem_mark or error.context_mark
     line, column = (mark.line + 1, mark.column + 1) if mark else (1, 1)
-    return Finding("error", "YAML_SYNTAX", message, line=line, column=column)
+    # Since PyYAML 6.0.4 the parser has a bound of its own, and may look so far ahead of its events.
+    code = "TOO_DEEP" if error.problem == _PARSERS_BOUND else "YAML_SYNTAX"
+    return Finding("error", code, message, line=line, column=column)
+
+
+_PARSERS_BOUND = "exceeded maximum nesting depth"
 
 
 @dataclass(slots=True)
