@@ -7,7 +7,7 @@ from functools import partial
 from fastapi import FastAPI
 from starlette.middleware import Middleware
 
-from api import posted_models
+from api import posted_models, posted_tasks
 from api.distribution import installed_version
 from api.gate import Gate, SecurityHeaders, UnexpectedErrors
 from api.openapi import describe
@@ -16,6 +16,8 @@ from api.routes import (
     changes,
     emergency_stop,
     events,
+    example_tracks,
+    holds,
     inference,
     mock,
     model,
@@ -23,10 +25,14 @@ from api.routes import (
     parts,
     service_health,
     signals,
+    simulations,
     stream,
     system_state,
+    tasks,
+    vehicle,
 )
 from api.static_page import page_routes
+from service.jobs import Jobs
 from service.supervisor import Supervisor
 from service.worker import Worker
 
@@ -40,21 +46,38 @@ _RESOURCES = (
     system_state.router,
     emergency_stop.router,
     mock.router,
+    tasks.router,
+    holds.router,
+    vehicle.router,
+    example_tracks.router,
+    simulations.router,
     events.router,
     stream.router,
     service_health.router,
 )
 
 
-def create_app(supervisor: Supervisor, *, allowed_hosts: Sequence[str]) -> FastAPI:
+SIMULATION_DEADLINE_S = 120.0
+
+
+def create_app(
+    supervisor: Supervisor,
+    *,
+    allowed_hosts: Sequence[str],
+    worker: Jobs | None = None,
+    simulator: Jobs | None = None,
+) -> FastAPI:
     """Return the application; it starts no task and no process.
 
-    Whoever serves it calls `prepare` before, and `await app.state.worker.close()` after; its
-    lifespan does the second, and starts the worker process before there is work for it.
+    Whoever serves it calls `prepare` before, and `close_workers` after; its lifespan does the
+    second, and starts the worker process before there is work for it.
 
     Args:
         supervisor: What is served.
         allowed_hosts: Names by which this service may be asked, beside those of loopback.
+        worker: Does what would keep the event loop; None: a process of its own.
+        simulator: Runs simulations; None: a further process, started with the first of them, since
+            they may take a minute, and a task that is posted meanwhile must not wait.
     """
     app = FastAPI(
         title="Pilothouse",
@@ -73,7 +96,8 @@ def create_app(supervisor: Supervisor, *, allowed_hosts: Sequence[str]) -> FastA
         ],
     )
     app.state.supervisor = supervisor
-    app.state.worker = Worker(modules=[posted_models.__name__])
+    app.state.worker = worker or Worker([posted_models.__name__, posted_tasks.__name__])
+    app.state.simulator = simulator or Worker(deadline_s=SIMULATION_DEADLINE_S)
     app.state.model_json = model.encode_model(supervisor)
     add_problem_handlers(app, supervisor.clock)
     for router in _RESOURCES:
@@ -96,9 +120,14 @@ def prepare(app: FastAPI) -> None:
 
 @asynccontextmanager
 async def _lifespan(app: FastAPI) -> AsyncIterator[None]:
-    worker: Worker = app.state.worker
-    await worker.start()
+    await app.state.worker.start()
     try:
         yield
     finally:
-        await worker.close()
+        await close_workers(app)
+
+
+async def close_workers(app: FastAPI) -> None:
+    """End the processes that work for `app`; what they are at fails."""
+    await app.state.worker.close()
+    await app.state.simulator.close()

@@ -10,8 +10,8 @@ from fastapi.requests import HTTPConnection
 
 from domain.errors import UnknownPartError
 from domain.system_model import PartName, SmhModel
+from service.jobs import Jobs
 from service.supervisor import Supervisor
-from service.worker import Worker
 
 
 async def _supervisor(connection: HTTPConnection) -> Supervisor:
@@ -19,13 +19,20 @@ async def _supervisor(connection: HTTPConnection) -> Supervisor:
     return found
 
 
-async def _worker(connection: HTTPConnection) -> Worker:
-    found: Worker = connection.app.state.worker
+async def _worker(connection: HTTPConnection) -> Jobs:
+    found: Jobs = connection.app.state.worker
+    return found
+
+
+async def _simulator(connection: HTTPConnection) -> Jobs:
+    found: Jobs = connection.app.state.simulator
     return found
 
 
 SupervisorDep = Annotated[Supervisor, Depends(_supervisor)]
-WorkerDep = Annotated[Worker, Depends(_worker)]
+WorkerDep = Annotated[Jobs, Depends(_worker)]
+SimulatorDep = Annotated[Jobs, Depends(_simulator)]
+"""Runs simulations, beside the worker."""
 
 
 async def _actor(request: Request) -> str:

@@ -7,6 +7,8 @@ from fastapi.openapi.utils import get_openapi
 
 from api.problems import MEDIA_TYPE, Problem
 from api.schemas.inference import InferenceBody
+from api.schemas.simulation import SimulationBody
+from api.schemas.tasks import TaskBody
 
 _REFERENCE = "#/components/schemas/{model}"
 _PROBLEM = {"schema": {"$ref": _REFERENCE.format(model=Problem.__name__)}}
@@ -27,7 +29,7 @@ def describe(app: FastAPI) -> dict[str, Any]:
             routes=app.routes,
         )
         schemas = document["components"]["schemas"]
-        for kind in (Problem, InferenceBody):
+        for kind in (Problem, InferenceBody, TaskBody, SimulationBody):
             schema = kind.model_json_schema(ref_template=_REFERENCE)
             schemas.update(schema.pop("$defs", {}))
             schemas[kind.__name__] = schema

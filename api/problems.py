@@ -21,23 +21,29 @@ from api.schemas.base import BlockerJson, FindingJson, Json
 from domain.errors import (
     BackendUnavailableError,
     BlockedError,
+    FarStartError,
     IllegalTransitionError,
     InvalidModelError,
     InvalidValueError,
     OutdatedReadingError,
     PilothouseError,
     RefusedError,
+    ReservedHoldError,
+    TooManyHoldsError,
     UnknownChangeError,
+    UnknownControllerError,
     UnknownErrorNameError,
     UnknownModeError,
     UnknownNameError,
     UnknownParameterError,
     UnknownPartError,
     UnknownSignalError,
+    UnknownTaskError,
 )
 from service.clock import Clock
 from service.files.robot_file import InvalidRobotFileError
 from service.files.text_file import UnreadableFileError
+from service.files.waypoint_file import InvalidWaypointsError
 from service.worker import TooComplexError, WorkerBusyError, WorkerClosedError
 
 STATUS_OF: Mapping[type[PilothouseError], HTTPStatus] = {
@@ -49,10 +55,14 @@ STATUS_OF: Mapping[type[PilothouseError], HTTPStatus] = {
     UnknownSignalError: HTTPStatus.NOT_FOUND,
     UnknownErrorNameError: HTTPStatus.NOT_FOUND,
     UnknownChangeError: HTTPStatus.NOT_FOUND,
+    UnknownTaskError: HTTPStatus.NOT_FOUND,
     # Modes and parameters are named in bodies, not in paths.
     UnknownModeError: HTTPStatus.UNPROCESSABLE_ENTITY,
     UnknownParameterError: HTTPStatus.UNPROCESSABLE_ENTITY,
+    UnknownControllerError: HTTPStatus.UNPROCESSABLE_ENTITY,
     InvalidValueError: HTTPStatus.UNPROCESSABLE_ENTITY,
+    FarStartError: HTTPStatus.UNPROCESSABLE_ENTITY,
+    InvalidWaypointsError: HTTPStatus.UNPROCESSABLE_ENTITY,
     InvalidBodyError: HTTPStatus.UNPROCESSABLE_ENTITY,
     InvalidModelError: HTTPStatus.UNPROCESSABLE_ENTITY,
     TooComplexError: HTTPStatus.UNPROCESSABLE_ENTITY,
@@ -60,6 +70,8 @@ STATUS_OF: Mapping[type[PilothouseError], HTTPStatus] = {
     IllegalTransitionError: HTTPStatus.CONFLICT,
     BlockedError: HTTPStatus.CONFLICT,
     OutdatedReadingError: HTTPStatus.CONFLICT,
+    ReservedHoldError: HTTPStatus.CONFLICT,
+    TooManyHoldsError: HTTPStatus.CONFLICT,
     WorkerBusyError: HTTPStatus.TOO_MANY_REQUESTS,
     WorkerClosedError: HTTPStatus.SERVICE_UNAVAILABLE,
     BackendUnavailableError: HTTPStatus.SERVICE_UNAVAILABLE,
@@ -115,7 +127,7 @@ def problem_of(error: PilothouseError, clock: Clock, instance: str = "") -> Prob
         more["blockers"] = [BlockerJson.of(blocker, clock) for blocker in error.blockers]
     if isinstance(error, IllegalTransitionError):
         more["available"] = [str(transition) for transition in error.available]
-    if isinstance(error, InvalidModelError):
+    if isinstance(error, InvalidModelError | InvalidWaypointsError):
         more["findings"] = [FindingJson.of(finding) for finding in error.findings]
     if isinstance(error, InvalidBodyError):
         more["errors"] = error.faults

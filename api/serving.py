@@ -22,15 +22,12 @@ from api.model_check import finding_line
 from api.web_server import ListenError, WebServer, is_loopback, listen, url_of, web_server
 from domain.errors import InvalidModelError
 from domain.findings import Finding
-from domain.simulation.mock_signals import MockSignals
-from domain.simulation.nodes import SimulatedNodes
-from domain.supervision import Supervision, SupervisionSettings
 from service.backends.simulated import SimulatedBackend
 from service.clock import Clock, MonotonicClock
 from service.files.model_file import load_model
 from service.files.robot_file import InvalidRobotFileError, RobotSettings, load_robot_file
 from service.files.text_file import UnreadableFileError
-from service.mock_source import MockSource
+from service.robot_parts import make_onboard, make_simulated_robot
 from service.supervisor import Supervisor, TaskFailedError
 
 log = logging.getLogger(__name__)
@@ -99,17 +96,17 @@ def compose(options: ServeOptions, clock: Clock) -> Supervisor:
     """
     loaded = load_model(options.model or EXAMPLE)
     robot = load_robot_file(options.robot, loaded.model) if options.robot else RobotSettings()
+    mock = _mocks(options, robot)
     now = clock.now()
-    nodes = SimulatedNodes(loaded.model, robot.to_node_settings(), now)
-    settings = SupervisionSettings(robot.to_signal_settings(), robot.to_change_settings())
-    mock = MockSource(MockSignals(now), clock) if _mocks(options, robot) else None
+    simulated = make_simulated_robot(loaded.model, robot, now, mock=mock)
+    backend = SimulatedBackend(simulated, clock)
     return Supervisor(
         loaded,
-        Supervision(loaded.model, settings, now),
+        make_onboard(loaded.model, robot, now),
         clock,
-        SimulatedBackend(nodes, clock),
-        mock,
-        simulated=("nodes", "signals") if mock else ("nodes",),
+        backend,
+        backend.mock,
+        simulated=simulated.what,
     )
 
 

@@ -8,12 +8,17 @@
     |   +-- UnknownErrorNameError
     |   +-- UnknownChangeError
     |   +-- UnknownParameterError
+    |   +-- UnknownTaskError
+    |   +-- UnknownControllerError
     +-- InvalidValueError             a value that can never be right: type, range, NaN
+    |   +-- FarStartError             a path that begins too far from the vehicle
     +-- InvalidModelError             a model file with findings
     +-- RefusedError                  right in itself, but not in this situation
     |   +-- IllegalTransitionError
     |   +-- BlockedError
     |   +-- OutdatedReadingError
+    |   +-- ReservedHoldError
+    |   +-- TooManyHoldsError
     +-- BackendUnavailableError       nothing that nodes could be reached through
 
 Below the same root, `service` and `api` add what only they can meet: files that cannot be read
@@ -88,6 +93,18 @@ class UnknownParameterError(UnknownNameError):
     code = "UNKNOWN_PARAMETER"
 
 
+class UnknownTaskError(UnknownNameError):
+    """A task that was never served, or so long ago that it is forgotten."""
+
+    code = "UNKNOWN_TASK"
+
+
+class UnknownControllerError(UnknownNameError):
+    """A name of no path tracker."""
+
+    code = "UNKNOWN_CONTROLLER"
+
+
 class InvalidValueError(PilothouseError):
     """A value of the wrong type, out of range or not finite; `pointer` names it in a body."""
 
@@ -96,6 +113,17 @@ class InvalidValueError(PilothouseError):
     def __init__(self, message: str, pointer: str = "") -> None:
         super().__init__(message)
         self.pointer = pointer
+
+
+class FarStartError(InvalidValueError):
+    """A path that begins further from the vehicle than a task may."""
+
+    code = "FAR_START"
+
+    def __init__(self, distance_m: float, limit_m: float) -> None:
+        message = f"the path begins {distance_m:.1f} m from the vehicle; at most {limit_m:g} m"
+        super().__init__(message, "waypoints")
+        self.hint = "drive closer, or begin at another waypoint with start_index"
 
 
 class InvalidModelError(PilothouseError):
@@ -152,6 +180,25 @@ class OutdatedReadingError(RefusedError):
     def __init__(self, signal: str, behind_s: float) -> None:
         super().__init__(f"a newer reading of {signal} is held; this one is {behind_s:.3f} s older")
         self.hint = "leave out the stamp, or set the sender's clock"
+
+
+class ReservedHoldError(RefusedError):
+    """A hold that Pilothouse alone sets and clears."""
+
+    code = "RESERVED_HOLD"
+
+    def __init__(self, owner: str) -> None:
+        super().__init__(f"the hold {owner!r} is set and cleared by Pilothouse alone")
+        self.hint = "it ends with its cause; use a name of your own, such as operator"
+
+
+class TooManyHoldsError(RefusedError):
+    """One more hold than are kept."""
+
+    code = "TOO_MANY_HOLDS"
+
+    def __init__(self, limit: int) -> None:
+        super().__init__(f"there are {limit} holds already")
 
 
 class BackendUnavailableError(PilothouseError):

@@ -10,10 +10,14 @@ from typing import NewType, TypeAlias
 
 from domain.lifecycle import LifecycleState, Transition
 from domain.parameters import Parameters, ParameterValue
+from domain.paths.path import Path
 from domain.system_model import ModeName, PartName
 from domain.timebase import Instant
+from domain.vehicle import DriveCommand, Point, VehicleState
 
 ChangeId = NewType("ChangeId", str)
+TaskId = NewType("TaskId", str)
+GoalId = NewType("GoalId", int)
 
 SignalValue: TypeAlias = bool | float | str
 """Of a boolean, numeric or enumerated signal, in this order."""
@@ -67,11 +71,45 @@ class Readings:
 
 
 @dataclass(frozen=True, slots=True)
+class VehicleReport:
+    """Where the vehicle is and how it moves, as its localization says."""
+
+    state: VehicleState
+
+
+@dataclass(frozen=True, slots=True)
 class BackendStatus:
     """Whether nodes can be reached at all."""
 
     available: bool
     reason: str = ""
+
+
+@dataclass(frozen=True, slots=True)
+class GoalFeedback:
+    """How far navigation has come with a goal."""
+
+    goal: GoalId
+    target_index: int
+    """First waypoint that is not yet passed."""
+    distance_m: float
+    """Along the path, from its first waypoint to where the vehicle is."""
+    cross_track_error_m: float
+    """Positive: the vehicle is left of the path."""
+    lookahead: Point
+    """The point that is steered to."""
+    command: DriveCommand
+    """What the vehicle was told with this."""
+
+
+@dataclass(frozen=True, slots=True)
+class GoalResult:
+    """How navigation ended a goal by itself; a goal that was preempted has none."""
+
+    goal: GoalId
+    succeeded: bool
+    reason: str = ""
+    """Why it was aborted."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -134,18 +172,61 @@ class AcknowledgeRequest:
     actor: str = ""
 
 
+@dataclass(frozen=True, slots=True)
+class TaskRequest:
+    """Follow a path, in place of the task that there may be."""
+
+    path: Path
+    start_index: int
+    """The waypoint to begin with."""
+    controller: str
+    """Name of a path tracker."""
+    speed_mps: float
+    """Cruise speed; slower in curves and towards the end."""
+    actor: str = ""
+
+
+@dataclass(frozen=True, slots=True)
+class CancelTaskRequest:
+    """End the current task, if there is one, and stand still."""
+
+    actor: str = ""
+
+
+@dataclass(frozen=True, slots=True)
+class HoldRequest:
+    """Keep the vehicle from driving tasks, until `owner` lets go."""
+
+    owner: str
+    reason: str
+    actor: str = ""
+
+
+@dataclass(frozen=True, slots=True)
+class ReleaseRequest:
+    """Let go of the hold of `owner`; nothing happens if there is none."""
+
+    owner: str
+    actor: str = ""
+
+
 ChangeRequest: TypeAlias = ModeRequest | TransitionRequest | ParametersRequest
+DriveRequest: TypeAlias = TaskRequest | CancelTaskRequest | HoldRequest | ReleaseRequest
 
 Input: TypeAlias = (
     NodeReport
     | NodeAnswer
     | Readings
+    | VehicleReport
     | BackendStatus
+    | GoalFeedback
+    | GoalResult
     | TimePassed
     | ChangeRequest
     | CancelRequest
     | EmergencyStopRequest
     | AcknowledgeRequest
+    | DriveRequest
 )
 
 
@@ -178,7 +259,36 @@ class AskFacts:
     node: PartName
 
 
-Command: TypeAlias = AskTransition | AskParameters | AskFacts
+@dataclass(frozen=True, slots=True)
+class Drive:
+    """Drive like this until the next command, and for half a second at most."""
+
+    command: DriveCommand
+
+
+@dataclass(frozen=True, slots=True)
+class SendGoal:
+    """Let navigation follow a path from a waypoint on; it says how it goes and how it ends."""
+
+    goal: GoalId
+    path: Path
+    first_index: int
+    """Where the task began; what is covered counts from there."""
+    start_index: int
+    """First waypoint not yet passed: where this goal begins."""
+    controller: str
+    speed_mps: float
+
+
+@dataclass(frozen=True, slots=True)
+class PreemptGoal:
+    """Let navigation drop its goal; not one command to drive may follow."""
+
+    goal: GoalId
+
+
+NodeCommand: TypeAlias = AskTransition | AskParameters | AskFacts
+Command: TypeAlias = NodeCommand | Drive | SendGoal | PreemptGoal
 
 
 # --- what comes out ------------------------------------------------------------------------------
@@ -212,3 +322,9 @@ class Outputs:
     """Signals whose view changed."""
     system_state: bool = False
     """Whether the system state changed."""
+    task: TaskId | None = None
+    """The task that a request served."""
+    task_changed: bool = False
+    """Whether the view of the current task changed, or there is another one or none."""
+    vehicle_changed: bool = False
+    """Whether the vehicle moves differently, is told something else, or steers to another point."""

@@ -3,7 +3,7 @@
 from collections.abc import Mapping
 from types import MappingProxyType
 
-from domain.messages import ChangeId, Command, Event, Outputs
+from domain.messages import ChangeId, Command, Event, Outputs, TaskId
 from domain.system_model import PartName
 from domain.timebase import Instant
 
@@ -22,6 +22,9 @@ class Outbox:
         self.parts: set[PartName] = set()
         self.signals: set[str] = set()
         self.system_state = False
+        self.task: TaskId | None = None
+        self.task_changed = False
+        self.vehicle_changed = False
         self._commands: list[Command] = []
         self._events: list[Event] = []
         self._next_event = 1
@@ -74,10 +77,14 @@ class Outbox:
             frozenset(self.parts),
             frozenset(self.signals),
             self.system_state,
+            self.task,
+            self.task_changed,
+            self.vehicle_changed,
         )
         self._commands, self._events = [], []
         self.change, self.system_state = None, False
         self.parts, self.signals = set(), set()
+        self.task, self.task_changed, self.vehicle_changed = None, False, False
         return outputs
 
     def _append(self, kind: str, data: Mapping[str, object], cause: int | None) -> int:

@@ -10,10 +10,11 @@ from typing import Literal
 
 from domain.findings import Blocker, Fact
 from domain.lifecycle import LifecycleState, Transition
-from domain.messages import ChangeId, ChangeRequest, SignalValue
+from domain.messages import ChangeId, ChangeRequest, SignalValue, TaskId
 from domain.parameters import ParameterValue
 from domain.system_model import ModeName, PartName, StateAndMode
 from domain.timebase import Duration, Instant
+from domain.vehicle import DriveCommand, Point, VehicleState
 
 
 class SystemState(StrEnum):
@@ -193,3 +194,69 @@ class EmergencyStopView:
     since: Instant | None
     standstill_at: Instant | None
     """When the vehicle was first seen standing still since; None: not yet, or no vehicle."""
+
+
+class TaskPhase(StrEnum):
+    """Where a task stands; the last three are ends."""
+
+    RUNNING = "RUNNING"
+    PAUSING = "PAUSING"
+    """Held, and not yet seen to stand still."""
+    PAUSED = "PAUSED"
+    SUCCEEDED = "SUCCEEDED"
+    CANCELED = "CANCELED"
+    ABORTED = "ABORTED"
+
+
+@dataclass(frozen=True, slots=True)
+class TaskView:
+    """One waypoint task."""
+
+    id: TaskId
+    status: TaskPhase
+    controller: str
+    speed_mps: float
+    """Cruise speed that was asked for."""
+    waypoint_count: int
+    length_m: float
+    """Along the path from `start_index` to its end."""
+    start_index: int
+    target_index: int
+    """First waypoint that is not yet passed."""
+    progress: float
+    """Covered share of `length_m`, 0 to 1."""
+    distance_m: float
+    """Covered along the path, from `start_index`."""
+    cross_track_error_m: float | None
+    """Positive: left of the path. None: the task never ran."""
+    reason: str | None
+    """Why it is held or how it ended."""
+    created_at: Instant
+    ended_at: Instant | None
+    cause: int
+    """Id of the event that recorded the request."""
+
+
+@dataclass(frozen=True, slots=True)
+class HoldView:
+    """One reason why no task may run, and whose it is."""
+
+    owner: str
+    reason: str
+    by: str
+    """Who set it; empty: Pilothouse itself."""
+    since: Instant
+
+
+@dataclass(frozen=True, slots=True)
+class VehicleView:
+    """Where the vehicle is, and what it is told."""
+
+    state: VehicleState | None
+    """None: never reported."""
+    at: Instant | None
+    """When that was reported."""
+    command: DriveCommand
+    """What it was told last."""
+    lookahead: Point | None
+    """The point that is steered to; None: nothing is driven."""

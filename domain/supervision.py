@@ -24,9 +24,14 @@ from domain.messages import (
     AcknowledgeRequest,
     BackendStatus,
     CancelRequest,
+    CancelTaskRequest,
     ChangeId,
     ChangeRequest,
+    DriveRequest,
     EmergencyStopRequest,
+    GoalFeedback,
+    GoalResult,
+    HoldRequest,
     Input,
     ModeRequest,
     NodeAnswer,
@@ -34,8 +39,11 @@ from domain.messages import (
     Outputs,
     ParametersRequest,
     Readings,
+    ReleaseRequest,
+    TaskRequest,
     TimePassed,
     TransitionRequest,
+    VehicleReport,
 )
 from domain.mode_inference import ModeInference
 from domain.outbox import Outbox
@@ -50,10 +58,13 @@ from domain.snapshot import (
     SignalView,
     StepView,
     SystemStateView,
-    TaskStatus,
 )
 from domain.system_model import PartName, SmhModel
+from domain.tasks.drive_words import describe_drive_request
+from domain.tasks.driving import Driving
+from domain.tasks.settings import TaskSettings
 from domain.timebase import Instant
+from domain.vehicle import VehicleLimits
 
 
 @dataclass(frozen=True, slots=True)
@@ -62,6 +73,8 @@ class SupervisionSettings:
 
     signals: tuple[SignalSettings, ...] = field(default_factory=default_signals)
     changes: ChangeSettings = field(default_factory=ChangeSettings)
+    tasks: TaskSettings = field(default_factory=TaskSettings)
+    vehicle: VehicleLimits = field(default_factory=VehicleLimits)
 
 
 class Supervision:
@@ -73,21 +86,22 @@ class Supervision:
         self._outbox = Outbox()
         self._inference = ModeInference(model)
         self._admission = ChangeAdmission(model, self._inference.facts)
-        self._changes = Changes(
-            self._inference, settings.changes, self._outbox, lambda: bool(self._estop())
-        )
+        self._changes = Changes(self._inference, settings.changes, self._outbox, self._is_stopped)
         self._views = PartViews(self._inference, self._changes, self._outbox)
         self._health = StateManager(settings.signals, start)
         self._emergency_stop = EmergencyStop()
         self._health_events = HealthEvents(self._health, self._outbox)
+        self.driving = Driving(
+            settings.tasks, settings.vehicle, self._health.reasons, self._outbox, start
+        )
         self._backend = BackendStatus(available=True)
 
     # --- time and inputs -------------------------------------------------------------------------
 
     def wake_at(self) -> Instant | None:
         """Return the next instant at which time alone changes something; None: never."""
-        due = [at for at in (self._health.wake_at(), self._changes.wake_at()) if at is not None]
-        return min(due, default=None)
+        owners = (self._health, self._changes, self.driving)
+        return min((at for at in (own.wake_at() for own in owners) if at is not None), default=None)
 
     def handle(self, given: Input, now: Instant) -> Outputs:
         """Take in one input, after letting pass what was due before it, each at its own time.
@@ -120,6 +134,12 @@ class Supervision:
             case AcknowledgeRequest():
                 self._begin_input("error.acknowledged", {"error": given.error}, given.actor)
                 self._publish(self._health.acknowledge(given.error, self._now))
+            case VehicleReport():
+                self._take_vehicle_report(given)
+            case GoalFeedback() | GoalResult():
+                self._take_from_navigation(given)
+            case TaskRequest() | CancelTaskRequest() | HoldRequest() | ReleaseRequest():
+                self._take_drive_request(given)
             case BackendStatus():
                 self._take_backend_status(given)
             case TimePassed():
@@ -134,6 +154,8 @@ class Supervision:
             self._begin_input("time.passed", {})
             self._publish(self._health.pass_time(self._now))
             self._changes.pass_time(self._now)
+            self.driving.pass_time(self._now)
+            self._health_events.tell_state(self.driving.status, None)
             self._views.settle(self._now)
         self._now = now
 
@@ -215,12 +237,48 @@ class Supervision:
             self._outbox.record_input()
         self._backend = status
 
+    def _take_vehicle_report(self, report: VehicleReport) -> None:
+        self.driving.check(report)
+        pose = report.state.pose
+        data = {"x_m": pose.x_m, "y_m": pose.y_m, "speed_mps": report.state.speed_mps}
+        self._begin_input("vehicle.reported", data)
+        self._drive(report)
+        if self.driving.stands and self._emergency_stop.note_standstill(self._now):
+            self._outbox.emit("emergency_stop.standstill", {})
+
+    def _take_from_navigation(self, given: GoalFeedback | GoalResult) -> None:
+        data: dict[str, object] = {"goal": given.goal}
+        if isinstance(given, GoalResult):
+            data |= {"succeeded": given.succeeded, "reason": given.reason}
+        kind = "goal.ended" if isinstance(given, GoalResult) else "goal.feedback"
+        self._begin_input(kind, data)
+        self._drive(given)
+
+    def _take_drive_request(self, request: DriveRequest) -> None:
+        self.driving.check(request)
+        kind, data = describe_drive_request(request)
+        self._begin_input(kind, data, request.actor)
+        self._drive(request)
+
+    def _drive(self, given: DriveRequest | VehicleReport | GoalFeedback | GoalResult) -> None:
+        before = self.driving.status
+        self.driving.take(given, self._now)
+        if self.driving.status is not before:
+            self._health_events.tell_state(self.driving.status, None)
+
     def _publish(self, changes: HealthChanges) -> None:
-        self._health_events.publish(changes, TaskStatus.NO_TASK)
+        """Tell what was decided; the robot is made safe before its state is told."""
+        cause = self._health_events.publish(changes)
+        if changes.state_changed:
+            self.driving.follow_errors(self._health.reasons, self._now, cause)
+            self._health_events.tell_state(self.driving.status, cause)
+
+    def _is_stopped(self) -> bool:
+        return "ESTOP" in self._health.errors
 
     def _estop(self) -> tuple[Blocker, ...]:
         """Return why ESTOP is on; empty when it is not."""
-        if "ESTOP" not in self._health.errors:
+        if not self._is_stopped():
             return ()
         return tuple(r for r in self.system_state().reasons if r.code == "ESTOP")
 
@@ -301,7 +359,7 @@ class Supervision:
 
     def system_state(self) -> SystemStateView:
         """Return the state of the robot."""
-        return self._health.system_state(TaskStatus.NO_TASK)
+        return self._health.system_state(self.driving.status)
 
     def emergency_stop(self) -> EmergencyStopView:
         """Return the emergency stop."""

@@ -30,28 +30,32 @@ class EventLog(Watched):
     the service is restarted.
     """
 
-    def __init__(self, capacity: int = DEFAULT_CAPACITY, epoch: str | None = None) -> None:
+    def __init__(
+        self, capacity: int = DEFAULT_CAPACITY, epoch: str | None = None, before: int = 0
+    ) -> None:
         """Make an empty log.
 
         Args:
             capacity: How many events are kept.
             epoch: Name of this run of the service; None: one that no other run has.
+            before: Id of the last event that was before this log, as for the copy of a robot.
         """
         super().__init__()
         self.epoch = epoch or secrets.token_hex(8)
         self._capacity = capacity
         self._ring: list[Event] = []
-        self._newest = 0
+        self._before = before
+        self._newest = before
 
     @property
     def newest(self) -> int:
-        """Id of the newest event; 0 before the first."""
+        """Id of the newest event; before the first, that of the last one before this log."""
         return self._newest
 
     @property
     def oldest(self) -> int:
-        """Id of the oldest event that is kept; 1 before the first."""
-        return max(1, self._newest - self._capacity + 1)
+        """Id of the oldest event that is kept, or that will be the first."""
+        return max(self._before + 1, self._newest - self._capacity + 1)
 
     def append(self, event: Event) -> None:
         """Keep an event, forget the oldest when there are too many, and wake the readers.
@@ -81,7 +85,7 @@ class EventLog(Watched):
         return after > self._newest or (epoch is not None and epoch != self.epoch)
 
     def _slot(self, number: int) -> int:
-        return (number - 1) % self._capacity
+        return (number - self._before - 1) % self._capacity
 
     def _events(self, numbers: range) -> Iterator[Event]:
         return (self._ring[self._slot(number)] for number in numbers)

@@ -3,7 +3,7 @@
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 
-from domain.snapshot import PartView, SignalView, SystemStateView
+from domain.snapshot import PartView, SignalView, SystemStateView, TaskView, VehicleView
 from domain.system_model import PartName
 from domain.timebase import Instant
 from service.watching import Watched
@@ -21,6 +21,12 @@ class Frame:
     """Those that changed since the frame before; in a full frame, all."""
     signals: Mapping[str, SignalView]
     """As `parts`."""
+    task: TaskView | None
+    task_changed: bool
+    """Whether `task` is another one, or differs from the frame before; true in a full frame."""
+    vehicle: VehicleView
+    vehicle_changed: bool
+    """As `task_changed`."""
     full: bool
     simulated: tuple[str, ...]
     """What of the robot is not real."""
@@ -67,7 +73,12 @@ class FrameFeed(Watched):
         """
         if self._complete is None and self._newest is not None and self._has_all:
             self._complete = replace(
-                self._newest, parts=dict(self._parts), signals=dict(self._signals), full=True
+                self._newest,
+                parts=dict(self._parts),
+                signals=dict(self._signals),
+                task_changed=True,
+                vehicle_changed=True,
+                full=True,
             )
         return self._complete
 

@@ -1,27 +1,29 @@
-"""Mock signals in real time: a source of readings that needs no robot."""
+"""What can be done to the mock signals while they run."""
 
 from collections.abc import Callable
 
 from domain.messages import Readings, SignalValue
 from domain.simulation.mock_signals import MOCK_SOURCE, MockSignal, MockSignals
 from service.clock import Clock
-from service.pacing import Pacer
 
 
 class MockSource:
-    """Runs `MockSignals` on a clock; a `SignalSource`."""
+    """The mock signals of a simulated robot that somebody else runs."""
 
     source = MOCK_SOURCE
     """The source that its readings name."""
 
-    def __init__(self, mock: MockSignals, clock: Clock) -> None:
+    def __init__(self, mock: MockSignals, clock: Clock, touch: Callable[[], None]) -> None:
+        """Prepare.
+
+        Args:
+            mock: The signals.
+            clock: The present.
+            touch: Called when there is something to publish earlier than was said before.
+        """
         self._mock = mock
         self._clock = clock
-        self._pacer = Pacer(mock, clock)
-
-    async def run(self, deliver: Callable[[Readings], None]) -> None:
-        """Deliver the held values at 10 Hz, and a new one at once, until cancelled."""
-        await self._pacer.run(deliver)
+        self._touch = touch
 
     def due(self) -> tuple[Readings, ...]:
         """Return what is due by now and not delivered yet; the caller delivers it.
@@ -41,7 +43,7 @@ class MockSource:
             UnknownSignalError: The mock has no such signal.
         """
         self._mock.hold(signal, value, self._clock.now())
-        self._pacer.touch()
+        self._touch()
 
     def set_publishing(self, signal: str, publishing: bool) -> None:
         """Stop publishing a signal, to see it go stale, or take it up again.
@@ -50,7 +52,7 @@ class MockSource:
             UnknownSignalError: The mock has no such signal.
         """
         self._mock.set_publishing(signal, publishing, self._clock.now())
-        self._pacer.touch()
+        self._touch()
 
     def view(self) -> tuple[MockSignal, ...]:
         """Return every signal of the mock."""

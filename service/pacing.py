@@ -26,6 +26,9 @@ class Paced(Protocol[MessageT_co]):
         ...
 
 
+_AT_ONCE = 100
+
+
 class Pacer(Generic[MessageT]):
     """Advances one object at exactly the times that it asks for, and when it was touched."""
 
@@ -68,4 +71,42 @@ class Pacer(Generic[MessageT]):
             resting.result()
 
 
-_AT_ONCE = 100
+class Alarm:
+    """Rings at the time that `due` says, which moves with whatever happens."""
+
+    def __init__(
+        self, due: Callable[[], Instant | None], ring: Callable[[], object], clock: Clock
+    ) -> None:
+        """Prepare.
+
+        Args:
+            due: When to ring next; None: not at all. After a ring it is later than the present.
+            ring: What to do then.
+            clock: The present.
+        """
+        self._due = due
+        self._ring = ring
+        self._waits_until: Instant | None = None
+        self._pacer = Pacer[object](self, clock)
+
+    def check(self) -> None:
+        """Look again when to ring, since that may be earlier now."""
+        due = self._due()
+        if due is not None and (self._waits_until is None or due < self._waits_until):
+            self._pacer.touch()
+
+    async def run(self) -> None:
+        """Ring until cancelled."""
+        await self._pacer.run(lambda _: None)
+
+    def advance(self, now: Instant) -> Sequence[object]:
+        """Ring if that is due."""
+        due = self._due()
+        if due is not None and due <= now:
+            self._ring()
+        return ()
+
+    def wake_at(self) -> Instant | None:
+        """Return when to ring next, and remember it as what is waited for."""
+        self._waits_until = self._due()
+        return self._waits_until

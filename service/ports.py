@@ -7,37 +7,45 @@ matter of the adapter: it ends `run`.
 from collections.abc import Callable
 from typing import Protocol, TypeAlias
 
-from domain.messages import BackendStatus, Command, NodeAnswer, NodeReport, Readings
+from domain.messages import (
+    BackendStatus,
+    Drive,
+    NodeAnswer,
+    NodeCommand,
+    NodeReport,
+    Readings,
+    VehicleReport,
+)
+from domain.simulation.robot import SimulatedRobot
 
-BackendMessage: TypeAlias = NodeReport | NodeAnswer | BackendStatus
+BackendMessage: TypeAlias = NodeReport | NodeAnswer | BackendStatus | Readings | VehicleReport
 
 
-class NodeBackend(Protocol):
-    """Nodes, wherever they run.
+class RobotBackend(Protocol):
+    """Nodes, vehicle and signals, wherever they are.
 
-    `tests/conformance/test_node_backend.py` says what each adapter must keep.
+    `tests/conformance/test_node_backend.py` and `test_vehicle.py` say what each adapter must keep.
     """
 
+    @property
+    def simulation(self) -> SimulatedRobot | None:
+        """Return the simulated robot behind this, which can be copied; None: a real one."""
+        ...
+
     async def run(self, deliver: Callable[[BackendMessage], None]) -> None:
-        """Deliver all there is to know of every node, then what changes, until cancelled.
+        """Deliver all there is to know, then what changes, until cancelled.
 
         A node that cannot be reached is delivered as such, and with all its facts when it is back.
-        Is run once; to end otherwise than by being cancelled is an error.
+        The vehicle is delivered at 20 Hz or so, as long as it is known where it is. Is run once; to
+        end otherwise than by being cancelled is an error.
         """
         ...
 
-    def send(self, command: Command) -> None:
-        """Ask a node for something, on the event loop's thread; return at once.
+    def send(self, command: NodeCommand | Drive) -> None:
+        """Ask a node for something, or tell the vehicle how to drive; return at once.
 
-        Never raises for a node that is absent or unknown: a command that cannot be delivered gets
-        an answer that says so, or none.
+        Called on the event loop's thread. Never raises for a node that is absent or unknown: a
+        command that cannot be delivered gets an answer that says so, or none. The vehicle stands
+        still 0.5 s after the last command to drive, so that a dead supervisor stops the robot.
         """
-        ...
-
-
-class SignalSource(Protocol):
-    """Something that measures signals."""
-
-    async def run(self, deliver: Callable[[Readings], None]) -> None:
-        """Deliver readings until cancelled; to end otherwise is an error."""
         ...

@@ -1,7 +1,7 @@
 """The shell round the core: hands it what happens, carries out what it says, publishes at 20 Hz.
 
-It decides nothing. Whatever arrives is handed to the core at once; the tick only publishes, and
-lets time pass where nothing arrives.
+It decides nothing. Whatever arrives is handed to the core at once, and when something becomes due
+there, it is told so at that time; the tick only publishes.
 """
 
 import asyncio
@@ -17,11 +17,16 @@ from domain.messages import (
     ChangeId,
     Input,
     Outputs,
+    PreemptGoal,
     Reading,
     Readings,
+    SendGoal,
     SignalValue,
     TimePassed,
 )
+from domain.onboard import Onboard
+from domain.paths.speed_profile import SpeedLimits
+from domain.simulation.robot import SimulatedRobot
 from domain.snapshot import ChangeStatus, ChangeView
 from domain.supervision import Supervision
 from domain.system_model import PartName, SmhModel
@@ -31,7 +36,8 @@ from service.event_log import EventLog
 from service.files.model_file import LoadedModel
 from service.frame_feed import Frame, FrameFeed
 from service.mock_source import MockSource
-from service.ports import NodeBackend
+from service.pacing import Alarm
+from service.ports import RobotBackend
 
 log = logging.getLogger(__name__)
 
@@ -56,18 +62,20 @@ class Supervisor:
     def __init__(
         self,
         loaded: LoadedModel,
-        core: Supervision,
+        onboard: Onboard,
         clock: Clock,
-        backend: NodeBackend,
+        backend: RobotBackend,
         mock: MockSource | None = None,
         simulated: Sequence[str] = (),
+        events: EventLog | None = None,
     ) -> None:
-        self.core = core
+        self.core: Supervision = onboard.core
+        """For looking; what happens goes through `submit`."""
         self.clock = clock
         self.mock = mock
         self.simulated = tuple(simulated)
         self.frames = FrameFeed()
-        self.events = EventLog()
+        self.events = events or EventLog()
         self.late_ticks = 0
         self.last_tick_at: Instant | None = None
         self.on_tick: list[Callable[[float], None]] = []
@@ -75,11 +83,15 @@ class Supervisor:
         self.ended_changes: Counter[str] = Counter()
         """Changes that ended so far, by how they ended."""
         self._loaded = loaded
+        self._onboard = onboard
         self._backend = backend
         self._seq = 0
         self._ticks = 0
         self._changed_parts: set[PartName] = set()
         self._changed_signals: set[str] = set()
+        self._task_changed = False
+        self._vehicle_changed = False
+        self._alarm = Alarm(onboard.wake_at, self.let_pass, clock)
         self._ending = False
         self._waiting: dict[ChangeId, set[asyncio.Future[None]]] = {}
 
@@ -97,6 +109,17 @@ class Supervisor:
     def warnings(self) -> tuple[Finding, ...]:
         """Return what is odd about the model."""
         return self._loaded.warnings
+
+    @property
+    def simulated_parts(self) -> tuple[Onboard, SimulatedRobot] | None:
+        """Return what a simulation can go on with a copy of; None: the robot is real."""
+        robot = self._backend.simulation
+        return None if robot is None else (self._onboard, robot)
+
+    @property
+    def speed_limits(self) -> SpeedLimits:
+        """Return how hard the vehicle may be accelerated."""
+        return self._onboard.navigation.settings.speed
 
     @property
     def epoch(self) -> str:
@@ -117,11 +140,10 @@ class Supervisor:
         """
         async with asyncio.TaskGroup() as tasks:
             work: dict[str, Coroutine[object, object, None]] = {
-                "nodes": self._backend.run(self._deliver),
+                "robot": self._backend.run(self.deliver),
+                "deadlines": self._alarm.run(),
+                "tick": self._tick_forever(),
             }
-            if self.mock is not None:
-                work["mock signals"] = self.mock.run(self._deliver)
-            work["tick"] = self._tick_forever()
             for name, coroutine in work.items():
                 tasks.create_task(_forever(name, coroutine), name=name)
 
@@ -135,10 +157,12 @@ class Supervisor:
         """
         now = self.clock.now()
         try:
-            outputs = self.core.handle(given, now)
+            outputs = self._onboard.handle(given, now)
         except PilothouseError:
-            self._carry_out(self.core.handle(TimePassed(), now))
+            self._carry_out(self._onboard.handle(TimePassed(), now))
             raise
+        finally:
+            self._alarm.check()
         self._carry_out(outputs)
         return outputs
 
@@ -206,7 +230,13 @@ class Supervisor:
         for change in list(self._waiting):
             self._wake_waiting(change)
 
-    def _deliver(self, given: Input) -> None:
+    def let_pass(self) -> None:
+        """Let happen what time alone has made due."""
+        due = self._onboard.wake_at()
+        if due is not None and due <= self.clock.now():
+            self.submit(TimePassed())
+
+    def deliver(self, given: Input) -> None:
         """Take what an adapter reports; one bad report must not end the adapter."""
         try:
             self.submit(given)
@@ -218,9 +248,13 @@ class Supervisor:
     def _carry_out(self, outputs: Outputs) -> None:
         """Act on the robot first, then tell."""
         for command in outputs.commands:
-            self._backend.send(command)
+            # Goals stay on board; what is left is for nodes and the vehicle.
+            if not isinstance(command, SendGoal | PreemptGoal):
+                self._backend.send(command)
         self._changed_parts |= outputs.parts
         self._changed_signals |= outputs.signals
+        self._task_changed |= outputs.task_changed
+        self._vehicle_changed |= outputs.vehicle_changed
         for event in outputs.events:
             self.events.append(event)
             if event.kind in _ENDS:
@@ -249,11 +283,16 @@ class Supervisor:
                 if full
                 else {s: core.signal(s) for s in sorted(self._changed_signals)}
             ),
+            task=core.driving.current_task,
+            task_changed=full or self._task_changed,
+            vehicle=core.driving.vehicle,
+            vehicle_changed=full or self._vehicle_changed,
             full=full,
             simulated=self.simulated,
         )
         self._changed_parts.clear()
         self._changed_signals.clear()
+        self._task_changed = self._vehicle_changed = False
         self.frames.publish(frame)
 
     async def _tick_forever(self) -> None:
@@ -277,7 +316,6 @@ class Supervisor:
             for observe in self.on_tick:
                 observe(to_seconds(now - self.last_tick_at))
         self.last_tick_at = now
-        self.submit(TimePassed())
         self._publish(full=self._ticks % _TICKS_PER_FULL == 0)
         self._ticks += 1
 

@@ -1,10 +1,6 @@
 """Make the text of frames and events, once for all clients that get the same."""
 
 import asyncio
-from collections.abc import Callable, Iterable, Iterator, Mapping
-from typing import Any, Generic, TypeVar
-
-from pydantic_core import to_json
 
 from api.distribution import installed_version
 from api.problems import problem_of
@@ -12,6 +8,9 @@ from api.schemas.base import timestamp
 from api.schemas.health import StreamedSignalJson, SystemStateJson
 from api.schemas.parts import PartJson
 from api.schemas.stream import GapJson, HelloJson
+from api.schemas.tasks import TaskJson, VehicleJson
+from api.streaming.event_text import event_text
+from api.streaming.members import Members
 from api.streaming.query import TOPICS
 from domain.errors import PilothouseError
 from domain.messages import Event
@@ -25,8 +24,6 @@ _EVENTS_KEPT = 1_000
 _MEMBERS_AT_ONCE = 200
 _PATH = "/ws"
 
-View = TypeVar("View")
-
 
 class StreamEncoder:
     """Text of what is streamed, kept as long as somebody may still need it."""
@@ -34,8 +31,8 @@ class StreamEncoder:
     def __init__(self, supervisor: Supervisor) -> None:
         self._supervisor = supervisor
         self._clock = clock = supervisor.clock
-        self._parts = _Members[PartView](lambda view: PartJson.of(view, clock).model_dump_json())
-        self._signals = _Members[SignalView](
+        self._parts = Members[PartView](lambda view: PartJson.of(view, clock).model_dump_json())
+        self._signals = Members[SignalView](
             lambda view: StreamedSignalJson.of(view, clock).model_dump_json()
         )
         self._texts: dict[tuple[bool, ...], tuple[Frame, _StateText]] = {}
@@ -74,7 +71,7 @@ class StreamEncoder:
         """Return an `event` frame."""
         text = self._events.get(event.id)
         if text is None:
-            text = self._events[event.id] = self._event_text(event)
+            text = self._events[event.id] = event_text(event, self._supervisor.epoch, self._clock)
             if len(self._events) > _EVENTS_KEPT:
                 del self._events[next(iter(self._events))]
         return text
@@ -102,23 +99,17 @@ class StreamEncoder:
             members.append(f'"parts":{self._parts.text(frame.parts)}')
         if "signals" in topics and (frame.full or frame.signals):
             members.append(f'"signals":{self._signals.text(frame.signals)}')
+        if "task" in topics and frame.task_changed:
+            task = frame.task
+            text = "null" if task is None else TaskJson.of(task, self._clock).model_dump_json()
+            members.append(f'"task":{text}')
+        if "vehicle" in topics and frame.vehicle_changed:
+            limits = self._supervisor.core.driving.limits
+            vehicle = VehicleJson.of(frame.vehicle, limits, self._clock)
+            members.append(f'"vehicle":{vehicle.model_dump_json()}')
         return _StateText(
             f'{{"type":"state","seq":{frame.seq},"at":"{at}","skipped":', f",{','.join(members)}}}"
         )
-
-    def _event_text(self, event: Event) -> str:
-        shown = {
-            "type": "event",
-            "epoch": self._supervisor.epoch,
-            "id": event.id,
-            "at": timestamp(self._clock, event.at),
-            "kind": event.kind,
-            "cause": event.cause,
-            "actor": event.actor,
-            "data": event.data,
-        }
-        # A node may report a parameter that is NaN, which JSON does not know.
-        return to_json(shown, inf_nan_mode="null", fallback=_plain).decode()
 
 
 class _StateText:
@@ -134,41 +125,5 @@ class _StateText:
         return self._in_step if skipped == 0 else f"{self._head}{skipped}{self._tail}"
 
 
-class _Members(Generic[View]):
-    """Members of a JSON object, kept by name; a view that is the same object is not made again.
-
-    So a frame with 10,000 parts of which none changed is little more than joining strings.
-    """
-
-    def __init__(self, encode: Callable[[View], str]) -> None:
-        self._encode = encode
-        self._known: dict[str, tuple[View, str]] = {}
-
-    def text(self, views: Mapping[Any, View]) -> str:
-        """Return the object that holds these members."""
-        return f"{{{','.join(self._each(views))}}}"
-
-    def new_ones(self, views: Iterable[tuple[str, View]]) -> Iterator[tuple[str, View]]:
-        """Yield the members that are not known as they are here."""
-        for name, view in views:
-            known = self._known.get(name)
-            if known is None or known[0] is not view:
-                yield name, view
-
-    def learn(self, views: Iterable[tuple[str, View]]) -> None:
-        """Encode members and keep their text."""
-        for name, view in views:
-            self._known[name] = (view, f"{to_json(name).decode()}:{self._encode(view)}")
-
-    def _each(self, views: Mapping[Any, View]) -> Iterator[str]:
-        self.learn(self.new_ones(views.items()))
-        return (self._known[name][1] for name in views)
-
-
 def _shape(frame: Frame, topics: frozenset[str]) -> tuple[bool, ...]:
-    return frame.full, "parts" in topics, "signals" in topics
-
-
-def _plain(value: object) -> object:
-    """Return what JSON can hold instead of `value`, such as a read-only mapping."""
-    return dict(value) if isinstance(value, Mapping) else str(value)
+    return (frame.full, *(topic in topics for topic in ("parts", "signals", "task", "vehicle")))

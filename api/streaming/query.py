@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from domain.errors import InvalidValueError
 
 TOPICS = ("system_state", "parts", "signals", "task", "vehicle", "events")
-"""In the order in which they are listed; of `task` and `vehicle` nothing is told yet."""
+"""In the order in which they are listed."""
 
 STATE_TOPICS = frozenset(TOPICS) - {"events"}
 

@@ -1,5 +1,7 @@
 """The emergency stop: a latch that no reading releases, only a person."""
 
+from dataclasses import replace
+
 from domain.snapshot import EmergencyStopView
 from domain.timebase import Instant
 
@@ -25,6 +27,13 @@ class EmergencyStop:
     def release(self, by: str, reason: str, now: Instant) -> bool:
         """Release the stop; return whether it was engaged before."""
         return self._set(engaged=False, by=by, reason=reason, now=now)
+
+    def note_standstill(self, now: Instant) -> bool:
+        """Record that the vehicle stands; return whether that was not known since the stop."""
+        if not self._view.engaged or self._view.standstill_at is not None:
+            return False
+        self._view = replace(self._view, standstill_at=now)
+        return True
 
     def view(self) -> EmergencyStopView:
         """Return the latch as it is; the same object as long as nothing changed."""

@@ -17,9 +17,10 @@ class HealthEvents:
         self._pending: dict[str, int] = {}
         view = health.system_state(TaskStatus.NO_TASK)
         self._told: tuple[SystemState, tuple[str, ...]] = (view.state, view.errors)
+        self._told_status = TaskStatus.NO_TASK
 
-    def publish(self, changes: HealthChanges, task_status: TaskStatus) -> None:
-        """Record what changed, causes first."""
+    def publish(self, changes: HealthChanges) -> int | None:
+        """Record what changed, causes first; return the event that decided last, if one did."""
         emit = self._outbox.emit
         for signal, error in changes.pending:
             self._pending[error] = emit("signal.pending", {"signal": signal, "error": error})
@@ -40,11 +41,14 @@ class HealthEvents:
         for error in changes.cleared:
             decided = emit("error.cleared", {"error": error})
         self._outbox.signals |= changes.signals
-        if changes.state_changed:
-            self._tell_state(task_status, decided)
+        return decided
 
-    def _tell_state(self, task_status: TaskStatus, cause: int | None) -> None:
+    def tell_state(self, task_status: TaskStatus, cause: int | None) -> None:
+        """Tell the state of the robot if it is another one than told before."""
         view = self._health.system_state(task_status)
+        if task_status is not self._told_status:
+            self._told_status = task_status
+            self._outbox.system_state = True
         if (view.state, view.errors) == self._told:
             return
         self._outbox.system_state = True

@@ -190,6 +190,11 @@ class StateManager:
         """Return the errors that are on, in the order of their bits."""
         return self._seen.errors
 
+    @property
+    def reasons(self) -> tuple[Blocker, ...]:
+        """Return why errors are on, the most urgent first."""
+        return self._seen.reasons
+
     def system_state(self, task_status: TaskStatus) -> SystemStateView:
         """Return the state of the robot with its reasons, the most urgent first.
 

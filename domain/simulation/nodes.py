@@ -8,7 +8,6 @@ node's work never delays another's.
 import heapq
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from itertools import count
 from types import MappingProxyType
 from typing import TypeAlias
 
@@ -18,8 +17,8 @@ from domain.messages import (
     AskFacts,
     AskParameters,
     AskTransition,
-    Command,
     NodeAnswer,
+    NodeCommand,
     NodeReport,
 )
 from domain.parameters import Parameters, ParameterValue
@@ -135,7 +134,7 @@ class SimulatedNodes:
     ) -> None:
         self._nodes: dict[PartName, _Node] = {}
         self._due: list[tuple[Instant, int, _Work]] = []
-        self._issues = count()
+        self._issues = 0
         self._messages: list[NodeMessage] = []
         self._messages_at = start
         for name in settings:
@@ -149,7 +148,7 @@ class SimulatedNodes:
                 node.start(start)
             self._appear(node, start)
 
-    def handle(self, command: Command, now: Instant) -> None:
+    def handle(self, command: NodeCommand, now: Instant) -> None:
         """Take in what a node is asked; what follows comes out of `advance`."""
         self._catch_up(now)
         node = self._nodes.get(command.node)
@@ -247,7 +246,7 @@ class SimulatedNodes:
         if node.speaks:
             self._emit(message, at)
 
-    def _refuse(self, command: Command, reason: str, at: Instant) -> None:
+    def _refuse(self, command: NodeCommand, reason: str, at: Instant) -> None:
         self._emit(NodeAnswer(command.request, command.node, False, reason), at)
 
     def _appear(self, node: _Node, at: Instant) -> None:
@@ -265,7 +264,7 @@ class SimulatedNodes:
 
     # --- what nodes do ---------------------------------------------------------------------------
 
-    def _hear(self, node: _Node, command: Command, now: Instant) -> None:
+    def _hear(self, node: _Node, command: NodeCommand, now: Instant) -> None:
         """Let a running node take up a command."""
         match command:
             case AskFacts():
@@ -318,7 +317,8 @@ class SimulatedNodes:
     # --- time ------------------------------------------------------------------------------------
 
     def _schedule(self, work: _Work, at: Instant) -> None:
-        heapq.heappush(self._due, (at, next(self._issues), work))
+        self._issues += 1
+        heapq.heappush(self._due, (at, self._issues, work))
 
     def _catch_up(self, now: Instant) -> None:
         """Do what is due up to `now`, each at its own time."""

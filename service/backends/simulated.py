@@ -1,33 +1,36 @@
-"""Simulated nodes in real time: the backend that needs no robot."""
+"""The simulated robot in real time: the backend that needs no robot."""
 
 from collections.abc import Callable
 
-from domain.messages import BackendStatus, Command
+from domain.messages import BackendStatus, Drive, NodeCommand
 from domain.parameters import Parameters
 from domain.simulation.node_settings import Fault
-from domain.simulation.nodes import SimulatedNodes
+from domain.simulation.robot import SimulatedRobot
 from domain.system_model import PartName
 from service.clock import Clock
+from service.mock_source import MockSource
 from service.pacing import Pacer
 from service.ports import BackendMessage
 
 
 class SimulatedBackend:
-    """Runs `SimulatedNodes` on a clock; a `NodeBackend`."""
+    """Runs a `SimulatedRobot` on a clock; a `RobotBackend`."""
 
-    def __init__(self, nodes: SimulatedNodes, clock: Clock) -> None:
-        self._nodes = nodes
+    def __init__(self, robot: SimulatedRobot, clock: Clock) -> None:
+        self.simulation = robot
         self._clock = clock
-        self._pacer = Pacer(nodes, clock)
+        self._pacer = Pacer(robot, clock)
+        self.mock = None if robot.mock is None else MockSource(robot.mock, clock, self._pacer.touch)
+        """What can be done to the mock signals; None: there are none."""
 
     async def run(self, deliver: Callable[[BackendMessage], None]) -> None:
-        """Deliver every node, then what changes, until cancelled."""
+        """Deliver every node and the vehicle, then what changes, until cancelled."""
         deliver(BackendStatus(available=True))
         await self._pacer.run(deliver)
 
-    def send(self, command: Command) -> None:
-        """Ask a node for something."""
-        self._nodes.handle(command, self._clock.now())
+    def send(self, command: NodeCommand | Drive) -> None:
+        """Ask a node for something, or tell the vehicle how to drive."""
+        self.simulation.handle(command, self._clock.now())
         self._pacer.touch()
 
     def set_fault(self, node: PartName, fault: Fault | None) -> None:
@@ -36,7 +39,7 @@ class SimulatedBackend:
         Raises:
             UnknownPartError: There is no such node.
         """
-        self._nodes.set_fault(node, fault, self._clock.now())
+        self.simulation.nodes.set_fault(node, fault, self._clock.now())
         self._pacer.touch()
 
     def set_parameters(self, node: PartName, values: Parameters) -> None:
@@ -48,5 +51,10 @@ class SimulatedBackend:
             InvalidValueError: A value is not of the parameter's type.
             RefusedError: The node does not run.
         """
-        self._nodes.set_parameters(node, values, self._clock.now())
+        self.simulation.nodes.set_parameters(node, values, self._clock.now())
+        self._pacer.touch()
+
+    def set_vehicle_reporting(self, reporting: bool) -> None:
+        """Let the vehicle stop telling where it is, or tell it again."""
+        self.simulation.vehicle.set_reporting(reporting, self._clock.now())
         self._pacer.touch()

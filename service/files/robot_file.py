@@ -3,6 +3,7 @@
 The keys are documented by docs/reference/robot-file.schema.json.
 """
 
+from collections.abc import Mapping as AnyMapping
 from pathlib import Path
 from typing import Any, Literal
 
@@ -12,12 +13,17 @@ from domain.changes.record import ChangeSettings
 from domain.errors import InvalidValueError, PilothouseError
 from domain.findings import Finding
 from domain.health.signals import SignalSettings
+from domain.navigation import NavigationSettings
 from domain.simulation.node_settings import NodeSettings
+from domain.simulation.vehicle_settings import VehicleSettings
 from domain.system_model import PartName, SmhModel
+from domain.tasks.settings import TaskSettings
 from domain.timebase import seconds
+from service.files.driving_block import DrivingBlock, StartTaskBlock
 from service.files.parameter_file import scalar_value
 from service.files.robot_settings import ChangesBlock, NodeBlock, SettingsBlock, SignalsBlock
 from service.files.text_file import read_text_file
+from service.files.vehicle_block import VehicleBlock
 from service.files.yaml_tree import Mapping, Node, Scalar, Sequence, finding_at, in_order, read_tree
 
 _WORDS = {"extra_forbidden": "there is no such key", "model_type": "there must be keys below"}
@@ -48,6 +54,12 @@ class RobotSettings(SettingsBlock):
     """The simulated nodes that differ from the usual, by name."""
     changes: ChangesBlock = ChangesBlock()
     """Deadlines of changes."""
+    vehicle: VehicleBlock = VehicleBlock()
+    """What the vehicle can do, and what a simulated one is like."""
+    driving: DrivingBlock = DrivingBlock()
+    """When a task may begin, how fast it is driven, and when it is given up."""
+    start_task: StartTaskBlock | None = None
+    """A task that is served when the service starts. Not in simulations, which name no files."""
 
     def to_signal_settings(self) -> tuple[SignalSettings, ...]:
         """Return all signals: the usual five as they are set here, then the declared ones.
@@ -68,6 +80,18 @@ class RobotSettings(SettingsBlock):
             transition_deadline=seconds(self.changes.transition_deadline_s),
             parameters_deadline=seconds(self.changes.parameters_deadline_s),
         )
+
+    def to_vehicle_settings(self) -> VehicleSettings:
+        """Return what the vehicle is like."""
+        return self.vehicle.to_domain()
+
+    def to_task_settings(self) -> TaskSettings:
+        """Return when a task may begin."""
+        return self.driving.to_task_settings()
+
+    def to_navigation_settings(self) -> NavigationSettings:
+        """Return how tasks are driven."""
+        return self.driving.to_navigation_settings()
 
 
 def load_robot_file(path: Path, model: SmhModel) -> RobotSettings:
@@ -99,6 +123,32 @@ def read_robot_file(text: str, model: SmhModel) -> RobotSettings:
             settings = _settings(root, data, model, findings)
     if settings is None or findings:
         raise InvalidRobotFileError(in_order(text, findings))
+    return settings
+
+
+def robot_settings_of(data: AnyMapping[str, object], model: SmhModel) -> RobotSettings:
+    """Return settings that were sent as JSON; they name no files.
+
+    Raises:
+        InvalidValueError: A key or value is wrong; `pointer` leads to it.
+    """
+    if "start_task" in data:
+        raise InvalidValueError(
+            "a start task names a file, which only a robot file may", "/start_task"
+        )
+    try:
+        settings = RobotSettings.model_validate(data)
+    except ValidationError as error:
+        fault = error.errors(include_url=False, include_input=False)[0]
+        words = _WORDS.get(fault["type"], fault["msg"].removeprefix("Value error, "))
+        raise InvalidValueError(words, "".join(f"/{key}" for key in fault["loc"])) from error
+    try:
+        settings.to_signal_settings()
+    except InvalidValueError as error:
+        raise InvalidValueError(error.message, f"/signals/{error.pointer}") from error
+    for name in settings.nodes:
+        if name not in model.nodes:
+            raise InvalidValueError(f"there is no node {name!r}", f"/nodes/{name}")
     return settings
 
 

@@ -7,18 +7,17 @@ from typing import Any, TypeVar
 
 import httpx
 
-from api.app import create_app
+from api.app import close_workers, create_app
 from domain.findings import Finding
-from domain.simulation.mock_signals import MockSignals
 from domain.simulation.node_settings import Fault, NodeSettings
-from domain.simulation.nodes import SimulatedNodes
-from domain.supervision import Supervision, SupervisionSettings
+from domain.simulation.robot import SimulatedRobot
+from domain.simulation.vehicle_settings import VehicleSettings
+from domain.supervision import SupervisionSettings
 from domain.system_model import PartName
 from service.backends.simulated import SimulatedBackend
 from service.files.model_file import LoadedModel, read_model
-from service.mock_source import MockSource
 from service.supervisor import Supervisor
-from tests.support.live_robot import running
+from tests.support.live_robot import make_onboard, running
 from tests.support.manual_clock import ManualClock, settle
 
 ACTUATION = """\
@@ -59,19 +58,21 @@ class HttpRobot:
         mock: bool = True,
         settings: SupervisionSettings | None = None,
         nodes: Mapping[str, NodeSettings] | None = None,
+        vehicle: VehicleSettings | None = None,
         warnings: Sequence[Finding] = (),
     ) -> None:
         self.clock = ManualClock()
         model = read_model(text).model
         by_name = {PartName(name): setting for name, setting in (nodes or {}).items()}
-        self.backend = SimulatedBackend(SimulatedNodes(model, by_name, 0), self.clock)
+        robot = SimulatedRobot(model, 0, by_name, vehicle, mock=mock)
+        self.backend = SimulatedBackend(robot, self.clock)
         self.supervisor = Supervisor(
             LoadedModel(model, tuple(warnings), text),
-            Supervision(model, settings or SupervisionSettings(), 0),
+            make_onboard(model, 0, settings),
             self.clock,
             self.backend,
-            MockSource(MockSignals(0), self.clock) if mock else None,
-            simulated=("nodes", "signals") if mock else ("nodes",),
+            self.backend.mock,
+            simulated=robot.what,
         )
         self.app = create_app(self.supervisor, allowed_hosts=["robot"])
         transport = httpx.ASGITransport(self.app)
@@ -113,7 +114,7 @@ async def http_robot(text: str = ACTUATION, **options: Any) -> AsyncIterator[Htt
     robot = HttpRobot(text, **options)
     async with running(robot.supervisor), robot.http:
         yield robot
-    await robot.app.state.worker.close()
+    await close_workers(robot.app)
 
 
 def http_scope(method: str, path: str, query: str = "", **headers: str) -> dict[str, Any]:

@@ -5,13 +5,14 @@ from collections.abc import AsyncIterator, Sequence
 from contextlib import asynccontextmanager
 
 from domain.findings import Finding
-from domain.simulation.mock_signals import MockSignals
-from domain.simulation.nodes import SimulatedNodes
+from domain.navigation import Navigation, NavigationSettings
+from domain.onboard import Onboard
+from domain.simulation.robot import SimulatedRobot
 from domain.supervision import Supervision, SupervisionSettings
 from domain.system_model import SmhModel
+from domain.timebase import Instant
 from service.backends.simulated import SimulatedBackend
 from service.files.model_file import LoadedModel
-from service.mock_source import MockSource
 from service.supervisor import Supervisor
 from tests.support.manual_clock import ManualClock
 from tests.support.models import actuation_model
@@ -29,14 +30,25 @@ def make_supervisor(
     clock = clock or ManualClock()
     model = model or actuation_model()
     now = clock.now()
+    robot = SimulatedRobot(model, now, mock=mock)
+    backend = SimulatedBackend(robot, clock)
     return Supervisor(
         LoadedModel(model=model, warnings=tuple(warnings), text=""),
-        Supervision(model, SupervisionSettings(), now),
+        make_onboard(model, now),
         clock,
-        SimulatedBackend(SimulatedNodes(model, {}, now), clock),
-        MockSource(MockSignals(now), clock) if mock else None,
-        simulated=("nodes", "signals"),
+        backend,
+        backend.mock,
+        simulated=robot.what,
     )
+
+
+def make_onboard(
+    model: SmhModel, start: Instant, settings: SupervisionSettings | None = None
+) -> Onboard:
+    """Return supervision and navigation with what is usual."""
+    settings = settings or SupervisionSettings()
+    navigation = Navigation(settings.vehicle, NavigationSettings())
+    return Onboard(Supervision(model, settings, start), navigation)
 
 
 @asynccontextmanager

@@ -5,32 +5,34 @@ from typing import Any
 
 from domain.lifecycle import Transition
 from domain.messages import (
+    CancelTaskRequest,
     ChangeId,
+    Command,
     EmergencyStopRequest,
     Event,
+    HoldRequest,
     Input,
     ModeRequest,
     Outputs,
+    PreemptGoal,
     Reading,
     Readings,
+    ReleaseRequest,
+    SendGoal,
     SignalValue,
+    TaskRequest,
     TimePassed,
     TransitionRequest,
 )
+from domain.paths.path import Path
 from domain.simulation.node_settings import Fault, NodeSettings
-from domain.simulation.nodes import SimulatedNodes
-from domain.snapshot import ChangeView
-from domain.supervision import Supervision, SupervisionSettings
+from domain.simulation.robot import SimulatedRobot
+from domain.simulation.vehicle_settings import VehicleSettings
+from domain.snapshot import ChangeView, TaskView
+from domain.supervision import SupervisionSettings
 from domain.system_model import PartName, SmhModel
 from domain.timebase import Instant, seconds
-
-GOOD: Mapping[str, SignalValue] = {
-    "battery_level": 1.0,
-    "estop": False,
-    "gps_accuracy": 100.0,
-    "signal_strength": "CONNECTED",
-    "temperature": 30.0,
-}
+from tests.support.live_robot import make_onboard
 
 
 class VirtualRobot:
@@ -42,38 +44,45 @@ class VirtualRobot:
         settings: SupervisionSettings | None = None,
         nodes: Mapping[str, NodeSettings] | None = None,
         start: Instant = 0,
+        vehicle: VehicleSettings | None = None,
     ) -> None:
         self.now = start
         self.model = model
-        self.core = Supervision(model, settings or SupervisionSettings(), start)
+        self.onboard = make_onboard(model, start, settings)
+        self.core = self.onboard.core
         by_name = {PartName(name): setting for name, setting in (nodes or {}).items()}
-        self.nodes = SimulatedNodes(model, by_name, start)
+        self.robot = SimulatedRobot(model, start, by_name, vehicle)
+        self.nodes = self.robot.nodes
         self.events: list[Event] = []
+        self.commands: list[Command] = []
+        """What was sent to nodes and vehicle."""
         self.advance(0)
 
     def give(self, given: Input) -> Outputs:
         """Hand one input to the core, and what it asks to the nodes."""
-        outputs = self.core.handle(given, self.now)
+        outputs = self.onboard.handle(given, self.now)
         self.events += outputs.events
         for command in outputs.commands:
-            self.nodes.handle(command, self.now)
+            assert not isinstance(command, SendGoal | PreemptGoal), "goals stay on board"
+            self.commands.append(command)
+            self.robot.handle(command, self.now)
         return outputs
 
     def advance(self, duration_s: float) -> None:
-        """Let time pass; everything due happens at its own time, the nodes first."""
+        """Let time pass; everything due happens at its own time, the robot's part first."""
         end = self.now + seconds(duration_s)
         while True:
-            due = [at for at in (self.nodes.wake_at(), self.core.wake_at()) if at is not None]
-            if not due or min(due) > end:
+            due = [at for at in (self.robot.wake_at(), self.onboard.wake_at()) if at is not None]
+            if min(due) > end:
                 break
             self.now = max(self.now, min(due))
-            for message in self.nodes.advance(self.now):
+            for message in self.robot.advance(self.now):
                 self.give(message)
             self._let_core_wake()
         self.now = end
 
     def _let_core_wake(self) -> None:
-        due = self.core.wake_at()
+        due = self.onboard.wake_at()
         if due is not None and due <= self.now:
             self.give(TimePassed())
 
@@ -96,6 +105,29 @@ class VirtualRobot:
         """Press or release the emergency stop."""
         return self.give(EmergencyStopRequest(engaged, "test", "operator"))
 
+    def serve(
+        self, path: Path, controller: str = "pure_pursuit", speed_mps: float = 2.8
+    ) -> Outputs:
+        """Serve a task from the first waypoint on."""
+        return self.give(TaskRequest(path, 0, controller, speed_mps, "operator"))
+
+    def cancel(self) -> Outputs:
+        """Cancel the task."""
+        return self.give(CancelTaskRequest("operator"))
+
+    def hold(self, owner: str = "operator", reason: str = "lunch") -> Outputs:
+        """Hold the task."""
+        return self.give(HoldRequest(owner, reason, "operator"))
+
+    def release(self, owner: str = "operator") -> Outputs:
+        """Let go of a hold."""
+        return self.give(ReleaseRequest(owner, "operator"))
+
+    def lose_pose(self, *, lost: bool = True) -> None:
+        """Let the vehicle stop telling where it is, or tell it again."""
+        self.robot.vehicle.set_reporting(not lost, self.now)
+        self.advance(0)
+
     def fault(self, node: str, fault: Fault | None) -> None:
         """Let something be wrong with a node."""
         self.nodes.set_fault(PartName(node), fault, self.now)
@@ -115,6 +147,11 @@ class VirtualRobot:
     def change(self, identity: str) -> ChangeView:
         """Return a change."""
         return self.core.change(identity)
+
+    @property
+    def task(self) -> TaskView:
+        """Return the task that was served last."""
+        return next(iter(self.core.driving.tasks()))
 
     def steps(self, identity: str) -> list[tuple[str, str, str]]:
         """Return node, action and status of each step of a change."""

@@ -12,8 +12,9 @@ from domain.simulation.node_settings import Fault, NodeSettings
 from domain.snapshot import ChangeStatus, StepStatus
 from domain.system_model import DEFAULT_MODE, NodeModel, SmhModel
 from domain.timebase import seconds
+from tests.support.good import GOOD
 from tests.support.models import ACTUATION, ARM, BASE, FAST, SLOW, actuation_model, nested_model
-from tests.support.virtual_robot import GOOD, VirtualRobot
+from tests.support.virtual_robot import VirtualRobot
 
 
 @pytest.fixture

@@ -4,12 +4,12 @@ import pytest
 
 from domain.health.health_events import HealthEvents
 from domain.health.signals import default_signals
-from domain.health.state_manager import StateManager
+from domain.health.state_manager import HealthChanges, StateManager
 from domain.messages import Event, Outputs, Reading, Readings, SignalValue
 from domain.outbox import Outbox
 from domain.snapshot import TaskStatus
 from domain.timebase import seconds
-from tests.support.virtual_robot import GOOD
+from tests.support.good import GOOD
 
 
 class Health:
@@ -21,13 +21,14 @@ class Health:
         self.told = HealthEvents(self.manager, self.outbox)
         self.events: dict[int, Event] = {}
         self.now = 0
+        self.task_status = TaskStatus.NO_TASK
         self.last = Outputs()
 
     def read(self, stamp: int | None = None, /, **values: SignalValue) -> list[Event]:
         self.outbox.begin(self.now, "signal.read")
         items = tuple(Reading(name, value, stamp) for name, value in values.items())
         changes = self.manager.receive(Readings(items, "test"), self.now)
-        self.told.publish(changes, TaskStatus.NO_TASK)
+        self._tell(changes)
         return self._taken()
 
     def keep_reading(self, duration_s: float, **values: SignalValue) -> list[Event]:
@@ -44,7 +45,7 @@ class Health:
         while (due := self.manager.wake_at()) is not None and due <= end:
             self.now = due
             self.outbox.begin(due, "time.passed")
-            self.told.publish(self.manager.pass_time(due), TaskStatus.NO_TASK)
+            self._tell(self.manager.pass_time(due))
             events += self._taken()
         self.now = end
         return events
@@ -53,6 +54,10 @@ class Health:
         while event.cause is not None:
             event = self.events[event.cause]
         return event.kind
+
+    def _tell(self, changes: HealthChanges) -> None:
+        cause = self.told.publish(changes)
+        self.told.tell_state(self.task_status, cause)
 
     def _taken(self) -> list[Event]:
         self.last = self.outbox.take()
@@ -202,7 +207,23 @@ def test_signals_whose_view_changed_are_named() -> None:
     health = Health()
     changes = health.manager.receive(Readings((Reading("estop", False),), "test"), 0)
     health.outbox.begin(0, "signal.read")
-    health.told.publish(changes, TaskStatus.NO_TASK)
+    health.told.publish(changes)
     outputs = health.outbox.take()
     assert outputs.signals == {"estop"}
     assert not outputs.system_state, "one reason less, and the same errors"
+
+
+def test_a_task_makes_an_idle_robot_a_running_one(health: Health) -> None:
+    health.task_status = TaskStatus.RUNNING_TASK
+    changed = _only(health.read(**GOOD), "system_state.changed")
+
+    assert (changed.data["was"], changed.data["state"]) == ("IDLE", "RUNNING")
+
+
+def test_a_task_that_pauses_is_told_though_the_robot_goes_on_running(health: Health) -> None:
+    health.task_status = TaskStatus.RUNNING_TASK
+    health.read(**GOOD)
+    health.task_status = TaskStatus.PAUSED_TASK
+
+    assert health.read(**GOOD) == []
+    assert health.last.system_state

@@ -1,0 +1,51 @@
+"""Holds: who keeps the vehicle from driving its task, and why."""
+
+from http import HTTPStatus
+from typing import Annotated
+
+from fastapi import APIRouter, Body, Path, Response
+
+from api.dependencies import ActorDep, SupervisorDep
+from api.json_route import JsonRoute
+from api.schemas.tasks import HoldBody, HoldJson, HoldsJson
+from domain.messages import HoldRequest, ReleaseRequest
+
+router = APIRouter(prefix="/holds", tags=["drive"], route_class=JsonRoute)
+
+OwnerPath = Annotated[
+    str,
+    Path(
+        pattern=r"^[a-zA-Z0-9][a-zA-Z0-9_.-]{0,63}$",
+        description="Any name but `error` and `vehicle`, which are Pilothouse's own",
+        examples=["operator"],
+    ),
+]
+
+
+@router.get("")
+async def list_holds(supervisor: SupervisorDep) -> HoldsJson:
+    """List the holds, the oldest first; a task runs only without any."""
+    clock = supervisor.clock
+    holds = supervisor.core.driving.holds.values()
+    return HoldsJson(items=[HoldJson.of(hold, clock) for hold in holds])
+
+
+@router.put("/{owner}")
+async def set_hold(
+    owner: OwnerPath,
+    supervisor: SupervisorDep,
+    actor: ActorDep,
+    body: Annotated[HoldBody, Body(default_factory=HoldBody)],
+) -> HoldJson:
+    """Hold the task: speed 0 is commanded at once. To repeat it renews the reason only.
+
+    A hold lasts until its owner lets go, whatever task is served in between.
+    """
+    supervisor.submit(HoldRequest(owner, body.reason, actor))
+    return HoldJson.of(supervisor.core.driving.holds[owner], supervisor.clock)
+
+
+@router.delete("/{owner}", status_code=HTTPStatus.NO_CONTENT, response_class=Response)
+async def release_hold(owner: OwnerPath, supervisor: SupervisorDep, actor: ActorDep) -> None:
+    """Let go; with the last hold the task goes on. Nothing happens if there is no such hold."""
+    supervisor.submit(ReleaseRequest(owner, actor))

@@ -1,0 +1,135 @@
+"""Runs a scenario: steps at their times, samples on a grid, everything due in between."""
+
+import asyncio
+import heapq
+from collections.abc import Callable, Iterator
+from itertools import chain
+from typing import Any
+
+from pydantic_core import from_json
+
+from api.schemas.simulation import (
+    DifferenceJson,
+    ExpectationJson,
+    ExpectStep,
+    ReadingStep,
+    RefusalJson,
+    SimulationBody,
+)
+from api.simulation.expectations import differences
+from api.simulation.samples import Sampler
+from api.simulation.steps import Actors
+from domain.timebase import NANOSECONDS_PER_SECOND, Duration, seconds, to_seconds
+from service.virtual_robot import VirtualRobot
+
+MAX_REFUSALS = 1_000
+"""More of them are not told."""
+
+
+class Simulation:
+    """One scenario on one robot; `run` it once, then look at what came of it.
+
+    At one instant, what is due comes first, then the steps in their order, each with what follows
+    from it at once, then the sample. Only the sample at the begin comes before the first step.
+    """
+
+    def __init__(self, body: SimulationBody, robot: VirtualRobot) -> None:
+        self._body = body
+        self._robot = robot
+        self._begin = robot.clock.now()
+        self._sampler = Sampler(robot.supervisor)
+        self.samples: list[str] = []
+        """As JSON."""
+        self.refusals: list[RefusalJson] = []
+        self.expectations: list[ExpectationJson] = []
+
+    def run(self, progress: Callable[[float], None] = lambda _: None) -> None:
+        """Let the scenario happen from begin to end.
+
+        Args:
+            progress: Is told now and then how many seconds of it are over.
+
+        Raises:
+            TooComplexError: More happens than can be told.
+        """
+        with asyncio.Runner() as runner:
+            actors = Actors(self._robot, runner)
+            self._advance(0)
+            self._take_sample(0)
+            samples = iter(self._sample_times())
+            next_sample = next(samples, None)
+            for at, index in self._timeline():
+                while next_sample is not None and next_sample < at:
+                    self._advance(next_sample)
+                    self._take_sample(next_sample)
+                    progress(to_seconds(next_sample))
+                    next_sample = next(samples, None)
+                self._advance(at)
+                if index is not None:
+                    self._let_happen(actors, index, at)
+            if next_sample is not None:
+                self._take_sample(next_sample)
+            progress(self._body.until_s)
+
+    def as_json(self) -> str:
+        """Return what came of it as `SimulationJson`."""
+        refusals = ",".join(item.model_dump_json(exclude_unset=True) for item in self.refusals)
+        expectations = ",".join(item.model_dump_json() for item in self.expectations)
+        return (
+            f'{{"samples":[{",".join(self.samples)}],'
+            f'"events":[{",".join(self._sampler.event_texts())}],'
+            f'"refusals":[{refusals}],"expectations":[{expectations}]}}'
+        )
+
+    def _timeline(self) -> Iterator[tuple[Duration, int | None]]:
+        """Yield each time with the step that happens at it, in order, and last the end."""
+        end = seconds(self._body.until_s)
+        coming = [(seconds(step.t_s), index, 0) for index, step in enumerate(self._body.steps)]
+        heapq.heapify(coming)
+        while coming and coming[0][0] <= end:
+            at, index, count = heapq.heappop(coming)
+            yield at, index
+            step = self._body.steps[index]
+            if isinstance(step, ReadingStep) and step.repeat_hz is not None:
+                count += 1
+                if count < step.count(self._body.until_s):
+                    later = round(count * NANOSECONDS_PER_SECOND / step.repeat_hz)
+                    heapq.heappush(coming, (seconds(step.t_s) + later, index, count))
+        yield end, None
+
+    def _sample_times(self) -> Iterator[Duration]:
+        """Yield when samples are taken, after the one at the begin."""
+        period = seconds(self._body.sample_period_s)
+        end = seconds(self._body.until_s)
+        return iter(range(period, end + 1, period)) if period else iter(())
+
+    def _advance(self, at: Duration) -> None:
+        self._robot.advance_to(self._begin + at)
+        self._sampler.collect_events()
+
+    def _let_happen(self, actors: Actors, index: int, at: Duration) -> None:
+        step = self._body.steps[index]
+        if isinstance(step, ExpectStep):
+            found = list(self._compare(step, at))
+            self.expectations.append(
+                ExpectationJson(step=index, t_s=to_seconds(at), differences=found)
+            )
+            return
+        problem = actors.act(step)
+        if problem is not None and len(self.refusals) < MAX_REFUSALS:
+            self.refusals.append(RefusalJson(step=index, t_s=to_seconds(at), problem=problem))
+        self._advance(at)
+
+    def _take_sample(self, at: Duration) -> None:
+        self.samples.append(self._sampler.sample(to_seconds(at), len(self.samples)))
+
+    def _compare(self, step: ExpectStep, at: Duration) -> Iterator[DifferenceJson]:
+        """Compare with a sample of now, with the last task where there is none, and with events."""
+        expected = dict(step.expect)
+        events = expected.pop("events", {})
+        seen: dict[str, Any] = from_json(self._sampler.sample(to_seconds(at), 0))
+        last = next(self._robot.supervisor.core.driving.tasks(), None)
+        seen["last_task"] = None if last is None else from_json(self._sampler.task_text(last))
+        counts = self._sampler.counts()
+        happened = {kind: counts[kind] for kind in chain(events, counts)}
+        return chain(differences(expected, seen), differences(events, happened, "events"))

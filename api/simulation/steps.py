@@ -1,0 +1,93 @@
+"""Lets the steps of a scenario happen to a robot in virtual time."""
+
+import asyncio
+
+from api.posted_tasks import task_of
+from api.problems import Problem, problem_of
+from api.routes.tasks import serve
+from api.schemas.simulation import (
+    AnyStep,
+    ChangeStep,
+    NodeStep,
+    ReadingStep,
+    RequestStep,
+    TaskStep,
+    VehicleStep,
+)
+from api.simulation.requests import Requests
+from domain.errors import PilothouseError
+from domain.lifecycle import Transition
+from domain.messages import (
+    CancelTaskRequest,
+    ModeRequest,
+    Reading,
+    TransitionRequest,
+)
+from domain.system_model import part_name
+from domain.timebase import seconds
+from service.virtual_robot import VirtualRobot
+
+_ACTOR = "simulation"
+
+
+class Actors:
+    """Whoever does something in a scenario: sensors, operators, faults."""
+
+    def __init__(self, robot: VirtualRobot, runner: asyncio.Runner) -> None:
+        self._robot = robot
+        self._runner = runner
+        self._requests: Requests | None = None
+
+    def act(self, step: AnyStep) -> Problem | None:
+        """Let one step happen; return why it was refused, or None."""
+        try:
+            match step:
+                case RequestStep():
+                    return self._send(step)
+                case ReadingStep():
+                    self._read(step)
+                case TaskStep():
+                    self._drive(step)
+                case ChangeStep():
+                    self._change(step)
+                case NodeStep():
+                    self._disturb(step)
+                case VehicleStep():
+                    reports = step.vehicle == "recover"
+                    self._robot.backend.set_vehicle_reporting(reports)
+        except PilothouseError as error:
+            return problem_of(error, self._robot.clock)
+        return None
+
+    def _read(self, step: ReadingStep) -> None:
+        stamp = None
+        if step.stamp_offset_s is not None:
+            stamp = self._robot.clock.now() + seconds(step.stamp_offset_s)
+        readings = [Reading(signal, value, stamp) for signal, value in step.reading.items()]
+        self._robot.supervisor.submit_readings(readings, step.source, _ACTOR)
+
+    def _drive(self, step: TaskStep) -> None:
+        if step.task is None:
+            self._robot.supervisor.submit(CancelTaskRequest(_ACTOR))
+        else:
+            serve(self._robot.supervisor, task_of(step.task), _ACTOR)
+
+    def _change(self, step: ChangeStep) -> None:
+        asked, part = step.change, part_name(step.change.part)
+        if asked.transition is None:
+            request: ModeRequest | TransitionRequest = ModeRequest(part, asked.mode or "", _ACTOR)
+        else:
+            request = TransitionRequest(part, Transition(asked.transition), _ACTOR)
+        self._robot.supervisor.submit(request)
+
+    def _disturb(self, step: NodeStep) -> None:
+        node = part_name(step.node)
+        if step.parameters is None:
+            self._robot.backend.set_fault(node, step.set_fault)
+        else:
+            self._robot.backend.set_parameters(node, step.parameters)
+
+    def _send(self, step: RequestStep) -> Problem | None:
+        if self._requests is None:
+            self._requests = Requests(self._robot.supervisor, self._runner)
+        return self._requests.send(step.request)

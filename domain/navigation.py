@@ -1,0 +1,213 @@
+"""Follows one path at a time: goal, feedback, preempt, result, as an action server does.
+
+Deterministic and advanced like the simulated robot. It decides nothing about whether to drive; it
+ends a goal by itself where going on would be wrong. After a preemption not one command follows.
+
+Source: smart_polaris, `controller_action_interface.py`; limits: SEMANTICS section 5.
+"""
+
+import math
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
+from typing import TypeAlias
+
+from domain.errors import PilothouseError
+from domain.messages import (
+    Drive,
+    GoalFeedback,
+    GoalResult,
+    PreemptGoal,
+    SendGoal,
+    VehicleReport,
+)
+from domain.paths.speed_profile import SpeedLimits, SpeedProfile
+from domain.timebase import Duration, Instant, seconds, to_seconds
+from domain.tracking.tracker import ControlStep, PathTracker
+from domain.tracking.trackers import TRACKERS
+from domain.vehicle import DriveCommand, VehicleLimits, VehicleState
+
+PERIOD: Duration = seconds(0.05)
+"""Of control."""
+
+COVERED_SHARE = 0.95
+"""More of the length than this has to be covered before a goal can succeed."""
+
+NavigationMessage: TypeAlias = Drive | GoalFeedback | GoalResult
+Trackers: TypeAlias = Mapping[str, Callable[[VehicleLimits], PathTracker]]
+
+
+@dataclass(frozen=True, slots=True)
+class NavigationSettings:
+    """When a goal is given up, and how fast may be driven."""
+
+    max_cross_track_m: float = 3.0
+    max_cross_track_for: Duration = seconds(1.0)
+    """A larger error than `max_cross_track_m` for so long ends the goal."""
+    no_progress_for: Duration = seconds(20.0)
+    """So long without `least_progress_m` ends the goal."""
+    least_progress_m: float = 0.05
+    end_tolerance_m: float = 0.3
+    """Standing within this of the last waypoint is arriving."""
+    standstill_mps: float = 0.05
+    pose_stale_after: Duration = seconds(0.3)
+    speed: SpeedLimits = field(default_factory=SpeedLimits)
+
+
+@dataclass(slots=True)
+class _Run:
+    """One goal while it is followed."""
+
+    goal: SendGoal
+    tracker: PathTracker
+    profile: SpeedProfile
+    next_at: Instant
+    target_index: int
+    speed_mps: float
+    """Commanded last; a command rises from it by the acceleration at most."""
+    best_m: float
+    """Furthest along the path so far, in steps that count as progress."""
+    best_at: Instant
+    off_path_since: Instant | None = None
+
+
+class _GivenUpError(Exception):
+    """Going on would be wrong; the message says why."""
+
+
+class Navigation:
+    """One vehicle's navigation; the newest goal replaces the one before.
+
+    What `now` is given must never fall.
+    """
+
+    def __init__(
+        self,
+        limits: VehicleLimits,
+        settings: NavigationSettings,
+        trackers: Trackers = TRACKERS,
+    ) -> None:
+        self._limits = limits
+        self.settings = settings
+        self._trackers = trackers
+        self._state: VehicleState | None = None
+        self._state_at: Instant = 0
+        self._run: _Run | None = None
+
+    def take_report(self, report: VehicleReport, now: Instant) -> None:
+        """Learn where the vehicle is; the report was checked by the supervision."""
+        self._state, self._state_at = report.state, now
+
+    def handle(self, command: SendGoal | PreemptGoal, now: Instant) -> None:
+        """Take a goal, whose first control step is due at once, or drop it."""
+        if isinstance(command, PreemptGoal):
+            if self._run is not None and self._run.goal.goal == command.goal:
+                self._run = None
+            return
+        speed = 0.0 if self._state is None else max(self._state.speed_mps, 0.0)
+        self._run = _Run(
+            goal=command,
+            tracker=self._trackers[command.controller](self._limits),
+            profile=SpeedProfile(
+                command.path, command.speed_mps, self.settings.speed, self._limits
+            ),
+            next_at=now,
+            target_index=command.start_index,
+            speed_mps=speed,
+            best_m=-math.inf,
+            best_at=now,
+        )
+
+    def wake_at(self) -> Instant | None:
+        """Return when the next control step is due; None: there is no goal."""
+        return None if self._run is None else self._run.next_at
+
+    def advance(self, now: Instant) -> tuple[NavigationMessage, ...]:
+        """Do the control step that is due by now, if one is; a late one is not made up for."""
+        run = self._run
+        if run is None or run.next_at > now:
+            return ()
+        run.next_at += ((now - run.next_at) // PERIOD + 1) * PERIOD
+        try:
+            return self._control(run, now)
+        except _GivenUpError as error:
+            self._run = None
+            return (GoalResult(run.goal.goal, succeeded=False, reason=str(error)),)
+
+    def _control(self, run: _Run, now: Instant) -> tuple[NavigationMessage, ...]:
+        """Steer by one step.
+
+        Raises:
+            _GivenUpError: A limit was reached.
+        """
+        state = self._fresh_state(now)
+        step = self._steer(run, state)
+        self._judge(run, step, now)
+        run.target_index = step.target_index
+        command = self._command(run, step)
+        feedback = GoalFeedback(
+            run.goal.goal,
+            step.target_index,
+            step.distance_m,
+            step.cross_track_error_m,
+            step.lookahead,
+            command,
+        )
+        if self._has_arrived(run, step, state):
+            self._run = None
+            return feedback, GoalResult(run.goal.goal, succeeded=True)
+        return Drive(command), feedback
+
+    def _fresh_state(self, now: Instant) -> VehicleState:
+        limit = self.settings.pose_stale_after
+        if self._state is None or now - self._state_at > limit:
+            raise _GivenUpError(f"no pose of the vehicle for {to_seconds(limit):g} s")
+        return self._state
+
+    def _steer(self, run: _Run, state: VehicleState) -> ControlStep:
+        """Ask the tracker; whatever is wrong with it or its answer ends the goal."""
+        try:
+            step = run.tracker.control_step(state, run.goal.path, run.target_index)
+        except (ArithmeticError, LookupError, ValueError, PilothouseError) as error:
+            raise _GivenUpError(f"{run.goal.controller} failed: {error}") from error
+        if not math.isfinite(step.steering_angle_rad):
+            raise _GivenUpError(f"{run.goal.controller} commands a number that is not finite")
+        return step
+
+    def _judge(self, run: _Run, step: ControlStep, now: Instant) -> None:
+        settings = self.settings
+        if abs(step.cross_track_error_m) > settings.max_cross_track_m:
+            if run.off_path_since is None:
+                run.off_path_since = now
+            elif now - run.off_path_since >= settings.max_cross_track_for:
+                error_m = abs(step.cross_track_error_m)
+                raise _GivenUpError(
+                    f"{error_m:.1f} m from the path for "
+                    f"{to_seconds(settings.max_cross_track_for):g} s"
+                )
+        else:
+            run.off_path_since = None
+        if step.distance_m >= run.best_m + settings.least_progress_m:
+            run.best_m, run.best_at = step.distance_m, now
+        elif now - run.best_at >= settings.no_progress_for:
+            raise _GivenUpError(f"no progress for {to_seconds(settings.no_progress_for):g} s")
+
+    def _command(self, run: _Run, step: ControlStep) -> DriveCommand:
+        """Return steering within its limit, and a speed that rises no faster than is wanted."""
+        limit = self._limits.max_steering_angle_rad
+        steering = min(max(step.steering_angle_rad, -limit), limit)
+        gained = self.settings.speed.acceleration_mps2 * to_seconds(PERIOD)
+        run.speed_mps = min(run.profile.speed_at(step.distance_m), run.speed_mps + gained)
+        return DriveCommand(run.speed_mps, steering)
+
+    def _has_arrived(self, run: _Run, step: ControlStep, state: VehicleState) -> bool:
+        path = run.goal.path
+        begun = path.distance_of(run.goal.first_index)
+        covered = (step.distance_m - begun) / (path.length_m - begun)
+        if covered <= COVERED_SHARE:
+            return False
+        if step.distance_m >= path.length_m:
+            return True
+        end = path.waypoint(path.count - 1)
+        left_m = math.hypot(end.x_m - state.pose.x_m, end.y_m - state.pose.y_m)
+        stands = abs(state.speed_mps) < self.settings.standstill_mps
+        return stands and left_m <= self.settings.end_tolerance_m

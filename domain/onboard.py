@@ -1,0 +1,108 @@
+"""What runs on board: the supervision and the navigation, and what they say to each other.
+
+One input in, commands for nodes and vehicle and events out. Goals never leave, so that a hold and
+the end of driving are one step.
+"""
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+from domain.messages import (
+    Command,
+    Drive,
+    Input,
+    Outputs,
+    PreemptGoal,
+    SendGoal,
+    TimePassed,
+    VehicleReport,
+)
+from domain.navigation import Navigation
+from domain.supervision import Supervision
+from domain.timebase import Instant
+
+_NOTHING = Outputs()
+
+
+class Onboard:
+    """The core with its navigation.
+
+    At one instant, what the core has due comes before a control step, and both before what arrives.
+    """
+
+    def __init__(self, core: Supervision, navigation: Navigation) -> None:
+        self.core = core
+        self.navigation = navigation
+        self._untold: list[Outputs] = []
+        """What a refused call led to before it was refused."""
+
+    def wake_at(self) -> Instant | None:
+        """Return the next instant at which time alone changes something; None: never."""
+        due = [at for at in (self.core.wake_at(), self.navigation.wake_at()) if at is not None]
+        return min(due, default=None)
+
+    def handle(self, given: Input, now: Instant) -> Outputs:
+        """Take in one input, after letting pass what was due before it, each at its own time.
+
+        Args:
+            given: A fact or a request.
+            now: When it arrived; it never falls.
+
+        Returns:
+            What to do and what was decided; after a refusal, this comes with the next call.
+
+        Raises:
+            PilothouseError: The input is refused; nothing was changed by it.
+        """
+        self._let_pass(now)
+        self._take(given, now)
+        if isinstance(given, VehicleReport):
+            self.navigation.take_report(given, now)
+        gathered, self._untold = self._untold, []
+        return _merged(gathered)
+
+    def _let_pass(self, now: Instant) -> None:
+        while (due := self.navigation.wake_at()) is not None and due <= now:
+            core_due = self.core.wake_at()
+            if core_due is not None and core_due <= due:
+                self._take(TimePassed(), due)
+            self._let_navigation_act(due)
+
+    def _take(self, given: Input, now: Instant) -> None:
+        outputs = self.core.handle(given, now)
+        goals = [c for c in outputs.commands if isinstance(c, SendGoal | PreemptGoal)]
+        if goals:
+            others = tuple(c for c in outputs.commands if not isinstance(c, SendGoal | PreemptGoal))
+            outputs = replace(outputs, commands=others)
+        self._untold.append(outputs)
+        for goal in goals:
+            self.navigation.handle(goal, now)
+        if goals:
+            self._let_navigation_act(now)
+
+    def _let_navigation_act(self, now: Instant) -> None:
+        for message in self.navigation.advance(now):
+            if isinstance(message, Drive):
+                self._untold.append(replace(_NOTHING, commands=(message,)))
+            else:
+                self._take(message, now)
+
+
+def _merged(parts: Sequence[Outputs]) -> Outputs:
+    """Return what several steps led to, in their order."""
+    if len(parts) == 1:
+        return parts[0]
+    commands: list[Command] = []
+    for part in parts:
+        commands += part.commands
+    return Outputs(
+        tuple(commands),
+        tuple(event for part in parts for event in part.events),
+        next((part.change for part in parts if part.change is not None), None),
+        frozenset().union(*(part.parts for part in parts)),
+        frozenset().union(*(part.signals for part in parts)),
+        any(part.system_state for part in parts),
+        next((part.task for part in parts if part.task is not None), None),
+        any(part.task_changed for part in parts),
+        any(part.vehicle_changed for part in parts),
+    )

@@ -1,0 +1,76 @@
+"""The simulated robot: nodes, vehicle and mock signals as one thing that is advanced.
+
+As one, since what several of them say at the same instant has one order then, live and in a
+simulation: nodes, signals, vehicle.
+"""
+
+from collections.abc import Mapping
+from typing import TypeAlias
+
+from domain.messages import Drive, NodeCommand, Readings, VehicleReport
+from domain.simulation.mock_signals import MockSignals
+from domain.simulation.node_settings import NodeSettings
+from domain.simulation.nodes import NodeMessage, SimulatedNodes
+from domain.simulation.vehicle import SimulatedVehicle
+from domain.simulation.vehicle_settings import VehicleSettings
+from domain.system_model import PartName, SmhModel
+from domain.timebase import Instant
+
+RobotMessage: TypeAlias = NodeMessage | Readings | VehicleReport
+
+_NO_NODES: Mapping[PartName, NodeSettings] = {}
+
+
+class SimulatedRobot:
+    """Everything of a robot that can be simulated. What `now` is given must never fall.
+
+    Raises:
+        UnknownPartError: There are settings of a node that the model does not have.
+    """
+
+    def __init__(
+        self,
+        model: SmhModel,
+        start: Instant,
+        nodes: Mapping[PartName, NodeSettings] = _NO_NODES,
+        vehicle: VehicleSettings | None = None,
+        *,
+        mock: bool = False,
+    ) -> None:
+        """Begin at `start`.
+
+        Args:
+            model: Says which nodes there are.
+            start: The present.
+            nodes: Settings of those nodes that differ from the usual.
+            vehicle: None: an ideal one at the origin.
+            mock: Whether the five signals are published as well.
+        """
+        self.nodes = SimulatedNodes(model, nodes, start)
+        self.mock = MockSignals(start) if mock else None
+        self.vehicle = SimulatedVehicle(vehicle or VehicleSettings(), start)
+
+    @property
+    def what(self) -> tuple[str, ...]:
+        """Return what of the robot is simulated, as it is shown."""
+        return ("nodes", "vehicle") if self.mock is None else ("nodes", "signals", "vehicle")
+
+    def handle(self, command: NodeCommand | Drive, now: Instant) -> None:
+        """Take in what a node is asked or the vehicle is told."""
+        if isinstance(command, Drive):
+            self.vehicle.drive(command.command, now)
+        else:
+            self.nodes.handle(command, now)
+
+    def advance(self, now: Instant) -> tuple[RobotMessage, ...]:
+        """Return everything due up to `now`."""
+        readings = () if self.mock is None else self.mock.advance(now)
+        return (*self.nodes.advance(now), *readings, *self.vehicle.advance(now))
+
+    def wake_at(self) -> Instant:
+        """Return when `advance` next has something to say."""
+        due = self.vehicle.wake_at()
+        if self.mock is not None:
+            due = min(due, self.mock.wake_at())
+        nodes = self.nodes.wake_at()
+        return due if nodes is None else min(due, nodes)

@@ -1,0 +1,235 @@
+"""A vehicle that exists only here: a kinematic bicycle with limits, lag, delay and noise.
+
+Deterministic and advanced like the core: the same commands at the same times lead to the same
+reports, whether time passes in one step or in many.
+
+Source: the model of smart_polaris section 12, which is `ks` of the CommonRoad vehicle models.
+"""
+
+import math
+from collections import deque
+from dataclasses import replace
+
+import numpy as np
+
+from domain.messages import VehicleReport
+from domain.simulation.vehicle_settings import Noise, VehicleSettings
+from domain.timebase import Duration, Instant, seconds, to_seconds
+from domain.vehicle import DriveCommand, Pose, VehicleState
+
+COMMAND_VALID_FOR: Duration = seconds(0.5)
+"""After this a vehicle that hears nothing stands still, so that a dead supervisor stops it."""
+
+REPORT_PERIOD: Duration = seconds(0.05)
+
+_STEP: Duration = seconds(0.01)
+_STRAIGHT = 1e-9
+_AT_REST = DriveCommand(0.0, 0.0)
+
+
+class SimulatedVehicle:
+    """One vehicle, its reference the middle of its rear axle. What `now` is given must never fall.
+
+    It reports itself at 20 Hz from `start` on. A command takes effect after the delay of the plant,
+    and is void 0.5 s later; then the vehicle brakes and keeps its steering.
+    """
+
+    def __init__(self, settings: VehicleSettings, start: Instant) -> None:
+        self._limits = settings.limits
+        self._plant = settings.plant
+        self._noise = _NoiseSource(settings.plant.noise)
+        self._state = VehicleState(settings.pose, 0.0, 0.0)
+        self._command = _AT_REST
+        self._expires_at: Instant | None = None
+        self._coming: deque[tuple[Instant, DriveCommand]] = deque()
+        self._at = start
+        """Up to when the state is integrated."""
+        self._reports: list[VehicleReport] = []
+        self._reports_at = start
+        self._next_report = start
+        self._reporting = True
+
+    # --- what is done to it ----------------------------------------------------------------------
+
+    def drive(self, command: DriveCommand, now: Instant) -> None:
+        """Tell it how to drive; what is beyond its limits is cut, what is no number is a stop."""
+        self._catch_up(now)
+        self._coming.append((now + self._plant.delay, self._possible(command)))
+        self._catch_up(now)
+
+    def set_reporting(self, reporting: bool, now: Instant) -> None:
+        """Let it stop telling where it is, as a localization that is lost, or tell it again."""
+        self._catch_up(now)
+        self._reporting = reporting
+
+    # --- what it does ----------------------------------------------------------------------------
+
+    def advance(self, now: Instant) -> tuple[VehicleReport, ...]:
+        """Return the reports due up to `now`."""
+        self._catch_up(now)
+        reports, self._reports = tuple(self._reports), []
+        return reports
+
+    def wake_at(self) -> Instant:
+        """Return when `advance` next has something to say."""
+        return self._reports_at if self._reports else self._next_report
+
+    @property
+    def state(self) -> VehicleState:
+        """Return how it really moves, without noise, at the last time that was told."""
+        return self._state
+
+    @property
+    def command(self) -> DriveCommand:
+        """Return the command in effect."""
+        return self._command
+
+    # --- commands --------------------------------------------------------------------------------
+
+    def _possible(self, command: DriveCommand) -> DriveCommand:
+        numbers = (command.speed_mps, command.steering_angle_rad)
+        if not all(map(math.isfinite, numbers)):
+            return replace(self._command, speed_mps=0.0)
+        top, sharpest = self._limits.max_speed_mps, self._limits.max_steering_angle_rad
+        return DriveCommand(
+            _clipped(command.speed_mps, top), _clipped(command.steering_angle_rad, sharpest)
+        )
+
+    def _take_commands(self, now: Instant) -> None:
+        while self._coming and self._coming[0][0] <= now:
+            at, self._command = self._coming.popleft()
+            self._expires_at = at + COMMAND_VALID_FOR
+            if self._is_ideal:
+                self._state = _following(self._state, self._command)
+        if self._expires_at is not None and self._expires_at <= now:
+            self._expires_at = None
+            self._command = replace(self._command, speed_mps=0.0)
+            if self._is_ideal:
+                self._state = _following(self._state, self._command)
+
+    # --- time ------------------------------------------------------------------------------------
+
+    def _catch_up(self, now: Instant) -> None:
+        """Let happen what is due up to `now`, each at its own time."""
+        while (due := self._next_due()) <= now:
+            self._integrate(due)
+            self._take_commands(due)
+            if due == self._next_report:
+                self._next_report += REPORT_PERIOD
+                if self._reporting:
+                    self._reports.append(VehicleReport(self._noise.added_to(self._state)))
+                    self._reports_at = due
+
+    def _next_due(self) -> Instant:
+        due = self._next_report
+        if self._coming:
+            due = min(due, self._coming[0][0])
+        return due if self._expires_at is None else min(due, self._expires_at)
+
+    def _integrate(self, until: Instant) -> None:
+        """Move up to `until`, in steps on a grid of their own, so that only events part them."""
+        if self._rests:
+            self._at = until
+            return
+        if self._is_ideal:
+            self._move(to_seconds(until - self._at), self._state.speed_mps)
+            self._at = until
+            return
+        while self._at < until:
+            end = min(until, (self._at // _STEP + 1) * _STEP)
+            self._respond(to_seconds(end - self._at))
+            self._at = end
+
+    @property
+    def _is_ideal(self) -> bool:
+        plant = self._plant
+        limits = (plant.acceleration_mps2, plant.braking_mps2, plant.steering_rate_radps)
+        return not any((plant.speed_lag_s, plant.steering_lag_s)) and limits == (None, None, None)
+
+    @property
+    def _rests(self) -> bool:
+        """Tell whether nothing moves and nothing is about to."""
+        state, command = self._state, self._command
+        return (
+            state.speed_mps == 0.0
+            and command.speed_mps == 0.0
+            and state.steering_angle_rad == command.steering_angle_rad
+        )
+
+    def _respond(self, dt_s: float) -> None:
+        """Let speed and steering follow the command for a short time, and move meanwhile."""
+        plant, state, command = self._plant, self._state, self._command
+        speed = state.speed_mps
+        slower = abs(command.speed_mps) < abs(speed) or command.speed_mps * speed < 0.0
+        limit = plant.braking_mps2 if slower else plant.acceleration_mps2
+        new_speed = _approached(speed, command.speed_mps, plant.speed_lag_s, limit, dt_s)
+        steering = _approached(
+            state.steering_angle_rad,
+            command.steering_angle_rad,
+            plant.steering_lag_s,
+            plant.steering_rate_radps,
+            dt_s,
+        )
+        middle = (state.steering_angle_rad + steering) / 2
+        self._state = replace(state, steering_angle_rad=middle)
+        self._move(dt_s, (speed + new_speed) / 2)
+        self._state = VehicleState(self._state.pose, new_speed, steering)
+
+    def _move(self, dt_s: float, speed_mps: float) -> None:
+        """Move along an arc."""
+        pose = self._state.pose
+        way = speed_mps * dt_s
+        curvature = math.tan(self._state.steering_angle_rad) / self._limits.wheelbase_m
+        turn = curvature * way
+        if abs(turn) < _STRAIGHT:
+            x = pose.x_m + way * math.cos(pose.yaw_rad)
+            y = pose.y_m + way * math.sin(pose.yaw_rad)
+        else:
+            x = pose.x_m + (math.sin(pose.yaw_rad + turn) - math.sin(pose.yaw_rad)) / curvature
+            y = pose.y_m - (math.cos(pose.yaw_rad + turn) - math.cos(pose.yaw_rad)) / curvature
+        self._state = replace(self._state, pose=Pose(x, y, _wrapped(pose.yaw_rad + turn)))
+
+
+class _NoiseSource:
+    """Adds the same noise in each run."""
+
+    def __init__(self, noise: Noise) -> None:
+        self._noise = noise
+        self._random = np.random.Generator(np.random.PCG64(noise.seed))
+
+    def added_to(self, state: VehicleState) -> VehicleState:
+        noise = self._noise
+        if not (noise.position_m or noise.yaw_rad or noise.speed_mps):
+            return state
+        x, y, yaw, speed = self._random.standard_normal(4).tolist()
+        pose = Pose(
+            state.pose.x_m + noise.position_m * x,
+            state.pose.y_m + noise.position_m * y,
+            _wrapped(state.pose.yaw_rad + noise.yaw_rad * yaw),
+        )
+        return replace(state, pose=pose, speed_mps=state.speed_mps + noise.speed_mps * speed)
+
+
+def _following(state: VehicleState, command: DriveCommand) -> VehicleState:
+    return VehicleState(state.pose, command.speed_mps, command.steering_angle_rad)
+
+
+def _approached(
+    value: float, target: float, lag_s: float, rate: float | None, dt_s: float
+) -> float:
+    """Return where a first-order lag with a limited rate has come after `dt_s`."""
+    wanted = target - value
+    if lag_s > 0:
+        wanted *= 1 - math.exp(-dt_s / lag_s)
+    if rate is not None:
+        wanted = _clipped(wanted, rate * dt_s)
+    return value + wanted
+
+
+def _clipped(value: float, limit: float) -> float:
+    return min(max(value, -limit), limit)
+
+
+def _wrapped(angle: float) -> float:
+    """Return an angle within -pi and pi."""
+    return math.remainder(angle, math.tau)

@@ -1,0 +1,44 @@
+"""What a simulated vehicle is like: where it begins, how it responds, and what its sensors add."""
+
+from dataclasses import dataclass, field
+
+from domain.timebase import Duration
+from domain.vehicle import Pose, VehicleLimits
+
+ORIGIN = Pose(0.0, 0.0, 0.0)
+
+
+@dataclass(frozen=True, slots=True)
+class Noise:
+    """Standard deviations of what is added to each report; 0: nothing."""
+
+    position_m: float = 0.0
+    yaw_rad: float = 0.0
+    speed_mps: float = 0.0
+    seed: int = 0
+    """Two vehicles with the same seed report the same noise."""
+
+
+@dataclass(frozen=True, slots=True)
+class Plant:
+    """How a vehicle follows its commands; None: at once."""
+
+    acceleration_mps2: float | None = None
+    braking_mps2: float | None = None
+    steering_rate_radps: float | None = None
+    steering_lag_s: float = 0.0
+    """Time constant of the steering, s; 0: none."""
+    speed_lag_s: float = 0.0
+    """Time constant of the speed, s; 0: none."""
+    delay: Duration = 0
+    """From a command to when it takes effect."""
+    noise: Noise = field(default_factory=Noise)
+
+
+@dataclass(frozen=True, slots=True)
+class VehicleSettings:
+    """A simulated vehicle; the usual one is ideal and stands at the origin."""
+
+    pose: Pose = ORIGIN
+    plant: Plant = field(default_factory=Plant)
+    limits: VehicleLimits = field(default_factory=VehicleLimits)

@@ -1,0 +1,71 @@
+"""A task while it runs and after it ended."""
+
+from dataclasses import dataclass
+
+from domain.messages import GoalFeedback, GoalId, TaskId
+from domain.paths.path import Path
+from domain.snapshot import TaskPhase, TaskView
+from domain.timebase import Instant
+
+
+@dataclass(slots=True)
+class Task:
+    """One path to be followed, and how far it is."""
+
+    id: TaskId
+    path: Path
+    controller: str
+    speed_mps: float
+    start_index: int
+    created_at: Instant
+    cause: int
+    phase: TaskPhase = TaskPhase.PAUSED
+    goal: GoalId | None = None
+    """The goal that navigation has; None: it has none of this task."""
+    has_run: bool = False
+    target_index: int = 0
+    distance_m: float = 0.0
+    cross_track_error_m: float | None = None
+    reason: str | None = None
+    ended_at: Instant | None = None
+
+    def __post_init__(self) -> None:
+        self.target_index = self.start_index
+
+    @property
+    def length_m(self) -> float:
+        """Return how long the path is from where the task began."""
+        return self.path.length_m - self.path.distance_of(self.start_index)
+
+    def advance(self, feedback: GoalFeedback) -> None:
+        """Take over how far it is; never backwards."""
+        begun = self.path.distance_of(self.start_index)
+        self.target_index = max(self.target_index, feedback.target_index)
+        self.distance_m = max(self.distance_m, feedback.distance_m - begun)
+        self.cross_track_error_m = feedback.cross_track_error_m
+
+    def end(self, phase: TaskPhase, reason: str | None, now: Instant) -> None:
+        """Record how it ended."""
+        self.phase, self.reason, self.ended_at = phase, reason, now
+        self.goal = None
+
+    def view(self) -> TaskView:
+        """Return this task as it is now."""
+        done = self.phase is TaskPhase.SUCCEEDED
+        return TaskView(
+            id=self.id,
+            status=self.phase,
+            controller=self.controller,
+            speed_mps=self.speed_mps,
+            waypoint_count=self.path.count,
+            length_m=self.length_m,
+            start_index=self.start_index,
+            target_index=self.target_index,
+            progress=1.0 if done else min(self.distance_m / self.length_m, 1.0),
+            distance_m=self.distance_m,
+            cross_track_error_m=self.cross_track_error_m,
+            reason=self.reason,
+            created_at=self.created_at,
+            ended_at=self.ended_at,
+            cause=self.cause,
+        )

@@ -1,0 +1,40 @@
+"""The tasks that can still be asked for: the current one, and those that ended, up to a limit."""
+
+from collections.abc import Iterator
+
+from domain.errors import UnknownTaskError
+from domain.tasks.task import Task
+
+MAX_KEPT = 100
+MAX_KEPT_POINTS = 300_000
+"""Waypoints of all kept tasks together; some 20 MB."""
+
+
+class TaskLog:
+    """Tasks by id, the oldest forgotten first."""
+
+    def __init__(self) -> None:
+        self._tasks: dict[str, Task] = {}
+
+    def add(self, task: Task) -> None:
+        """Keep a task, and forget old ones that are too much; the newest is always kept."""
+        self._tasks[task.id] = task
+        points = sum(kept.path.count for kept in self._tasks.values())
+        while len(self._tasks) > 1 and (len(self._tasks) > MAX_KEPT or points > MAX_KEPT_POINTS):
+            forgotten = self._tasks.pop(next(iter(self._tasks)))
+            points -= forgotten.path.count
+
+    def get(self, identity: str) -> Task:
+        """Return a task.
+
+        Raises:
+            UnknownTaskError: There is none of that id, or it is forgotten.
+        """
+        task = self._tasks.get(identity)
+        if task is None:
+            raise UnknownTaskError("task", identity, tuple(reversed(self._tasks)))
+        return task
+
+    def newest_first(self) -> Iterator[Task]:
+        """Yield all kept tasks."""
+        return reversed(self._tasks.values())

@@ -1,0 +1,273 @@
+"""Decides whether the vehicle drives its task: serve, replace, hold, resume, cancel, end.
+
+A task runs only while there are no holds. A hold takes the goal from navigation and stops the
+vehicle in the same step; when the last one goes, one goal is sent that goes on from the first
+waypoint not yet passed. So each start sends exactly one goal, where smart_polaris sends two.
+
+Source: smart_polaris, `task_planner_node.py`.
+"""
+
+from collections.abc import Iterator
+
+from domain.errors import FarStartError, InvalidValueError, UnknownControllerError
+from domain.messages import (
+    Drive,
+    GoalFeedback,
+    GoalId,
+    GoalResult,
+    PreemptGoal,
+    SendGoal,
+    TaskId,
+    TaskRequest,
+)
+from domain.outbox import Outbox
+from domain.snapshot import TaskPhase, TaskStatus, TaskView
+from domain.tasks.holds import Holds
+from domain.tasks.settings import TaskSettings
+from domain.tasks.task import Task
+from domain.tasks.task_log import TaskLog
+from domain.tasks.vehicle_watch import VehicleWatch
+from domain.timebase import Instant
+from domain.tracking.trackers import TRACKERS
+from domain.vehicle import Point, VehicleLimits
+
+
+class TaskPlanner:
+    """One current task at most, the holds, and the goal that navigation has."""
+
+    def __init__(
+        self,
+        settings: TaskSettings,
+        limits: VehicleLimits,
+        vehicle: VehicleWatch,
+        outbox: Outbox,
+    ) -> None:
+        self.holds = Holds()
+        self._settings = settings
+        self._limits = limits
+        self._vehicle = vehicle
+        self._outbox = outbox
+        self._log = TaskLog()
+        self._current: Task | None = None
+        self._tasks_served = 0
+        self._goals_sent = 0
+
+    # --- tasks -----------------------------------------------------------------------------------
+
+    def check(self, request: TaskRequest) -> None:
+        """Refuse a task that could not be driven.
+
+        Raises:
+            UnknownControllerError: There is no path tracker of that name.
+            InvalidValueError: A start that is no waypoint with a path behind it, or a speed that
+                the vehicle cannot go.
+            FarStartError: It begins too far from the vehicle.
+        """
+        if request.controller not in TRACKERS:
+            raise UnknownControllerError("controller", request.controller, tuple(TRACKERS))
+        path, index = request.path, request.start_index
+        if not 0 <= index < path.count - 1:
+            message = f"start_index {index} is not within 0 to {path.count - 2}"
+            raise InvalidValueError(message, "start_index")
+        if path.distance_of(index) >= path.length_m:
+            raise InvalidValueError("nothing of the path is left from there", "start_index")
+        top = self._limits.max_speed_mps
+        if not 0 < request.speed_mps <= top:
+            message = f"speed {request.speed_mps:g} m/s is not above 0 and at most {top:g} m/s"
+            raise InvalidValueError(message, "speed_mps")
+        if (distance := self._too_far(path.waypoint(index))) is not None:
+            raise FarStartError(distance, self._settings.max_start_distance_m)
+
+    def serve(self, request: TaskRequest, now: Instant) -> TaskId:
+        """Take a checked task in place of the current one, and start it unless it is held."""
+        self._tasks_served += 1
+        task = Task(
+            TaskId(f"t{self._tasks_served}"),
+            request.path,
+            request.controller,
+            request.speed_mps,
+            request.start_index,
+            created_at=now,
+            cause=self._outbox.record_input(),
+        )
+        if self._current is not None:
+            self._drop_goal(self._current)
+            self._end(TaskPhase.CANCELED, f"replaced by {task.id}", now)
+        self._current = task
+        self._log.add(task)
+        served = self._emit("task.served", waypoints=task.path.count, length_m=task.length_m)
+        if self.holds:
+            self._pause(task, served, was_driving=False)
+        else:
+            self._start(task, served, now)
+        return task.id
+
+    def cancel(self, now: Instant) -> None:
+        """End the current task, if there is one, and stop."""
+        if self._current is not None:
+            self._drop_goal(self._current)
+            self._stop()
+            self._end(TaskPhase.CANCELED, "canceled", now)
+
+    # --- holds -----------------------------------------------------------------------------------
+
+    def hold(
+        self, owner: str, reason: str, by: str, now: Instant, cause: int | None = None
+    ) -> None:
+        """Set a hold, and stop in the same step; to repeat it only renews its reason."""
+        if not self.holds.set(owner, reason, by, now):
+            self._renew_reason()
+            return
+        task = self._current
+        was_driving = task is not None and self._drop_goal(task)
+        self._stop()
+        data = {"owner": owner, "reason": reason}
+        held = self._outbox.emit("hold.set", data, cause)
+        if task is not None and task.phase is TaskPhase.RUNNING:
+            self._pause(task, held, was_driving=was_driving)
+        self._renew_reason()
+
+    def release(self, owner: str, now: Instant, cause: int | None = None) -> None:
+        """Clear a hold; with the last one the task goes on, also while it is still pausing."""
+        if not self.holds.release(owner):
+            return
+        released = self._outbox.emit("hold.released", {"owner": owner}, cause)
+        self._renew_reason()
+        if self._current is not None and not self.holds:
+            self._start(self._current, released, now)
+
+    # --- what navigation and the vehicle say -----------------------------------------------------
+
+    def take_feedback(self, feedback: GoalFeedback) -> None:
+        """Take over how far the goal is; what comes late of another goal is void."""
+        task = self._current
+        if task is None or task.goal != feedback.goal:
+            return
+        task.advance(feedback)
+        self._vehicle.told(feedback.command, feedback.lookahead)
+        self._outbox.task_changed = True
+
+    def take_result(self, result: GoalResult, now: Instant) -> None:
+        """End the task as navigation ended its goal, and stop."""
+        task = self._current
+        if task is None or task.goal != result.goal:
+            return
+        self._stop()
+        phase = TaskPhase.SUCCEEDED if result.succeeded else TaskPhase.ABORTED
+        self._end(phase, result.reason or None, now)
+
+    def note_standstill(self) -> None:
+        """Learn that the vehicle was seen to stand still."""
+        task = self._current
+        if task is not None and task.phase is TaskPhase.PAUSING:
+            task.phase = TaskPhase.PAUSED
+            self._emit("task.paused", reason=task.reason)
+
+    # --- what can be seen ------------------------------------------------------------------------
+
+    @property
+    def status(self) -> TaskStatus:
+        """Return whether there is a task, and whether it runs.
+
+        Source: smart_polaris, `TaskPlannerStatus.msg`.
+        """
+        if self._current is None:
+            return TaskStatus.NO_TASK
+        running = self._current.phase is TaskPhase.RUNNING
+        return TaskStatus.RUNNING_TASK if running else TaskStatus.PAUSED_TASK
+
+    @property
+    def current(self) -> TaskView | None:
+        """Return the current task."""
+        return None if self._current is None else self._current.view()
+
+    def task(self, identity: str) -> Task:
+        """Return a task.
+
+        Raises:
+            UnknownTaskError: There is none of that id, or it is forgotten.
+        """
+        return self._log.get(identity)
+
+    def tasks(self) -> Iterator[TaskView]:
+        """Yield the tasks that are kept, the newest first."""
+        return (task.view() for task in self._log.newest_first())
+
+    # --- inside ----------------------------------------------------------------------------------
+
+    def _start(self, task: Task, cause: int, now: Instant) -> None:
+        """Send one goal.
+
+        Where the vehicle was unknown when the task was served, its start is judged now.
+        """
+        distance = None if task.has_run else self._too_far(task.path.waypoint(task.start_index))
+        if distance is not None:
+            limit_m = self._settings.max_start_distance_m
+            reason = FarStartError(distance, limit_m).message
+            self._end(TaskPhase.ABORTED, reason, now, cause)
+            return
+        self._goals_sent += 1
+        task.goal = GoalId(self._goals_sent)
+        task.phase, task.reason = TaskPhase.RUNNING, None
+        kind = "task.resumed" if task.has_run else "task.started"
+        task.has_run = True
+        self._emit(kind, cause, goal=task.goal, target_index=task.target_index)
+        self._outbox.command(
+            SendGoal(
+                task.goal,
+                task.path,
+                task.start_index,
+                task.target_index,
+                task.controller,
+                task.speed_mps,
+            )
+        )
+
+    def _pause(self, task: Task, cause: int, *, was_driving: bool) -> None:
+        """Wait for the end of the holds; what was driven until now is not known to stand yet."""
+        stands = self._vehicle.stands and not was_driving
+        task.phase = TaskPhase.PAUSED if stands else TaskPhase.PAUSING
+        task.reason = self.holds.reason
+        self._emit("task.paused" if stands else "task.pausing", cause, reason=task.reason)
+
+    def _renew_reason(self) -> None:
+        task = self._current
+        if task is not None and task.reason != (reason := self.holds.reason or None):
+            task.reason = reason
+            self._outbox.task_changed = True
+
+    def _drop_goal(self, task: Task) -> bool:
+        """Take the goal from navigation; return whether it had one."""
+        if task.goal is None:
+            return False
+        self._outbox.command(PreemptGoal(task.goal))
+        task.goal = None
+        return True
+
+    def _stop(self) -> None:
+        command = self._vehicle.stop_command()
+        self._vehicle.told(command, None)
+        self._outbox.command(Drive(command))
+
+    def _end(
+        self, phase: TaskPhase, reason: str | None, now: Instant, cause: int | None = None
+    ) -> None:
+        task = self._current
+        if task is None:
+            raise RuntimeError("there is no task to end")
+        task.end(phase, reason, now)
+        kind = f"task.{phase.lower()}"
+        self._emit(kind, cause, reason=reason, progress=task.view().progress)
+        self._current = None
+
+    def _emit(self, kind: str, cause: int | None = None, **data: object) -> int:
+        """Record what became of the current task."""
+        self._outbox.task_changed = True
+        identity = "" if self._current is None else self._current.id
+        return self._outbox.emit(kind, {"task": identity, **data}, cause)
+
+    def _too_far(self, start: Point) -> float | None:
+        """Return the distance to where a path begins if it is too large."""
+        distance = self._vehicle.distance_to(start)
+        limit_m = self._settings.max_start_distance_m
+        return distance if distance is not None and distance > limit_m else None

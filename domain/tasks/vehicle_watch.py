@@ -1,0 +1,91 @@
+"""Where the vehicle was last seen, whether that is still known, and what it was told."""
+
+import math
+
+from domain.errors import InvalidValueError
+from domain.messages import VehicleReport
+from domain.outbox import Outbox
+from domain.snapshot import VehicleView
+from domain.tasks.settings import TaskSettings
+from domain.timebase import Instant
+from domain.vehicle import DriveCommand, Point, VehicleState
+
+_AT_REST = DriveCommand(0.0, 0.0)
+
+
+class VehicleWatch:
+    """Keeps the newest report; a pose that was never told is as one that is too old."""
+
+    def __init__(self, settings: TaskSettings, outbox: Outbox) -> None:
+        self._settings = settings
+        self._outbox = outbox
+        self._state: VehicleState | None = None
+        self._at: Instant | None = None
+        self._command = _AT_REST
+        self._lookahead: Point | None = None
+        self.is_lost = True
+        """No report, or none within `pose_stale_after`."""
+
+    def check(self, report: VehicleReport) -> None:
+        """Refuse a report that is no place on the ground.
+
+        Raises:
+            InvalidValueError: A number is not finite.
+        """
+        state = report.state
+        pose = state.pose
+        numbers = (pose.x_m, pose.y_m, pose.yaw_rad, state.speed_mps, state.steering_angle_rad)
+        if not all(map(math.isfinite, numbers)):
+            raise InvalidValueError("the vehicle reports a number that is not finite", "pose")
+
+    def take(self, report: VehicleReport, now: Instant) -> None:
+        """Take a checked report."""
+        if report.state != self._state:
+            self._outbox.vehicle_changed = True
+        self._state, self._at = report.state, now
+        self.is_lost = False
+
+    def told(self, command: DriveCommand, lookahead: Point | None) -> None:
+        """Remember what the vehicle was told, and towards which point."""
+        if command != self._command or lookahead != self._lookahead:
+            self._command, self._lookahead = command, lookahead
+            self._outbox.vehicle_changed = True
+
+    def stop_command(self) -> DriveCommand:
+        """Return the command to stand still with the wheels as they are now."""
+        steering = 0.0 if self._state is None else self._state.steering_angle_rad
+        return DriveCommand(0.0, steering)
+
+    @property
+    def stands(self) -> bool:
+        """Tell whether the vehicle is known to stand still."""
+        if self._state is None or self.is_lost:
+            return False
+        return abs(self._state.speed_mps) < self._settings.standstill_mps
+
+    def distance_to(self, point: Point) -> float | None:
+        """Return how far away a point is, in m; None: it is not known where the vehicle is."""
+        if self._state is None or self.is_lost:
+            return None
+        pose = self._state.pose
+        return math.hypot(point.x_m - pose.x_m, point.y_m - pose.y_m)
+
+    def wake_at(self) -> Instant | None:
+        """Return when the pose will be too old if none comes; None: it is lost already."""
+        if self.is_lost or self._at is None:
+            return None
+        # "Older than" is strict, and time is counted in whole nanoseconds.
+        return self._at + self._settings.pose_stale_after + 1
+
+    def pass_time(self, now: Instant) -> bool:
+        """Return whether the pose became too old by now."""
+        due = self.wake_at()
+        if due is None or due > now:
+            return False
+        self.is_lost = True
+        return True
+
+    @property
+    def view(self) -> VehicleView:
+        """Return what is known of the vehicle."""
+        return VehicleView(self._state, self._at, self._command, self._lookahead)

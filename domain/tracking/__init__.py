@@ -1,0 +1,1 @@
+"""Path trackers: where to steer to stay on a path. Read `tracker.py` first, then any of them."""

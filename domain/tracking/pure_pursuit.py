@@ -1,0 +1,46 @@
+"""Pure pursuit: steer along the arc that leads from the rear axle to a point ahead on the path.
+
+Source: R. C. Coulter, Implementation of the Pure Pursuit Path Tracking Algorithm,
+CMU-RI-TR-92-01, 1992.
+"""
+
+from math import atan2, copysign, cos, hypot, sin
+
+from domain.paths.path import Path
+from domain.tracking.tracker import ControlStep
+from domain.vehicle import VehicleLimits, VehicleState
+
+LOOKAHEAD_S = 0.8
+"""The look-ahead grows with the speed, or the delays of a vehicle would make it swing."""
+LOOKAHEAD_PER_ERROR = 2.5
+"""It grows with the cross-track error, or slow steering would overshoot on the way to the path."""
+MIN_LOOKAHEAD_M = 2.2
+MAX_LOOKAHEAD_M = 9.0
+
+
+class PurePursuit:
+    """Aims at the interpolated point of the path that is one look-ahead away."""
+
+    def __init__(self, limits: VehicleLimits) -> None:
+        self._limits = limits
+
+    def control_step(self, state: VehicleState, path: Path, start_index: int) -> ControlStep:
+        """Steer towards `path` by one control period; see `PathTracker`."""
+        pose = state.pose
+        here = path.project(pose.x_m, pose.y_m, start_index)
+        wanted = LOOKAHEAD_S * state.speed_mps + LOOKAHEAD_PER_ERROR * abs(here.cross_track_error_m)
+        reach = min(max(wanted, MIN_LOOKAHEAD_M), MAX_LOOKAHEAD_M)
+        aim = path.point_at(here.distance_m + reach)
+        dx, dy = aim.x_m - pose.x_m, aim.y_m - pose.y_m
+        bearing = atan2(dy, dx) - pose.yaw_rad
+        # What lies behind is turned to as hard as what lies abeam: the sine would steer straight.
+        side = sin(bearing) if cos(bearing) >= 0 else copysign(1.0, sin(bearing))
+        wheels = atan2(2 * self._limits.wheelbase_m * side, hypot(dx, dy))
+        most = self._limits.max_steering_angle_rad
+        return ControlStep(
+            steering_angle_rad=min(max(wheels, -most), most),
+            target_index=path.index_after(here.distance_m),
+            distance_m=here.distance_m,
+            cross_track_error_m=here.cross_track_error_m,
+            lookahead=aim,
+        )

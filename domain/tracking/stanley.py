@@ -1,0 +1,62 @@
+"""Stanley: turn the front wheels along the way of the front axle, and towards it by how far off.
+
+Source: G. M. Hoffmann, C. J. Tomlin, M. Montemerlo, S. Thrun, Autonomous Automobile Trajectory
+Tracking for Off-Road Driving, American Control Conference 2007; damping and softening are its too.
+"""
+
+from math import atan, cos, pi, sin
+
+from domain.paths.path import Path
+from domain.tracking.tracker import ControlStep
+from domain.vehicle import Point, VehicleLimits, VehicleState
+
+GAIN_PER_S = 0.9
+SOFTENING_MPS = 0.3
+"""Keeps the approach gentle at standstill, and noise harmless at low speed."""
+MAX_APPROACH_RAD = 0.25
+"""From a steeper approach slow steering cannot turn in before it is across the path."""
+CALM_PER_M = 0.5
+"""Off the path it turns more gently, or slow steering would turn too far and swing."""
+TURN_PER_S = 2.0
+"""Headings are corrected no faster, or at high speed late steering would swing."""
+DAMPING_S = 0.2
+"""The heading that counts is that in a moment, if the wheels stay as they are."""
+PREVIEW_S = 0.1
+"""Bends are steered for so much ahead: between a vehicle that steers at once and a slow one."""
+
+
+class Stanley:
+    """Steers the front axle such that the rear axle is what stays on the path.
+
+    The law of the source steers the front axle onto the path, and the rear one then cuts every
+    bend. Here the front axle follows the way that it takes while the rear axle is on the path: one
+    wheelbase ahead along the heading, and turned by what the bend needs.
+    """
+
+    def __init__(self, limits: VehicleLimits) -> None:
+        self._limits = limits
+
+    def control_step(self, state: VehicleState, path: Path, start_index: int) -> ControlStep:
+        """Steer towards `path` by one control period; see `PathTracker`."""
+        pose, speed, wheelbase = state.pose, abs(state.speed_mps), self._limits.wheelbase_m
+        here = path.project(pose.x_m, pose.y_m, start_index)
+        foot, heading = path.point_at(here.distance_m), here.heading_rad
+        aim = Point(foot.x_m + wheelbase * cos(heading), foot.y_m + wheelbase * sin(heading))
+        bend = atan(wheelbase * path.curvature_at(here.distance_m + PREVIEW_S * speed))
+        dx = pose.x_m + wheelbase * cos(pose.yaw_rad) - aim.x_m
+        dy = pose.y_m + wheelbase * sin(pose.yaw_rad) - aim.y_m
+        off = cos(heading + bend) * dy - sin(heading + bend) * dx
+        approach = atan(GAIN_PER_S * off / (speed + SOFTENING_MPS))
+        approach = min(max(approach, -MAX_APPROACH_RAD), MAX_APPROACH_RAD)
+        turn = (heading - pose.yaw_rad + pi) % (2 * pi) - pi - approach
+        turn -= DAMPING_S * speed / wheelbase * (state.steering_angle_rad - bend)
+        gain = min(1.0, TURN_PER_S * wheelbase / max(speed, SOFTENING_MPS))
+        gain /= 1 + CALM_PER_M * abs(here.cross_track_error_m)
+        most = self._limits.max_steering_angle_rad
+        return ControlStep(
+            steering_angle_rad=min(max(bend + gain * turn, -most), most),
+            target_index=path.index_after(here.distance_m),
+            distance_m=here.distance_m,
+            cross_track_error_m=here.cross_track_error_m,
+            lookahead=aim,
+        )

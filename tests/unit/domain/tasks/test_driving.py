@@ -1,0 +1,145 @@
+import math
+
+import pytest
+
+from domain.errors import InvalidValueError, ReservedHoldError, TooManyHoldsError
+from domain.messages import VehicleReport
+from domain.snapshot import TaskPhase
+from domain.tasks.holds import MAX_HOLDS
+from domain.vehicle import Pose, VehicleState
+from tests.support.driver import Driver
+
+
+def test_a_robot_that_does_not_know_where_it_is_is_held() -> None:
+    robot = Driver(pose=False)
+
+    assert robot.core.driving.holds["vehicle"].reason == "the vehicle never told where it is"
+
+
+def test_the_first_pose_lets_go() -> None:
+    robot = Driver(pose=False)
+    robot.report()
+
+    assert dict(robot.core.driving.holds) == {}
+    assert robot.happened("hold.released") == [{"owner": "vehicle"}]
+
+
+def test_errors_at_the_start_hold_without_an_event() -> None:
+    robot = Driver(pose=False, good=False)
+
+    assert "error" in robot.core.driving.holds
+    assert robot.happened("hold.set") == []
+
+
+def test_a_pose_that_is_exactly_as_old_as_it_may_be_holds_nothing() -> None:
+    robot = Driver()
+    robot.serve()
+    robot.wait(0.3)
+
+    assert robot.task.status is TaskPhase.RUNNING
+
+
+def test_a_pose_older_than_that_stops_and_holds_the_task() -> None:
+    robot = Driver()
+    robot.serve()
+    robot.wait(0.300_000_001)
+
+    assert robot.task.status is TaskPhase.PAUSING
+    assert robot.task.reason == "no pose of the vehicle for 0.3 s"
+    assert robot.stops == 1
+
+
+def test_the_task_goes_on_with_the_next_pose() -> None:
+    robot = Driver()
+    robot.serve()
+    robot.wait(1.0)
+    robot.report()
+
+    assert robot.task.status is TaskPhase.RUNNING
+    assert len(robot.goals) == 2
+
+
+def test_a_vehicle_that_is_lost_is_not_known_to_stand() -> None:
+    robot = Driver()
+    robot.serve()
+    robot.wait(1.0)
+
+    assert not robot.core.driving.stands
+    assert robot.task.status is TaskPhase.PAUSING
+
+
+@pytest.mark.parametrize("owner", ["error", "vehicle"])
+def test_nobody_else_sets_or_clears_the_holds_of_pilothouse(owner: str) -> None:
+    robot = Driver()
+    with pytest.raises(ReservedHoldError):
+        robot.hold(owner)
+    with pytest.raises(ReservedHoldError):
+        robot.release(owner)
+
+
+def test_there_is_a_bound_on_holds() -> None:
+    robot = Driver()
+    for number in range(MAX_HOLDS):
+        robot.hold(f"owner{number}")
+    with pytest.raises(TooManyHoldsError):
+        robot.hold("one_more")
+    robot.hold("owner0", "renewed")
+
+    assert robot.core.driving.holds["owner0"].reason == "renewed"
+
+
+def test_a_report_that_is_no_place_is_refused_and_the_last_one_stays() -> None:
+    robot = Driver()
+    nowhere = VehicleState(Pose(math.nan, 0.0, 0.0), 0.0, 0.0)
+    with pytest.raises(InvalidValueError, match="not finite"):
+        robot.give(VehicleReport(nowhere))
+    state = robot.core.driving.vehicle.state
+
+    assert state is not None
+    assert state.pose == Pose(0.0, 0.0, 0.0)
+
+
+def test_the_hold_of_an_error_says_what_the_operator_needs_to_know() -> None:
+    robot = Driver()
+    robot.read(battery_level=0.42)
+
+    assert robot.core.driving.holds["error"].reason == "battery 42 % is below 50 %"
+
+
+def test_the_reason_follows_the_errors_while_the_hold_stays() -> None:
+    robot = Driver()
+    robot.read(battery_level=0.42)
+    robot.read(temperature=60.0)
+
+    assert robot.core.driving.holds["error"].reason.startswith("battery 42 % is below 50 %; ")
+
+
+def test_a_stop_without_a_task_commands_standstill_all_the_same() -> None:
+    robot = Driver()
+    robot.read(estop=True)
+
+    assert robot.stops == 1
+
+
+def test_what_the_vehicle_was_told_can_be_seen() -> None:
+    robot = Driver()
+    robot.serve()
+    robot.feedback(3)
+    view = robot.core.driving.vehicle
+
+    assert view.command.speed_mps == 2.8
+    assert view.lookahead is not None
+    robot.hold()
+
+    assert robot.core.driving.vehicle.command.speed_mps == 0.0
+    assert robot.core.driving.vehicle.lookahead is None
+
+
+def test_a_vehicle_that_stands_and_says_so_again_is_no_news() -> None:
+    robot = Driver()
+
+    still = VehicleReport(VehicleState(Pose(0.0, 0.0, 0.0), 0.0, 0.0))
+    moved = VehicleReport(VehicleState(Pose(0.1, 0.0, 0.0), 1.0, 0.0))
+
+    assert not robot.give(still).vehicle_changed
+    assert robot.give(moved).vehicle_changed
