@@ -1,13 +1,12 @@
 """Answer with a problem document whatever goes wrong on the way to a route or in it."""
 
-from collections.abc import Sequence
 from http import HTTPStatus
 
 from fastapi import FastAPI, Request
 from fastapi.exceptions import RequestValidationError
 from fastapi.responses import Response
 from starlette.exceptions import HTTPException as StarletteHTTPException
-from starlette.routing import BaseRoute, Match
+from starlette.routing import Match
 
 from api.bodies import BodyTooLargeError, InvalidBodyError, faults_of
 from api.problems import HttpError, make_problem, problem_of, problem_response
@@ -60,18 +59,24 @@ async def _on_http_error(request: Request, error: Exception) -> Response:
         code, detail = "UNKNOWN_PATH", f"there is nothing at {request.url.path}"
         more = {"hint": "see /openapi.json"}
     elif status is HTTPStatus.METHOD_NOT_ALLOWED:
-        methods = allowed_methods(request.app.routes, request)
+        methods = allowed_methods(request.app, request)
         detail = f"{request.method} is not done here; these are: {', '.join(methods)}"
         headers["Allow"] = ", ".join(methods)
     problem = make_problem(status, code, detail, request.url.path, more=more)
     return problem_response(problem, headers)
 
 
-def allowed_methods(routes: Sequence[BaseRoute], request: Request) -> list[str]:
-    """Return the methods of all routes for a path; the framework names those of the first."""
+def allowed_methods(app: FastAPI, request: Request) -> list[str]:
+    """Return the methods of all routes for a path; the framework names those of the first.
+
+    A path that is there by its own name, as /tasks/preview, is not taken for one of /tasks/{task}.
+    """
+    named = app.openapi()["paths"].get(request.url.path)
+    if named is not None:
+        return [method for method in _METHODS if method.lower() in named]
     scope = request.scope
     return [
         method
         for method in _METHODS
-        if any(route.matches({**scope, "method": method})[0] is Match.FULL for route in routes)
+        if any(route.matches({**scope, "method": method})[0] is Match.FULL for route in app.routes)
     ]

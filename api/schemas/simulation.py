@@ -2,7 +2,7 @@
 
 from typing import Annotated, Any, Literal, Self, TypeAlias
 
-from pydantic import ConfigDict, Discriminator, Field, Tag, model_validator
+from pydantic import AfterValidator, ConfigDict, Discriminator, Field, Tag, model_validator
 
 from api.bodies import MAX_MODEL_BYTES
 from api.problems import Problem
@@ -21,7 +21,28 @@ MAX_READINGS = 5_000_000
 Time = Annotated[float, Field(ge=0, le=MAX_UNTIL_S, allow_inf_nan=False)]
 
 RECOVER = "recover"
+MAX_DEPTH = 32
+"""Of what is compared or sent on as it is."""
+
 FaultName: TypeAlias = Literal["slow", "refuse", "fail", "error", "silent", "die", "recover"]
+
+
+def _checked_depth(value: Any) -> Any:  # noqa: ANN401
+    """Return a value.
+
+    Raises:
+        ValueError: It holds more than `MAX_DEPTH` objects and lists in each other.
+    """
+    level = [value]
+    for _ in range(MAX_DEPTH):
+        inner = [item.values() if isinstance(item, dict) else item for item in level]
+        level = [item for items in inner if not isinstance(items, _PLAIN) for item in items]
+        if not level:
+            return value
+    raise ValueError(f"more than {MAX_DEPTH} objects and lists in each other")
+
+
+_PLAIN = (str, int, float, type(None))
 
 
 class TimedStep(Body):
@@ -30,7 +51,15 @@ class TimedStep(Body):
     t_s: Time = Field(description="Seconds from the start of the simulation")
 
 
-class ReadingStep(TimedStep):
+class ActingStep(TimedStep):
+    """Something that somebody does, and that may be refused."""
+
+    refused: bool = Field(
+        default=False, description="It is expected to be refused; anything else is a difference"
+    )
+
+
+class ReadingStep(ActingStep):
     """Readings that arrive together, once or over and over."""
 
     reading: dict[str, SentSignalValue] = Field(min_length=1)
@@ -43,6 +72,12 @@ class ReadingStep(TimedStep):
     )
     source: str = Field(default="api", min_length=1, max_length=MAX_SOURCE)
 
+    @model_validator(mode="after")
+    def _is_judged_once(self) -> Self:
+        if self.refused and self.repeat_hz is not None:
+            raise ValueError("a reading that is expected to be refused is not repeated")
+        return self
+
     def count(self, until_s: float) -> int:
         """Return how many times the readings arrive up to `until_s`."""
         if self.repeat_hz is None:
@@ -52,7 +87,7 @@ class ReadingStep(TimedStep):
         return max(0, int((last - self.t_s) * self.repeat_hz + 1e-6)) + 1
 
 
-class TaskStep(TimedStep):
+class TaskStep(ActingStep):
     """A task is served, or with null the current one canceled."""
 
     task: TaskBody | None
@@ -72,13 +107,13 @@ class AskedChange(Body):
         return self
 
 
-class ChangeStep(TimedStep):
+class ChangeStep(ActingStep):
     """A change of mode or state is asked for."""
 
     change: AskedChange
 
 
-class NodeStep(TimedStep):
+class NodeStep(ActingStep):
     """Something is wrong with a simulated node, or somebody else sets its parameters."""
 
     node: str
@@ -97,7 +132,7 @@ class NodeStep(TimedStep):
         return None if self.fault in (None, RECOVER) else Fault(str(self.fault))
 
 
-class VehicleStep(TimedStep):
+class VehicleStep(ActingStep):
     """The simulated vehicle stops telling where it is, or tells it again."""
 
     vehicle: Literal["silent", "recover"]
@@ -108,10 +143,10 @@ class AskedRequest(Body):
 
     method: Literal["GET", "POST", "PUT", "PATCH", "DELETE"]
     path: str = Field(pattern=r"^/", max_length=1_000, examples=["/holds/operator"])
-    body: Any = None
+    body: Annotated[Any, AfterValidator(_checked_depth)] = None
 
 
-class RequestStep(TimedStep):
+class RequestStep(ActingStep):
     """A request of the HTTP interface is sent."""
 
     request: AskedRequest
@@ -120,13 +155,21 @@ class RequestStep(TimedStep):
 class ExpectStep(TimedStep):
     """What has to be seen at this time, after the steps before it."""
 
-    expect: dict[str, Any] = Field(
+    expect: Annotated[dict[str, Any], AfterValidator(_checked_depth)] = Field(
         min_length=1,
         description=(
-            "Members of a sample, as far as they matter; `events`: how many of a kind there were"
+            "Members of a sample, as far as they matter; `last_task`: the current task, or the one"
+            " that ended last; `events`: how many of a kind there were. A number may be given by"
+            " `above`, `below`, `at_least` and `at_most`, and a state with its mode as a label"
         ),
         examples=[{"system_state": {"state": "ERROR"}, "events": {"task.started": 1}}],
     )
+
+    @model_validator(mode="after")
+    def _counts_events(self) -> Self:
+        if not isinstance(self.expect.get("events", {}), dict):
+            raise ValueError("events: an object is needed, with a number for each kind of event")
+        return self
 
 
 _KINDS = ("reading", "task", "change", "node", "vehicle", "request", "expect")
@@ -206,7 +249,7 @@ class DifferenceJson(Json):
 
 
 class ExpectationJson(Json):
-    """What became of one `expect` step."""
+    """What became of one `expect` step, or of a step that was expected to be refused."""
 
     step: int = Field(description="Its index in `steps`")
     t_s: float

@@ -43,11 +43,15 @@ _LIMITS = frozenset({"above", "below", "at_least", "at_most"})
 
 
 def _is_limits(expected: Mapping[str, Any]) -> bool:
-    return bool(expected) and expected.keys() <= _LIMITS
+    return bool(expected) and expected.keys() <= _LIMITS and all(map(_is_number, expected.values()))
+
+
+def _is_number(value: object) -> bool:
+    return isinstance(value, int | float) and not isinstance(value, bool)
 
 
 def _within(limits: Mapping[str, Any], seen: object) -> bool:
-    if isinstance(seen, bool) or not isinstance(seen, int | float):
+    if not isinstance(seen, int | float) or isinstance(seen, bool):
         return False
     return not (
         ("above" in limits and seen <= limits["above"])

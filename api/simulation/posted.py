@@ -4,10 +4,10 @@ import copyreg
 import io
 import pickle
 from collections.abc import Callable, Mapping
-from typing import Any
 from dataclasses import dataclass
 from datetime import UTC, datetime
 from types import MappingProxyType
+from typing import Any
 
 from api.bodies import InvalidBodyError, parse_body
 from api.schemas.simulation import SimulationBody
@@ -47,10 +47,13 @@ def copy_of(onboard: Onboard, robot: SimulatedRobot) -> bytes:
     return copy.getvalue()
 
 
-def _reduce_view(
-    view: MappingProxyType[object, object],
-) -> tuple[type, tuple[dict[object, object]]]:
-    return MappingProxyType, (dict(view),)
+def _reduce_view(view: MappingProxyType[Any, Any]) -> tuple[Callable[..., Any], tuple[Any]]:
+    return _view_of, (dict(view),)
+
+
+def _view_of(values: dict[Any, Any]) -> MappingProxyType[Any, Any]:
+    # Needed since the type itself is known by no name under which it could be found.
+    return MappingProxyType(values)
 
 
 class _Pickler(pickle.Pickler):

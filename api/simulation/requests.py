@@ -1,12 +1,14 @@
 """Requests of a scenario: sent to the HTTP interface itself, around the robot in virtual time."""
 
 import asyncio
+import json
 from collections.abc import Callable
+from http import HTTPStatus
 from typing import NoReturn, TypeVarTuple
 
 import httpx
 
-from api.problems import Problem
+from api.problems import MEDIA_TYPE, Problem, make_problem
 from api.schemas.simulation import AskedRequest
 from domain.errors import RefusedError
 from service.jobs import InlineJobs
@@ -35,9 +37,22 @@ class Requests:
         return self._runner.run(self._send(asked))
 
     async def _send(self, asked: AskedRequest) -> Problem | None:
-        answer = await self._client.request(asked.method, asked.path, json=asked.body)
+        # Not by httpx's own encoder, which raises for what is not JSON: the interface refuses that.
+        body = None if asked.body is None else json.dumps(asked.body)
+        headers = {} if body is None else {"Content-Type": "application/json"}
+        try:
+            answer = await self._client.request(
+                asked.method, asked.path, content=body, headers=headers
+            )
+        except httpx.InvalidURL as error:
+            status, detail = HTTPStatus.BAD_REQUEST, f"this is no path: {error}"
+            return make_problem(status, "MALFORMED", detail, asked.path)
         if not answer.is_error:
             return None
+        if answer.headers.get("content-type") != MEDIA_TYPE:
+            # A change that has failed already is answered with itself.
+            status = HTTPStatus(answer.status_code)
+            return make_problem(status, "FAILED", f"answered: {answer.text:.500}", asked.path)
         return Problem.model_validate_json(answer.content)
 
 

@@ -10,11 +10,13 @@ from api.streaming.event_text import event_text
 from api.streaming.members import Members
 from domain.messages import Event
 from domain.snapshot import PartView, TaskView
-from service.event_log import EventReader
+from service.event_log import EventReader, Gap
 from service.supervisor import Supervisor
 from service.worker import TooComplexError
 
 MAX_EVENTS = 200_000
+MAX_CHARACTERS = 200_000_000
+"""Of all samples together: what a worker can hold and send."""
 
 
 class Sampler:
@@ -25,16 +27,29 @@ class Sampler:
         clock = self._clock = supervisor.clock
         self._parts = Members[PartView](lambda view: PartJson.of(view, clock).model_dump_json())
         self._reader = EventReader(supervisor.events, supervisor.events.newest)
+        self._left = MAX_CHARACTERS
         self.events: list[Event] = []
         """All that happened since the begin."""
 
-    def sample(self, t_s: float, number: int) -> str:
-        """Return the robot as it is now, as JSON.
+    def kept_sample(self, t_s: float, number: int) -> str:
+        """Return the robot as it is now, as JSON that is kept.
 
         Args:
             t_s: Seconds since the begin.
             number: How many samples were taken before.
+
+        Raises:
+            TooComplexError: All of them together are too long.
         """
+        text = self.sample(t_s, number)
+        self._left -= len(text)
+        if self._left < 0:
+            how = f"its samples have more than {MAX_CHARACTERS // 10**6} MB; sample less often"
+            raise TooComplexError(how)
+        return text
+
+    def sample(self, t_s: float, number: int) -> str:
+        """Return the robot as it is now, as JSON; arguments as for `kept_sample`."""
         supervisor, clock = self._supervisor, self._clock
         core = supervisor.core
         driving = core.driving
@@ -63,10 +78,10 @@ class Sampler:
         Raises:
             TooComplexError: There are too many to be told.
         """
-        # Far less than the log keeps happens between two calls.
         for found in self._reader.take(_ALL):
-            if isinstance(found, Event):
-                self.events.append(found)
+            if isinstance(found, Gap):
+                raise TooComplexError("too many events happen in it at once")
+            self.events.append(found)
         if len(self.events) > MAX_EVENTS:
             raise TooComplexError(f"more than {MAX_EVENTS} events happen in it")
 

@@ -2,13 +2,15 @@
 
 import asyncio
 import heapq
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from itertools import chain
 from typing import Any
 
 from pydantic_core import from_json
 
 from api.schemas.simulation import (
+    ActingStep,
+    AnyStep,
     DifferenceJson,
     ExpectationJson,
     ExpectStep,
@@ -19,11 +21,15 @@ from api.schemas.simulation import (
 from api.simulation.expectations import differences
 from api.simulation.samples import Sampler
 from api.simulation.steps import Actors
+from domain.messages import Event
 from domain.timebase import NANOSECONDS_PER_SECOND, Duration, seconds, to_seconds
 from service.virtual_robot import VirtualRobot
 
 MAX_REFUSALS = 1_000
-"""More of them are not told."""
+"""More of them, that were not expected, are not told."""
+
+_STRIDE = seconds(10)
+"""Time passes at most so far without a look at what happened."""
 
 
 class Simulation:
@@ -42,6 +48,27 @@ class Simulation:
         """As JSON."""
         self.refusals: list[RefusalJson] = []
         self.expectations: list[ExpectationJson] = []
+        """Of `expect` steps, and of steps that were expected to be refused."""
+        self._unexpected = 0
+        self._progress: Callable[[float], None] = lambda _: None
+
+    @property
+    def events(self) -> Sequence[Event]:
+        """Return all that happened so far."""
+        return self._sampler.events
+
+    def seconds_to(self, event: Event) -> float:
+        """Return when an event was, in seconds since the begin."""
+        return to_seconds(event.at - self._begin)
+
+    def failed_expectations(self) -> list[ExpectationJson]:
+        """Return the steps at which something was seen otherwise than expected."""
+        return [found for found in self.expectations if found.differences]
+
+    def unexpected_refusals(self) -> list[RefusalJson]:
+        """Return the steps that were refused, and that nobody expected to be."""
+        steps = self._body.steps
+        return [found for found in self.refusals if not _may_be_refused(steps[found.step])]
 
     def run(self, progress: Callable[[float], None] = lambda _: None) -> None:
         """Let the scenario happen from begin to end.
@@ -52,6 +79,7 @@ class Simulation:
         Raises:
             TooComplexError: More happens than can be told.
         """
+        self._progress = progress
         with asyncio.Runner() as runner:
             actors = Actors(self._robot, runner)
             self._advance(0)
@@ -62,14 +90,12 @@ class Simulation:
                 while next_sample is not None and next_sample < at:
                     self._advance(next_sample)
                     self._take_sample(next_sample)
-                    progress(to_seconds(next_sample))
                     next_sample = next(samples, None)
                 self._advance(at)
                 if index is not None:
                     self._let_happen(actors, index, at)
             if next_sample is not None:
                 self._take_sample(next_sample)
-            progress(self._body.until_s)
 
     def as_json(self) -> str:
         """Return what came of it as `SimulationJson`."""
@@ -104,8 +130,14 @@ class Simulation:
         return iter(range(period, end + 1, period)) if period else iter(())
 
     def _advance(self, at: Duration) -> None:
-        self._robot.advance_to(self._begin + at)
-        self._sampler.collect_events()
+        end = self._begin + at
+        while True:
+            now = min(self._robot.clock.now() + _STRIDE, end)
+            self._robot.advance_to(now)
+            self._sampler.collect_events()
+            self._progress(to_seconds(now - self._begin))
+            if now == end:
+                return
 
     def _let_happen(self, actors: Actors, index: int, at: Duration) -> None:
         step = self._body.steps[index]
@@ -116,12 +148,19 @@ class Simulation:
             )
             return
         problem = actors.act(step)
-        if problem is not None and len(self.refusals) < MAX_REFUSALS:
-            self.refusals.append(RefusalJson(step=index, t_s=to_seconds(at), problem=problem))
+        if problem is not None:
+            self._unexpected += not step.refused
+            if step.refused or self._unexpected <= MAX_REFUSALS:
+                self.refusals.append(RefusalJson(step=index, t_s=to_seconds(at), problem=problem))
+        if step.refused:
+            found = [] if problem else [DifferenceJson(path="refused", expected=True, seen=False)]
+            self.expectations.append(
+                ExpectationJson(step=index, t_s=to_seconds(at), differences=found)
+            )
         self._advance(at)
 
     def _take_sample(self, at: Duration) -> None:
-        self.samples.append(self._sampler.sample(to_seconds(at), len(self.samples)))
+        self.samples.append(self._sampler.kept_sample(to_seconds(at), len(self.samples)))
 
     def _compare(self, step: ExpectStep, at: Duration) -> Iterator[DifferenceJson]:
         """Compare with a sample of now, with the last task where there is none, and with events."""
@@ -133,3 +172,7 @@ class Simulation:
         counts = self._sampler.counts()
         happened = {kind: counts[kind] for kind in chain(events, counts)}
         return chain(differences(expected, seen), differences(events, happened, "events"))
+
+
+def _may_be_refused(step: AnyStep) -> bool:
+    return isinstance(step, ActingStep) and step.refused

@@ -23,7 +23,8 @@ COMMAND_VALID_FOR: Duration = seconds(0.5)
 REPORT_PERIOD: Duration = seconds(0.05)
 
 _STEP: Duration = seconds(0.01)
-_STRAIGHT = 1e-9
+_AS_GOOD_AS_THERE = 1e-6
+"""What lags would approach for ever and never reach: m/s or rad from it, it is reached."""
 _AT_REST = DriveCommand(0.0, 0.0)
 
 
@@ -42,6 +43,7 @@ class SimulatedVehicle:
         self._command = _AT_REST
         self._expires_at: Instant | None = None
         self._coming: deque[tuple[Instant, DriveCommand]] = deque()
+        self._start = start
         self._at = start
         """Up to when the state is integrated."""
         self._reports: list[VehicleReport] = []
@@ -54,7 +56,7 @@ class SimulatedVehicle:
     def drive(self, command: DriveCommand, now: Instant) -> None:
         """Tell it how to drive; what is beyond its limits is cut, what is no number is a stop."""
         self._catch_up(now)
-        self._coming.append((now + self._plant.delay, self._possible(command)))
+        self._coming.append((now + self._plant.delay, command))
         self._catch_up(now)
 
     def set_reporting(self, reporting: bool, now: Instant) -> None:
@@ -76,7 +78,7 @@ class SimulatedVehicle:
 
     @property
     def state(self) -> VehicleState:
-        """Return how it really moves, without noise, at the last time that was told."""
+        """Return how it really moves, without noise, at its last report or change of command."""
         return self._state
 
     @property
@@ -97,7 +99,8 @@ class SimulatedVehicle:
 
     def _take_commands(self, now: Instant) -> None:
         while self._coming and self._coming[0][0] <= now:
-            at, self._command = self._coming.popleft()
+            at, command = self._coming.popleft()
+            self._command = self._possible(command)
             self._expires_at = at + COMMAND_VALID_FOR
             if self._is_ideal:
                 self._state = _following(self._state, self._command)
@@ -127,7 +130,7 @@ class SimulatedVehicle:
         return due if self._expires_at is None else min(due, self._expires_at)
 
     def _integrate(self, until: Instant) -> None:
-        """Move up to `until`, in steps on a grid of their own, so that only events part them."""
+        """Move up to `until`, in steps from `start` on, so that only events part them."""
         if self._rests:
             self._at = until
             return
@@ -136,7 +139,7 @@ class SimulatedVehicle:
             self._at = until
             return
         while self._at < until:
-            end = min(until, (self._at // _STEP + 1) * _STEP)
+            end = min(until, self._at + _STEP - (self._at - self._start) % _STEP)
             self._respond(to_seconds(end - self._at))
             self._at = end
 
@@ -179,15 +182,11 @@ class SimulatedVehicle:
         """Move along an arc."""
         pose = self._state.pose
         way = speed_mps * dt_s
-        curvature = math.tan(self._state.steering_angle_rad) / self._limits.wheelbase_m
-        turn = curvature * way
-        if abs(turn) < _STRAIGHT:
-            x = pose.x_m + way * math.cos(pose.yaw_rad)
-            y = pose.y_m + way * math.sin(pose.yaw_rad)
-        else:
-            x = pose.x_m + (math.sin(pose.yaw_rad + turn) - math.sin(pose.yaw_rad)) / curvature
-            y = pose.y_m - (math.cos(pose.yaw_rad + turn) - math.cos(pose.yaw_rad)) / curvature
-        self._state = replace(self._state, pose=Pose(x, y, _wrapped(pose.yaw_rad + turn)))
+        half = way * math.tan(self._state.steering_angle_rad) / self._limits.wheelbase_m / 2
+        chord = way * math.sin(half) / half if half else way
+        x = pose.x_m + chord * math.cos(pose.yaw_rad + half)
+        y = pose.y_m + chord * math.sin(pose.yaw_rad + half)
+        self._state = replace(self._state, pose=Pose(x, y, _wrapped(pose.yaw_rad + 2 * half)))
 
 
 class _NoiseSource:
@@ -223,7 +222,8 @@ def _approached(
         wanted *= 1 - math.exp(-dt_s / lag_s)
     if rate is not None:
         wanted = _clipped(wanted, rate * dt_s)
-    return value + wanted
+    there = abs(target - value - wanted) < _AS_GOOD_AS_THERE
+    return target if there else value + wanted
 
 
 def _clipped(value: float, limit: float) -> float:

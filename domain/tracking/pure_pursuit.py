@@ -10,10 +10,13 @@ from domain.paths.path import Path
 from domain.tracking.tracker import ControlStep
 from domain.vehicle import VehicleLimits, VehicleState
 
-LOOKAHEAD_S = 0.8
+LOOKAHEAD_S = 0.75
 """The look-ahead grows with the speed, or the delays of a vehicle would make it swing."""
-LOOKAHEAD_PER_ERROR = 2.5
-"""It grows with the cross-track error, or slow steering would overshoot on the way to the path."""
+LOOKAHEAD_NEAR = 7.0
+"""It grows with the cross-track error, at first by so much, or slow steering would overshoot."""
+LOOKAHEAD_OFF_M = 2.5
+LOOKAHEAD_OFF = 1.25
+"""Further off it grows less than that, or the way back to the path would be long."""
 MIN_LOOKAHEAD_M = 2.2
 MAX_LOOKAHEAD_M = 9.0
 
@@ -28,7 +31,9 @@ class PurePursuit:
         """Steer towards `path` by one control period; see `PathTracker`."""
         pose = state.pose
         here = path.project(pose.x_m, pose.y_m, start_index)
-        wanted = LOOKAHEAD_S * state.speed_mps + LOOKAHEAD_PER_ERROR * abs(here.cross_track_error_m)
+        off = abs(here.cross_track_error_m)
+        more = min(LOOKAHEAD_NEAR * off, LOOKAHEAD_OFF_M + LOOKAHEAD_OFF * off)
+        wanted = LOOKAHEAD_S * state.speed_mps + more
         reach = min(max(wanted, MIN_LOOKAHEAD_M), MAX_LOOKAHEAD_M)
         aim = path.point_at(here.distance_m + reach)
         dx, dy = aim.x_m - pose.x_m, aim.y_m - pose.y_m

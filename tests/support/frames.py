@@ -12,11 +12,15 @@ from domain.snapshot import (
     SystemState,
     SystemStateView,
     TaskStatus,
+    TaskView,
+    VehicleView,
 )
 from domain.system_model import ModeName, PartName, StateAndMode
 from domain.timebase import seconds
+from domain.vehicle import DriveCommand
 from service.frame_feed import Frame
 
+NOWHERE = VehicleView(None, None, DriveCommand(0.0, 0.0), None)
 IDLE = SystemStateView(SystemState.IDLE, 0, (), (), TaskStatus.NO_TASK)
 
 
@@ -63,6 +67,10 @@ def frame(
     *,
     full: bool = False,
     system_state: SystemStateView = IDLE,
+    task: TaskView | None = None,
+    task_changed: bool = False,
+    vehicle: VehicleView = NOWHERE,
+    vehicle_changed: bool = False,
 ) -> Frame:
     """Make frame number `seq`, of the tick at `seq` * 50 ms."""
     return Frame(
@@ -71,6 +79,10 @@ def frame(
         system_state=system_state,
         parts={view.name: view for view in parts},
         signals={view.signal: view for view in signals},
+        task=task,
+        task_changed=full or task_changed,
+        vehicle=vehicle,
+        vehicle_changed=full or vehicle_changed,
         full=full,
         simulated=("nodes",),
     )

@@ -214,6 +214,7 @@ def figures(record: Record) -> dict[str, float]:
     begun = outside[-1] + 1 if captured and len(outside) else 0
     capture = record.driven_m[begun] if len(outside) else 0.0
     first = int(np.searchsorted(record.driven_m, capture + 10)) if len(outside) else 0
+    first = min(first, len(size) - 1)
     other_side = -found.cross_track_m * np.sign(found.cross_track_m[0])
     end = record.path.waypoint(record.path.count - 1)
     rest = record.pose[-1]

@@ -22,14 +22,14 @@ def test_without_arguments_the_example_is_served_with_everything_simulated() -> 
     supervisor = compose(ServeOptions(), ManualClock())
 
     assert "actuation" in supervisor.model.systems
-    assert supervisor.simulated == ("nodes", "signals")
+    assert supervisor.simulated == ("nodes", "signals", "vehicle")
     assert supervisor.warnings == ()
 
 
 def test_a_robot_file_may_turn_the_mock_off(robot: Path) -> None:
     robot.write_text("mock: false\n")
 
-    assert compose(ServeOptions(robot=robot), ManualClock()).simulated == ("nodes",)
+    assert compose(ServeOptions(robot=robot), ManualClock()).simulated == ("nodes", "vehicle")
 
 
 def test_the_command_line_may_turn_the_mock_on_again(robot: Path) -> None:
@@ -54,7 +54,7 @@ def test_the_greeting_says_what_is_served_where_and_what_is_not_real() -> None:
     assert "the built-in example: 1 system, 2 nodes" in told
     assert f"page  {URL}/" in told
     assert f"curl {URL}/systems/actuation" in told
-    assert "Simulated: nodes, signals." in told
+    assert "Simulated: nodes, signals, vehicle." in told
 
 
 @pytest.mark.parametrize("host", ["0.0.0.0", "::", "192.0.2.1"])

@@ -34,12 +34,20 @@ async def test_who_engages_it_why_and_when_is_kept(robot: HttpRobot) -> None:
 
 
 async def test_to_press_twice_is_to_press_once(robot: HttpRobot) -> None:
-    first = await robot.http.put(PATH, json={"engaged": True, "reason": "first"})
+    await robot.http.put(PATH, json={"engaged": True, "reason": "first"})
     await robot.pass_time(1)
+    first = await robot.get(PATH)
 
     second = await robot.http.put(PATH, json={"engaged": True, "reason": "second"})
 
-    assert (second.status_code, second.json()) == (200, first.json())
+    assert (second.status_code, second.json()) == (200, first)
+
+
+async def test_it_tells_when_the_vehicle_was_first_seen_to_stand_since(robot: HttpRobot) -> None:
+    await robot.http.put(PATH, json={"engaged": True, "reason": "child on the path"})
+    await robot.pass_time(1)
+
+    assert (await robot.get(PATH))["standstill_at"] == "2026-01-01T00:00:00.050Z"
 
 
 async def test_no_reading_releases_it_and_a_person_does(robot: HttpRobot) -> None:

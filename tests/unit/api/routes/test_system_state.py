@@ -18,7 +18,7 @@ async def test_a_robot_with_good_signals_and_no_task_is_idle(robot: HttpRobot) -
         "errors": [],
         "reasons": [],
         "task_status": "NO_TASK",
-        "simulated": ["nodes", "signals"],
+        "simulated": ["nodes", "signals", "vehicle"],
     }
 
 
@@ -28,7 +28,7 @@ async def test_without_any_reading_the_robot_is_in_error_and_says_what_is_missin
 
         assert (state["state"], state["errors"]) == ("ERROR", ["STALE_DATA"])
         assert len(state["reasons"]) == 5
-        assert state["simulated"] == ["nodes"]
+        assert state["simulated"] == ["nodes", "vehicle"]
 
 
 async def test_an_error_that_wants_it_ends_only_when_it_is_acknowledged() -> None:

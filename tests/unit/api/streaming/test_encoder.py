@@ -16,7 +16,7 @@ from service.supervisor import Supervisor
 from tests.support.frames import event, frame, part_view, signal_view
 from tests.support.live_robot import make_supervisor
 
-ALL = frozenset({"system_state", "parts", "signals", "events"})
+ALL = frozenset({"system_state", "parts", "signals", "task", "vehicle"})
 ARM = part_view("arm")
 BATTERY = signal_view("battery_level", 0.8)
 
@@ -78,10 +78,20 @@ def test_what_did_not_change_is_left_out(encoder: StreamEncoder) -> None:
     assert set(shown) == {"type", "seq", "at", "skipped", "system_state"}
 
 
+def test_task_and_vehicle_are_sent_when_they_changed(encoder: StreamEncoder) -> None:
+    driven = read(encoder.frame(frame(2, vehicle_changed=True), 0, ALL))
+    ended = read(encoder.frame(frame(3, task_changed=True), 0, ALL))
+
+    assert driven["vehicle"]["command"] == {"speed_mps": 0.0, "steering_angle_rad": 0.0}
+    assert "task" not in driven
+    assert ended["task"] is None
+    assert "vehicle" not in ended
+
+
 def test_a_full_frame_of_a_robot_without_parts_says_so(encoder: StreamEncoder) -> None:
     shown = read(encoder.frame(frame(2, full=True), 0, ALL))
 
-    assert (shown["parts"], shown["signals"]) == ({}, {})
+    assert (shown["parts"], shown["signals"], shown["task"]) == ({}, {}, None)
 
 
 @pytest.mark.parametrize(
@@ -90,6 +100,8 @@ def test_a_full_frame_of_a_robot_without_parts_says_so(encoder: StreamEncoder) -
         ({"system_state"}, set()),
         ({"parts"}, {"parts"}),
         ({"signals", "events"}, {"signals"}),
+        ({"task"}, {"task"}),
+        ({"vehicle"}, {"vehicle"}),
     ],
 )
 def test_only_the_topics_that_were_asked_for_are_sent_beside_the_system_state(
@@ -107,7 +119,7 @@ def test_clients_in_step_get_the_very_same_text(encoder: StreamEncoder) -> None:
 
     first = encoder.frame(published, 0, ALL)
 
-    assert encoder.frame(published, 0, ALL | {"task"}) is first
+    assert encoder.frame(published, 0, ALL | {"events"}) is first
 
 
 def test_a_client_that_missed_frames_is_told_how_many(encoder: StreamEncoder) -> None:

@@ -3,7 +3,7 @@ from math import cos, hypot, nan, pi, sin
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 from numpy.typing import NDArray
 
@@ -276,7 +276,6 @@ def test_a_start_index_past_the_end_is_at_the_end() -> None:
 places = st.tuples(st.floats(-50, 50), st.floats(-50, 50))
 
 
-@settings(max_examples=60)
 @given(st.lists(places, min_size=2, max_size=30).filter(lambda p: len({*p}) > 1), places, st.data())
 def test_a_vehicle_is_found_on_the_path_and_never_before_what_it_passed(
     corners: list[tuple[float, float]], vehicle: tuple[float, float], data: st.DataObject
@@ -303,7 +302,6 @@ def test_a_vehicle_is_found_on_the_path_and_never_before_what_it_passed(
     assert at.distance_m <= (ends[0] if ends else some.length_m)
 
 
-@settings(max_examples=40)
 @given(st.floats(-pi, pi), places, st.floats(0, 60))
 def test_a_turned_and_moved_path_is_the_same_path(
     angle: float, by: tuple[float, float], distance: float

@@ -41,7 +41,14 @@ def test_in_a_bend_it_steers_as_the_bend_needs() -> None:
 
 @pytest.mark.parametrize(
     ("speed", "beside", "reach"),
-    [(0.0, 0.0, 2.2), (5.0, 0.0, 4.0), (11.0, 0.0, 8.8), (2.0, 1.0, 4.1), (5.0, 3.0, 9.0)],
+    [
+        (0.0, 0.0, 2.2),
+        (5.0, 0.0, 3.75),
+        (11.0, 0.0, 8.25),
+        (1.0, 0.3, 2.85),
+        (1.0, 2.0, 5.75),
+        (5.0, 3.0, 9.0),
+    ],
 )
 def test_it_looks_further_ahead_when_it_is_fast_or_off(
     speed: float, beside: float, reach: float

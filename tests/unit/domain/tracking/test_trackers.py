@@ -4,7 +4,7 @@ from math import cos, hypot, pi, sin
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from domain.errors import InvalidValueError
@@ -44,7 +44,6 @@ drivable = st.builds(
 )
 
 
-@settings(max_examples=40)
 @given(drivable, controllers, plants, offsets, st.floats(-0.5, 0.5), st.floats(0.5, 7))
 def test_a_vehicle_that_begins_nearby_is_steered_along_all_of_the_path(
     path: Path,
@@ -63,12 +62,13 @@ def test_a_vehicle_that_begins_nearby_is_steered_along_all_of_the_path(
     assert np.abs(record.commanded_rad).max() <= LIMITS.max_steering_angle_rad
     assert (np.diff(record.target_index) >= 0).all()
     assert record.distance_m[0] <= 3.0 + 0.5
-    # On the inside of the tightest bend, 3 m off, a metre driven is 1.6 m of the path.
+    # On the inside of the tightest bend, 3 m off, a metre driven is 1.6 m of the path; where
+    # waypoints are 3 m apart, the bend is a corner, and passed with a step of up to 1.1 m.
     gained, driven = np.diff(record.distance_m), np.diff(record.driven_m)
-    assert (gained <= 2 * driven + 0.05).all()
+    assert (gained <= 2 * driven + 1.2).all()
+    assert gained.sum() <= 2 * driven.sum() + 1.2
 
 
-@settings(max_examples=100)
 @given(
     st.lists(st.tuples(st.floats(-9, 9), st.floats(-9, 9)), min_size=2, max_size=12),
     controllers,

@@ -1,0 +1,384 @@
+import math
+import pickle
+from dataclasses import replace
+from itertools import pairwise
+
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from domain.messages import VehicleReport
+from domain.simulation.vehicle import COMMAND_VALID_FOR, REPORT_PERIOD, SimulatedVehicle
+from domain.simulation.vehicle_settings import Noise, Plant, VehicleSettings
+from domain.timebase import Instant, seconds, to_seconds
+from domain.vehicle import DriveCommand, Pose, VehicleLimits
+
+START = seconds(50.0) + 3
+LIMITS = VehicleLimits()
+SLOW = Plant(
+    acceleration_mps2=1.0,
+    braking_mps2=2.0,
+    steering_rate_radps=0.5,
+    steering_lag_s=0.15,
+    speed_lag_s=0.2,
+    delay=seconds(0.1),
+    noise=Noise(0.02, 0.01, 0.05, seed=7),
+)
+
+
+def at(time_s: float) -> Instant:
+    return START + seconds(time_s)
+
+
+def vehicle(plant: Plant | None = None, pose: Pose | None = None) -> SimulatedVehicle:
+    settings = VehicleSettings(pose or Pose(0.0, 0.0, 0.0), plant or Plant())
+    return SimulatedVehicle(settings, START)
+
+
+def driven(
+    it: SimulatedVehicle, command: DriveCommand, from_s: float, until_s: float
+) -> list[VehicleReport]:
+    """Give a command each 50 ms and return what the vehicle reports until `until_s`."""
+    reports: list[VehicleReport] = []
+    for step in range(round((until_s - from_s) / 0.05)):
+        it.drive(command, at(from_s + step * 0.05))
+        reports += it.advance(at(from_s + step * 0.05))
+    reports += it.advance(at(until_s))
+    return reports
+
+
+# --- reports -------------------------------------------------------------------------------------
+
+
+def test_the_first_report_is_there_from_the_start_and_then_twenty_a_second() -> None:
+    it = vehicle()
+    times = []
+    while it.wake_at() <= at(0.2):
+        times.append(to_seconds(it.wake_at() - START))
+        assert len(it.advance(it.wake_at())) == 1
+
+    assert times == [0.0, 0.05, 0.1, 0.15, 0.2]
+
+
+def test_reports_that_were_not_fetched_are_all_there_later() -> None:
+    it = vehicle()
+
+    assert len(it.advance(at(1.0))) == 21
+    assert it.advance(at(1.0)) == ()
+    assert it.wake_at() == at(1.05)
+
+
+def test_a_vehicle_reports_where_it_was_put() -> None:
+    (report,) = vehicle(pose=Pose(3.0, -2.0, 1.0)).advance(START)
+
+    assert report.state.pose == Pose(3.0, -2.0, 1.0)
+    assert report.state.speed_mps == 0.0
+
+
+def test_a_lost_localization_says_nothing_and_comes_back_on_the_grid() -> None:
+    it = vehicle()
+    it.advance(START)
+    it.set_reporting(False, at(0.01))
+
+    assert it.advance(at(1.0)) == ()
+
+    it.set_reporting(True, at(1.01))
+    assert it.advance(at(1.01)) == ()
+    assert it.wake_at() == at(1.05)
+    assert len(it.advance(at(1.05))) == 1
+
+
+def test_a_vehicle_whose_localization_is_lost_moves_all_the_same() -> None:
+    it = vehicle()
+    it.set_reporting(False, START)
+    driven(it, DriveCommand(2.0, 0.0), 0.0, 1.0)
+
+    assert it.state.pose.x_m == pytest.approx(2.0)
+
+
+# --- an ideal vehicle ----------------------------------------------------------------------------
+
+
+def test_an_ideal_vehicle_follows_at_once() -> None:
+    it = vehicle()
+    it.drive(DriveCommand(2.0, 0.3), START)
+
+    assert it.state.speed_mps == 2.0
+    assert it.state.steering_angle_rad == 0.3
+    assert it.command == DriveCommand(2.0, 0.3)
+
+
+def test_an_ideal_vehicle_drives_straight_along_its_heading() -> None:
+    it = vehicle(pose=Pose(1.0, 2.0, math.pi / 6))
+    driven(it, DriveCommand(2.0, 0.0), 0.0, 3.0)
+
+    assert it.state.pose.x_m == pytest.approx(1.0 + 6.0 * math.cos(math.pi / 6))
+    assert it.state.pose.y_m == pytest.approx(2.0 + 6.0 * math.sin(math.pi / 6))
+    assert it.state.pose.yaw_rad == pytest.approx(math.pi / 6)
+
+
+@pytest.mark.parametrize("side", [1.0, -1.0])
+def test_an_ideal_vehicle_is_back_where_it_was_after_a_full_circle(side: float) -> None:
+    it = vehicle()
+    radius = LIMITS.wheelbase_m / math.tan(0.4)
+    speed = 2 * math.pi * radius / 10.0
+    driven(it, DriveCommand(speed, side * 0.4), 0.0, 5.0)
+
+    # Half of it: opposite, on the side that is steered to, and turned around.
+    assert it.state.pose.x_m == pytest.approx(0.0, abs=1e-9)
+    assert it.state.pose.y_m == pytest.approx(side * 2 * radius)
+    assert abs(it.state.pose.yaw_rad) == pytest.approx(math.pi)
+
+    driven(it, DriveCommand(speed, side * 0.4), 5.0, 10.0)
+    assert it.state.pose.x_m == pytest.approx(0.0, abs=1e-9)
+    assert it.state.pose.y_m == pytest.approx(0.0, abs=1e-9)
+
+
+def test_a_vehicle_drives_backwards_too() -> None:
+    it = vehicle()
+    driven(it, DriveCommand(-1.0, 0.2), 0.0, 1.0)
+
+    assert it.state.pose.x_m < -0.9
+    assert it.state.pose.yaw_rad == pytest.approx(-math.tan(0.2) / LIMITS.wheelbase_m)
+
+
+# --- commands ------------------------------------------------------------------------------------
+
+
+def test_a_command_is_void_after_half_a_second_and_the_steering_stays() -> None:
+    it = vehicle()
+    it.drive(DriveCommand(2.0, 0.1), START)
+
+    it.advance(START + COMMAND_VALID_FOR - 1)
+    assert it.command == DriveCommand(2.0, 0.1)
+
+    it.advance(START + COMMAND_VALID_FOR)
+    assert it.command == DriveCommand(0.0, 0.1)
+
+    it.advance(at(10.0))
+    assert it.state.speed_mps == 0.0
+    assert it.state.steering_angle_rad == 0.1
+    assert math.hypot(it.state.pose.x_m, it.state.pose.y_m) == pytest.approx(1.0, abs=0.01)
+
+
+def test_a_command_that_is_renewed_in_time_stays() -> None:
+    it = vehicle()
+    it.drive(DriveCommand(2.0, 0.0), START)
+    it.drive(DriveCommand(2.0, 0.0), at(0.49))
+    it.advance(at(0.95))
+
+    assert it.command.speed_mps == 2.0
+
+
+def test_a_command_takes_effect_after_the_delay_and_is_valid_from_then_on() -> None:
+    it = vehicle(Plant(delay=seconds(0.123)))
+    it.drive(DriveCommand(2.0, 0.0), START)
+
+    it.advance(at(0.122))
+    assert it.command.speed_mps == 0.0
+    it.advance(at(0.123))
+    assert it.command.speed_mps == 2.0
+    it.advance(at(0.622))
+    assert it.command.speed_mps == 2.0
+    it.advance(at(0.623))
+    assert it.command.speed_mps == 0.0
+    assert it.state.pose.x_m == pytest.approx(1.0)
+
+
+def test_commands_beyond_what_the_vehicle_can_do_are_cut() -> None:
+    it = vehicle()
+    it.drive(DriveCommand(99.0, -2.0), START)
+    assert it.command == DriveCommand(LIMITS.max_speed_mps, -LIMITS.max_steering_angle_rad)
+
+    it.drive(DriveCommand(-99.0, 2.0), START)
+    assert it.command == DriveCommand(-LIMITS.max_speed_mps, LIMITS.max_steering_angle_rad)
+
+
+@pytest.mark.parametrize(
+    "command",
+    [
+        DriveCommand(math.nan, 0.0),
+        DriveCommand(2.0, math.nan),
+        DriveCommand(math.inf, 0.0),
+        DriveCommand(2.0, -math.inf),
+    ],
+)
+def test_a_command_that_is_no_number_stops_the_vehicle(command: DriveCommand) -> None:
+    it = vehicle()
+    it.drive(DriveCommand(2.0, 0.2), START)
+    it.drive(command, at(0.1))
+
+    assert it.command == DriveCommand(0.0, 0.2)
+
+
+def test_a_command_that_is_no_number_keeps_the_steering_of_the_one_before_it() -> None:
+    it = vehicle(Plant(delay=seconds(0.1)))
+    it.drive(DriveCommand(2.0, 0.2), START)
+    it.drive(DriveCommand(math.nan, math.nan), at(0.05))
+    it.advance(at(0.2))
+
+    assert it.command == DriveCommand(0.0, 0.2)
+
+
+# --- how a vehicle responds ----------------------------------------------------------------------
+
+
+def test_speed_rises_and_falls_no_faster_than_the_plant_can() -> None:
+    it = vehicle(Plant(acceleration_mps2=1.0, braking_mps2=2.0))
+    driven(it, DriveCommand(3.0, 0.0), 0.0, 2.0)
+    assert it.state.speed_mps == pytest.approx(2.0)
+    assert it.state.pose.x_m == pytest.approx(2.0, abs=0.01)
+
+    driven(it, DriveCommand(0.0, 0.0), 2.0, 2.5)
+    assert it.state.speed_mps == pytest.approx(1.0)
+
+
+def test_a_vehicle_brakes_as_hard_as_it_can_when_it_hears_nothing() -> None:
+    it = vehicle(Plant(braking_mps2=2.0))
+    driven(it, DriveCommand(4.0, 0.0), 0.0, 1.0)
+    it.advance(at(10.0))
+
+    # The last command was given 50 ms before; 0.45 s more at 4 m/s, then v^2 / 2a.
+    assert it.state.speed_mps == 0.0
+    assert it.state.pose.x_m == pytest.approx(4.0 + 4.0 * 0.45 + 4.0, abs=0.03)
+
+
+def test_the_steering_turns_no_faster_than_the_plant_can() -> None:
+    it = vehicle(Plant(steering_rate_radps=0.5))
+    driven(it, DriveCommand(1.0, 0.4), 0.0, 0.4)
+    assert it.state.steering_angle_rad == pytest.approx(0.2)
+
+    driven(it, DriveCommand(1.0, 0.4), 0.4, 1.0)
+    assert it.state.steering_angle_rad == pytest.approx(0.4)
+
+
+def test_what_lags_has_come_63_percent_of_the_way_after_its_time_constant() -> None:
+    it = vehicle(Plant(steering_lag_s=0.2, speed_lag_s=0.4))
+    driven(it, DriveCommand(2.0, 0.5), 0.0, 0.2)
+    assert it.state.steering_angle_rad == pytest.approx(0.5 * (1 - math.exp(-1)))
+
+    driven(it, DriveCommand(2.0, 0.5), 0.2, 0.4)
+    assert it.state.speed_mps == pytest.approx(2.0 * (1 - math.exp(-1)))
+
+
+def test_a_vehicle_with_lag_stands_still_in_the_end() -> None:
+    it = vehicle(SLOW)
+    driven(it, DriveCommand(2.0, 0.3), 0.0, 2.0)
+    it.advance(at(20.0))
+
+    assert it.state.speed_mps == 0.0
+    assert it.state.steering_angle_rad == 0.3
+
+
+# --- noise ---------------------------------------------------------------------------------------
+
+
+def test_noise_is_in_the_reports_and_not_in_how_the_vehicle_moves() -> None:
+    it = vehicle(Plant(noise=Noise(position_m=0.1, yaw_rad=0.05, speed_mps=0.2, seed=1)))
+    states = [report.state for report in it.advance(at(200.0))]
+
+    assert it.state.pose == Pose(0.0, 0.0, 0.0)
+    for values, deviation in (
+        ([state.pose.x_m for state in states], 0.1),
+        ([state.pose.y_m for state in states], 0.1),
+        ([state.pose.yaw_rad for state in states], 0.05),
+        ([state.speed_mps for state in states], 0.2),
+    ):
+        mean = sum(values) / len(values)
+        spread = math.sqrt(sum((value - mean) ** 2 for value in values) / len(values))
+        assert mean == pytest.approx(0.0, abs=deviation / 10)
+        assert spread == pytest.approx(deviation, rel=0.1)
+
+
+def test_the_same_seed_gives_the_same_noise_and_another_one_another() -> None:
+    def reports(seed: int) -> tuple[VehicleReport, ...]:
+        return vehicle(Plant(noise=Noise(position_m=0.1, seed=seed))).advance(at(1.0))
+
+    assert reports(1) == reports(1)
+    assert reports(1) != reports(2)
+
+
+# --- in any sequence -----------------------------------------------------------------------------
+
+commands = st.lists(
+    st.tuples(
+        st.integers(0, 900),
+        st.floats(-3.0, 12.0),
+        st.floats(-0.7, 0.7),
+    ),
+    max_size=6,
+).map(sorted)
+
+
+def told(
+    plant: Plant,
+    orders: list[tuple[int, float, float]],
+    looks_ms: list[int],
+    start: Instant = START,
+) -> tuple[list[VehicleReport], SimulatedVehicle]:
+    """Return the reports of the first 3 s, looked for at these times besides."""
+    it = SimulatedVehicle(VehicleSettings(plant=plant), start)
+    reports: list[VehicleReport] = []
+    moments = [(ms, 0, None) for ms in looks_ms] + [
+        (ms, 1 + index, DriveCommand(speed, steering))
+        for index, (ms, speed, steering) in enumerate(orders)
+    ]
+    for ms, _, command in sorted(moments, key=lambda moment: moment[:2]):
+        now = start + ms * 1_000_000
+        if command is not None:
+            it.drive(command, now)
+        reports += it.advance(now)
+    reports += it.advance(start + seconds(3.0))
+    return reports, it
+
+
+@pytest.mark.parametrize("plant", [Plant(), SLOW], ids=["ideal", "slow"])
+@settings(max_examples=25)
+@given(orders=commands, looks=st.lists(st.integers(0, 2_999), max_size=30))
+def test_it_makes_no_difference_how_often_one_looks(
+    plant: Plant, orders: list[tuple[int, float, float]], looks: list[int]
+) -> None:
+    seldom, _ = told(plant, orders, [])
+    often, _ = told(plant, orders, looks)
+
+    assert often == seldom
+
+
+@settings(max_examples=25)
+@given(orders=commands, later=st.integers(0, 10**12))
+def test_it_makes_no_difference_when_it_all_begins(
+    orders: list[tuple[int, float, float]], later: int
+) -> None:
+    now, _ = told(SLOW, orders, [])
+    some_day, _ = told(SLOW, orders, [], START + later)
+
+    assert some_day == now
+
+
+@settings(max_examples=25)
+@given(orders=commands)
+def test_a_copy_does_what_the_original_does(orders: list[tuple[int, float, float]]) -> None:
+    _, it = told(SLOW, orders, [])
+    copy: SimulatedVehicle = pickle.loads(pickle.dumps(it))
+    it.drive(DriveCommand(3.0, 0.3), at(3.0))
+    copy.drive(DriveCommand(3.0, 0.3), at(3.0))
+
+    assert copy.advance(at(5.0)) == it.advance(at(5.0))
+
+
+@settings(max_examples=25)
+@given(orders=commands)
+def test_a_vehicle_never_does_what_it_cannot(orders: list[tuple[int, float, float]]) -> None:
+    plant = replace(SLOW, noise=Noise())
+    reports, _ = told(plant, orders, [])
+    states = [report.state for report in reports]
+    period_s = to_seconds(REPORT_PERIOD)
+
+    assert len(states) == 61
+    for before, after in pairwise(states):
+        assert abs(after.speed_mps) <= LIMITS.max_speed_mps
+        assert abs(after.steering_angle_rad) <= LIMITS.max_steering_angle_rad
+        assert abs(after.speed_mps - before.speed_mps) <= 2.0 * period_s + 1e-5
+        turned = after.steering_angle_rad - before.steering_angle_rad
+        assert abs(turned) <= 0.5 * period_s + 1e-5
+        assert abs(after.pose.yaw_rad) <= math.pi
