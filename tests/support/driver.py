@@ -45,9 +45,15 @@ def straight(length_m: float = 20.0, spacing_m: float = 1.0, y_m: float = 0.0) -
 class Driver:
     """A robot whose readings are good and whose vehicle stands at the origin, unless told."""
 
-    def __init__(self, *, pose: bool = True, good: bool = True) -> None:
+    def __init__(
+        self,
+        *,
+        pose: bool = True,
+        good: bool = True,
+        settings: SupervisionSettings | None = None,
+    ) -> None:
         self.now: Instant = 0
-        self.core = Supervision(SmhModel({}, {}), SupervisionSettings(), 0)
+        self.core = Supervision(SmhModel({}, {}), settings or SupervisionSettings(), 0)
         self.events: list[Event] = []
         self.commands: list[Command] = []
         if good:

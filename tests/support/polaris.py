@@ -76,7 +76,7 @@ def timeline(vector: Vector, expected: str = "expected") -> list[Send | Look]:
     """
     # A step `advance_clock` sets the clock of the day, which nothing is judged by here.
     steps = [step for step in vector["steps"] if "advance_clock" not in step]
-    sends: list[Send | Look] = [send for step in steps for send in _sends(step)]
+    sends: list[Send | Look] = [send for step in steps for send in sends_of(step)]
     looks: list[Send | Look] = [look for item in vector[expected] for look in _looks(item)]
     return sorted(sends + looks, key=lambda item: (item.at_ms, isinstance(item, Look)))
 
@@ -100,7 +100,12 @@ def play(vector: Vector, robot: Robot, expected: str = "expected") -> list[str]:
     return failures
 
 
-def _sends(step: Mapping[str, Any]) -> Iterator[Send]:
+def sends_of(step: Mapping[str, Any]) -> Iterator[Send]:
+    """Yield every reading that a step sends.
+
+    Raises:
+        ValueError: It is another kind of step.
+    """
     if "signal" not in step:
         raise ValueError(f"a step that this player does not know: {step}")
     start = step["t"]

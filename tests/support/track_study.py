@@ -74,9 +74,9 @@ def track(name: str) -> Path:
     return Path(rows)
 
 
-def disturbed(plant: Plant) -> Plant:
+def disturbed(plant: Plant, seed: int) -> Plant:
     """Return a plant that hears 100 ms late, with 20 mm and 0.5 degrees of noise in its pose."""
-    return replace(plant, delay=seconds(0.1), noise=Noise(0.02, radians(0.5), seed=1))
+    return replace(plant, delay=seconds(0.1), noise=Noise(0.02, radians(0.5), seed=seed))
 
 
 def beside_start(path: Path, left_m: float) -> Pose:
