@@ -55,9 +55,11 @@ class Onboard:
             PilothouseError: The input is refused; nothing was changed by it.
         """
         self._let_pass(now)
-        self._take(given, now)
         if isinstance(given, VehicleReport):
+            # Before the core, which may send a goal because of it.
+            self.core.driving.check(given)
             self.navigation.take_report(given, now)
+        self._take(given, now)
         gathered, self._untold = self._untold, []
         return _merged(gathered)
 

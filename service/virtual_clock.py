@@ -44,3 +44,4 @@ class VirtualClock:
         """Wait for ever, unless `deadline` has passed: within virtual time nothing waits."""
         if deadline > self._now:
             await asyncio.get_running_loop().create_future()
+        await asyncio.sleep(0)

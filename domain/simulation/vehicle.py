@@ -39,7 +39,8 @@ class SimulatedVehicle:
         self._limits = settings.limits
         self._plant = settings.plant
         self._noise = _NoiseSource(settings.plant.noise)
-        self._state = VehicleState(settings.pose, 0.0, 0.0)
+        pose = replace(settings.pose, yaw_rad=_wrapped(settings.pose.yaw_rad))
+        self._state = VehicleState(pose, 0.0, 0.0)
         self._command = _AT_REST
         self._expires_at: Instant | None = None
         self._coming: deque[tuple[Instant, DriveCommand]] = deque()

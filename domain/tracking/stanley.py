@@ -15,8 +15,11 @@ SOFTENING_MPS = 0.3
 """Keeps the approach gentle at standstill, and noise harmless at low speed."""
 MAX_APPROACH_RAD = 0.25
 """From a steeper approach slow steering cannot turn in before it is across the path."""
-CALM_PER_M = 0.5
+CALM_NEAR_PER_M = 2.0
 """Off the path it turns more gently, or slow steering would turn too far and swing."""
+CALM_OFF = 0.5
+CALM_OFF_PER_M = 0.5
+"""Further off this grows less, or the way back to the path would be long."""
 TURN_PER_S = 2.0
 """Headings are corrected no faster, or at high speed late steering would swing."""
 DAMPING_S = 0.2
@@ -51,7 +54,8 @@ class Stanley:
         turn = (heading - pose.yaw_rad + pi) % (2 * pi) - pi - approach
         turn -= DAMPING_S * speed / wheelbase * (state.steering_angle_rad - bend)
         gain = min(1.0, TURN_PER_S * wheelbase / max(speed, SOFTENING_MPS))
-        gain /= 1 + CALM_PER_M * abs(here.cross_track_error_m)
+        far = abs(here.cross_track_error_m)
+        gain /= 1 + min(CALM_NEAR_PER_M * far, CALM_OFF + CALM_OFF_PER_M * far)
         most = self._limits.max_steering_angle_rad
         return ControlStep(
             steering_angle_rad=min(max(bend + gain * turn, -most), most),

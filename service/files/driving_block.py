@@ -1,6 +1,6 @@
 """What can be set about tasks and how they are driven, and the task to begin with."""
 
-from typing import Annotated, TypeAlias
+from typing import Annotated, Literal, TypeAlias
 
 from pydantic import Field
 
@@ -11,6 +11,7 @@ from domain.timebase import seconds
 from service.files.robot_settings import Seconds, SettingsBlock
 
 Positive: TypeAlias = Annotated[float, Field(gt=0, le=1_000, allow_inf_nan=False)]
+SomeSeconds: TypeAlias = Annotated[float, Field(gt=0, le=86_400, allow_inf_nan=False)]
 
 
 class DrivingBlock(SettingsBlock):
@@ -18,13 +19,13 @@ class DrivingBlock(SettingsBlock):
 
     max_start_distance_m: Positive = 5.0
     """A path that begins further from the vehicle is refused."""
-    pose_stale_after_s: Seconds = 0.3
+    pose_stale_after_s: SomeSeconds = 0.3
     """A pose that is older holds the task."""
     max_cross_track_m: Positive = 3.0
     """Further beside the path, for `max_cross_track_for_s`, the task is given up."""
     max_cross_track_for_s: Seconds = 1.0
     """For how many seconds."""
-    no_progress_for_s: Seconds = 20.0
+    no_progress_for_s: SomeSeconds = 20.0
     """A task that comes no further for so many seconds is given up."""
     lateral_acceleration_mps2: Positive = 2.0
     """Curves are driven so that no more than this is felt, in m/s2."""
@@ -60,7 +61,7 @@ class StartTaskBlock(SettingsBlock):
 
     file: str = Field(min_length=1, max_length=1_000)
     """CSV with `x,y,yaw` in m, m and rad; a relative path counts from the robot file."""
-    controller: str = "pure_pursuit"
-    """`pure_pursuit` or `stanley`."""
+    controller: Literal["pure_pursuit", "stanley"] = "pure_pursuit"
+    """What follows the path."""
     speed_mps: Positive = 2.8
     """Cruise speed, in m/s."""

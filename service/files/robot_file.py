@@ -141,15 +141,20 @@ def robot_settings_of(data: AnyMapping[str, object], model: SmhModel) -> RobotSe
     except ValidationError as error:
         fault = error.errors(include_url=False, include_input=False)[0]
         words = _WORDS.get(fault["type"], fault["msg"].removeprefix("Value error, "))
-        raise InvalidValueError(words, "".join(f"/{key}" for key in fault["loc"])) from error
+        raise InvalidValueError(words, _pointer(*fault["loc"])) from error
     try:
         settings.to_signal_settings()
     except InvalidValueError as error:
         raise InvalidValueError(error.message, f"/signals/{error.pointer}") from error
     for name in settings.nodes:
         if name not in model.nodes:
-            raise InvalidValueError(f"there is no node {name!r}", f"/nodes/{name}")
+            raise InvalidValueError(f"there is no node {name!r}", _pointer("nodes", name))
     return settings
+
+
+def _pointer(*keys: int | str) -> str:
+    """Return a JSON pointer (RFC 6901); names of nodes may have slashes."""
+    return "".join(f"/{str(key).replace('~', '~0').replace('/', '~1')}" for key in keys)
 
 
 def _settings(

@@ -1,194 +1,230 @@
-"""Waypoint files: CSV with `x,y,yaw[,...]`, as smart_polaris records and drives them.
+"""Waypoint files: a CSV without a header, `x,y,yaw[,...]` in each line.
 
-Such files hold one of three headings and never say which: radians, degrees, or a compass's. Radians
-are meant unless told; a file that is visibly otherwise is refused with what to say.
+Source: smart_polaris section 7, whose recordings come with three conventions for the heading.
 """
 
-import math
 from collections.abc import Iterator
 from enum import StrEnum
+from math import pi, tau
 
 import numpy as np
 from numpy.typing import NDArray
 
 from domain.errors import PilothouseError
 from domain.findings import Finding
-from domain.paths.waypoints import COLUMNS, MAX_COORDINATE_M, MAX_WAYPOINTS
+from domain.paths.headings import Ways, wrapped
+from domain.paths.waypoints import MAX_COORDINATE_M, MAX_WAYPOINTS
 
 MAX_FINDINGS = 20
-_LEAST_STEP_M = 0.3
-"""Directions between places closer than this say nothing about the heading."""
-_FITS_RAD = 0.2
-_MISFITS_RAD = 0.6
+
+_NAMES = ("x", "y", "yaw")
+_FORM = "each line is x,y,yaw in m, m and rad, parted by commas, and there is no header"
+_TURN_RAD = 1.001 * tau
+"""More than this is no heading in radians, unless one that was counted on over several turns."""
+_FEW_WAYS = 3
+_MISFIT_RAD = 0.3
+_FIT_RAD = 0.1
+_GAIN = 4.0
+"""So much better must another unit fit than no heading at all: small degrees are about 0."""
 
 
 class Heading(StrEnum):
-    """What the third column of a file is."""
+    """What the third column is."""
 
     RAD = "rad"
-    """Counter-clockwise from the x axis, rad."""
+    """Radians counter-clockwise from the x axis."""
     DEG = "deg"
-    """Counter-clockwise from the x axis, degrees."""
+    """Degrees counter-clockwise from the x axis."""
     COMPASS = "compass"
-    """Clockwise from north, degrees; x is east and y is north."""
+    """Degrees clockwise from north, which is the y axis."""
 
 
 class InvalidWaypointsError(PilothouseError):
-    """A waypoint file with faults; `findings` hold the first of them."""
+    """A waypoint file with faults; `findings` hold the first of them, at most `MAX_FINDINGS`."""
 
     code = "INVALID_WAYPOINTS"
 
-    def __init__(self, findings: list[Finding], hint: str | None = None) -> None:
+    def __init__(self, findings: list[Finding], hint: str = _FORM) -> None:
         first = findings[0]
         more = f" (and {len(findings) - 1} more)" if len(findings) > 1 else ""
-        super().__init__(f"line {first.line}: {first.message}{more}")
+        super().__init__(f"the waypoints are invalid: line {first.line}: {first.message}{more}")
         self.findings = tuple(findings)
-        if hint is not None:
-            self.hint = hint
+        self.hint = hint
 
 
 def read_waypoints_csv(text: str, heading: Heading = Heading.RAD) -> NDArray[np.float64]:
-    """Return the waypoints of a CSV, with their yaw in rad; shape (n, 3).
+    """Read waypoints; 100,000 of them need some 0.2 s.
+
+    Lines end with LF or CRLF, and empty ones are at the end only. Further columns are not looked
+    at.
 
     Args:
-        text: Lines that end in LF or CRLF; further columns are not looked at.
+        text: The CSV.
         heading: What the third column is.
 
+    Returns:
+        Shape (n, 3): x m, y m, yaw rad.
+
     Raises:
-        InvalidWaypointsError: A line is no waypoint, there are fewer than 2 or too many, or the
-            headings are visibly not what `heading` says.
+        InvalidWaypointsError: There are fewer than 2 or more than 100,000 points, a cell is no
+            number or out of range, or headings that should be radians are degrees.
     """
-    lines = text.replace("\r\n", "\n").split("\n")
-    while lines and not lines[-1].strip():
-        lines.pop()
+    lines = text.rstrip().split("\n")
     if len(lines) > MAX_WAYPOINTS:
         message = f"there are {len(lines)} lines; a path has at most {MAX_WAYPOINTS} waypoints"
-        raise InvalidWaypointsError([_finding(MAX_WAYPOINTS + 1, 1, message)])
-    rows: list[tuple[float, ...]] = []
-    findings: list[Finding] = []
-    for number, line in enumerate(lines, start=1):
-        try:
-            rows.append(_row(line, number))
-        except _BadLineError as error:
-            findings.append(error.finding)
-            if len(findings) == MAX_FINDINGS:
-                break
-    if not findings and len(rows) < 2:
-        message = f"a path has at least 2 waypoints, this file {len(rows)}"
-        findings = [_finding(max(len(lines), 1), 1, message)]
-    if findings:
-        raise InvalidWaypointsError(findings, _hint_for(lines))
+        finding = _finding("TOO_MANY_POINTS", message, MAX_WAYPOINTS + 1)
+        raise InvalidWaypointsError([finding], "leave points out: one each 0.1 m is plenty")
+    rows, findings = _numbers(lines)
     waypoints = np.array(rows, dtype=np.float64)
-    _judge_heading(waypoints, heading)
-    return _in_radians(waypoints, heading)
-
-
-class _BadLineError(Exception):
-    def __init__(self, finding: Finding) -> None:
-        super().__init__(finding.message)
-        self.finding = finding
-
-
-def _row(line: str, number: int) -> tuple[float, ...]:
-    """Return x, y and the heading of a line.
-
-    Raises:
-        _BadLineError: It holds no waypoint.
-    """
-    cells = line.split(",")
-    if len(cells) < len(COLUMNS):
-        what = "is empty" if not line.strip() else f"has {len(cells)} columns"
-        message = f"this line {what}; a waypoint is x,y,yaw"
-        raise _BadLineError(_finding(number, 1, message))
-    values = []
-    column = 1
-    for cell, name in zip(cells, COLUMNS, strict=False):
-        values.append(_number(cell, name, number, column))
-        column += len(cell) + 1
-    return tuple(values)
-
-
-def _number(cell: str, name: str, line: int, column: int) -> float:
-    text = cell.strip()
-    try:
-        # float() alone accepts "1_0" and digits of other scripts.
-        value = float(text) if text.isascii() and "_" not in text else math.nan
-    except ValueError:
-        value = math.nan
-    within = math.inf if name == "yaw_rad" else MAX_COORDINATE_M
-    if not math.isfinite(value) or abs(value) > within:
-        message = f"{text[:40]!r} is no {name.partition('_')[0]}: a finite number is wanted"
-        raise _BadLineError(_finding(line, column, message))
-    return value
-
-
-def _finding(line: int, column: int, message: str) -> Finding:
-    return Finding("error", "INVALID_WAYPOINT", message, None, (), line, column)
-
-
-def _hint_for(lines: list[str]) -> str | None:
-    first = lines[0].replace(" ", "").lower() if lines else ""
-    if first.startswith(("x,", "#", '"x"', "x_m,")):
-        return "a waypoint file has no header line: leave the first line out"
-    return None
-
-
-def _judge_heading(waypoints: NDArray[np.float64], heading: Heading) -> None:
-    """Refuse headings that are visibly something else.
-
-    Raises:
-        InvalidWaypointsError: They are degrees, or a compass's.
-    """
-    if heading is not Heading.RAD:
-        return
-    yaw = waypoints[:, 2]
-    misfits = {kind: _misfit(waypoints, kind) for kind in Heading}
-    too_large = np.abs(yaw) > math.tau
-    others = [kind for kind in (Heading.DEG, Heading.COMPASS) if misfits[kind] < _FITS_RAD]
-    # A heading that is the same everywhere was perhaps never recorded at all.
-    fits_better = np.ptp(yaw) > 0 and misfits[Heading.RAD] > _MISFITS_RAD and bool(others)
-    if not too_large.any() and not fits_better:
-        return
-    row = int(too_large.argmax()) if too_large.any() else 0
-    likely = min(others, key=misfits.__getitem__, default=None)
-    looks = {Heading.DEG: "degrees", Heading.COMPASS: "degrees of a compass"}
-    guess = f"; they look like {looks[likely]}" if likely else ""
-    message = f"the heading {yaw[row]:g} is not in radians{guess}"
-    says = [f"?heading={likely}"] if likely else ["?heading=deg", "?heading=compass"]
-    hint = f"say {' or '.join(says)} to have them converted"
-    raise InvalidWaypointsError([_finding(row + 1, 1, message)], hint)
-
-
-def _misfit(waypoints: NDArray[np.float64], kind: Heading) -> float:
-    """Return by how much headings differ from the directions driven, in the median; rad."""
-    differences = np.abs(
-        [_wrapped(yaw - direction) for yaw, direction in _directions(waypoints, kind)]
-    )
-    return float(np.median(differences)) if len(differences) else 0.0
-
-
-def _directions(waypoints: NDArray[np.float64], kind: Heading) -> Iterator[tuple[float, float]]:
-    """Yield heading and direction to the next place that is far enough away; rad."""
-    yaw = _in_radians(waypoints, kind)[:, 2].tolist()
-    xs, ys = waypoints[:, 0].tolist(), waypoints[:, 1].tolist()
-    at = 0
-    for index in range(1, len(xs)):
-        dx, dy = xs[index] - xs[at], ys[index] - ys[at]
-        if math.hypot(dx, dy) >= _LEAST_STEP_M:
-            yield yaw[at], math.atan2(dy, dx)
-            at = index
-
-
-def _in_radians(waypoints: NDArray[np.float64], heading: Heading) -> NDArray[np.float64]:
-    """Return the waypoints with their headings as yaw; shape (n, 3)."""
+    findings.extend(_out_of_range(waypoints, lines))
+    if not findings and len(rows) < 2:
+        message = "there is one waypoint; a path has at least 2"
+        findings = [_finding("TOO_FEW_POINTS", message, 1)]
+    if findings:
+        findings.sort(key=lambda finding: (finding.line or 0, finding.column or 0))
+        raise InvalidWaypointsError(findings[:MAX_FINDINGS])
     if heading is Heading.RAD:
-        return waypoints
-    yaw = np.radians(waypoints[:, 2])
-    if heading is Heading.COMPASS:
-        yaw = math.pi / 2 - yaw
-    return np.column_stack((waypoints[:, :2], _wrapped(yaw)))
+        _check_radians(waypoints, lines)
+    else:
+        waypoints[:, 2] = _yaws(waypoints[:, 2], heading)
+    return waypoints
 
 
-def _wrapped(angle: NDArray[np.float64] | float) -> NDArray[np.float64]:
-    """Return angles within -pi and pi."""
-    return np.asarray((np.asarray(angle) + math.pi) % math.tau - math.pi)
+def _numbers(lines: list[str]) -> tuple[list[tuple[float, float, float]], list[Finding]]:
+    """Return the numbers of each line, zeros for one without, and what is wrong with those.
+
+    Ends early where so much is wrong that the rest would not be told.
+    """
+    rows: list[tuple[float, float, float]] = []
+    findings: list[Finding] = []
+    for number, line in enumerate(lines, 1):
+        cells = line.split(",", 3)
+        try:
+            rows.append((_number(cells[0]), _number(cells[1]), _number(cells[2])))
+        except (ValueError, IndexError):
+            rows.append((0.0, 0.0, 0.0))
+            findings.extend(_faults(number, line))
+            if len(findings) >= MAX_FINDINGS:
+                break
+    return rows, findings
+
+
+def _number(cell: str) -> float:
+    # float() takes "1_0" and the digits of other scripts as well.
+    if "_" in cell or not cell.isascii():
+        raise ValueError
+    return float(cell)
+
+
+def _faults(number: int, line: str) -> Iterator[Finding]:
+    """Yield what is wrong with a line that does not begin with three numbers."""
+    cells = _columns(line)
+    if not line.strip() and number == 1:
+        yield _finding("EMPTY_FILE", "there is no waypoint in the first line", number)
+    elif not line.strip():
+        yield _finding("EMPTY_LINE", "the line is empty; only at the end may some be", number)
+    elif number == 1 and all(map(_is_text, cells)):
+        message = f"{_shown(line)} looks like a header; leave it out"
+        yield _finding("HEADER", message, number)
+    elif len(cells) < len(_NAMES):
+        message = f"there are {len(cells)} columns; x, y and yaw are needed, parted by commas"
+        yield _finding("TOO_FEW_COLUMNS", message, number)
+    else:
+        for name, cell, column in zip(_NAMES, cells, _starts(cells), strict=False):
+            if _is_text(cell):
+                what = f"{_shown(cell)} is not a number" if cell.strip() else "there is no number"
+                yield _finding("NOT_A_NUMBER", f"{name}: {what}", number, column)
+
+
+def _out_of_range(waypoints: NDArray[np.float64], lines: list[str]) -> Iterator[Finding]:
+    """Yield what numbers are not finite or too large, at most `MAX_FINDINGS`."""
+    limits = np.array([MAX_COORDINATE_M, MAX_COORDINATE_M, np.inf])
+    wrong = np.argwhere(~(np.isfinite(waypoints) & (np.abs(waypoints) <= limits)))
+    for row, k in wrong[:MAX_FINDINGS].tolist():
+        cells = _columns(lines[row])
+        if np.isfinite(waypoints[row, k]):
+            code, what = "TOO_FAR", f"is further out than {MAX_COORDINATE_M:g} m"
+        else:
+            code, what = "NOT_FINITE", "is not finite"
+        message = f"{_NAMES[k]}: {_shown(cells[k])} {what}"
+        yield _finding(code, message, row + 1, _starts(cells)[k])
+
+
+def _check_radians(waypoints: NDArray[np.float64], lines: list[str]) -> None:
+    """Check that headings are radians.
+
+    Where they stay within a turn they are taken for degrees only if they say as degrees what they
+    do not say as radians: nobody is refused for headings that are all 0, or noise.
+
+    Raises:
+        InvalidWaypointsError: They are degrees.
+    """
+    yaws = waypoints[:, 2]
+    beyond = np.abs(yaws) > _TURN_RAD
+    ways = Ways(waypoints[:, :2])
+    unit = _better_unit(ways, yaws, within_a_turn=not beyond.any())
+    if unit is None:
+        return
+    row = int(beyond.argmax())
+    cell, column = _columns(lines[row])[2], _starts(_columns(lines[row]))[2]
+    why = "is more than a turn" if beyond.any() else "does not fit the way between the points"
+    message = f"yaw: {_shown(cell)} {why} in radians; these look like {_UNITS[unit]}"
+    other = Heading.COMPASS if unit is Heading.DEG else Heading.DEG
+    hint = f"say so with ?heading={unit} ({_UNITS[unit]}) or ?heading={other} ({_UNITS[other]})"
+    raise InvalidWaypointsError([_finding("NOT_RADIANS", message, row + 1, column)], hint)
+
+
+_UNITS = {
+    Heading.DEG: "degrees counter-clockwise from east",
+    Heading.COMPASS: "degrees clockwise from north",
+}
+
+
+def _better_unit(ways: Ways, yaws: NDArray[np.float64], *, within_a_turn: bool) -> Heading | None:
+    """Return the unit that headings are in if that is not radians."""
+    if not ways.count:
+        return None if within_a_turn else Heading.DEG
+    own = ways.misfit(yaws)
+    misfits = {unit: ways.misfit(_yaws(yaws, unit)) for unit in _UNITS}
+    best = min(misfits, key=lambda unit: misfits[unit])
+    if not within_a_turn:
+        return None if own < min(misfits[best], _MISFIT_RAD) else best
+    silent = ways.misfit(_yaws(np.zeros_like(yaws), best))
+    clear = misfits[best] < _FIT_RAD and misfits[best] * _GAIN < silent
+    return best if clear and own > _MISFIT_RAD and ways.count >= _FEW_WAYS else None
+
+
+def _yaws(degrees: NDArray[np.float64], unit: Heading) -> NDArray[np.float64]:
+    """Return headings in rad, from -pi to below pi; shape (n,)."""
+    radians = np.radians(degrees)
+    return wrapped(pi / 2 - radians if unit is Heading.COMPASS else radians)
+
+
+def _columns(line: str) -> list[str]:
+    return line.rstrip("\r").split(",")
+
+
+def _starts(cells: list[str]) -> list[int]:
+    """Return in which column of the line each cell begins, from 1."""
+    starts, at = [], 1
+    for cell in cells:
+        starts.append(at + len(cell) - len(cell.lstrip()))
+        at += len(cell) + 1
+    return starts
+
+
+def _is_text(cell: str) -> bool:
+    try:
+        _number(cell)
+    except ValueError:
+        return True
+    return False
+
+
+def _shown(text: str) -> str:
+    text = text.strip()
+    return repr(text if len(text) <= 40 else f"{text[:37]}...")
+
+
+def _finding(code: str, message: str, line: int, column: int = 1) -> Finding:
+    return Finding("error", code, message, line=line, column=column)

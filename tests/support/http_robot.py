@@ -9,6 +9,7 @@ import httpx
 
 from api.app import close_workers, create_app
 from domain.findings import Finding
+from domain.messages import Drive, NodeCommand
 from domain.simulation.node_settings import Fault, NodeSettings
 from domain.simulation.robot import SimulatedRobot
 from domain.simulation.vehicle_settings import VehicleSettings
@@ -48,6 +49,18 @@ manipulator:
 Answer = TypeVar("Answer")
 
 
+class _Backend(SimulatedBackend):
+    """Remembers what it is sent."""
+
+    def __init__(self, robot: SimulatedRobot, clock: ManualClock) -> None:
+        super().__init__(robot, clock)
+        self.sent: list[NodeCommand | Drive] = []
+
+    def send(self, command: NodeCommand | Drive) -> None:
+        self.sent.append(command)
+        super().send(command)
+
+
 class HttpRobot:
     """One robot: its interface (`http`), its clock, and what can be done to its nodes."""
 
@@ -65,7 +78,7 @@ class HttpRobot:
         model = read_model(text).model
         by_name = {PartName(name): setting for name, setting in (nodes or {}).items()}
         robot = SimulatedRobot(model, 0, by_name, vehicle, mock=mock)
-        self.backend = SimulatedBackend(robot, self.clock)
+        self.backend = _Backend(robot, self.clock)
         self.supervisor = Supervisor(
             LoadedModel(model, tuple(warnings), text),
             make_onboard(model, 0, settings),
@@ -77,6 +90,11 @@ class HttpRobot:
         self.app = create_app(self.supervisor, allowed_hosts=["robot"])
         transport = httpx.ASGITransport(self.app)
         self.http = httpx.AsyncClient(transport=transport, base_url="http://robot:8000")
+
+    @property
+    def sent(self) -> list[NodeCommand | Drive]:
+        """Return what was sent to nodes and vehicle so far."""
+        return self.backend.sent
 
     async def pass_time(self, by_s: float) -> None:
         """Let virtual time pass."""

@@ -4,32 +4,46 @@ from collections.abc import AsyncIterator
 import pytest
 
 from domain.messages import Readings, SignalValue
-from domain.simulation.mock_signals import MockSignals
+from domain.simulation.robot import SimulatedRobot
 from domain.timebase import seconds, to_seconds
+from service.backends.simulated import SimulatedBackend
 from service.mock_source import MockSource
-from service.ports import SignalSource
+from service.ports import BackendMessage
 from tests.support.manual_clock import ManualClock, settle
+from tests.support.models import actuation_model
+
+
+def backend_of(clock: ManualClock) -> SimulatedBackend:
+    """Return a simulated robot with mock signals, on a clock."""
+    return SimulatedBackend(SimulatedRobot(actuation_model(), clock.now(), mock=True), clock)
+
+
+def mock_of(backend: SimulatedBackend) -> MockSource:
+    """Return what can be done to the mock signals of a robot."""
+    assert backend.mock is not None
+    return backend.mock
 
 
 class Listening:
-    """A mock source that runs on a clock, and what was heard of it, when."""
+    """The mock of a robot that runs on a clock, and what was heard of it, when."""
 
     def __init__(self) -> None:
         self.clock = ManualClock(start=seconds(50.0))
-        self.source = MockSource(MockSignals(self.clock.now()), self.clock)
+        self.backend = backend_of(self.clock)
+        self.source = mock_of(self.backend)
         self.heard: list[tuple[float, dict[str, SignalValue]]] = []
 
-    def hear(self, readings: Readings) -> None:
-        assert readings.source == self.source.source
-        at = to_seconds(self.clock.now() - seconds(50.0))
-        self.heard.append((at, {reading.signal: reading.value for reading in readings.items}))
+    def hear(self, message: BackendMessage) -> None:
+        if isinstance(message, Readings):
+            assert message.source == self.source.source
+            at = to_seconds(self.clock.now() - seconds(50.0))
+            self.heard.append((at, {reading.signal: reading.value for reading in message.items}))
 
 
 @pytest.fixture
 async def listening() -> AsyncIterator[Listening]:
     listening = Listening()
-    source: SignalSource = listening.source
-    running = asyncio.create_task(source.run(listening.hear))
+    running = asyncio.create_task(listening.backend.run(listening.hear))
     await settle()
     yield listening
     running.cancel()
@@ -78,17 +92,15 @@ def test_it_shows_what_it_holds() -> None:
 
 
 async def test_what_is_due_can_be_taken_first_and_is_not_delivered_again() -> None:
-    clock = ManualClock()
-    source = MockSource(MockSignals(clock.now()), clock)
-    (due,) = source.due()
-    heard: list[Readings] = []
-    running = asyncio.create_task(source.run(heard.append))
-    await clock.advance(0.05)
+    listening = Listening()
+    (due,) = listening.source.due()
+    running = asyncio.create_task(listening.backend.run(listening.hear))
+    await listening.clock.advance(0.05)
 
     assert len(due.items) == 5
-    assert heard == []
+    assert listening.heard == []
 
-    await clock.advance(0.05)
-    assert heard == [due]
+    await listening.clock.advance(0.05)
+    assert listening.heard == [(0.1, {reading.signal: reading.value for reading in due.items})]
     running.cancel()
     await asyncio.wait([running])

@@ -4,7 +4,7 @@ import heapq
 import pytest
 
 from domain.timebase import Instant, seconds, to_seconds
-from service.pacing import Pacer
+from service.pacing import Alarm, Pacer
 from tests.support.manual_clock import ManualClock, settle
 
 
@@ -172,3 +172,171 @@ async def test_a_clock_that_breaks_ends_it() -> None:
 
     with pytest.raises(OSError, match="no timer"):
         await Pacer(Alarms(1.0), BrokenClock()).run(lambda _: None)
+
+
+# --- alarms --------------------------------------------------------------------------------------
+
+
+class Bell:
+    """Something that is due at one time, which moves, and an alarm that rings it."""
+
+    def __init__(self, due_s: float | None = None, *, every_s: float | None = None) -> None:
+        self.clock = ManualClock()
+        self._every_s = every_s
+        self._due = None if due_s is None else seconds(due_s)
+        self.looked = 0
+        self.rung: list[float] = []
+        self.alarm = Alarm(self._when, self._ring, self.clock)
+        self.running = asyncio.create_task(self.alarm.run(), name="alarm")
+
+    def move(self, due_s: float | None) -> None:
+        self._due = None if due_s is None else seconds(due_s)
+        self.alarm.check()
+
+    async def stop(self) -> None:
+        self.running.cancel()
+        await asyncio.wait([self.running])
+
+    def _when(self) -> Instant | None:
+        self.looked += 1
+        return self._due
+
+    def _ring(self) -> None:
+        self.rung.append(to_seconds(self.clock.now()))
+        self._due = None
+        if self._every_s is not None:
+            self._due = self.clock.now() + seconds(self._every_s)
+
+
+async def test_an_alarm_rings_once_and_exactly_when_it_is_due() -> None:
+    bell = Bell(0.123456789)
+    await bell.clock.advance(10.0)
+    await bell.stop()
+
+    assert bell.rung == [0.123456789]
+
+
+async def test_an_alarm_rings_as_often_as_something_is_due() -> None:
+    bell = Bell(0.0, every_s=0.25)
+    await bell.clock.advance(1.0)
+    await bell.stop()
+
+    assert bell.rung == [0.0, 0.25, 0.5, 0.75, 1.0]
+
+
+async def test_an_alarm_that_is_due_earlier_now_rings_earlier() -> None:
+    bell = Bell(5.0)
+    await bell.clock.advance(1.0)
+    bell.move(2.0)
+    await bell.clock.advance(10.0)
+    await bell.stop()
+
+    assert bell.rung == [2.0]
+
+
+async def test_an_alarm_that_is_due_later_now_rings_later_and_not_before() -> None:
+    bell = Bell(2.0)
+    await bell.clock.advance(1.0)
+    bell.move(5.0)
+    await bell.clock.advance(10.0)
+    await bell.stop()
+
+    assert bell.rung == [5.0]
+
+
+async def test_an_alarm_that_is_not_due_any_more_does_not_ring() -> None:
+    bell = Bell(2.0)
+    await bell.clock.advance(1.0)
+    bell.move(None)
+    await bell.clock.advance(10.0)
+    await bell.stop()
+
+    assert bell.rung == []
+
+
+async def test_an_alarm_that_was_not_due_at_all_rings_once_it_is() -> None:
+    bell = Bell()
+    await bell.clock.advance(3600.0)
+    bell.move(3601.5)
+    await bell.clock.advance(10.0)
+    await bell.stop()
+
+    assert bell.rung == [3601.5]
+
+
+async def test_an_alarm_that_is_due_now_rings_without_time_passing() -> None:
+    bell = Bell(5.0)
+    await bell.clock.advance(1.0)
+    bell.move(1.0)
+    await settle()
+    await bell.stop()
+
+    assert bell.rung == [1.0]
+
+
+async def test_a_moment_that_was_missed_is_rung_late_and_once() -> None:
+    bell = Bell(1.0)
+    await settle()
+    bell.clock.stall(3.0)
+    await bell.clock.advance(1.0)
+    await bell.stop()
+
+    assert bell.rung == [3.0]
+
+
+async def test_checking_an_alarm_that_need_not_ring_earlier_does_not_wake_it() -> None:
+    bell = Bell(5.0)
+    await bell.clock.advance(1.0)
+    before = bell.looked
+    for _ in range(1000):
+        bell.alarm.check()
+    await settle()
+    await bell.stop()
+
+    assert bell.looked == before + 1000
+
+
+async def test_what_an_alarm_rings_may_check_it() -> None:
+    bell = Bell(1.0)
+    again = [2.0, 3.0]
+
+    def ring() -> None:
+        bell.rung.append(to_seconds(bell.clock.now()))
+        bell.move(again.pop(0) if again else None)
+
+    await bell.stop()
+    bell.alarm = Alarm(bell._when, ring, bell.clock)  # noqa: SLF001  # its own bell
+    bell.running = asyncio.create_task(bell.alarm.run(), name="alarm")
+    await bell.clock.advance(10.0)
+    await bell.stop()
+
+    assert bell.rung == [1.0, 2.0, 3.0]
+
+
+async def test_an_alarm_that_is_checked_before_it_runs_does_no_harm() -> None:
+    bell = Bell(1.0)
+    bell.alarm.check()
+    await bell.clock.advance(2.0)
+    await bell.stop()
+
+    assert bell.rung == [1.0]
+
+
+async def test_what_ringing_raises_ends_the_alarm() -> None:
+    clock = ManualClock()
+
+    def fail() -> None:
+        raise LookupError
+
+    with pytest.raises(LookupError):
+        await Alarm(lambda: 0, fail, clock).run()
+
+
+async def test_cancelling_an_alarm_ends_it_at_once_and_leaves_no_task() -> None:
+    before = asyncio.all_tasks()
+    bell = Bell(5.0)
+    await bell.clock.advance(1.0)
+    await bell.stop()
+
+    assert bell.running.cancelled()
+    assert asyncio.all_tasks() == before

@@ -10,20 +10,21 @@ from domain.errors import InvalidValueError, UnknownChangeError, UnknownPartErro
 from domain.messages import (
     BackendStatus,
     ChangeId,
-    Command,
+    Drive,
     EmergencyStopRequest,
     ModeRequest,
+    NodeCommand,
     NodeReport,
     Reading,
 )
+from domain.simulation.robot import SimulatedRobot
 from domain.snapshot import ChangeStatus, SystemState
-from domain.supervision import Supervision, SupervisionSettings
 from domain.system_model import PartName
 from service.files.model_file import LoadedModel
 from service.frame_feed import Frame
 from service.ports import BackendMessage
 from service.supervisor import Supervisor, TaskFailedError
-from tests.support.live_robot import make_supervisor, running
+from tests.support.live_robot import make_onboard, make_supervisor, running
 from tests.support.manual_clock import ManualClock
 from tests.support.models import ACTUATION, BASE, PERFORMANCE, actuation_model
 
@@ -220,7 +221,7 @@ async def test_what_was_due_before_a_refused_request_is_still_told(
     with pytest.raises(UnknownPartError):
         supervisor.submit(ModeRequest(PartName("nobody"), "FAST"))
     kinds = [event.kind for event in supervisor.events.oldest_first()]
-    assert "error.cleared" in kinds[-2:]
+    assert "error.cleared" in kinds[-3:]
 
 
 async def test_a_late_tick_is_skipped_counted_and_not_made_up_for(
@@ -239,13 +240,15 @@ async def test_a_late_tick_is_skipped_counted_and_not_made_up_for(
 
 
 class Backend:
-    """Nodes that do what a test says."""
+    """A robot that does what a test says."""
+
+    simulation: SimulatedRobot | None = None
 
     def __init__(self, behave: Callable[[Callable[[BackendMessage], None]], None]) -> None:
         self._behave = behave
-        self.sent: list[Command] = []
+        self.sent: list[NodeCommand | Drive] = []
 
-    def send(self, command: Command) -> None:
+    def send(self, command: NodeCommand | Drive) -> None:
         self.sent.append(command)
 
     async def run(self, deliver: Callable[[BackendMessage], None]) -> None:
@@ -255,8 +258,9 @@ class Backend:
 
 def _supervisor_of(backend: Backend) -> Supervisor:
     clock = ManualClock()
-    core = Supervision(actuation_model(), SupervisionSettings(), clock.now())
-    return Supervisor(LoadedModel(core.model, (), ""), core, clock, backend)
+    model = actuation_model()
+    onboard = make_onboard(model, clock.now())
+    return Supervisor(LoadedModel(model, (), ""), onboard, clock, backend)
 
 
 async def test_a_task_that_fails_ends_the_supervisor_and_is_named() -> None:
@@ -267,7 +271,7 @@ async def test_a_task_that_fails_ends_the_supervisor_and_is_named() -> None:
         await _supervisor_of(Backend(fail)).run()
     (error,) = raised.value.exceptions
     assert isinstance(error, TaskFailedError)
-    assert (error.name, str(error.__cause__)) == ("nodes", "no such bus")
+    assert (error.name, str(error.__cause__)) == ("robot", "no such bus")
 
 
 async def test_a_report_that_is_refused_does_not_end_its_adapter(

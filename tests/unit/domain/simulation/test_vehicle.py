@@ -3,9 +3,11 @@ import pickle
 from dataclasses import replace
 from itertools import pairwise
 
+import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from numpy.typing import NDArray
 
 from domain.messages import VehicleReport
 from domain.simulation.vehicle import COMMAND_VALID_FOR, REPORT_PERIOD, SimulatedVehicle
@@ -142,6 +144,12 @@ def test_a_vehicle_drives_backwards_too() -> None:
     assert it.state.pose.yaw_rad == pytest.approx(-math.tan(0.2) / LIMITS.wheelbase_m)
 
 
+def test_a_heading_of_more_than_half_a_turn_is_reported_within_it() -> None:
+    (report,) = vehicle(pose=Pose(0.0, 0.0, 3.0 * math.pi + 0.1)).advance(START)
+
+    assert report.state.pose.yaw_rad == pytest.approx(-math.pi + 0.1)
+
+
 # --- commands ------------------------------------------------------------------------------------
 
 
@@ -233,6 +241,16 @@ def test_speed_rises_and_falls_no_faster_than_the_plant_can() -> None:
     assert it.state.speed_mps == pytest.approx(1.0)
 
 
+def test_a_vehicle_that_is_to_drive_backwards_brakes_first() -> None:
+    it = vehicle(Plant(acceleration_mps2=1.0, braking_mps2=4.0))
+    driven(it, DriveCommand(1.0, 0.0), 0.0, 1.0)
+    driven(it, DriveCommand(-3.0, 0.0), 1.0, 1.25)
+    assert it.state.speed_mps == pytest.approx(0.0, abs=1e-6)
+
+    driven(it, DriveCommand(-3.0, 0.0), 1.25, 2.25)
+    assert it.state.speed_mps == pytest.approx(-1.0)
+
+
 def test_a_vehicle_brakes_as_hard_as_it_can_when_it_hears_nothing() -> None:
     it = vehicle(Plant(braking_mps2=2.0))
     driven(it, DriveCommand(4.0, 0.0), 0.0, 1.0)
@@ -268,6 +286,54 @@ def test_a_vehicle_with_lag_stands_still_in_the_end() -> None:
 
     assert it.state.speed_mps == 0.0
     assert it.state.steering_angle_rad == 0.3
+
+
+def reference(
+    speed_mps: float, angle_rad: float, plant: Plant, until_s: float
+) -> tuple[float, float, float]:
+    """Return the pose that the equations of the bicycle lead to from rest at the origin.
+
+    Runge-Kutta of 4th order over x, y, yaw, speed and steering angle, 0.1 ms a step.
+    """
+    acceleration, rate = plant.acceleration_mps2, plant.steering_rate_radps
+    assert acceleration is not None
+    assert rate is not None
+
+    def slopes(state: NDArray[np.float64]) -> NDArray[np.float64]:
+        _, _, yaw, speed, angle = state.tolist()
+        return np.array(
+            [
+                speed * math.cos(yaw),
+                speed * math.sin(yaw),
+                speed * math.tan(angle) / LIMITS.wheelbase_m,
+                min((speed_mps - speed) / plant.speed_lag_s, acceleration),
+                min((angle_rad - angle) / plant.steering_lag_s, rate),
+            ]
+        )
+
+    state, step = np.zeros(5), 1e-4
+    for _ in range(round(until_s / step)):
+        k1 = slopes(state)
+        k2 = slopes(state + step / 2 * k1)
+        k3 = slopes(state + step / 2 * k2)
+        k4 = slopes(state + step * k3)
+        state = state + step / 6 * (k1 + 2 * k2 + 2 * k3 + k4)
+    x_m, y_m, yaw_rad, _, _ = state.tolist()
+    return x_m, y_m, yaw_rad
+
+
+def test_a_slow_vehicle_drives_where_the_equations_of_the_bicycle_lead() -> None:
+    plant = Plant(
+        acceleration_mps2=2.0, steering_rate_radps=0.5, steering_lag_s=0.15, speed_lag_s=0.2
+    )
+    it = vehicle(plant)
+    driven(it, DriveCommand(2.8, 0.3), 0.0, 3.0)
+    x_m, y_m, yaw_rad = reference(2.8, 0.3, plant, 3.0)
+
+    # Some 6 m of way and 1.1 rad; steps of 10 ms miss them by less than 0.2 mm and 0.2 mrad.
+    assert it.state.pose.x_m == pytest.approx(x_m, abs=2e-4)
+    assert it.state.pose.y_m == pytest.approx(y_m, abs=2e-4)
+    assert it.state.pose.yaw_rad == pytest.approx(yaw_rad, abs=2e-4)
 
 
 # --- noise ---------------------------------------------------------------------------------------

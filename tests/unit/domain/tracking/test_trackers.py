@@ -101,6 +101,23 @@ def test_whatever_the_path_and_the_vehicle_the_steering_is_possible(
     assert hypot(said.lookahead.x_m, said.lookahead.y_m) < 100
 
 
+@given(drivable, controllers, st.floats(0, 1), offsets)
+def test_a_vehicle_that_was_moved_by_hand_goes_on_where_it_was_put(
+    path: Path, controller: str, share: float, offset: tuple[float, float]
+) -> None:
+    before = share * path.length_m
+    place, yaw = path.point_at(before), path.heading_at(before)
+    moved = Pose(place.x_m + offset[0], place.y_m + offset[1], yaw)
+    index, distance = path.index_after(before), before
+
+    for _ in range(50):
+        said = TRACKERS[controller](LIMITS).control_step(VehicleState(moved, 0.0, 0.0), path, index)
+        index, distance = said.target_index, said.distance_m
+
+    # Moved by 3 m, also towards the middle of the tightest bend.
+    assert distance - before <= 6.0
+
+
 @pytest.mark.parametrize("controller", sorted(TRACKERS))
 @pytest.mark.parametrize("plant", sorted(PLANTS))
 @pytest.mark.parametrize("length", [0.3, 1.0, 2.0, 5.0])

@@ -5,11 +5,12 @@ import pytest
 
 from domain.errors import UnknownParameterError, UnknownPartError
 from domain.lifecycle import LifecycleState, Transition
-from domain.messages import AskTransition, BackendStatus, NodeReport
+from domain.messages import AskTransition, BackendStatus, Drive, NodeReport, Readings, VehicleReport
 from domain.simulation.node_settings import Fault
-from domain.simulation.nodes import SimulatedNodes
+from domain.simulation.robot import SimulatedRobot
 from domain.system_model import PartName
 from domain.timebase import to_seconds
+from domain.vehicle import DriveCommand
 from service.backends.simulated import SimulatedBackend
 from service.ports import BackendMessage
 from tests.support.manual_clock import ManualClock, settle
@@ -21,12 +22,16 @@ class Listening:
 
     def __init__(self) -> None:
         self.clock = ManualClock()
-        nodes = SimulatedNodes(actuation_model(), {}, self.clock.now())
-        self.backend = SimulatedBackend(nodes, self.clock)
+        robot = SimulatedRobot(actuation_model(), self.clock.now())
+        self.backend = SimulatedBackend(robot, self.clock)
         self.heard: list[tuple[float, BackendMessage]] = []
 
     def hear(self, message: BackendMessage) -> None:
         self.heard.append((to_seconds(self.clock.now()), message))
+
+    def of(self, kind: type[BackendMessage]) -> list[tuple[float, BackendMessage]]:
+        """Return what was heard of one kind, and when."""
+        return [(at, message) for at, message in self.heard if isinstance(message, kind)]
 
 
 @pytest.fixture
@@ -51,7 +56,7 @@ async def test_a_node_arrives_exactly_after_its_time(listening: Listening) -> No
     listening.backend.send(AskTransition(1, BASE, Transition.CONFIGURE))
     await listening.clock.advance(1.0)
 
-    assert listening.heard[-1] == (1.3, NodeReport(BASE, state=LifecycleState.INACTIVE))
+    assert listening.of(NodeReport)[-1] == (1.3, NodeReport(BASE, state=LifecycleState.INACTIVE))
 
 
 async def test_a_fault_takes_effect_at_once(listening: Listening) -> None:
@@ -59,14 +64,14 @@ async def test_a_fault_takes_effect_at_once(listening: Listening) -> None:
     listening.backend.set_fault(BASE, Fault.DIE)
     await listening.clock.advance(5.0)
 
-    assert listening.heard[-1] == (2.0, NodeReport(BASE, reachable=False))
+    assert listening.of(NodeReport)[-1] == (2.0, NodeReport(BASE, reachable=False))
 
 
 async def test_a_parameter_changed_from_outside_is_heard_at_once(listening: Listening) -> None:
     listening.backend.set_parameters(BASE, {"max_speed": 0.3})
     await settle()
 
-    assert listening.heard[-1] == (0.0, NodeReport(BASE, parameters={"max_speed": 0.3}))
+    assert listening.of(NodeReport)[-1] == (0.0, NodeReport(BASE, parameters={"max_speed": 0.3}))
 
 
 async def test_what_cannot_be_is_refused_where_it_is_asked(listening: Listening) -> None:
@@ -74,3 +79,38 @@ async def test_what_cannot_be_is_refused_where_it_is_asked(listening: Listening)
         listening.backend.set_fault(PartName("nowhere"), Fault.DIE)
     with pytest.raises(UnknownParameterError):
         listening.backend.set_parameters(BASE, {"wheels": 4})
+
+
+async def test_the_vehicle_is_heard_20_times_a_second(listening: Listening) -> None:
+    await listening.clock.advance(0.2)
+
+    assert [at for at, _ in listening.of(VehicleReport)] == [0.0, 0.05, 0.1, 0.15, 0.2]
+
+
+async def test_a_command_to_drive_is_seen_in_the_next_report(listening: Listening) -> None:
+    await listening.clock.advance(0.98)
+    listening.backend.send(Drive(DriveCommand(2.0, 0.0)))
+    await listening.clock.advance(0.02)
+
+    at, report = listening.of(VehicleReport)[-1]
+    assert isinstance(report, VehicleReport)
+    assert (at, report.state.speed_mps) == (1.0, 2.0)
+    assert report.state.pose.x_m == pytest.approx(0.04)
+
+
+async def test_a_vehicle_that_is_told_to_be_silent_is_heard_again_when_it_may_speak(
+    listening: Listening,
+) -> None:
+    listening.backend.set_vehicle_reporting(False)
+    await listening.clock.advance(1.0)
+    listening.backend.set_vehicle_reporting(True)
+    await listening.clock.advance(0.1)
+
+    assert [at for at, _ in listening.of(VehicleReport)] == [0.0, 1.05, 1.1]
+
+
+async def test_a_robot_without_mock_signals_publishes_none(listening: Listening) -> None:
+    await listening.clock.advance(1.0)
+
+    assert listening.backend.mock is None
+    assert listening.of(Readings) == []

@@ -5,16 +5,23 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from domain.errors import InvalidValueError
 from domain.findings import Finding
 from domain.health.signals import default_signals
+from domain.navigation import NavigationSettings
 from domain.simulation.node_settings import Fault
+from domain.simulation.vehicle_settings import Plant, VehicleSettings
+from domain.system_model import NodeModel, PartName, SmhModel
+from domain.tasks.settings import TaskSettings
 from domain.timebase import seconds
+from domain.vehicle import Pose, VehicleLimits
 from service.files.model_file import load_model
 from service.files.robot_file import (
     InvalidRobotFileError,
     RobotSettings,
     load_robot_file,
     read_robot_file,
+    robot_settings_of,
 )
 from service.files.text_file import UnreadableFileError
 from tests.support.models import actuation_model
@@ -40,6 +47,10 @@ def test_a_robot_of_which_nothing_is_said_is_as_usual(text: str) -> None:
     assert settings.to_node_settings() == {}
     assert settings.to_change_settings().transition_deadline == seconds(10)
     assert settings.to_change_settings().parameters_deadline == seconds(2)
+    assert settings.to_vehicle_settings() == VehicleSettings()
+    assert settings.to_task_settings() == TaskSettings()
+    assert settings.to_navigation_settings() == NavigationSettings()
+    assert settings.start_task is None
 
 
 def test_what_is_said_holds() -> None:
@@ -58,6 +69,33 @@ changes: {transition_deadline_s: 4}
     assert {signal.stale_after for signal in settings.to_signal_settings()} == {0}
     assert settings.to_node_settings()["manipulator"].fault is Fault.FAIL  # type: ignore[index]
     assert settings.to_change_settings().transition_deadline == seconds(4)
+
+
+def test_what_is_said_of_vehicle_and_driving_holds() -> None:
+    settings = read_robot_file(
+        """
+vehicle:
+  max_speed_mps: 5
+  pose: {x_m: 1, y_m: -2, yaw_rad: 1.5}
+  plant: {steering_lag_s: 0.15, delay_s: 0.1}
+driving:
+  max_start_distance_m: 8
+  no_progress_for_s: 30
+start_task: {file: tracks/loop.csv, controller: stanley, speed_mps: 2}
+""",
+        MODEL,
+    )
+
+    assert settings.to_vehicle_settings() == VehicleSettings(
+        Pose(1.0, -2.0, 1.5),
+        Plant(steering_lag_s=0.15, delay=seconds(0.1)),
+        VehicleLimits(max_speed_mps=5.0),
+    )
+    assert settings.to_task_settings() == TaskSettings(max_start_distance_m=8.0)
+    assert settings.to_navigation_settings().no_progress_for == seconds(30)
+    start = settings.start_task
+    assert start is not None
+    assert (start.file, start.controller, start.speed_mps) == ("tracks/loop.csv", "stanley", 2.0)
 
 
 @pytest.mark.parametrize(
@@ -98,6 +136,25 @@ def test_no_robot_among_the_examples_is_forgotten() -> None:
         pytest.param("nodes:\n  actuation: {}\n", (2, 3, "UNKNOWN_NODE"), id="a system as node"),
         pytest.param("signals:\n", (1, 9, "EMPTY_VALUE"), id="a key without a value"),
         pytest.param("signals: 3\n", (1, 1, "INVALID_VALUE"), id="a value for a block"),
+        pytest.param(
+            "vehicle:\n  plant:\n    noise: {seed: 1.5}\n",
+            (3, 13, "INVALID_VALUE"),
+            id="a seed that is not whole",
+        ),
+        pytest.param("vehicle: {pose: {z_m: 1}}\n", (1, 18, "UNKNOWN_KEY"), id="a third axis"),
+        pytest.param(
+            "driving: {braking_mps2: 0}\n", (1, 11, "INVALID_VALUE"), id="a vehicle without brakes"
+        ),
+        pytest.param(
+            "start_task: {controller: stanley}\n",
+            (1, 1, "INVALID_VALUE"),
+            id="a start task without a file",
+        ),
+        pytest.param(
+            "start_task:\n  file: a.csv\n  controller: autopilot\n",
+            (3, 3, "INVALID_VALUE"),
+            id="an unknown tracker",
+        ),
         pytest.param("- mock\n", (1, 1, "INVALID_VALUE"), id="a list"),
         pytest.param("mock: on\n---\nmock: off\n", (3, 1, "INVALID_VALUE"), id="two documents"),
         pytest.param("mock: on\nmock: off\n", (2, 1, "DUPLICATE_KEY"), id="a key twice"),
@@ -142,6 +199,78 @@ def findings_of(text: str) -> tuple[Finding, ...]:
     except InvalidRobotFileError as error:
         return error.findings
     return ()
+
+
+def test_settings_that_were_sent_hold() -> None:
+    sent = json.loads(
+        """{"mock": true, "vehicle": {"pose": {"x_m": 1}}, "nodes": {"manipulator": {}},
+            "signals": {"wind_speed": {"unit": "m/s"}}, "driving": {"max_cross_track_m": 2}}"""
+    )
+    settings = robot_settings_of(sent, MODEL)
+
+    assert settings.mock is True
+    assert settings.to_vehicle_settings().pose == Pose(1.0, 0.0, 0.0)
+    assert settings.to_node_settings().keys() == {"manipulator"}
+    assert settings.to_navigation_settings().max_cross_track_m == 2.0
+
+
+def test_of_a_robot_of_which_nothing_is_sent_all_is_as_usual() -> None:
+    assert robot_settings_of({}, MODEL) == RobotSettings()
+
+
+@pytest.mark.parametrize(
+    ("sent", "pointer", "words"),
+    [
+        ({"bakend": 1}, "/bakend", "there is no such key"),
+        ({"backend": "ros2"}, "/backend", "'simulated'"),
+        ({"vehicle": 3}, "/vehicle", "there must be keys below"),
+        ({"vehicle": {"pose": {"x_m": "1"}}}, "/vehicle/pose/x_m", "valid number"),
+        ({"vehicle": {"plant": {"delay_s": -1}}}, "/vehicle/plant/delay_s", "greater than"),
+        ({"driving": {"speed": 3}}, "/driving/speed", "there is no such key"),
+        ({"nodes": {"tail": {}}}, "/nodes/tail", "there is no node 'tail'"),
+        ({"nodes": {"actuation": {}}}, "/nodes/actuation", "there is no node 'actuation'"),
+        ({"nodes": {"manipulator": {"fault": "x"}}}, "/nodes/manipulator/fault", "'slow'"),
+        ({"signals": {"motor": {"above": 3}}}, "/signals/motor", "an error needs"),
+        (
+            {"signals": {"battery_level": {"threshold": 3}}},
+            "/signals/battery_level/threshold",
+            "can never be reached",
+        ),
+    ],
+)
+def test_a_fault_in_what_was_sent_is_told_with_a_pointer(
+    sent: dict[str, object], pointer: str, words: str
+) -> None:
+    with pytest.raises(InvalidValueError, match=words) as caught:
+        robot_settings_of(sent, MODEL)
+
+    assert caught.value.pointer == pointer
+
+
+@pytest.mark.parametrize(
+    ("sent", "pointer"),
+    [
+        ({"nodes": {"left/a~b": {}}}, "/nodes/left~1a~0b"),
+        ({"nodes": {"left/arm": {"fault": "x"}}}, "/nodes/left~1arm/fault"),
+    ],
+)
+def test_a_slash_in_the_name_of_a_node_does_not_lead_elsewhere(
+    sent: dict[str, object], pointer: str
+) -> None:
+    arm = PartName("left/arm")
+    model = SmhModel({arm: NodeModel(arm, {})}, {})
+    with pytest.raises(InvalidValueError) as caught:
+        robot_settings_of(sent, model)
+
+    assert caught.value.pointer == pointer
+
+
+@pytest.mark.parametrize("start_task", [{"file": "/etc/passwd"}, {}, None])
+def test_who_sends_settings_names_no_files(start_task: object) -> None:
+    with pytest.raises(InvalidValueError, match="which only a robot file may") as caught:
+        robot_settings_of({"start_task": start_task}, MODEL)
+
+    assert caught.value.pointer == "/start_task"
 
 
 def test_the_schema_in_the_documentation_is_that_of_the_code() -> None:

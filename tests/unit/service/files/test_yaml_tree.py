@@ -79,7 +79,7 @@ def test_after_a_fault_of_syntax_the_tree_is_not_complete() -> None:
 def test_a_hundred_thousand_openings_are_a_finding_and_not_a_crash(opening: str) -> None:
     ours, parsers = MAX_DEPTH * len(opening) + 1, 1_001
 
-    # Brackets are read ahead of their events: the parser's own bound, where it has one, comes first.
+    # Brackets are read ahead of their events: where the parser has a bound, that comes first.
     assert faults(opening * 100_000) in (
         [[("TOO_DEEP", 1, ours)], [("TOO_DEEP", 1, parsers)]]
         if opening == "["

@@ -1,0 +1,122 @@
+"""Supervision and navigation together: goals stay on board, and a hold is one step."""
+
+import math
+
+import pytest
+
+from domain.errors import InvalidValueError
+from domain.messages import Drive, TimePassed, VehicleReport
+from domain.snapshot import TaskPhase
+from domain.system_model import SmhModel
+from domain.timebase import seconds
+from domain.vehicle import Pose, VehicleState
+from tests.support.driver import straight
+from tests.support.good import GOOD
+from tests.support.virtual_robot import VirtualRobot
+
+
+@pytest.fixture
+def robot() -> VirtualRobot:
+    robot = VirtualRobot(SmhModel({}, {}))
+    robot.read(**GOOD)
+    robot.commands.clear()
+    return robot
+
+
+def drive(robot: VirtualRobot, by_s: float) -> None:
+    """Let time pass with good readings twice a second."""
+    for _ in range(round(by_s / 0.5)):
+        robot.advance(0.5)
+        robot.read(**GOOD)
+
+
+def speeds(robot: VirtualRobot) -> list[float]:
+    return [c.command.speed_mps for c in robot.commands if isinstance(c, Drive)]
+
+
+def test_a_served_task_drives_in_the_same_step(robot: VirtualRobot) -> None:
+    outputs = robot.serve(straight())
+
+    assert [type(command) for command in outputs.commands] == [Drive]
+    assert speeds(robot) == [0.05]
+
+
+def test_an_estop_while_driving_commands_zero_in_the_same_step(robot: VirtualRobot) -> None:
+    robot.serve(straight())
+    drive(robot, 3)
+    outputs = robot.read(estop=True)
+
+    assert [c.command.speed_mps for c in outputs.commands if isinstance(c, Drive)] == [0.0]
+    assert outputs.system_state
+
+
+def test_nothing_is_driven_while_the_task_is_held(robot: VirtualRobot) -> None:
+    robot.serve(straight())
+    drive(robot, 3)
+    robot.hold()
+    told = len(robot.commands)
+    drive(robot, 3)
+
+    assert robot.commands[told:] == []
+
+
+def test_the_whole_path_is_driven_and_the_vehicle_stands_at_its_end(robot: VirtualRobot) -> None:
+    robot.serve(straight())
+    drive(robot, 15)
+    state = robot.core.driving.vehicle.state
+
+    assert robot.task.status is TaskPhase.SUCCEEDED
+    assert state is not None
+    assert state.speed_mps == 0.0
+    assert state.pose.x_m == pytest.approx(20.0, abs=0.3)
+
+
+def test_the_goal_that_follows_a_lost_pose_is_steered_by_the_pose_that_is_back(
+    robot: VirtualRobot,
+) -> None:
+    robot.serve(straight())
+    drive(robot, 3)
+    robot.lose_pose()
+    drive(robot, 2)
+    robot.lose_pose(lost=False)
+    drive(robot, 1)
+
+    assert robot.task.status is TaskPhase.RUNNING
+    assert [data["goal"] for data in robot.happened("task.resumed")] == [2]
+
+
+def test_control_steps_that_are_due_before_an_input_are_done_before_it(
+    robot: VirtualRobot,
+) -> None:
+    robot.serve(straight())
+    robot.commands.clear()
+    outputs = robot.onboard.handle(TimePassed(), robot.now + seconds(0.2))
+
+    assert len(outputs.commands) == 4
+
+
+def test_a_refused_report_moves_neither_supervision_nor_navigation(robot: VirtualRobot) -> None:
+    robot.serve(straight())
+    nowhere = VehicleReport(VehicleState(Pose(0.0, math.inf, 0.0), 0.0, 0.0))
+    with pytest.raises(InvalidValueError):
+        robot.give(nowhere)
+    drive(robot, 1)
+
+    assert robot.task.status is TaskPhase.RUNNING
+
+
+def test_what_was_driven_before_a_refusal_comes_with_the_next_call(robot: VirtualRobot) -> None:
+    robot.serve(straight())
+    later = robot.now + seconds(0.12)
+    nowhere = VehicleReport(VehicleState(Pose(0.0, math.nan, 0.0), 0.0, 0.0))
+    with pytest.raises(InvalidValueError):
+        robot.onboard.handle(nowhere, later)
+
+    assert len(robot.onboard.handle(TimePassed(), later).commands) == 2
+
+
+def test_it_wakes_for_whichever_of_the_two_is_first(robot: VirtualRobot) -> None:
+    assert robot.onboard.wake_at() == robot.core.wake_at()
+    robot.serve(straight())
+
+    assert robot.onboard.wake_at() == robot.now + seconds(0.05)
