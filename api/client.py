@@ -1,4 +1,4 @@
-"""The client behind `pilothouse mode` and `pilothouse state`: ask for a change and follow it.
+"""The client behind `pilothouse mode`, `state` and `task`; asks for a change and follows it.
 
 It needs nothing but the HTTP interface, so that it works against any service within reach.
 """
@@ -84,19 +84,40 @@ class ServiceClient:
             self.call("GET", path)
         return path
 
-    def call(self, method: str, path: str, body: Json | None = None) -> Json:
-        """Send one request and return the JSON object of the answer.
+    def call(
+        self,
+        method: str,
+        path: str,
+        body: Json | None = None,
+        *,
+        csv: str | None = None,
+        query: Mapping[str, str | int | float] | None = None,
+    ) -> Json:
+        """Send one request and return the JSON object of the answer; without content, an empty one.
+
+        Args:
+            method: As in `GET`.
+            path: As in `/tasks`.
+            body: Sent as JSON.
+            csv: Sent instead of `body`.
+            query: What follows the path.
 
         Raises:
             ServiceProblemError: It was refused.
             NoAnswerError: Nobody answered, or not in JSON; whether it was done is not known.
         """
         try:
-            response = self._http.request(method, path, json=body)
+            content = None if csv is None else csv.encode()
+            headers = {} if csv is None else {"Content-Type": "text/csv"}
+            response = self._http.request(
+                method, path, json=body, content=content, headers=headers, params=query or None
+            )
         except httpx.ConnectError as error:
             raise NoAnswerError(f"no service answers at {self.url}: is it running?") from error
         except httpx.HTTPError as error:
             raise NoAnswerError(f"no answer from {self.url}: {error}") from error
+        if response.status_code == httpx.codes.NO_CONTENT:
+            return {}
         try:
             answer = response.json()
         except ValueError:

@@ -30,6 +30,9 @@ examples:
   pilothouse serve robot.yaml --port 9000       supervise it, with simulated nodes
   pilothouse mode actuation PERFORMANCE         change a mode, and follow the steps
   pilothouse state drive_base deactivate        take a part through a lifecycle transition
+  pilothouse task track.csv --preview           look at waypoints before they are driven
+  pilothouse task track.csv                     drive them, and follow how far it is
+  pilothouse simulate scenario.yaml             what would happen, and is that as expected?
 """
 _SERVE = """\
 Run the service until Ctrl-C or SIGTERM; the nodes are left as they are then.
@@ -42,6 +45,37 @@ _CHECK = """\
 Check a model file: everything that is wrong, and what is odd, with line and column.
 
 exit code: 0 valid, perhaps with warnings; 1 invalid
+"""
+_SIMULATE = """\
+Let a scenario happen in virtual time, by the code that supervises a real robot, and
+compare what is seen with what the scenario expects. Nothing runs for it, and nothing
+is changed.
+
+A scenario is YAML or JSON: the body of POST /simulations. Besides, a file may name
+model_file, robot_file, and task: {file: track.csv}, with paths beside the scenario:
+
+  title: The battery runs low
+  until_s: 3
+  robot: {signals: {stale_after_s: 0}}
+  steps:
+    - {t_s: 0, reading: {battery_level: 1.0}}
+    - {t_s: 1, reading: {battery_level: 0.4}}
+    - {t_s: 2, expect: {system_state: {state: ERROR, errors: [BATTERY_LOW]}}}
+    - {t_s: 2, task: {file: track.csv, controller: stanley, heading: deg}}
+
+A step that is refused fails the scenario, unless it says `refused: true`.
+
+exit code: 0 all is as expected; 1 something is not, or was refused; 2 invalid file
+"""
+_TASK = """\
+Drive along the waypoints of a CSV, in place of the current task, and follow that to
+its end. A line is x,y,yaw in m, m and rad; --heading says if yaw is something else.
+
+While something holds the vehicle, as an error does, the task waits. Ctrl-C ends the
+following only: the task goes on.
+
+exit code: 0 succeeded, or as asked; 1 refused, canceled or aborted;
+           2 unknown: no answer
 """
 _CHANGE = """\
 exit code: 0 succeeded; 1 refused or failed; 2 unknown: not ended in time, or no answer
@@ -105,6 +139,10 @@ def _parser() -> argparse.ArgumentParser:
     _add_mode_options(command("mode", about, f"{about.capitalize()}.\n\n{_CHANGE}", _mode))
     about = "take a system or node through a lifecycle transition"
     _add_state_options(command("state", about, f"{about.capitalize()}.\n\n{_CHANGE}", _state))
+    about = "drive along waypoints, or cancel that"
+    _add_task_options(command("task", about, _TASK, _task))
+    about = "let a scenario happen in virtual time"
+    _add_simulate_options(command("simulate", about, _SIMULATE, _simulate))
     return parser
 
 
@@ -157,12 +195,60 @@ def _add_state_options(parser: _Parser) -> None:
     _add_service_options(parser)
 
 
-def _add_service_options(parser: _Parser) -> None:
+def _add_simulate_options(parser: _Parser) -> None:
+    parser.add_argument(
+        "scenario", metavar="SCENARIO", help="scenario file; - reads standard input"
+    )
+    parser.add_argument(
+        "--format", default="text", choices=("text", "json"), help="json: all that happened"
+    )
+    parser.add_argument(
+        "--robot", type=Path, metavar="FILE", help="robot file instead of that of the scenario"
+    )
+    parser.add_argument(
+        "--model", type=Path, metavar="FILE", help="model file instead of that of the scenario"
+    )
+
+
+def _add_task_options(parser: _Parser) -> None:
+    what = parser.add_mutually_exclusive_group(required=True)
+    what.add_argument("file", nargs="?", metavar="FILE", help="CSV; - reads standard input")
+    what.add_argument("--cancel", action="store_true", help="end the current task, and stand")
+    parser.add_argument("--controller", metavar="NAME", help="pure_pursuit (default) or stanley")
+    parser.add_argument(
+        "--speed", type=float, metavar="MPS", help="cruise speed in m/s; default: 2.8"
+    )
+    parser.add_argument(
+        "--heading",
+        choices=("rad", "deg", "compass"),
+        help="what the third column is: rad (default) or deg, counter-clockwise from east;"
+        " compass: degrees clockwise from north",
+    )
+    parser.add_argument(
+        "--start-index", type=int, metavar="N", help="waypoint to begin with; default: 0"
+    )
+    parser.add_argument(
+        "--preview", action="store_true", help="say what there is to know, start nothing"
+    )
+    parser.add_argument(
+        "--wait",
+        action=argparse.BooleanOptionalAction,
+        default=True,
+        help="follow the task to its end (default), or only start it",
+    )
+    _add_url(parser)
+
+
+def _add_url(parser: _Parser) -> None:
     parser.add_argument(
         "--url",
         default=os.environ.get("PILOTHOUSE_URL") or _DEFAULT_URL,
         help="where the service runs; default: PILOTHOUSE_URL, else " + _DEFAULT_URL,
     )
+
+
+def _add_service_options(parser: _Parser) -> None:
+    _add_url(parser)
     parser.add_argument(
         "--wait",
         default=60.0,
@@ -211,6 +297,30 @@ def _check(options: argparse.Namespace) -> int:
     from api.model_check import check
 
     return check(options.model, options.format)
+
+
+def _simulate(options: argparse.Namespace) -> int:
+    from api.serving import EXAMPLE
+    from api.simulate_command import simulate
+
+    return simulate(options.scenario, options.format, EXAMPLE, options.model, options.robot)
+
+
+def _task(options: argparse.Namespace) -> int:
+    from api.task_command import TaskOptions, cancel, run_task
+
+    if options.cancel:
+        return _with_service(options.url, lambda client: cancel(client, print))
+    asked = TaskOptions(
+        file=options.file,
+        controller=options.controller,
+        speed_mps=options.speed,
+        heading=options.heading,
+        start_index=options.start_index,
+        preview=options.preview,
+        wait=options.wait,
+    )
+    return _with_service(options.url, lambda client: run_task(client, asked, print))
 
 
 def _mode(options: argparse.Namespace) -> int:

@@ -44,6 +44,7 @@ from service.clock import Clock
 from service.files.robot_file import InvalidRobotFileError
 from service.files.text_file import UnreadableFileError
 from service.files.waypoint_file import InvalidWaypointsError
+from service.start_task import StartTaskError
 from service.worker import TooComplexError, WorkerBusyError, WorkerClosedError
 
 STATUS_OF: Mapping[type[PilothouseError], HTTPStatus] = {
@@ -78,6 +79,7 @@ STATUS_OF: Mapping[type[PilothouseError], HTTPStatus] = {
     # Files are read before anybody is served.
     InvalidRobotFileError: HTTPStatus.INTERNAL_SERVER_ERROR,
     UnreadableFileError: HTTPStatus.INTERNAL_SERVER_ERROR,
+    StartTaskError: HTTPStatus.INTERNAL_SERVER_ERROR,
 }
 
 MEDIA_TYPE = "application/problem+json"

@@ -28,6 +28,7 @@ from service.files.model_file import load_model
 from service.files.robot_file import InvalidRobotFileError, RobotSettings, load_robot_file
 from service.files.text_file import UnreadableFileError
 from service.robot_parts import make_onboard, make_simulated_robot
+from service.start_task import StartTaskError, serve_start_task
 from service.supervisor import Supervisor, TaskFailedError
 
 log = logging.getLogger(__name__)
@@ -69,7 +70,7 @@ def serve(options: ServeOptions) -> int:
         return _complain_of(options.model or EXAMPLE, error.findings)
     except InvalidRobotFileError as error:
         return _complain_of(options.robot, error.findings)
-    except (ListenError, UnreadableFileError) as error:
+    except (ListenError, StartTaskError, UnreadableFileError) as error:
         return _complain(str(error), FAILED)
     hosts = (options.host, *options.allowed_hosts)
     app = create_app(supervisor, allowed_hosts=hosts)
@@ -93,6 +94,7 @@ def compose(options: ServeOptions, clock: Clock) -> Supervisor:
         UnreadableFileError: A file cannot be read.
         InvalidModelError: The model has faults.
         InvalidRobotFileError: The robot file has.
+        StartTaskError: The task to begin with cannot be driven.
     """
     loaded = load_model(options.model or EXAMPLE)
     robot = load_robot_file(options.robot, loaded.model) if options.robot else RobotSettings()
@@ -100,7 +102,7 @@ def compose(options: ServeOptions, clock: Clock) -> Supervisor:
     now = clock.now()
     simulated = make_simulated_robot(loaded.model, robot, now, mock=mock)
     backend = SimulatedBackend(simulated, clock)
-    return Supervisor(
+    supervisor = Supervisor(
         loaded,
         make_onboard(loaded.model, robot, now),
         clock,
@@ -108,6 +110,9 @@ def compose(options: ServeOptions, clock: Clock) -> Supervisor:
         backend.mock,
         simulated=simulated.what,
     )
+    if options.robot is not None and robot.start_task is not None:
+        serve_start_task(supervisor, robot.start_task, options.robot)
+    return supervisor
 
 
 async def run_service(

@@ -34,15 +34,16 @@ def _checked_depth(value: Any) -> Any:  # noqa: ANN401
         ValueError: It holds more than `MAX_DEPTH` objects and lists in each other.
     """
     level = [value]
-    for _ in range(MAX_DEPTH):
-        inner = [item.values() if isinstance(item, dict) else item for item in level]
-        level = [item for items in inner if not isinstance(items, _PLAIN) for item in items]
-        if not level:
+    for _ in range(MAX_DEPTH + 1):
+        nested = [item for item in level if isinstance(item, dict | list)]
+        if not nested:
             return value
+        level = [
+            inner
+            for item in nested
+            for inner in (item.values() if isinstance(item, dict) else item)
+        ]
     raise ValueError(f"more than {MAX_DEPTH} objects and lists in each other")
-
-
-_PLAIN = (str, int, float, type(None))
 
 
 class TimedStep(Body):

@@ -6,7 +6,8 @@ from typing import Any
 from api.schemas.simulation import DifferenceJson
 from api.values import split_label
 
-_MISSING = "(not there)"
+MISSING = "(not there)"
+"""Seen of a member that is not there."""
 
 
 def differences(expected: object, seen: object, path: str = "") -> Iterator[DifferenceJson]:
@@ -28,7 +29,7 @@ def differences(expected: object, seen: object, path: str = "") -> Iterator[Diff
         for name, value in expected.items():
             inner = f"{path}.{name}" if path else str(name)
             if name not in seen:
-                yield DifferenceJson(path=inner, expected=value, seen=_MISSING)
+                yield DifferenceJson(path=inner, expected=value, seen=MISSING)
             else:
                 yield from differences(value, seen[name], inner)
     elif isinstance(expected, str) and isinstance(seen, Mapping) and "state" in seen:

@@ -16,6 +16,8 @@ from service.supervisor import Supervisor
 
 Given = TypeVarTuple("Given")
 
+_HOST = "simulation"
+
 
 class Requests:
     """The interface of one robot. Nothing in it waits: what takes time is answered as begun."""
@@ -26,11 +28,9 @@ class Requests:
 
         self._runner = runner
         app = create_app(
-            supervisor, allowed_hosts=["simulation"], worker=InlineJobs(), simulator=_Nested()
+            supervisor, allowed_hosts=[_HOST], worker=InlineJobs(), simulator=_Nested()
         )
-        self._client = httpx.AsyncClient(
-            transport=httpx.ASGITransport(app), base_url="http://simulation"
-        )
+        self._client = httpx.AsyncClient(transport=httpx.ASGITransport(app))
 
     def send(self, asked: AskedRequest) -> Problem | None:
         """Send a request; return why it was refused, or None."""
@@ -42,7 +42,7 @@ class Requests:
         headers = {} if body is None else {"Content-Type": "application/json"}
         try:
             answer = await self._client.request(
-                asked.method, asked.path, content=body, headers=headers
+                asked.method, f"http://{_HOST}{asked.path}", content=body, headers=headers
             )
         except httpx.InvalidURL as error:
             status, detail = HTTPStatus.BAD_REQUEST, f"this is no path: {error}"
@@ -50,7 +50,7 @@ class Requests:
         if not answer.is_error:
             return None
         if answer.headers.get("content-type") != MEDIA_TYPE:
-            # A change that has failed already is answered with itself.
+            # Such as a change that has failed already: it is answered with itself.
             status = HTTPStatus(answer.status_code)
             return make_problem(status, "FAILED", f"answered: {answer.text:.500}", asked.path)
         return Problem.model_validate_json(answer.content)

@@ -16,8 +16,8 @@ STEP_M = 0.5
 """Distance between two places where the curvature is looked at; it is smoothed over more."""
 MAX_STEPS = 200_000
 """On paths longer than 100 km such places are further apart."""
-CRAWL_MPS = 0.1
-"""Slowest command before the end: vehicles do not move at less, and would never arrive."""
+CRAWL_MPS = 0.05
+"""Slowest command before the end, or it would never be reached; to stop from it is no jerk."""
 BRAKING_SHARE = 0.8
 """Planned of the braking that is allowed: a vehicle that is told late has to brake harder then."""
 REACTION_S = 0.15

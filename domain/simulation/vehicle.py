@@ -13,7 +13,7 @@ from dataclasses import replace
 import numpy as np
 
 from domain.messages import VehicleReport
-from domain.simulation.vehicle_settings import Noise, VehicleSettings
+from domain.simulation.vehicle_settings import Noise, Plant, VehicleSettings
 from domain.timebase import Duration, Instant, seconds, to_seconds
 from domain.vehicle import DriveCommand, Pose, VehicleState
 
@@ -38,6 +38,7 @@ class SimulatedVehicle:
     def __init__(self, settings: VehicleSettings, start: Instant) -> None:
         self._limits = settings.limits
         self._plant = settings.plant
+        self._is_ideal = _is_ideal(settings.plant)
         self._noise = _NoiseSource(settings.plant.noise)
         pose = replace(settings.pose, yaw_rad=_wrapped(settings.pose.yaw_rad))
         self._state = VehicleState(pose, 0.0, 0.0)
@@ -90,6 +91,7 @@ class SimulatedVehicle:
     # --- commands --------------------------------------------------------------------------------
 
     def _possible(self, command: DriveCommand) -> DriveCommand:
+        """Return what the vehicle can do of a command that follows the one in effect."""
         numbers = (command.speed_mps, command.steering_angle_rad)
         if not all(map(math.isfinite, numbers)):
             return replace(self._command, speed_mps=0.0)
@@ -101,15 +103,17 @@ class SimulatedVehicle:
     def _take_commands(self, now: Instant) -> None:
         while self._coming and self._coming[0][0] <= now:
             at, command = self._coming.popleft()
-            self._command = self._possible(command)
+            self._follow(self._possible(command))
             self._expires_at = at + COMMAND_VALID_FOR
-            if self._is_ideal:
-                self._state = _following(self._state, self._command)
         if self._expires_at is not None and self._expires_at <= now:
             self._expires_at = None
-            self._command = replace(self._command, speed_mps=0.0)
-            if self._is_ideal:
-                self._state = _following(self._state, self._command)
+            self._follow(replace(self._command, speed_mps=0.0))
+
+    def _follow(self, command: DriveCommand) -> None:
+        self._command = command
+        if self._is_ideal:
+            pose = self._state.pose
+            self._state = VehicleState(pose, command.speed_mps, command.steering_angle_rad)
 
     # --- time ------------------------------------------------------------------------------------
 
@@ -136,19 +140,16 @@ class SimulatedVehicle:
             self._at = until
             return
         if self._is_ideal:
-            self._move(to_seconds(until - self._at), self._state.speed_mps)
+            state = self._state
+            way = state.speed_mps * to_seconds(until - self._at)
+            pose = self._moved(way, state.steering_angle_rad)
+            self._state = VehicleState(pose, state.speed_mps, state.steering_angle_rad)
             self._at = until
             return
         while self._at < until:
             end = min(until, self._at + _STEP - (self._at - self._start) % _STEP)
             self._respond(to_seconds(end - self._at))
             self._at = end
-
-    @property
-    def _is_ideal(self) -> bool:
-        plant = self._plant
-        limits = (plant.acceleration_mps2, plant.braking_mps2, plant.steering_rate_radps)
-        return not any((plant.speed_lag_s, plant.steering_lag_s)) and limits == (None, None, None)
 
     @property
     def _rests(self) -> bool:
@@ -174,20 +175,22 @@ class SimulatedVehicle:
             plant.steering_rate_radps,
             dt_s,
         )
+        way = (speed + new_speed) / 2 * dt_s
         middle = (state.steering_angle_rad + steering) / 2
-        self._state = replace(state, steering_angle_rad=middle)
-        self._move(dt_s, (speed + new_speed) / 2)
-        self._state = VehicleState(self._state.pose, new_speed, steering)
+        self._state = VehicleState(self._moved(way, middle), new_speed, steering)
 
-    def _move(self, dt_s: float, speed_mps: float) -> None:
-        """Move along an arc."""
+    def _moved(self, way_m: float, steering_angle_rad: float) -> Pose:
+        """Return the pose that an arc leads to."""
         pose = self._state.pose
-        way = speed_mps * dt_s
-        half = way * math.tan(self._state.steering_angle_rad) / self._limits.wheelbase_m / 2
-        chord = way * math.sin(half) / half if half else way
-        x = pose.x_m + chord * math.cos(pose.yaw_rad + half)
-        y = pose.y_m + chord * math.sin(pose.yaw_rad + half)
-        self._state = replace(self._state, pose=Pose(x, y, _wrapped(pose.yaw_rad + 2 * half)))
+        half = way_m * math.tan(steering_angle_rad) / self._limits.wheelbase_m / 2
+        # By the chord, which is as exact for an arc of next to no curvature as for any other.
+        chord = way_m * math.sin(half) / half if half else way_m
+        direction = pose.yaw_rad + half
+        return Pose(
+            pose.x_m + chord * math.cos(direction),
+            pose.y_m + chord * math.sin(direction),
+            _wrapped(direction + half),
+        )
 
 
 class _NoiseSource:
@@ -210,8 +213,10 @@ class _NoiseSource:
         return replace(state, pose=pose, speed_mps=state.speed_mps + noise.speed_mps * speed)
 
 
-def _following(state: VehicleState, command: DriveCommand) -> VehicleState:
-    return VehicleState(state.pose, command.speed_mps, command.steering_angle_rad)
+def _is_ideal(plant: Plant) -> bool:
+    """Tell whether speed and steering follow at once, so that the vehicle drives exact arcs."""
+    limits = (plant.acceleration_mps2, plant.braking_mps2, plant.steering_rate_radps)
+    return limits == (None, None, None) and plant.speed_lag_s == plant.steering_lag_s == 0.0
 
 
 def _approached(

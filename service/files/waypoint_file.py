@@ -69,7 +69,10 @@ def read_waypoints_csv(text: str, heading: Heading = Heading.RAD) -> NDArray[np.
         InvalidWaypointsError: There are fewer than 2 or more than 100,000 points, a cell is no
             number or out of range, or headings that should be radians are degrees.
     """
-    lines = text.rstrip().split("\n")
+    # The mark of UTF-8 that spreadsheets begin with is no part of the first number.
+    lines = text.removeprefix("\ufeff").rstrip().split("\n")
+    if lines == [""]:
+        raise InvalidWaypointsError([_finding("EMPTY_FILE", "there are no waypoints", 1)])
     if len(lines) > MAX_WAYPOINTS:
         message = f"there are {len(lines)} lines; a path has at most {MAX_WAYPOINTS} waypoints"
         finding = _finding("TOO_MANY_POINTS", message, MAX_WAYPOINTS + 1)
@@ -119,9 +122,7 @@ def _number(cell: str) -> float:
 def _faults(number: int, line: str) -> Iterator[Finding]:
     """Yield what is wrong with a line that does not begin with three numbers."""
     cells = _columns(line)
-    if not line.strip() and number == 1:
-        yield _finding("EMPTY_FILE", "there is no waypoint in the first line", number)
-    elif not line.strip():
+    if not line.strip():
         yield _finding("EMPTY_LINE", "the line is empty; only at the end may some be", number)
     elif number == 1 and all(map(_is_text, cells)):
         message = f"{_shown(line)} looks like a header; leave it out"

@@ -1,6 +1,7 @@
 """What a test of the page works with: the service as a process, and an ear for complaints."""
 
 import json
+import math
 import subprocess
 import sys
 import time
@@ -59,11 +60,34 @@ class Service:
         data = None if body is None else json.dumps(body).encode()
         request = urllib.request.Request(f"{self.url}{path}", data, method=method)
         with urllib.request.urlopen(request, timeout=10) as answer:
-            result: dict[str, Any] = json.load(answer)
+            result: dict[str, Any] = json.loads(answer.read() or "{}")
         return result
 
+    def pose(self) -> dict[str, float]:
+        """Return where the vehicle is: `x_m`, `y_m`, `yaw_rad`."""
+        pose: dict[str, float] = self.request("GET", "/vehicle")["pose"]
+        return pose
+
+    def track_ahead(self, length_m: int, *, degrees: bool = False) -> bytes:
+        """Return the CSV of a straight track that begins where the vehicle is, a point each 0.5 m.
+
+        It leads through the heading of the vehicle; `degrees`: its third column is not in rad.
+        """
+        pose = self.pose()
+        yaw = pose["yaw_rad"]
+        written = math.degrees(yaw % math.tau) + 360.0 * degrees if degrees else yaw
+        points = [
+            (pose["x_m"] + 0.5 * n * math.cos(yaw), pose["y_m"] + 0.5 * n * math.sin(yaw), written)
+            for n in range(2 * length_m + 1)
+        ]
+        return "".join(f"{x:.4f},{y:.4f},{third:.4f}\n" for x, y, third in points).encode()
+
     def make_healthy(self) -> None:
-        """Bring stop and signals to where they are after a start."""
+        """Bring stop, signals, holds and task to where they are after a start."""
+        self.request("DELETE", "/tasks/current")
+        for hold in self.request("GET", "/holds")["items"]:
+            if hold["owner"] not in ("error", "vehicle"):
+                self.request("DELETE", f"/holds/{hold['owner']}")
         self.request("PUT", "/emergency_stop", {"engaged": False, "reason": "next test"})
         for signal, value in HEALTHY.items():
             self.request("PATCH", f"/mock/{signal}", {"value": value, "publishing": True})

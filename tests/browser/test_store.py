@@ -49,6 +49,10 @@ def frame(at: str = AT, **members: object) -> dict[str, Any]:
     return {"type": "state", "at": at, "seq": 1, "skipped": 0, **members}
 
 
+def task(identity: str, **members: object) -> dict[str, Any]:
+    return {"id": identity, "status": "RUNNING", "ended_at": None, **members}
+
+
 def event(number: int) -> dict[str, Any]:
     return {"type": "event", "epoch": "a", "id": number, "at": AT, "kind": "x", "data": {}}
 
@@ -90,6 +94,39 @@ def test_missing_events_leave_a_note(page: Page) -> None:
     notes = [kept["note"] for kept in state["events"] if "note" in kept]
     assert notes == ["Events 2 to 7 are missing here."]
     assert state["lastEventId"] == 8
+
+
+def test_task_and_vehicle_stay_as_they_were_while_frames_leave_them_out(page: Page) -> None:
+    state = fold(page, frame(task=task("t1"), vehicle={"at": AT}), frame())
+    assert state["task"]["id"] == "t1"
+    assert state["vehicle"] == {"at": AT}
+
+
+def test_a_task_that_is_no_longer_the_current_one_is_the_last(page: Page) -> None:
+    state = fold(page, frame(task=task("t1")), frame(task=task("t2")), frame(task=None))
+    assert state["task"] is None
+    assert state["lastTask"]["id"] == "t2"
+
+
+def test_that_there_is_still_no_task_does_not_make_one_forget_how_the_last_ended(
+    page: Page,
+) -> None:
+    ended = task("t1", status="SUCCEEDED", ended_at=AT)
+    state = fold(
+        page,
+        frame(task=task("t1")),
+        frame(task=None),
+        {"type": "ended_task", "task": ended},
+        frame(task=None),
+    )
+    assert state["lastTask"] == ended
+
+
+def test_holds_are_those_of_the_last_answer(page: Page) -> None:
+    hold = {"owner": "operator", "reason": "", "by": "", "since_at": AT}
+    first, second = {"type": "holds", "items": [hold]}, {"type": "holds", "items": []}
+    assert fold(page, first)["holds"] == [hold]
+    assert fold(page, first, second)["holds"] == []
 
 
 def test_after_a_restart_nothing_old_is_shown_but_the_events(page: Page) -> None:

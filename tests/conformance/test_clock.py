@@ -1,4 +1,7 @@
-"""What every clock must keep; the tests' own one is held to the same as the real one."""
+"""What every clock must keep; the tests' own one is held to the same as the real one.
+
+On a virtual clock nothing sleeps, so that it is held to all but that.
+"""
 
 import asyncio
 from collections.abc import Coroutine
@@ -9,13 +12,25 @@ import pytest
 from domain.errors import InvalidValueError
 from domain.timebase import seconds
 from service.clock import Clock, MonotonicClock
-from tests.support.manual_clock import ManualClock
+from service.virtual_clock import VirtualClock
+from tests.support.manual_clock import START, ManualClock
 
 MILLISECOND = seconds(0.001)
 
 
-@pytest.fixture(params=[MonotonicClock, ManualClock])
+def virtual_clock() -> VirtualClock:
+    return VirtualClock(seconds(50.0), START)
+
+
+@pytest.fixture(params=[MonotonicClock, ManualClock, virtual_clock])
 def clock(request: pytest.FixtureRequest) -> Clock:
+    found: Clock = request.param()
+    return found
+
+
+@pytest.fixture(params=[MonotonicClock, ManualClock])
+def sleeping_clock(request: pytest.FixtureRequest) -> Clock:
+    """A clock that time passes on while somebody waits."""
     found: Clock = request.param()
     return found
 
@@ -28,36 +43,36 @@ async def wait_for(clock: Clock, *work: Coroutine[object, object, None]) -> None
     await waiting
 
 
-async def test_time_goes_on_and_never_back(clock: Clock) -> None:
-    before = clock.now()
-    await wait_for(clock, clock.sleep_until(before + MILLISECOND))
+async def test_time_goes_on_and_never_back(sleeping_clock: Clock) -> None:
+    before = sleeping_clock.now()
+    await wait_for(sleeping_clock, sleeping_clock.sleep_until(before + MILLISECOND))
 
-    assert clock.now() >= before + MILLISECOND
+    assert sleeping_clock.now() >= before + MILLISECOND
 
 
-async def test_nobody_is_woken_early(clock: Clock) -> None:
+async def test_nobody_is_woken_early(sleeping_clock: Clock) -> None:
     woken_early = []
 
     async def sleep(until: int) -> None:
-        await clock.sleep_until(until)
-        woken_early.append(clock.now() < until)
+        await sleeping_clock.sleep_until(until)
+        woken_early.append(sleeping_clock.now() < until)
 
-    start = clock.now()
-    await wait_for(clock, *(sleep(start + n * MILLISECOND // 10) for n in range(50)))
+    start = sleeping_clock.now()
+    await wait_for(sleeping_clock, *(sleep(start + n * MILLISECOND // 10) for n in range(50)))
 
     assert woken_early == [False] * 50
 
 
-async def test_sleepers_wake_in_the_order_of_their_deadlines(clock: Clock) -> None:
+async def test_sleepers_wake_in_the_order_of_their_deadlines(sleeping_clock: Clock) -> None:
     woken = []
 
     async def sleep(name: str, until: int) -> None:
-        await clock.sleep_until(until)
+        await sleeping_clock.sleep_until(until)
         woken.append(name)
 
-    start = clock.now()
+    start = sleeping_clock.now()
     await wait_for(
-        clock,
+        sleeping_clock,
         sleep("last", start + 30 * MILLISECOND),
         sleep("first", start + 10 * MILLISECOND),
         sleep("second", start + 20 * MILLISECOND),
@@ -74,13 +89,13 @@ async def test_a_deadline_that_has_passed_lets_the_others_run_once(clock: Clock)
     assert other.done()
 
 
-async def test_a_sleep_that_is_cancelled_ends_and_disturbs_no_other(clock: Clock) -> None:
-    start = clock.now()
-    given_up = asyncio.create_task(clock.sleep_until(start + seconds(3600.0)))
+async def test_a_sleep_that_is_cancelled_ends_and_disturbs_no_other(sleeping_clock: Clock) -> None:
+    start = sleeping_clock.now()
+    given_up = asyncio.create_task(sleeping_clock.sleep_until(start + seconds(3600.0)))
     await asyncio.sleep(0)
     given_up.cancel()
     await asyncio.wait([given_up])
-    await wait_for(clock, clock.sleep_until(start + MILLISECOND))
+    await wait_for(sleeping_clock, sleeping_clock.sleep_until(start + MILLISECOND))
 
     assert given_up.cancelled()
 

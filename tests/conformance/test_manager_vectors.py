@@ -12,10 +12,10 @@ from domain.messages import (
     AskFacts,
     AskParameters,
     AskTransition,
-    Command,
     Input,
     ModeRequest,
     NodeAnswer,
+    NodeCommand,
     NodeReport,
     TransitionRequest,
 )
@@ -52,10 +52,10 @@ class NodesWithFakes(SimulatedNodes):
         self._fakes: dict[str, dict[str, Any]] = {fake: {} for fake in fakes}
         self._said: list[NodeMessage] = []
         self._now = 0
-        self.asked: list[Command] = []
+        self.asked: list[NodeCommand] = []
         """Everything that was asked of any node."""
 
-    def handle(self, command: Command, now: Instant) -> None:
+    def handle(self, command: NodeCommand, now: Instant) -> None:
         self.asked.append(command)
         values = self._fakes.get(command.node)
         if values is None:
@@ -101,7 +101,8 @@ class Core:
         settings = {node: by_kind[kinds.get(node, "absent")] for node in model.nodes}
         fakes = {name for name, kind in kinds.items() if kind == "fake"}
         self.robot = VirtualRobot(model, nodes={str(node): own for node, own in settings.items()})
-        self.robot.nodes = self.nodes = NodesWithFakes(model, settings, fakes)
+        self.nodes = NodesWithFakes(model, settings, fakes)
+        self.robot.nodes = self.robot.robot.nodes = self.nodes
         self._known = {
             node["name"]: [n for m in model.nodes[PartName(node["name"])].modes.values() for n in m]
             for node in case["nodes"]

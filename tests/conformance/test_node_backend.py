@@ -15,10 +15,10 @@ from domain.lifecycle import LifecycleState, Transition
 from domain.messages import AskFacts, AskParameters, AskTransition, NodeAnswer, NodeReport
 from domain.parameters import ParameterValue
 from domain.simulation.node_settings import Fault
-from domain.simulation.nodes import SimulatedNodes
+from domain.simulation.robot import SimulatedRobot
 from domain.system_model import PartName
 from service.backends.simulated import SimulatedBackend
-from service.ports import BackendMessage, NodeBackend
+from service.ports import BackendMessage, RobotBackend
 from tests.support.manual_clock import ManualClock
 from tests.support.models import ARM, BASE, actuation_model
 
@@ -30,7 +30,7 @@ NOTICED_WITHIN_S = 5.0
 class BackendUnderTest(Protocol):
     """A backend over the nodes of `actuation_model`, which can be made to fall silent and die."""
 
-    backend: NodeBackend
+    backend: RobotBackend
 
     async def pass_time(self, by_s: float) -> None:
         """Let at least this much time pass for the nodes and the backend."""
@@ -50,9 +50,9 @@ class Simulated:
 
     def __init__(self) -> None:
         self._clock = ManualClock()
-        nodes = SimulatedNodes(actuation_model(), {}, self._clock.now())
-        self._simulated = SimulatedBackend(nodes, self._clock)
-        self.backend: NodeBackend = self._simulated
+        robot = SimulatedRobot(actuation_model(), self._clock.now())
+        self._simulated = SimulatedBackend(robot, self._clock)
+        self.backend: RobotBackend = self._simulated
 
     async def pass_time(self, by_s: float) -> None:
         await self._clock.advance(by_s)

@@ -24,8 +24,9 @@ from domain.messages import (
 from domain.simulation.node_settings import Fault
 from domain.snapshot import ChangeStatus, StepStatus, SystemState
 from domain.system_model import ModeName, PartName
+from tests.support.good import GOOD
 from tests.support.models import ACTUATION, ARM, BASE, nested_model
-from tests.support.virtual_robot import GOOD, VirtualRobot
+from tests.support.virtual_robot import VirtualRobot
 
 MODEL = nested_model()
 PARTS = st.sampled_from(MODEL.parts)

@@ -3,15 +3,13 @@
 import sys
 
 import matplotlib as mpl
-import numpy as np
 from matplotlib import pyplot
 from matplotlib.axes import Axes
 
 from domain.paths.path import Path
-from domain.paths.speed_profile import SpeedLimits, SpeedProfile
 from domain.tracking.trackers import TRACKERS
 from domain.vehicle import Pose
-from tests.support.track_study import LIMITS, PLANTS, drive, errors, track
+from tests.support.track_study import PLANTS, drive, errors, track
 
 COLOURS = {"pure_pursuit": "#0b6e99", "stanley": "#c2571a"}
 STYLES = {"ideal": "-", "gazebo-like": "--", "car-like": ":"}
@@ -21,13 +19,12 @@ def draw(file: str) -> None:
     """Drive the recorded loop and store the picture; its kind follows from the file's name."""
     mpl.use("Agg")
     loop = track("tracks/gem_e2_loop.csv")
-    figure, (beside, cruise, fast, speed) = pyplot.subplots(
-        4, 1, figsize=(9, 11), layout="constrained", height_ratios=[1.5, 1, 1, 0.8]
+    figure, (beside, cruise, fast) = pyplot.subplots(
+        3, 1, figsize=(9, 9), layout="constrained", height_ratios=[1.5, 1, 1]
     )
     _draw_way_back(beside, loop)
     _draw_lap(cruise, loop, 2.8)
     _draw_lap(fast, loop, 7.0)
-    _draw_speed(speed, loop)
     figure.savefig(file, dpi=110)
 
 
@@ -69,19 +66,6 @@ def _draw_lap(axes: Axes, loop: Path, speed_mps: float) -> None:
         xlim=(0, loop.length_m),
     )
     axes.legend(ncols=2)
-
-
-def _draw_speed(axes: Axes, loop: Path) -> None:
-    profile = SpeedProfile(loop, 7.0, SpeedLimits(), LIMITS)
-    at = np.linspace(0, loop.length_m, 2000)
-    axes.plot(at, [profile.speed_at(distance) for distance in at.tolist()], color="#444444")
-    axes.set(
-        title="Speed profile of that lap, without the rise at the start",
-        xlabel="along the path, m",
-        ylabel="m/s",
-        xlim=(0, loop.length_m),
-        ylim=(0, 7.5),
-    )
 
 
 if __name__ == "__main__":

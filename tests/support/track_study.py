@@ -200,30 +200,38 @@ def _error(
     return float(np.copysign(far[k], side)), (pose[2] - heading + pi) % (2 * pi) - pi
 
 
+def accelerations(record: Record) -> tuple[float, float]:
+    """Return the largest lateral and the largest longitudinal acceleration, m/s2."""
+    periods = np.diff(record.time_s)
+    speed = np.diff(record.driven_m) / periods
+    lateral = speed**2 * np.tan(record.steering_rad[1:]) / LIMITS.wheelbase_m
+    longitudinal = np.diff(speed) / periods[1:]
+    return round(float(np.abs(lateral).max()), 3), round(float(np.abs(longitudinal).max()), 3)
+
+
 def figures(record: Record) -> dict[str, float]:
     """Return what counts of one drive.
 
-    The root mean squares are those after the vehicle came to its path and 10 m more. Capture is
-    how far it drove until it was within 0.1 m for good, -1: never; overshoot is how far it came to
-    the other side.
+    Of one that begins off its path, capture is how far the vehicle drove until it was within 0.1 m
+    for good, all of its way if it never was; the errors are those from 10 m after that; overshoot
+    is how far it came to the other side. Of one that begins on it, all errors count.
     """
     found = errors(record)
-    size = np.abs(found.cross_track_m)
-    outside = np.flatnonzero(size >= CAPTURED_M)
-    captured = size[-1] < CAPTURED_M
-    begun = outside[-1] + 1 if captured and len(outside) else 0
-    capture = record.driven_m[begun] if len(outside) else 0.0
-    first = int(np.searchsorted(record.driven_m, capture + 10)) if len(outside) else 0
-    first = min(first, len(size) - 1)
-    other_side = -found.cross_track_m * np.sign(found.cross_track_m[0])
+    size, last = np.abs(found.cross_track_m), len(record.driven_m) - 1
+    capture, first, overshoot = 0.0, 0, 0.0
+    if size[0] >= CAPTURED_M:
+        capture = record.driven_m[min(np.flatnonzero(size >= CAPTURED_M)[-1] + 1, last)]
+        first = min(int(np.searchsorted(record.driven_m, capture + 10)), last)
+        other_side = -found.cross_track_m * np.sign(found.cross_track_m[0])
+        overshoot = max(float(other_side.max()), 0.0)
     end = record.path.waypoint(record.path.count - 1)
     rest = record.pose[-1]
     return {
         "rms_m": _rms(found.cross_track_m[first:]),
         "max_m": round(float(size[first:].max()), 4),
         "heading_deg": round(degrees(_rms(found.heading_rad[first:])), 2),
-        "capture_m": round(float(capture), 1) if captured else -1,
-        "overshoot_m": round(max(float(other_side.max()), 0.0), 3) if len(outside) else 0,
+        "capture_m": round(float(capture), 1),
+        "overshoot_m": round(overshoot, 3),
         "time_s": round(float(record.time_s[-1]), 2),
         "covered": round(float(record.distance_m[-1]) / record.path.length_m, 3),
         "end_m": round(hypot(rest[0] - end.x_m, rest[1] - end.y_m), 3),

@@ -21,14 +21,30 @@ const NO_ANSWER = {
 
 /** Send a request and return the JSON of the answer.
  *
+ * A body is sent as JSON, or as the text it is where its media `type` is given.
+ *
  * @throws {ProblemError} On any status from 400, and where no answer comes within `timeoutMs`.
  */
-export async function request(method, path, body, { keepalive = false, timeoutMs = 8000 } = {}) {
-  const options = { method, keepalive, cache: "no-store", headers: { Accept: "application/json" } };
+export async function request(method, path, body, options = {}) {
+  return parse(await exchange(method, path, body, options));
+}
+
+/** Return the text of a file, with errors as those of `request`. */
+export function requestText(path) {
+  return exchange("GET", path, undefined, { accept: "*/*" });
+}
+
+async function exchange(
+  method,
+  path,
+  body,
+  { keepalive = false, timeoutMs = 8000, type, accept = "application/json" },
+) {
+  const options = { method, keepalive, cache: "no-store", headers: { Accept: accept } };
   options.signal = AbortSignal.timeout(timeoutMs);
   if (body !== undefined) {
-    options.headers["Content-Type"] = "application/json";
-    options.body = JSON.stringify(body);
+    options.headers["Content-Type"] = type ?? "application/json";
+    options.body = type ? body : JSON.stringify(body);
   }
   let response, text;
   try {
@@ -37,10 +53,9 @@ export async function request(method, path, body, { keepalive = false, timeoutMs
   } catch {
     throw new ProblemError(NO_ANSWER);
   }
-  const answer = parse(text);
-  if (response.ok) return answer;
+  if (response.ok) return text;
   const unnamed = { title: `HTTP ${response.status}`, detail: response.statusText };
-  throw new ProblemError({ ...unnamed, ...answer, status: response.status });
+  throw new ProblemError({ ...unnamed, ...parse(text), status: response.status });
 }
 
 /** Path of a part; its name may hold slashes, which stay. */

@@ -4,10 +4,15 @@ import { request } from "/web/js/api.js";
 import { localNow, ServerClock } from "/web/js/clock.js";
 import { Connection } from "/web/js/connection.js";
 import { emptyState, fold } from "/web/js/store.js";
+import { TaskWatch } from "/web/js/task_watch.js";
 import "/web/js/elements/pills.js";
 import "/web/js/elements/hold_button.js";
 import "/web/js/elements/state_bar.js";
 import "/web/js/elements/stop_button.js";
+import "/web/js/elements/map.js";
+import "/web/js/elements/hold_list.js";
+import "/web/js/elements/task_form.js";
+import "/web/js/elements/task_panel.js";
 import "/web/js/elements/part_tree.js";
 import "/web/js/elements/mode_switcher.js";
 import "/web/js/elements/change.js";
@@ -23,13 +28,18 @@ const clock = new ServerClock();
 const connection = new Connection(() =>
   state.epoch === null ? null : { after: state.lastEventId, epoch: state.epoch },
 );
+const taskWatch = new TaskWatch(take);
 const panel = document.querySelector("ph-part-panel");
+const map = document.querySelector("ph-map");
+const taskPanel = document.querySelector("ph-task-panel");
 const elements = document.querySelectorAll(
-  "ph-state-bar, ph-stop-button, ph-part-tree, ph-part-panel, ph-signal-list, ph-event-list",
+  "ph-state-bar, ph-stop-button, ph-task-panel, ph-part-tree, ph-map, ph-part-panel, " +
+    "ph-signal-list, ph-event-list",
 );
 let state = emptyState();
 let mock = {};
 let selected = null;
+let preview = null;
 let drawAsked = false;
 let latchesSet = 0;
 
@@ -54,7 +64,7 @@ function draw() {
   };
   document.body.dataset.contact = contact.level;
   selected ??= Object.values(state.parts).find((part) => part.kind === "system")?.name ?? null;
-  const view = { state, contact, mock, selected, serverNow: clock.now() };
+  const view = { state, contact, mock, selected, preview, serverNow: clock.now() };
   for (const element of elements) element.update(view);
 }
 
@@ -97,10 +107,18 @@ function loadMock() {
   });
 }
 
+/** A service without examples answers 404, and there is no button then. */
+function loadTracks() {
+  load(["/examples/tracks"], ([{ items }]) => (taskPanel.tracks = items));
+}
+
 function resync({ epoch }) {
   const isNew = epoch !== state.epoch;
   loadStructure();
   loadLatch();
+  loadTracks();
+  taskWatch.loadHolds();
+  if (isNew) taskWatch.loadLast();
   if (isNew) load(["/events?limit=50"], ([{ items }]) => take({ type: "log", items }));
   panel.refresh();
 }
@@ -109,10 +127,15 @@ connection.addEventListener("frame", ({ detail: frame }) => {
   if (frame.type === "hello") resync(frame);
   if (frame.type === "event" && frame.kind.startsWith("emergency_stop")) loadLatch();
   panel.hear(frame);
+  taskWatch.hear(frame);
   if (frame.type === "state") clock.observe(frame.at, localNow());
   const isFirst = state.systemState === null;
   take(frame);
   if (isFirst && state.systemState) loadMock();
+  if (frame.type === "state") {
+    map.hear(state);
+    taskWatch.look(state);
+  }
   title();
 });
 
@@ -120,6 +143,11 @@ document.addEventListener("ph-select", ({ detail }) => {
   selected = detail;
   askToDraw();
 });
+document.addEventListener("ph-preview", ({ detail }) => {
+  preview = detail;
+  askToDraw();
+});
+document.addEventListener("ph-holds-changed", () => taskWatch.loadHolds());
 document.addEventListener("ph-try-now", () => connection.tryNow());
 document.addEventListener("ph-latch", ({ detail }) => {
   latchesSet += 1;
@@ -131,5 +159,6 @@ setInterval(() => {
   if (connection.level() !== "live") return;
   loadLatch();
   loadMock();
+  taskWatch.loadHolds();
 }, SLOW_REFRESH_MS);
 connection.tryNow();

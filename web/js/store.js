@@ -1,8 +1,9 @@
 /** What is known of the robot, as a pure fold of the frames of the stream.
  *
  * `fold(state, message)` returns the next state and never changes the one given. Besides the frames
- * of the server it takes three messages of our own, made from answers to requests: `structure`
- * (`items` of /systems and /nodes), `log` (`items` of /events) and `emergency_stop`.
+ * of the server it takes messages of our own, made from answers to requests: `structure` (`items`
+ * of /systems and /nodes), `log` (`items` of /events), `emergency_stop`, `holds` (`items` of
+ * /holds), `path` (waypoints of a task) and `ended_task`.
  */
 
 const EVENTS_KEPT = 200;
@@ -15,6 +16,11 @@ export function emptyState() {
     systemState: null,
     parts: {},
     signals: {},
+    task: null,
+    lastTask: null,
+    path: null,
+    vehicle: null,
+    holds: [],
     emergencyStop: null,
     events: [],
     lastEventId: 0,
@@ -42,6 +48,8 @@ const FOLDERS = {
       systemState: frame.system_state ?? state.systemState,
       parts: frame.parts ? foldParts(state.parts, frame.parts, frame.at) : state.parts,
       signals: frame.signals ? foldSignals(state.signals, frame.signals, frame.at) : state.signals,
+      vehicle: frame.vehicle ?? state.vehicle,
+      ...(frame.task === undefined ? {} : foldTask(state, frame.task)),
     };
   },
 
@@ -79,7 +87,26 @@ const FOLDERS = {
   emergency_stop(state, { latch }) {
     return { ...state, emergencyStop: latch };
   },
+
+  holds(state, { items }) {
+    return { ...state, holds: items };
+  },
+
+  path(state, { task, items, indices }) {
+    return { ...state, path: { task, items, indices } };
+  },
+
+  /** How a task ended is told by no frame. */
+  ended_task(state, { task }) {
+    return { ...state, lastTask: task };
+  },
 };
+
+/** A task that is no longer the current one is the last, known as it was until its end is told. */
+function foldTask(state, task) {
+  const isOther = state.task !== null && state.task.id !== task?.id;
+  return { task, lastTask: isOther ? state.task : state.lastTask };
+}
 
 function keep(events) {
   return events.slice(-EVENTS_KEPT);

@@ -25,38 +25,6 @@ export function label({ state, mode }) {
   return mode ? `${state}.${mode}` : state;
 }
 
-/** The sentence at the top: `{level, word, text, more}`, most important reason first. */
-export function stateSentence(state, contact) {
-  const { systemState } = state;
-  if (contact.level === "lost") {
-    const since = state.at
-      ? `values shown are from ${timeOfDay(state.at)}`
-      : "nothing is known yet";
-    return sentence("lost", `No contact for ${wholeSeconds(contact.silenceMs)}`, since);
-  }
-  if (systemState === null) return sentence("late", "Connecting", "waiting for the first values");
-  if (systemState.state !== "ERROR") {
-    return sentence(
-      systemState.state.toLowerCase(),
-      systemState.state,
-      TASKS[systemState.task_status],
-    );
-  }
-  const reasons = systemState.reasons.map((reason) => reason.message);
-  const [first = systemState.errors.join(", "), ...more] = reasons;
-  return sentence("error", "ERROR", first, more);
-}
-
-function sentence(level, word, text, more = []) {
-  return { level, word, text, more };
-}
-
-const TASKS = {
-  NO_TASK: "no task",
-  PAUSED_TASK: "the task is paused",
-  RUNNING_TASK: "the task is running",
-};
-
 /** What was asked for by a change. */
 export function requestWords(asked) {
   if (typeof asked === "string") return asked;
@@ -82,41 +50,3 @@ const CHANGE_STATUS = {
   superseded: "superseded by a newer request",
   canceled: "canceled",
 };
-
-const EVENT_WORDS = {
-  "signal.pending": ({ signal, error }) => `${signal} is bad; ${error} follows if it lasts`,
-  "signal.settled": ({ signal, error }) => `${signal} is good again; no ${error}`,
-  "error.raised": ({ error, message }) => `${error}: ${message}`,
-  "error.cleared": ({ error }) => `${error} is over`,
-  "system_state.changed": ({ was, state, errors }) =>
-    [was === state ? state : `${was} to ${state}`, errors.join(", ")].filter(Boolean).join(": "),
-  "part.actual_changed": ({ part, was, actual }) => `${part}: ${was} to ${actual}`,
-  "part.deviation_began": ({ part, actual, target }) => `${part} is ${actual}, not ${target}`,
-  "part.deviation_ended": ({ part, actual }) => `${part} is ${actual}, as asked`,
-  "change.requested": ({ part, ...asked }) => `${part}: ${requestWords(asked)}`,
-  "change.step_started": ({ node, action }) => `${node}: ${action}`,
-  "change.step_ended": ({ node, action, status, error }) =>
-    `${node}: ${action} ${status}${error ? `, ${error}` : ""}`,
-};
-
-/** What happened, in words; an event of a kind not known here tells its data as they are. */
-export function eventWords({ kind, data }) {
-  if (EVENT_WORDS[kind]) return EVENT_WORDS[kind](data);
-  return Object.entries(data)
-    .filter(([, value]) => value !== null && value !== "" && !isEmpty(value))
-    .map(([name, value]) => `${name.replaceAll("_", " ")} ${plain(value)}`)
-    .join(", ");
-}
-
-function isEmpty(value) {
-  return typeof value === "object" && Object.keys(value).length === 0;
-}
-
-function plain(value) {
-  if (typeof value !== "object") return String(value);
-  if (Array.isArray(value)) return value.map(plain).join(" ");
-  if ("state" in value) return label(value);
-  return Object.entries(value)
-    .map(([name, inner]) => `${name} ${plain(inner)}`)
-    .join(" ");
-}

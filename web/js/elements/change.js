@@ -2,6 +2,7 @@
 
 import { request } from "/web/js/api.js";
 import { el, renderOnce, setAttribute, setText } from "/web/js/dom.js";
+import { problemLines } from "/web/js/problem.js";
 import { changeWords, duration, requestWords, timeOfDay } from "/web/js/words.js";
 
 const MARKS = { pending: "·", running: "…", succeeded: "✓", failed: "✕", timed_out: "✕" };
@@ -74,20 +75,6 @@ function stepLine(step, now) {
     el("span", { class: "quiet" }, `${status.replaceAll("_", " ")}${took ? `, ${took}` : ""}`),
     error ? el("span", { class: "step-error" }, error) : null,
   );
-}
-
-/** The refusal in words; blockers that the detail already names are not said twice. */
-function problemLines({ title, detail, hint, blockers = [] }) {
-  const said = detail ?? title;
-  const more = blockers
-    .map((blocker) => blocker.message)
-    .filter((message) => !said.includes(message));
-  return [
-    el("strong", {}, "Refused: "),
-    el("span", {}, said),
-    ...more.map((message) => el("p", {}, message)),
-    hint ? el("p", { class: "hint" }, `Hint: ${hint}`) : null,
-  ].filter((line) => line !== null);
 }
 
 customElements.define("ph-change", Change);

@@ -1,11 +1,20 @@
 /** <ph-event-list>: what happened last, newest first; missing events leave a visible line. */
 
 import { el } from "/web/js/dom.js";
-import { eventWords, timeOfDay } from "/web/js/words.js";
+import { eventWords } from "/web/js/event_words.js";
+import { timeOfDay } from "/web/js/words.js";
 
 const SHOWN = 50;
 // What came in, as opposed to what was made of it: many lines, of use when one looks for a cause.
-const REPORTS = new Set(["signal.read", "node.reported", "node.answered", "time.passed"]);
+const REPORTS = new Set([
+  "signal.read",
+  "node.reported",
+  "node.answered",
+  "vehicle.reported",
+  "goal.feedback",
+  "goal.ended",
+  "time.passed",
+]);
 
 class EventList extends HTMLElement {
   #shown = null;

@@ -1,7 +1,8 @@
 /** <ph-state-bar>: one sentence on the robot, the reasons, and how good the contact is. */
 
 import { el, icon, renderOnce, setAttribute, setText } from "/web/js/dom.js";
-import { stateSentence, wholeSeconds } from "/web/js/words.js";
+import { stateSentence } from "/web/js/state_sentence.js";
+import { wholeSeconds } from "/web/js/words.js";
 
 class StateBar extends HTMLElement {
   connectedCallback() {
@@ -53,7 +54,8 @@ class StateBar extends HTMLElement {
   /** Screen readers hear what the state becomes, and not each figure that moves in it. */
   #speak(state, said) {
     const errors = state.systemState?.errors ?? [];
-    const key = said.level === "error" ? errors.join() : said.level;
+    const { id, status, reason } = state.task ?? {};
+    const key = [said.level, said.level === "error" ? errors : [id, status, reason]].join();
     if (this.spokenKey === key) return;
     this.spokenKey = key;
     const word = said.level === "lost" ? "No contact" : said.word;

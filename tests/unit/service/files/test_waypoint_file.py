@@ -3,7 +3,7 @@ from collections.abc import Callable
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 from numpy.typing import NDArray
 
@@ -69,6 +69,7 @@ def test_each_line_is_a_waypoint() -> None:
         "0,0,0,2.8,text\n1,0,0,,\n",
         " 0 , 0,0\n1,\t0,0 \n",
         "0,0,+0.0\n1.,.0,-0\n",
+        "\ufeff0,0,0\r\n1,0,0\r\n",
     ],
 )
 def test_line_ends_blanks_and_further_columns_make_no_difference(text: str) -> None:
@@ -104,6 +105,10 @@ def test_numbers_are_read_as_they_were_written(rows: list[tuple[float, float, fl
     [
         ("", [("EMPTY_FILE", 1, 1)]),
         ("\n\n", [("EMPTY_FILE", 1, 1)]),
+        (" \r\n", [("EMPTY_FILE", 1, 1)]),
+        ("\ufeff", [("EMPTY_FILE", 1, 1)]),
+        ("\n0,0,0\n1,0,0\n", [("EMPTY_LINE", 1, 1)]),
+        ("0,0,0\n1,0,0\n , ,\n", [("NOT_A_NUMBER", 3, k) for k in (2, 4, 5)]),
         ("0,0,0\n", [("TOO_FEW_POINTS", 1, 1)]),
         ("0,0,0\n\n1,0,0\n", [("EMPTY_LINE", 2, 1)]),
         ("x,y,yaw\n0,0,0\n1,0,0\n", [("HEADER", 1, 1)]),
@@ -265,6 +270,68 @@ def test_a_vehicle_that_backs_up_is_taken_although_its_heading_would_fit_as_degr
 
     # 3.19 rad is the way, backwards; 3.19 degrees are 0.056 rad.
     read_waypoints_csv(csv(places, yaws + math.pi))
+
+
+@settings(max_examples=40)
+@given(
+    st.floats(-math.pi, math.pi),
+    st.floats(-0.1, 0.1),
+    st.floats(0.0, 1.0),
+    st.integers(0, 1_000),
+)
+def test_a_noisy_heading_is_taken(
+    first_rad: float, turn: float, noise_rad: float, seed: int
+) -> None:
+    places, yaws = drive(np.full(60, turn), first_rad=first_rad)
+    noise = np.random.default_rng(seed).normal(0.0, noise_rad, yaws.shape)
+
+    read_waypoints_csv(csv(places, half_turns(yaws + noise)))
+
+
+@pytest.mark.parametrize("convert", [np.degrees, compass], ids=["degrees", "compass"])
+@pytest.mark.parametrize("length_m", [0.4, 5.0])
+def test_a_short_path_in_degrees_is_refused(
+    convert: Callable[[Floats], Floats], length_m: float
+) -> None:
+    places, yaws = drive(np.full(20, 0.05), length_m / 20, first_rad=0.4)
+
+    assert refused(csv(places, convert(yaws))).findings[0].code == "NOT_RADIANS"
+
+
+@settings(max_examples=60)
+@given(
+    st.lists(st.floats(-0.2, 0.2), min_size=20, max_size=80),
+    st.floats(-math.pi, math.pi),
+    st.sampled_from([np.degrees, compass]),
+)
+def test_headings_of_more_than_a_turn_are_refused_in_any_unit_but_radians(
+    turns: list[float], first_rad: float, convert: Callable[[Floats], Floats]
+) -> None:
+    places, yaws = drive(np.array(turns), first_rad=first_rad)
+    headings = convert(half_turns(yaws))
+    # Below, degrees and radians may fit the way alike.
+    assume(np.abs(headings).max() > 30.0)
+
+    assert refused(csv(places, headings)).findings[0].code == "NOT_RADIANS"
+
+
+@settings(max_examples=40)
+@given(
+    st.lists(st.floats(-0.2, 0.2), min_size=5, max_size=80),
+    st.floats(-math.pi, math.pi),
+    st.sampled_from([(np.degrees, Heading.DEG), (compass, Heading.COMPASS)]),
+)
+def test_headings_whose_unit_is_told_lead_along_the_way(
+    turns: list[float],
+    first_rad: float,
+    unit: tuple[Callable[[Floats], Floats], Heading],
+) -> None:
+    places, yaws = drive(np.array(turns), first_rad=first_rad)
+    convert, heading = unit
+    read = read_waypoints_csv(csv(places, convert(yaws)), heading)
+
+    assert np.abs(read[:, 2]).max() <= math.pi
+    assert half_turns(read[:, 2] - yaws) == pytest.approx(0.0, abs=1e-6)
 
 
 def test_two_points_say_too_little_to_doubt_their_heading() -> None:

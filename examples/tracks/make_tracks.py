@@ -1,0 +1,143 @@
+"""Writes the tracks of this folder: `python examples/tracks/make_tracks.py`.
+
+Each is a CSV as recorded with smart_polaris, `x,y,yaw` in m, m and rad, and begins at the origin
+looking along x, where the example vehicle stands. The loop is also what the program brings along.
+"""
+
+from collections.abc import Iterator, Mapping
+from itertools import pairwise
+from math import pi, radians
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+HERE = Path(__file__).resolve().parent
+BUILT_IN = HERE.parents[1] / "service" / "example" / "loop.csv"
+
+_FINE_M = 0.01
+"""Step of the integration; its error on 800 m is less than the last digit that is written."""
+
+Bend = tuple[float, float]
+"""A piece of way: how long it is, m, and the curvature that is reached at its end, 1/m."""
+
+
+def straight(length_m: float) -> list[Bend]:
+    """Return a straight."""
+    return [(length_m, 0.0)]
+
+
+def turn(angle_deg: float, radius_m: float, easing_m: float) -> list[Bend]:
+    """Return a curve between straights; its curvature rises and falls evenly, as on a road.
+
+    Args:
+        angle_deg: Change of heading, left positive.
+        radius_m: In the middle of the curve; > 0.
+        easing_m: Length of either transition; < `radius_m` times the angle in rad.
+    """
+    curvature = np.copysign(1 / radius_m, angle_deg)
+    arc_m = radius_m * abs(radians(angle_deg)) - easing_m
+    return [(easing_m, curvature), (arc_m, curvature), (easing_m, 0.0)]
+
+
+def track(
+    bends: list[Bend], spacing_m: float, length_m: float | None = None
+) -> NDArray[np.float64]:
+    """Return waypoints along bends, from the origin along x.
+
+    Args:
+        bends: One after the other; the first begins straight.
+        spacing_m: Between waypoints.
+        length_m: Where the track ends, after less than all bends; None: after the last one.
+
+    Returns:
+        Shape (n, 3): x m, y m, yaw rad from -pi to pi.
+    """
+    ends = np.concatenate(([0.0], np.cumsum([length for length, _ in bends])))
+    curvatures = [0.0, *(curvature for _, curvature in bends)]
+    along = np.arange(0.0, ends[-1] + _FINE_M, _FINE_M)
+    yaw = _integral(np.interp(along, ends, curvatures))
+    at = np.arange(0.0, (ends[-1] if length_m is None else length_m) + 1e-9, spacing_m)
+    x, y = (np.interp(at, along, _integral(part)) for part in (np.cos(yaw), np.sin(yaw)))
+    yaws = np.interp(at, along, yaw)
+    return np.column_stack((x, y, (yaws + pi) % (2 * pi) - pi))
+
+
+def corner(*places: tuple[float, float], spacing_m: float) -> NDArray[np.float64]:
+    """Return waypoints along straights between places, without any rounding; shape (n, 3)."""
+    pieces = []
+    for begin, end in pairwise(np.array(places)):
+        length = float(np.hypot(*(end - begin)))
+        way = (end - begin) / length
+        at = np.arange(0.0, length - 1e-9, spacing_m)[:, np.newaxis]
+        pieces.append(np.hstack((begin + at * way, np.full(at.shape, np.arctan2(way[1], way[0])))))
+    last = np.array([[*places[-1], pieces[-1][-1, 2]]])
+    return np.vstack((*pieces, last))
+
+
+def loop() -> NDArray[np.float64]:
+    """Return a lap of 800 m; no curve is tighter than 40 m, and the end is right before the start.
+
+    Half of it turns by 180 degrees, and twice the same half leads back to where it began.
+    """
+    curves = (turn(110, 40, 20), turn(-40, 60, 20), turn(110, 45, 20))
+    rest_m = 400 - sum(length for curve in curves for length, _ in curve)
+    first, second, third = curves
+    half = [
+        *straight(0.35 * rest_m),
+        *first,
+        *straight(0.15 * rest_m),
+        *second,
+        *straight(0.15 * rest_m),
+        *third,
+        *straight(0.35 * rest_m),
+    ]
+    return track(2 * half, 0.5, 799.5)
+
+
+def overlap() -> NDArray[np.float64]:
+    """Return a small lap that goes on for 3 m on its own start."""
+    half = [*straight(15), *turn(180, 12, 8), *straight(15)]
+    lap_m = 2 * sum(length for length, _ in half)
+    return track([*half, *half, *straight(3)], 0.5, lap_m + 3)
+
+
+def out_and_back() -> NDArray[np.float64]:
+    """Return a way out, a turn like a drop, and the way back beside the way out."""
+    drop = [*turn(-60, 6, 2.5), *turn(300, 6, 2.5), *turn(-60, 6, 2.5)]
+    return track([*straight(40), *drop, *straight(40)], 0.25)
+
+
+def _csv(waypoints: NDArray[np.float64]) -> str:
+    # Adding 0 makes 0.000 of -0.000.
+    places, yaws = np.round(waypoints[:, :2], 3) + 0.0, np.round(waypoints[:, 2], 4) + 0.0
+    rows = zip(*places.T.tolist(), yaws.tolist(), strict=True)
+    return "".join(f"{x:.3f},{y:.3f},{yaw:.4f}\n" for x, y, yaw in rows)
+
+
+def _integral(values: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Return the integral over the way from its begin; shape (n,) as `values`, `_FINE_M` apart."""
+    steps = (values[:-1] + values[1:]) * (_FINE_M / 2)
+    return np.concatenate(([0.0], np.cumsum(steps)))
+
+
+TRACKS: Mapping[str, NDArray[np.float64]] = {
+    "loop": loop(),
+    "overlap": overlap(),
+    "short_5m": corner((0, 0), (5, 0), spacing_m=0.5),
+    "right_angle": corner((0, 0), (20, 0), (20, 20), spacing_m=0.5),
+    "out_and_back": out_and_back(),
+}
+"""Waypoints by name; shape (n, 3) each: x m, y m, yaw rad."""
+
+
+def files() -> Iterator[tuple[Path, str]]:
+    """Yield each file with its text."""
+    for name, waypoints in TRACKS.items():
+        yield HERE / f"{name}.csv", _csv(waypoints)
+    yield BUILT_IN, _csv(TRACKS["loop"])
+
+
+if __name__ == "__main__":
+    for path, text in files():
+        path.write_text(text, encoding="utf-8", newline="\n")

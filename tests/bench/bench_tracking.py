@@ -1,0 +1,187 @@
+"""How well both trackers follow the recorded loop, with the vehicle as it is simulated.
+
+The plants, the bounds and what others reach on them: smart_polaris section 12.
+"""
+
+import time
+from collections.abc import Iterable, Iterator, Mapping
+
+import numpy as np
+import pytest
+
+from domain.paths.path import Path
+from domain.tracking.trackers import TRACKERS
+from domain.vehicle import Pose, VehicleState
+from tests.support.bench import Row, quantiles, report
+from tests.support.track_study import (
+    LIMITS,
+    PLANTS,
+    accelerations,
+    beside_start,
+    disturbed,
+    drive,
+    figures,
+    track,
+)
+
+pytestmark = pytest.mark.bench
+
+LOOP = "tracks/gem_e2_loop.csv"
+LAUNCH = Pose(0.0, 0.0, 0.0)
+"""Of the original: 2 m left of the start of the loop."""
+FIXTURES = (
+    "short_5m",
+    "line_21",
+    "line_21_offset",
+    "line_21_5col",
+    "line_21_crlf",
+    "line_90deg",
+    "line_180deg",
+    "overlap_loop",
+)
+CAPTURE_WITHIN_M = {"ideal": 15, "gazebo-like": 15, "car-like": 20}
+SEEDS = (1, 2, 3)
+
+
+def test_on_the_path() -> None:
+    loop = track(LOOP)
+    rows = {
+        f"{controller}, {plant}": figures(drive(loop, controller, PLANTS[plant]))
+        for controller, plant in _pairs()
+    }
+    report("tracking_on_path", rows)
+    for row in rows.values():
+        assert row["done"]
+        assert row["rms_m"] <= 0.010
+        assert row["max_m"] <= 0.03
+        assert row["heading_deg"] <= 0.3
+
+
+def test_from_two_metres_beside() -> None:
+    loop = track(LOOP)
+    rows = {}
+    for controller, plant in _pairs():
+        row = figures(drive(loop, controller, PLANTS[plant], LAUNCH))
+        rows[f"{controller}, {plant}"] = row
+        assert 0 < row["capture_m"] <= CAPTURE_WITHIN_M[plant]
+    report("tracking_from_beside", rows)
+    for row in rows.values():
+        assert row["done"]
+        assert row["overshoot_m"] <= 0.1
+        # After the capture it does not swing.
+        assert row["rms_m"] <= 0.010
+
+
+@pytest.mark.parametrize("start", [None, LAUNCH], ids=["on_path", "beside"])
+def test_with_noise_and_delay(start: Pose | None) -> None:
+    loop = track(LOOP)
+    rows = {
+        f"{controller}, {plant}": _worst(
+            figures(drive(loop, controller, disturbed(PLANTS[plant], seed), start))
+            for seed in SEEDS
+        )
+        for controller, plant in _pairs()
+    }
+    report(f"tracking_noise_{'beside' if start else 'on_path'}", rows)
+    for row in rows.values():
+        assert row["done"]
+        assert row["rms_m"] <= 0.015
+        assert row["max_m"] <= 0.06
+
+
+def test_a_fast_lap() -> None:
+    loop = track(LOOP)
+    rows = {}
+    for controller, plant in _pairs():
+        record = drive(loop, controller, PLANTS[plant], speed_mps=7.0)
+        lateral, longitudinal = accelerations(record)
+        rows[f"{controller}, {plant}"] = {
+            **figures(record),
+            "driven": round(float(record.driven_m[-1]) / loop.length_m, 5),
+            "lat_mps2": lateral,
+            "lon_mps2": longitudinal,
+        }
+    report("tracking_fast_lap", rows)
+    for row in rows.values():
+        assert row["done"]
+        assert row["time_s"] <= 128
+        assert row["rms_m"] <= 0.03
+        assert row["lat_mps2"] <= 2
+        assert row["lon_mps2"] <= 1
+        # No corner is cut.
+        assert row["driven"] >= 0.9995
+
+
+def test_all_fixtures_are_driven_to_their_end() -> None:
+    rows = {}
+    for name in FIXTURES:
+        path = track(f"conformance/polaris/fixtures/{name}.csv")
+        for controller in TRACKERS:
+            worst = _worst(
+                figures(drive(path, controller, plant, beside_start(path, left_m)))
+                for plant in PLANTS.values()
+                for left_m in (0.0, 0.5, -0.5)
+            )
+            # How well it was followed says little of paths that end before a vehicle is on them.
+            rows[f"{name}, {controller}"] = {
+                column: worst[column] for column in ("time_s", "covered", "end_m", "done")
+            }
+    report("tracking_fixtures", rows)
+    for row in rows.values():
+        assert row["done"]
+        assert row["covered"] >= 0.95
+        assert row["end_m"] <= 0.3
+
+
+def test_what_a_path_and_a_control_step_cost() -> None:
+    loop = track(LOOP)
+    along = np.linspace(0, loop.length_m, 100_000)
+    places = [loop.point_at(distance) for distance in along.tolist()]
+    many = Path(np.array([(place.x_m, place.y_m, 0.0) for place in places]))
+    apart = Path(np.column_stack((np.arange(100_000.0), np.zeros(100_000), np.zeros(100_000))))
+    rows: dict[str, Row] = {}
+    for label, path in {
+        "loop, 3,822 points": loop,
+        "loop, 100,000 points": many,
+        "line, 100,000 points 1 m apart": apart,
+    }.items():
+        rows[f"path, {label}"] = quantiles([_building(path) for _ in range(11)])
+        for controller in TRACKERS:
+            rows[f"{controller}, {label}"] = quantiles(list(_steps(path, controller)))
+    report("tracking_cost", rows)
+    for label, row in rows.items():
+        assert row["p50_ms"] < (60 if label.startswith("path") else 0.1)
+
+
+def _pairs() -> Iterator[tuple[str, str]]:
+    """Yield each tracker with each plant."""
+    for controller in TRACKERS:
+        for plant in PLANTS:
+            yield controller, plant
+
+
+def _worst(rows: Iterable[Mapping[str, float]]) -> Row:
+    """Return the largest of each figure; of what should be large, the smallest."""
+    all_rows = list(rows)
+    return {
+        name: (min if name in {"done", "covered"} else max)(row[name] for row in all_rows)
+        for name in all_rows[0]
+    }
+
+
+def _building(path: Path) -> float:
+    begin = time.perf_counter()
+    Path(path.waypoints)
+    return time.perf_counter() - begin
+
+
+def _steps(path: Path, controller: str) -> Iterator[float]:
+    """Yield how long control steps take all along a path, 50 mm beside it, s."""
+    tracker = TRACKERS[controller](LIMITS)
+    for distance in np.linspace(0, path.length_m, 5000).tolist():
+        place, index = path.point_at(distance), path.index_after(distance)
+        pose = Pose(place.x_m, place.y_m + 0.05, path.heading_at(distance))
+        state = VehicleState(pose, 2.8, 0.0)
+        begin = time.perf_counter()
+        tracker.control_step(state, path, index)
+        yield time.perf_counter() - begin

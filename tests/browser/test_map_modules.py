@@ -1,0 +1,199 @@
+"""The parts of the map that count and do not draw, in the only engine that runs them."""
+
+import math
+from collections.abc import Iterator
+from typing import Any
+
+import pytest
+
+pytest.importorskip("playwright.sync_api", reason="playwright is not installed")
+
+from playwright.sync_api import Browser, Page
+
+from tests.browser.station import Service
+
+pytestmark = pytest.mark.browser
+
+# 100 points one metre apart, of which every tenth is kept.
+THINNED = """
+const { PathShape } = await import("/web/js/map/path_shape.js");
+const items = Array.from({ length: 11 }, (_, n) => ({ x_m: 10 * n, y_m: 0 }));
+const path = new PathShape(items, items.map((_, n) => 10 * n));
+"""
+TRAIL = """
+const { Trail } = await import("/web/js/map/trail.js");
+const trail = new Trail();
+const add = (x_m, s, state = "RUNNING") => trail.add({ x_m, y_m: 0, yaw_rad: 0 }, 1000 * s, state);
+"""
+VIEW = """
+const looks = await import("/web/js/map/view.js");
+const view = { ...looks.emptyView(), width: 600, height: 400, x_m: 3, y_m: -7, scale: 8 };
+"""
+WORDS = 'const words = await import("/web/js/task_words.js");'
+
+
+@pytest.fixture(scope="module")
+def page(browser: Browser, running_service: Service) -> Iterator[Page]:
+    page = browser.new_page()
+    page.goto(running_service.url)
+    yield page
+    page.close()
+
+
+def run(page: Page, script: str) -> Any:  # noqa: ANN401 - whatever the script returns
+    return page.evaluate(f"async () => {{ {script} }}")
+
+
+def test_the_part_that_is_done_ends_beside_the_vehicle(page: Page) -> None:
+    split = run(page, THINNED + "return path.split(43, { x_m: 42.5, y_m: 1.2 });")
+    assert split == {"segment": 4, "place": {"x_m": 42.5, "y_m": 0}}
+
+
+def test_a_vehicle_that_was_carried_away_does_not_move_what_is_done_past_the_kept_points(
+    page: Page,
+) -> None:
+    split = run(page, THINNED + "return path.split(43, { x_m: 95, y_m: 0 });")
+    assert split == {"segment": 4, "place": {"x_m": 50, "y_m": 0}}
+
+
+def test_before_the_first_waypoint_nothing_is_done(page: Page) -> None:
+    split = run(page, THINNED + "return path.split(0, { x_m: 7, y_m: 0 });")
+    assert split == {"segment": 0, "place": {"x_m": 0, "y_m": 0}}
+
+
+def test_the_target_of_a_thinned_path_is_the_next_point_that_was_kept(page: Page) -> None:
+    assert run(page, THINNED + "return path.waypoint(41).x_m;") == 50
+    assert run(page, THINNED + "return path.waypoint(100).x_m;") == 100
+
+
+def test_a_trail_tells_the_states_apart_and_leaves_no_gap_between_them(page: Page) -> None:
+    script = 'add(0, 0); add(1, 1); add(2, 2, "ERROR"); return trail.runs.map((run) => [run.state,'
+    runs = run(page, TRAIL + script + "run.bounds.minX, run.bounds.maxX]);")
+    assert runs == [["RUNNING", 0, 1], ["ERROR", 1, 2]]
+
+
+def test_a_trail_is_not_drawn_over_a_way_that_nobody_saw(page: Page) -> None:
+    bounds = "return trail.runs.map((run) => [run.bounds.minX, run.bounds.maxX]);"
+    assert run(page, TRAIL + "add(0, 0); add(1, 1); add(2, 9);" + bounds) == [[0, 1], [2, 2]]
+    assert run(page, TRAIL + "add(0, 0); add(1, 1); add(50, 2);" + bounds) == [[0, 1], [50, 50]]
+
+
+def test_a_trail_forgets_what_is_older_than_five_minutes(page: Page) -> None:
+    script = "add(0, 0); add(1, 1); for (let s = 2; s < 310; s += 1) add(1, s); add(2, 310);"
+    assert run(page, TRAIL + script + "return trail.runs.length;") == 1
+
+
+def test_a_vehicle_at_rest_makes_its_trail_no_longer(page: Page) -> None:
+    script = "add(0, 0); const was = trail.version; for (let n = 1; n < 50; n += 1) add(0, n / 20);"
+    assert run(page, TRAIL + script + "return trail.version === was;") is True
+
+
+def test_what_is_under_the_pointer_stays_there_when_one_zooms(page: Page) -> None:
+    script = (
+        "return [view, looks.zoomAt(view, 2.5, 100, 50)].map((v) => looks.toWorld(v, 100, 50));"
+    )
+    before, after = run(page, VIEW + script)
+    assert after == pytest.approx(before)
+
+
+def test_zooming_has_an_end_on_both_sides(page: Page) -> None:
+    script = "return [1e9, 1e-9].map((factor) => looks.zoomAt(view, factor, 0, 0).scale);"
+    assert run(page, VIEW + script) == [200, 0.01]
+
+
+def test_a_fitted_view_shows_all_of_the_bounds_within_a_margin(page: Page) -> None:
+    corners = "[{ x_m: -50, y_m: 10 }, { x_m: 150, y_m: 90 }]"
+    script = f"""
+        const fitted = looks.fit(view, {{ minX: -50, minY: 10, maxX: 150, maxY: 90 }});
+        return {corners}.map((corner) => looks.toScreen(fitted, corner));
+    """
+    (left, right) = run(page, VIEW + script)
+    assert 20 < left["x"] < right["x"] < 580
+    assert 20 < right["y"] < left["y"] < 380
+
+
+def test_the_grid_has_round_steps_that_do_not_crowd(page: Page) -> None:
+    steps = run(
+        page,
+        """
+        const { roundStep } = await import("/web/js/map/grid.js");
+        return [0.011, 0.1, 0.3, 1, 4.9, 5, 99, 1000].map(roundStep);
+        """,
+    )
+    assert steps == pytest.approx([0.01, 0.1, 0.2, 1, 2, 5, 50, 1000])
+
+
+def test_a_path_of_ten_thousand_points_is_drawn_in_less_than_8_ms(page: Page) -> None:
+    milliseconds = run(
+        page,
+        VIEW
+        + """
+        const { PathShape } = await import("/web/js/map/path_shape.js");
+        const { drawScene } = await import("/web/js/map/draw.js");
+        const items = Array.from({ length: 10_000 }, (_, n) => {
+          const turn = (n / 10_000) * 2 * Math.PI;
+          return { x_m: 130 * Math.cos(turn), y_m: 90 * Math.sin(turn) + 8 * Math.sin(5 * turn) };
+        });
+        const path = new PathShape(items);
+        const split = path.split(5000, items[5000]);
+        const scene = { path, split, preview: null, runs: [], target: null, vehicle: null };
+        const names = ["ground", "grid", "axis", "ahead", "done", "text", "quiet"];
+        const colours = Object.fromEntries(names.map((name) => [name, "#888"]));
+        const ink = { ...colours, font: "11px serif" };
+        const canvas = Object.assign(document.createElement("canvas"), { width: 600, height: 400 });
+        const context = canvas.getContext("2d", { alpha: false });
+        const times = Array.from({ length: 30 }, () => {
+          const begin = performance.now();
+          drawScene(context, looks.fit(view, path.bounds), ink, 1, scene);
+          // To read a pixel waits until all is drawn.
+          context.getImageData(0, 0, 1, 1);
+          return performance.now() - begin;
+        });
+        return Math.min(...times);
+        """,
+    )
+    assert milliseconds < 8
+
+
+def test_a_pose_is_old_when_a_newer_one_is_due_and_always_without_contact(
+    page: Page,
+) -> None:
+    script = """
+        const at = "2026-01-02T03:04:05.000Z";
+        const vehicle = { at, pose: { x_m: 0, y_m: 0, yaw_rad: 0 } };
+        const age = (level, ms) => words.poseAge(vehicle, { level }, Date.parse(at) + ms);
+        return [age("live", 1200), age("live", 3200), age("lost", 9000)];
+    """
+    fresh, old, lost = run(page, WORDS + script)
+    assert (fresh, old) == ("", "pose 3.2 s old")
+    assert lost.startswith("pose of ")
+
+
+def test_the_side_of_the_path_is_said_in_words(page: Page) -> None:
+    said = run(page, WORDS + "return [0.034, -1.2, 0.001, null].map(words.offPath);")
+    assert said == ["0.03 m left", "1.20 m right", "0.00 m", "\u2013"]
+
+
+def test_a_percentage_is_a_hundred_only_when_all_is_done(page: Page) -> None:
+    assert run(page, WORDS + "return [0.9999, 1, 0.29].map(words.percent);") == [
+        "99 %",
+        "100 %",
+        "29 %",
+    ]
+
+
+def test_the_map_is_told_in_words_to_those_who_do_not_see_it(page: Page) -> None:
+    said = run(
+        page,
+        WORDS
+        + f"""
+        const pose = {{ x_m: 12.34, y_m: -4.5, yaw_rad: {math.pi / 2} }};
+        const task = {{ id: "t1", progress: 0.62, target_index: 40, waypoint_count: 66 }};
+        const vehicle = {{ pose, speed_mps: 2.8 }};
+        return words.mapSentence({{ vehicle, task: {{ ...task, cross_track_error_m: 0.03 }} }}, "");
+        """,
+    )
+    assert said == (
+        "Vehicle at x 12.3 m, y -4.5 m, heading 90 degrees, 2.8 m/s. "
+        "Task t1, 62 % done, waypoint 41 of 66, 0.03 m left of the path."
+    )

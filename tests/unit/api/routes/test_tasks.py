@@ -1,0 +1,267 @@
+"""`/tasks` as an operator uses it."""
+
+from typing import Any
+
+import httpx
+import pytest
+
+from service.files.waypoint_file import read_waypoints_csv
+from tests.support.http_robot import HttpRobot
+
+CSV = {"Content-Type": "text/csv"}
+LINE = "".join(f"{x},0,0\n" for x in range(11))
+WAYPOINTS = [{"x_m": float(x), "y_m": 0.0, "yaw_rad": 0.0} for x in range(11)]
+TASK_FIELDS = {
+    "id",
+    "status",
+    "controller",
+    "speed_mps",
+    "waypoint_count",
+    "length_m",
+    "start_index",
+    "target_index",
+    "progress",
+    "distance_m",
+    "cross_track_error_m",
+    "reason",
+    "created_at",
+    "ended_at",
+}
+
+
+async def post(robot: HttpRobot, csv: str = LINE, **query: object) -> httpx.Response:
+    return await robot.http.post("/tasks", content=csv, headers=CSV, params=query)
+
+
+# --- serving -------------------------------------------------------------------------------------
+
+
+async def test_a_task_of_json_is_served_and_shown(robot: HttpRobot) -> None:
+    answer = await robot.http.post("/tasks", json={"waypoints": WAYPOINTS})
+    task = answer.json()
+
+    assert answer.status_code == 201
+    assert answer.headers["location"] == "/tasks/t1"
+    assert set(task) == TASK_FIELDS
+    assert (task["status"], task["controller"], task["speed_mps"]) == (
+        "RUNNING",
+        "pure_pursuit",
+        2.8,
+    )
+    assert (task["waypoint_count"], task["length_m"], task["progress"]) == (11, 10.0, 0.0)
+
+
+async def test_a_task_of_csv_takes_its_options_from_the_query(robot: HttpRobot) -> None:
+    answer = await post(robot, controller="stanley", speed_mps=1.5, start_index=2)
+    task = answer.json()
+
+    assert answer.status_code == 201
+    assert (task["controller"], task["speed_mps"], task["start_index"]) == ("stanley", 1.5, 2)
+
+
+async def test_curl_needs_no_content_type_for_json(robot: HttpRobot) -> None:
+    body = (
+        b'{"waypoints": [{"x_m": 0, "y_m": 0, "yaw_rad": 0}, {"x_m": 5, "y_m": 0, "yaw_rad": 0}]}'
+    )
+    form = {"Content-Type": "application/x-www-form-urlencoded"}
+    answer = await robot.http.post("/tasks", content=body, headers=form)
+
+    assert answer.status_code == 201
+
+
+async def test_a_large_task_goes_through_the_worker_and_is_the_same(robot: HttpRobot) -> None:
+    csv = "".join(f"{x / 100:.2f},0,0\n" for x in range(3_000))
+    task = (await post(robot, csv)).json()
+
+    assert task["waypoint_count"] == 3_000
+    assert task["length_m"] == pytest.approx(29.99)
+
+
+async def test_a_compass_is_converted_when_told(robot: HttpRobot) -> None:
+    north = "0,0,0\n0,2,0\n0,4,0\n"
+    assert (await post(robot, north, heading="compass")).status_code == 201
+    items = (await robot.get("/tasks/t1/waypoints"))["items"]
+
+    assert items[0]["yaw_rad"] == pytest.approx(1.570796, abs=1e-6)
+
+
+@pytest.mark.parametrize(
+    ("csv", "line", "word"),
+    [
+        ("x,y,yaw\n0,0,0\n", 1, "header"),
+        ("0,0,0\n1,zero,0\n", 2, "zero"),
+        ("0,0,0\nnan,0,0\n2,0,0\n", 2, "nan"),
+        ("0,0,0\n1,0\n", 2, "column"),
+        ("", 1, ""),
+        ("0,0,0\n", 1, ""),
+    ],
+)
+async def test_a_refused_file_names_the_line_and_changes_nothing(
+    robot: HttpRobot, csv: str, line: int, word: str
+) -> None:
+    answer = await post(robot, csv)
+    problem = answer.json()
+
+    assert answer.status_code == 422
+    assert problem["code"] == "INVALID_WAYPOINTS"
+    assert problem["findings"][0]["line"] == line
+    assert word in (problem["findings"][0]["message"] + problem.get("hint", "")).lower()
+    assert (await robot.get("/tasks"))["items"] == []
+
+
+async def test_headings_in_degrees_are_refused_with_what_to_say(robot: HttpRobot) -> None:
+    csv = "".join(f"{x},0,90.0\n" for x in range(11)).replace("3,0,90.0", "3,0,88.5")
+    answer = await post(robot, csv)
+
+    assert answer.status_code == 422
+    assert "?heading=" in answer.json()["hint"]
+
+
+@pytest.mark.parametrize(
+    ("change", "pointer"),
+    [
+        ({"waypoints": WAYPOINTS[:1]}, "/waypoints"),
+        ({"waypoints": []}, "/waypoints"),
+        ({"waypoints": [WAYPOINTS[0], {**WAYPOINTS[1], "x_m": 2e6}]}, "/waypoints/1/x_m"),
+        ({"waypoints": [WAYPOINTS[0], {"x_m": 1.0}]}, "/waypoints/1/y_m"),
+        ({"waypoints": [WAYPOINTS[0]] * 3}, "/waypoints"),
+        ({"start_index": -1}, "/start_index"),
+        ({"start_index": 10}, "/start_index"),
+        ({"controller": "magic"}, "/controller"),
+        ({"speed_mps": 0}, "/speed_mps"),
+        ({"speed_mps": 12}, "/speed_mps"),
+        ({"speed_mps": "fast"}, "/speed_mps"),
+        ({"colour": "red"}, "/colour"),
+    ],
+)
+async def test_what_cannot_be_driven_is_refused_with_the_place_in_the_body(
+    robot: HttpRobot, change: dict[str, Any], pointer: str
+) -> None:
+    answer = await robot.http.post("/tasks", json={"waypoints": WAYPOINTS, **change})
+
+    assert answer.status_code == 422
+    assert answer.json()["errors"][0]["pointer"] == pointer
+    assert (await robot.get("/tasks"))["items"] == []
+
+
+async def test_a_path_that_begins_far_away_is_refused_with_a_hint(robot: HttpRobot) -> None:
+    answer = await post(robot, "50,0,0\n60,0,0\n")
+
+    assert (answer.status_code, answer.json()["code"]) == (422, "FAR_START")
+    assert "start_index" in answer.json()["hint"]
+
+
+async def test_options_in_the_query_are_not_silently_ignored_beside_json(
+    robot: HttpRobot,
+) -> None:
+    answer = await robot.http.post("/tasks?controller=stanley", json={"waypoints": WAYPOINTS})
+
+    assert answer.status_code == 422
+    assert "controller in the query is for a CSV" in answer.json()["detail"]
+
+
+async def test_a_body_without_end_is_refused(
+    robot: HttpRobot, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("api.routes.tasks.MAX_WAYPOINTS_BYTES", 100)
+    answer = await post(robot, LINE * 10)
+
+    assert answer.status_code == 413
+
+
+# --- looking and ending --------------------------------------------------------------------------
+
+
+async def test_a_task_shows_how_far_it_is_and_how_it_ended(robot: HttpRobot) -> None:
+    await post(robot)
+    await robot.pass_time(3)
+    current = await robot.get("/tasks/current")
+    assert 0.2 < current["progress"] < 0.9
+    assert current["progress"] == pytest.approx(current["distance_m"] / 10, abs=1e-5)
+    await robot.pass_time(8)
+    ended = await robot.get("/tasks/t1")
+
+    assert (ended["status"], ended["progress"]) == ("SUCCEEDED", 1.0)
+    assert ended["ended_at"] > ended["created_at"]
+
+
+async def test_without_a_task_there_is_no_current_one(robot: HttpRobot) -> None:
+    answer = await robot.http.get("/tasks/current")
+
+    assert (answer.status_code, answer.json()["code"]) == (404, "UNKNOWN_TASK")
+
+
+async def test_cancel_is_right_with_and_without_a_task(robot: HttpRobot) -> None:
+    await post(robot)
+    assert (await robot.http.delete("/tasks/current")).status_code == 204
+    assert (await robot.http.delete("/tasks/current")).status_code == 204
+
+    assert (await robot.get("/tasks/t1"))["status"] == "CANCELED"
+
+
+async def test_tasks_are_listed_the_newest_first(robot: HttpRobot) -> None:
+    await post(robot)
+    await post(robot)
+    items = (await robot.get("/tasks"))["items"]
+
+    assert [(item["id"], item["status"]) for item in items] == [
+        ("t2", "RUNNING"),
+        ("t1", "CANCELED"),
+    ]
+
+
+@pytest.mark.parametrize("path", ["/tasks/t9", "/tasks/t9/waypoints", "/tasks/current/waypoints"])
+async def test_a_task_that_is_not_there_is_404(robot: HttpRobot, path: str) -> None:
+    assert (await robot.http.get(path)).status_code == 404
+
+
+async def test_waypoints_come_back_as_they_were_sent(robot: HttpRobot) -> None:
+    await post(robot)
+    answer = await robot.get("/tasks/current/waypoints")
+
+    assert answer == {
+        "waypoint_count": 11,
+        "indices": list(range(11)),
+        "items": WAYPOINTS,
+    }
+
+
+async def test_waypoints_can_be_thinned_for_drawing(robot: HttpRobot) -> None:
+    await post(robot, "".join(f"{x / 10},0,0\n" for x in range(2_001)))
+    answer = await robot.get("/tasks/t1/waypoints?max_points=5")
+
+    assert (answer["waypoint_count"], answer["indices"]) == (2_001, [0, 500, 1000, 1500, 2000])
+
+
+# --- preview -------------------------------------------------------------------------------------
+
+
+async def test_a_preview_tells_of_the_path_and_starts_nothing(robot: HttpRobot) -> None:
+    answer = await robot.http.post("/tasks/preview", content=LINE, headers=CSV)
+    shown = answer.json()
+
+    assert answer.status_code == 200
+    assert (shown["waypoint_count"], shown["length_m"]) == (11, 10.0)
+    assert shown["start"] == {"distance_m": 0.0, "heading_error_rad": 0.0}
+    assert shown["steerable"] is True
+    assert shown["items"][1] == {"x_m": 1.0, "y_m": 0.0}
+    assert (await robot.get("/tasks"))["items"] == []
+
+
+async def test_a_preview_warns_of_a_bend_that_the_vehicle_cannot_steer(robot: HttpRobot) -> None:
+    corner = [(x / 2, 0.0) for x in range(11)] + [(5.0, y / 2) for y in range(1, 11)]
+    body = {"waypoints": [{"x_m": x, "y_m": y, "yaw_rad": 0.0} for x, y in corner]}
+    shown = (await robot.http.post("/tasks/preview", json=body)).json()
+
+    assert shown["steerable"] is False
+    assert "TOO_TIGHT" in [warning["code"] for warning in shown["warnings"]]
+
+
+async def test_a_preview_refuses_what_a_task_would(robot: HttpRobot) -> None:
+    answer = await robot.http.post("/tasks/preview", content="x,y,yaw\n", headers=CSV)
+
+    assert (answer.status_code, answer.json()["code"]) == (422, "INVALID_WAYPOINTS")
+
+
+def test_the_line_of_these_tests_is_a_waypoint_file() -> None:
+    assert read_waypoints_csv(LINE).shape == (11, 3)

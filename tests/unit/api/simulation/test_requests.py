@@ -1,0 +1,111 @@
+import asyncio
+from collections.abc import Callable, Iterator
+from typing import Any
+
+import pytest
+from starlette.responses import JSONResponse
+from starlette.types import Receive, Scope, Send
+
+from api.problems import Problem
+from api.schemas.simulation import AskedRequest
+from api.simulation.requests import Requests
+from domain.system_model import PartName
+from domain.timebase import seconds
+from service.virtual_robot import VirtualRobot
+from tests.support.scenarios import STRAIGHT, scenario, virtual_robot
+
+Ask = Callable[..., Problem | None]
+
+
+@pytest.fixture
+def robot() -> VirtualRobot:
+    robot = virtual_robot(scenario())
+    robot.advance_to(seconds(0.1))
+    return robot
+
+
+@pytest.fixture
+def ask(robot: VirtualRobot) -> Iterator[Ask]:
+    with asyncio.Runner() as runner:
+        requests = Requests(robot.supervisor, runner)
+
+        def ask(method: str, path: str, body: Any = None) -> Problem | None:  # noqa: ANN401
+            asked = {"method": method, "path": path, "body": body}
+            return requests.send(AskedRequest.model_validate(asked))
+
+        yield ask
+
+
+@pytest.mark.parametrize(
+    "path", ["/systems", "/nodes/drive_base/mode", "/system_state", "/tasks", "/vehicle", "/livez"]
+)
+def test_what_can_be_read_is_answered(path: str, ask: Ask) -> None:
+    assert ask("GET", path) is None
+
+
+def test_a_request_acts_on_the_robot_of_the_scenario(robot: VirtualRobot, ask: Ask) -> None:
+    assert ask("PUT", "/emergency_stop", {"engaged": True, "reason": "test"}) is None
+
+    assert "ESTOP" in robot.supervisor.core.system_state().errors
+
+
+def test_work_of_the_worker_is_done_at_once(ask: Ask) -> None:
+    waypoints = [STRAIGHT[0], {**STRAIGHT[0], "x_m": 1.0}] + STRAIGHT[2:] * 30
+
+    assert ask("POST", "/tasks/preview", {"waypoints": waypoints}) is None
+
+
+def test_who_waits_for_a_change_is_answered_while_it_is_still_running(
+    robot: VirtualRobot, ask: Ask
+) -> None:
+    assert ask("POST", "/nodes/drive_base/mode?wait=60", {"mode": "FAST"}) is None
+
+    change = next(iter(robot.supervisor.core.changes()))
+    assert change.status == "running"
+    assert change.part == PartName("drive_base")
+
+
+@pytest.mark.parametrize(
+    ("method", "path", "body", "status"),
+    [
+        ("GET", "/nowhere", None, 404),
+        ("PUT", "/holds/error", {"reason": "mine"}, 409),
+        ("POST", "/signals/battery_level", {"value": 7}, 422),
+        ("POST", "/signals/battery_level", {"value": float("nan")}, 422),
+        ("PATCH", "/vehicle", None, 405),
+        ("GET", "/\n", None, 400),
+        ("GET", "//elsewhere/vehicle", None, 404),
+    ],
+)
+def test_a_refusal_is_the_document_of_the_interface(
+    method: str, path: str, body: object, status: int, ask: Ask
+) -> None:
+    problem = ask(method, path, body)
+
+    assert problem is not None
+    assert problem.status == status
+
+
+def test_a_failure_that_is_no_problem_document_is_told_as_it_is(
+    robot: VirtualRobot, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    async def fail(scope: Scope, receive: Receive, send: Send) -> None:
+        await JSONResponse({"id": "c1", "status": "failed"}, 409)(scope, receive, send)
+
+    monkeypatch.setattr("api.app.create_app", lambda *_, **__: fail)
+    asked = AskedRequest(method="POST", path="/nodes/drive_base/mode?wait=1")
+
+    with asyncio.Runner() as runner:
+        problem = Requests(robot.supervisor, runner).send(asked)
+
+    assert problem is not None
+    assert (problem.status, problem.instance) == (409, "/nodes/drive_base/mode?wait=1")
+    assert problem.detail == 'answered: {"id":"c1","status":"failed"}'
+
+
+def test_a_simulation_begins_no_other_one(ask: Ask) -> None:
+    problem = ask("POST", "/simulations", {"until_s": 1})
+
+    assert problem is not None
+    assert problem.status == 409
+    assert "begins no other one" in problem.detail

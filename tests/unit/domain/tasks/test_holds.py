@@ -1,0 +1,51 @@
+import pytest
+
+from domain.errors import ReservedHoldError, TooManyHoldsError
+from domain.tasks.holds import MAX_HOLDS, Holds
+
+
+def test_there_is_none_at_first() -> None:
+    holds = Holds()
+
+    assert not holds
+    assert holds.reason == ""
+
+
+def test_each_owner_has_one_with_reason_and_time() -> None:
+    holds = Holds()
+    assert holds.set("operator", "lunch", "http:1", 7)
+    hold = holds.views["operator"]
+
+    assert (hold.owner, hold.reason, hold.by, hold.since) == ("operator", "lunch", "http:1", 7)
+
+
+def test_the_reason_is_that_of_all_in_order_and_a_nameless_one_is_told_by_its_owner() -> None:
+    holds = Holds()
+    holds.set("gate", "closed", "", 1)
+    holds.set("operator", "", "", 2)
+
+    assert holds.reason == "closed; operator"
+
+
+def test_releasing_what_is_not_held_changes_nothing() -> None:
+    holds = Holds()
+    holds.set("gate", "closed", "", 1)
+
+    assert not holds.release("operator")
+    assert holds
+
+
+@pytest.mark.parametrize("owner", ["error", "vehicle"])
+def test_the_names_of_pilothouse_are_reserved(owner: str) -> None:
+    with pytest.raises(ReservedHoldError, match=owner):
+        Holds().check(owner)
+
+
+def test_one_too_many_is_refused_and_one_that_is_there_is_not() -> None:
+    holds = Holds()
+    for number in range(MAX_HOLDS):
+        holds.set(f"o{number}", "", "", 0)
+    holds.check_room("o0")
+
+    with pytest.raises(TooManyHoldsError):
+        holds.check_room("another")

@@ -1,0 +1,55 @@
+/** <ph-hold-list>: what keeps the vehicle from driving, and a button where a person may end it.
+ *
+ * Dispatches `ph-release` with the owner.
+ */
+
+import { el, renderOnce, setAttribute, setText } from "/web/js/dom.js";
+import { wholeSeconds } from "/web/js/words.js";
+
+// Pilothouse sets these itself, and clears them when what they stand for is over.
+const RESERVED = { error: "ends with the error", vehicle: "ends with the next pose" };
+
+class HoldList extends HTMLElement {
+  connectedCallback() {
+    if (this.list) return;
+    this.list = el("ul", { class: "holds", "aria-label": "Holds" });
+    this.append(el("h3", {}, "Held by"), this.list);
+  }
+
+  show({ holds, enabled, serverNow }) {
+    setAttribute(this, "hidden", holds.length === 0);
+    renderOnce(this.list, JSON.stringify(holds), () => holds.map((hold) => this.#line(hold)));
+    for (const line of this.list.children) {
+      setText(line.since, `for ${wholeSeconds(serverNow - Date.parse(line.hold.since_at))}`);
+      if (line.release) setAttribute(line.release, "disabled", !enabled);
+    }
+  }
+
+  #line(hold) {
+    const { owner, reason, by } = hold;
+    const since = el("span", { class: "quiet" });
+    const ask = () =>
+      this.dispatchEvent(new CustomEvent("ph-release", { bubbles: true, detail: owner }));
+    const name = `Release the hold ${owner}`;
+    const release =
+      owner in RESERVED
+        ? null
+        : el("button", { type: "button", "aria-label": name, onclick: ask }, "Release");
+    const whose = by && by !== owner ? `, by ${by}` : "";
+    const line = el(
+      "li",
+      {},
+      el(
+        "div",
+        {},
+        el("strong", {}, owner),
+        el("span", {}, reason ? `: ${reason}` : ""),
+        el("p", { class: "quiet" }, since, whose, RESERVED[owner] ? `, ${RESERVED[owner]}` : ""),
+      ),
+      release,
+    );
+    return Object.assign(line, { hold, since, release });
+  }
+}
+
+customElements.define("ph-hold-list", HoldList);

@@ -1,0 +1,243 @@
+/** <ph-task-form>: a new task from a CSV of waypoints: choose or drop it, see it, start it.
+ *
+ * Dispatches `ph-file` when there is one, and `ph-preview` with what the server says of it, or with
+ * null when that is over.
+ */
+
+import { ProblemError, request, requestText } from "/web/js/api.js";
+import { el, renderOnce, setAttribute, setText } from "/web/js/dom.js";
+import { problemLines } from "/web/js/problem.js";
+import { CONTROLLERS, previewLines } from "/web/js/task_words.js";
+
+const UPLOAD_MS = 30_000;
+// More than the largest track there may be; a film dropped by mistake is not even read.
+const MOST_BYTES = 32 * 2 ** 20;
+const LINE_SHOWN = 60;
+const HEADINGS = {
+  rad: "radians",
+  deg: "degrees",
+  compass: "compass degrees (clockwise from north)",
+};
+
+class TaskForm extends HTMLElement {
+  #file = null;
+  #preview = null;
+  #problem = null;
+  #tracks = [];
+  #asked = 0;
+  #busy = false;
+
+  connectedCallback() {
+    this.controller = select(CONTROLLERS, () => this.#look());
+    this.heading = select(HEADINGS, () => this.#look());
+    this.speed = el("input", { type: "number", min: 0.1, max: 11.2, step: 0.1, value: 2.8 });
+    this.speed.addEventListener("change", () => this.#look());
+    this.headingField = field("Headings in", this.heading);
+    this.example = el("button", { type: "button", class: "primary", onclick: () => this.#drive() });
+    this.start = el("button", { type: "button", class: "primary", onclick: () => this.#start() });
+    this.away = el("button", { type: "button", onclick: () => this.#discard() }, "Discard");
+    this.found = el("div", { class: "preview", hidden: true });
+    this.refused = el("div", { class: "problem", role: "alert", hidden: true });
+    const [controller, speed] = [
+      field("Controller", this.controller),
+      field("Speed, m/s", this.speed),
+    ];
+    this.fields = el(
+      "fieldset",
+      {},
+      this.example,
+      this.#zone(),
+      el("div", { class: "fields" }, controller, speed),
+      this.headingField,
+      this.refused,
+      this.found,
+      el("div", { class: "buttons" }, this.start, this.away),
+    );
+    this.append(this.fields);
+    this.#takeDrops();
+  }
+
+  set tracks(items) {
+    this.#tracks = items;
+  }
+
+  show({ task, vehicle, enabled }) {
+    setAttribute(this.fields, "disabled", !enabled);
+    for (const button of [this.start, this.example]) setAttribute(button, "disabled", this.#busy);
+    if (vehicle?.limits) setAttribute(this.speed, "max", vehicle.limits.max_speed_mps);
+    const track = this.#track();
+    setAttribute(this.example, "hidden", !track || task !== null || this.#file !== null);
+    setText(this.example, `Drive the example ${track?.name ?? ""}`);
+    const asksHeading = /heading/.test(this.#problem?.hint ?? "") || this.heading.value !== "rad";
+    setAttribute(this.headingField, "hidden", !asksHeading);
+    setAttribute(this.start, "hidden", this.#preview === null);
+    setAttribute(this.away, "hidden", this.#file === null);
+    setText(this.start, task ? `Replace task ${task.id}` : "Start");
+    setAttribute(this.refused, "hidden", this.#problem === null);
+    renderOnce(this.refused, this.#problem, () => this.#refusal());
+    setAttribute(this.found, "hidden", this.#preview === null);
+    renderOnce(this.found, this.#preview, () => this.#findings());
+  }
+
+  #zone() {
+    this.choose = el("input", {
+      type: "file",
+      accept: ".csv,text/csv",
+      class: "visually-hidden",
+      "aria-label": "Choose a CSV",
+      onchange: () => this.#chosen(),
+    });
+    return el(
+      "label",
+      { class: "drop" },
+      this.choose,
+      el("span", { class: "as-button" }, "Choose a CSV"),
+      el("span", { class: "quiet" }, "or drop one here or on the map: x, y in m and yaw in rad"),
+    );
+  }
+
+  #track() {
+    return this.#tracks.find(({ name }) => name === "loop") ?? this.#tracks[0] ?? null;
+  }
+
+  /** A file dropped beside the zone would else take the place of the page. */
+  #takeDrops() {
+    const carriesFile = ({ dataTransfer }) => dataTransfer?.types.includes("Files");
+    document.addEventListener("dragover", (event) => {
+      if (!carriesFile(event)) return;
+      event.preventDefault();
+      setAttribute(document.body, "data-dragging", true);
+    });
+    document.addEventListener("dragleave", ({ relatedTarget }) => {
+      if (relatedTarget === null) setAttribute(document.body, "data-dragging", false);
+    });
+    document.addEventListener("drop", (event) => {
+      setAttribute(document.body, "data-dragging", false);
+      if (!carriesFile(event)) return;
+      event.preventDefault();
+      if (!this.fields.disabled) this.#take(event.dataTransfer.files[0]);
+    });
+  }
+
+  #chosen() {
+    const [file] = this.choose.files;
+    if (file) this.#take(file);
+    // The same file, mended, can be chosen again.
+    this.choose.value = "";
+  }
+
+  async #take(file) {
+    this.#discard();
+    this.heading.value = "rad";
+    const taken = { name: file.name, text: null };
+    this.#file = taken;
+    this.dispatchEvent(new CustomEvent("ph-file", { bubbles: true }));
+    if (file.size > MOST_BYTES) return this.#refuse(`${file.name} is too large for a track.`);
+    try {
+      taken.text = await file.text();
+    } catch {
+      // A folder, or a file that is gone by now.
+      return this.#refuse(`${file.name} cannot be read.`);
+    }
+    if (this.#file === taken) this.#look();
+  }
+
+  /** Ask what the server thinks of the file; of several answers the one asked for last counts. */
+  async #look() {
+    if (!this.#file || this.#file.text === null) return;
+    const asked = ++this.#asked;
+    const { answer, problem } = await this.#work(() =>
+      this.#post("/tasks/preview", this.#file.text),
+    );
+    if (asked !== this.#asked) return;
+    this.#problem = problem;
+    this.#show(answer);
+  }
+
+  async #start() {
+    const { answer, problem } = await this.#work(() => this.#post("/tasks", this.#file.text));
+    if (answer) this.#discard();
+    this.#problem = problem;
+  }
+
+  async #drive() {
+    const path = `/examples/tracks/${encodeURIComponent(this.#track().name)}`;
+    const drive = async () => this.#post("/tasks", await requestText(path));
+    this.#problem = (await this.#work(drive)).problem;
+  }
+
+  #discard() {
+    this.#asked += 1;
+    this.#file = null;
+    this.#problem = null;
+    this.#show(null);
+  }
+
+  #show(preview) {
+    this.#preview = preview;
+    this.dispatchEvent(new CustomEvent("ph-preview", { bubbles: true, detail: preview }));
+  }
+
+  #refuse(detail) {
+    this.#problem = { title: "Refused", detail };
+    this.#show(null);
+  }
+
+  #post(path, text) {
+    const query = new URLSearchParams({
+      controller: this.controller.value,
+      speed_mps: this.speed.value,
+      heading: this.heading.value,
+    });
+    return request("POST", `${path}?${query}`, text, { type: "text/csv", timeoutMs: UPLOAD_MS });
+  }
+
+  /** Return the answer or the problem; meanwhile nothing else can be asked for. */
+  async #work(act) {
+    this.#busy = true;
+    this.start.disabled = this.example.disabled = true;
+    try {
+      return { answer: await act(), problem: null };
+    } catch (error) {
+      if (!(error instanceof ProblemError)) throw error;
+      return { answer: null, problem: error.problem };
+    } finally {
+      this.#busy = false;
+    }
+  }
+
+  #refusal() {
+    if (this.#problem === null) return [];
+    const { detail, findings = [] } = this.#problem;
+    const lines = (this.#file?.text ?? "").split("\n");
+    const items = findings.map(({ line, message }) => {
+      const text = (lines[line - 1] ?? "").trim().slice(0, LINE_SHOWN);
+      const said = detail?.includes(message) ? "" : `: ${message}`;
+      return el("li", {}, `Line ${line}${said}`, text ? el("code", {}, text) : null);
+    });
+    return [...problemLines(this.#problem), el("ul", { class: "findings" }, ...items)];
+  }
+
+  #findings() {
+    if (this.#preview === null) return [];
+    const lines = previewLines(this.#preview, this.speed.value);
+    const warnings = this.#preview.warnings.map(({ message }) =>
+      el("li", { class: "warning" }, `⚠ ${message}`),
+    );
+    return [
+      el("h3", {}, `Preview of ${this.#file.name}`),
+      el("ul", {}, ...lines.map((line) => el("li", {}, line)), ...warnings),
+    ];
+  }
+}
+
+function field(label, input) {
+  return el("label", { class: "field" }, el("span", { class: "quiet" }, label), input);
+}
+
+function select(options, act) {
+  const items = Object.entries(options).map(([value, text]) => el("option", { value }, text));
+  return el("select", { onchange: act }, ...items);
+}
+
+customElements.define("ph-task-form", TaskForm);

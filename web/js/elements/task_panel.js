@@ -1,0 +1,120 @@
+/** <ph-task-panel>: the current task and what can be asked of it, or how the last one ended.
+ *
+ * The form for a new task is folded away while there is one.
+ */
+
+import { request } from "/web/js/api.js";
+import { el, renderOnce, setAttribute, setText } from "/web/js/dom.js";
+import { problemLines } from "/web/js/problem.js";
+import * as words from "/web/js/task_words.js";
+import { timeOfDay } from "/web/js/words.js";
+
+const OPERATOR = "operator";
+
+class TaskPanel extends HTMLElement {
+  connectedCallback() {
+    this.status = el("strong", { class: "task-status" });
+    this.name = el("span", { class: "quiet" });
+    this.bar = el("progress", { max: 1, "aria-label": "Progress" });
+    this.way = el("p", { class: "task-way" });
+    this.point = el("p", { class: "quiet" });
+    this.facts = el("p", { class: "quiet" });
+    this.reason = el("p", { class: "note" });
+    this.pause = el("button", { type: "button", onclick: () => this.#pause() }, "Pause");
+    this.resume = el(
+      "button",
+      { type: "button", onclick: () => this.#release(OPERATOR) },
+      "Resume",
+    );
+    this.cancel = el("ph-hold-button", {
+      label: "Cancel (hold)",
+      "onph-held": () => this.#ask("DELETE", "/tasks/current"),
+    });
+    this.current = el(
+      "div",
+      { hidden: true },
+      el("div", { class: "panel-head" }, this.status, this.name),
+      this.bar,
+      this.way,
+      this.point,
+      this.facts,
+      this.reason,
+      el("div", { class: "buttons task-buttons" }, this.pause, this.resume, this.cancel),
+    );
+    this.last = el("p", { class: "task-end", role: "status" });
+    this.problem = el("div", { class: "problem", role: "alert", hidden: true });
+    this.holds = el("ph-hold-list", { "onph-release": ({ detail }) => this.#release(detail) });
+    this.form = el("ph-task-form");
+    this.fold = el("details", { class: "new-task" }, el("summary", {}, "New task"), this.form);
+    this.append(this.current, this.last, this.problem, this.holds, this.fold);
+    this.addEventListener("ph-file", () => (this.fold.open = true));
+  }
+
+  /** The tracks that come with the service, or none. */
+  set tracks(items) {
+    this.form.tracks = items;
+  }
+
+  update({ state, contact, serverNow }) {
+    const { task, lastTask, holds, vehicle } = state;
+    const enabled = contact.level !== "lost";
+    setAttribute(this.current, "hidden", task === null);
+    if (task) this.#show(state, enabled);
+    setText(this.last, lastTask && !task ? words.endWords(lastTask) : "");
+    setAttribute(this.last, "data-status", lastTask?.status);
+    this.holds.show({ holds, enabled, serverNow });
+    this.#foldForm(task);
+    this.form.show({ task, vehicle, enabled });
+  }
+
+  #show({ task, holds, vehicle, at }, enabled) {
+    const { id, status, controller, progress, distance_m, length_m } = task;
+    setText(this.status, words.TASK_STATUS[status]);
+    const then = enabled ? "" : `, as of ${timeOfDay(at)}`;
+    setText(this.name, `task ${id}, ${words.CONTROLLERS[controller] ?? controller}${then}`);
+    this.bar.value = progress;
+    const of = `${words.metres(distance_m)} of ${words.metres(length_m)}`;
+    setText(this.way, `${words.percent(progress)}, ${of}`);
+    setText(this.point, words.waypointWords(task).replace("w", "W"));
+    setText(this.facts, words.driveWords(task, vehicle));
+    // The list of holds says the same at more length, once it is there.
+    setText(this.reason, holds.length === 0 ? (task.reason ?? "") : "");
+    const isHeld = holds.some(({ owner }) => owner === OPERATOR);
+    setAttribute(this.pause, "hidden", isHeld);
+    setAttribute(this.resume, "hidden", !isHeld);
+    for (const button of [this.pause, this.resume]) setAttribute(button, "disabled", !enabled);
+    this.cancel.disabled = !enabled;
+  }
+
+  /** Folded when a task begins and unfolded when it is over; in between as a person likes. */
+  #foldForm(task) {
+    const id = task?.id ?? null;
+    if (this.shown === id) return;
+    this.shown = id;
+    this.fold.open = id === null;
+    renderOnce(this.problem, "", () => []);
+    setAttribute(this.problem, "hidden", true);
+  }
+
+  #pause() {
+    this.#ask("PUT", `/holds/${OPERATOR}`, { reason: "operator (page)" });
+  }
+
+  #release(owner) {
+    this.#ask("DELETE", `/holds/${encodeURIComponent(owner)}`);
+  }
+
+  async #ask(method, path, body) {
+    let problem = null;
+    try {
+      await request(method, path, body);
+    } catch (error) {
+      ({ problem } = error);
+    }
+    renderOnce(this.problem, JSON.stringify(problem), () => (problem ? problemLines(problem) : []));
+    setAttribute(this.problem, "hidden", problem === null);
+    this.dispatchEvent(new CustomEvent("ph-holds-changed", { bubbles: true }));
+  }
+}
+
+customElements.define("ph-task-panel", TaskPanel);

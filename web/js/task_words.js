@@ -1,0 +1,130 @@
+/** What is said of tasks, holds and the vehicle: pure functions from facts to text. */
+
+import { duration, timeOfDay } from "/web/js/words.js";
+
+// Of a vehicle at rest frames tell once a second only, so a pose of a second is not old yet.
+const OLD_POSE_MS = 1500;
+
+export const CONTROLLERS = { pure_pursuit: "Pure Pursuit", stanley: "Stanley" };
+
+export const TASK_STATUS = {
+  RUNNING: "Running",
+  PAUSING: "Stopping",
+  PAUSED: "Paused",
+  SUCCEEDED: "Succeeded",
+  CANCELED: "Canceled",
+  ABORTED: "Aborted",
+};
+
+/** "412 m"; with decimals where it is short. */
+export function metres(value) {
+  return `${value.toFixed(Math.abs(value) < 10 ? 1 : 0)} m`;
+}
+
+/** Whole percent; 100 only where all is done. */
+export function percent(share) {
+  return `${Math.floor(share * 100 + 1e-9)} %`;
+}
+
+/** "waypoint 41 of 66", counted from 1. */
+export function waypointWords({ target_index, waypoint_count }) {
+  return `waypoint ${Math.min(target_index + 1, waypoint_count)} of ${waypoint_count}`;
+}
+
+/** What the robot does with its task, for the sentence at the top. */
+export function taskWords(task) {
+  const { id, status, progress, reason } = task;
+  const why = reason ? `: ${reason}` : "";
+  if (status === "PAUSING") return `task ${id} is stopping${why}`;
+  if (status === "PAUSED") return `task ${id} at ${percent(progress)} is paused${why}`;
+  return `task ${id} ${percent(progress)}, ${waypointWords(task)}`;
+}
+
+/** How a task ended; one whose end is not told yet is over all the same. */
+export function endWords({ id, status, reason, created_at, ended_at, distance_m, length_m }) {
+  if (!ended_at) return `Task ${id} is over.`;
+  const took = duration(Date.parse(ended_at) - Date.parse(created_at));
+  const way = `${metres(distance_m)} of ${metres(length_m)} in ${took}`;
+  const how = TASK_STATUS[status].toLowerCase();
+  const why = reason && reason !== how ? `: ${reason}` : "";
+  return `Task ${id} ${how} at ${timeOfDay(ended_at)}${why} (${way})`;
+}
+
+/** "2.8 of 2.8 m/s, 0.03 m left of the path": what there is, and what was asked for. */
+export function driveWords(task, vehicle) {
+  const now = typeof vehicle?.speed_mps === "number" ? vehicle.speed_mps.toFixed(1) : "?";
+  const speed = `${now} of ${task.speed_mps.toFixed(1)} m/s`.replace("-", "−");
+  const error = task.cross_track_error_m;
+  return typeof error === "number" ? `${speed}, ${besidePath(error)}` : speed;
+}
+
+export function speedWords(speed_mps) {
+  return typeof speed_mps === "number" ? `${speed_mps.toFixed(1)} m/s`.replace("-", "−") : "?";
+}
+
+/** "0.03 m left": on which side of the path the vehicle is. */
+export function offPath(error_m) {
+  if (typeof error_m !== "number") return "–";
+  const far = Math.abs(error_m).toFixed(2);
+  if (far === "0.00") return "0.00 m";
+  return `${far} m ${error_m > 0 ? "left" : "right"}`;
+}
+
+function besidePath(error_m) {
+  return Math.abs(error_m) < 0.005 ? "on the path" : `${offPath(error_m)} of the path`;
+}
+
+/** How old a pose is that is not of now; empty for one of now, or for none. */
+export function poseAge(vehicle, contact, now) {
+  if (!vehicle?.at || !vehicle.pose) return "";
+  if (contact.level === "lost") return `pose of ${timeOfDay(vehicle.at)}`;
+  const age = now - Date.parse(vehicle.at);
+  return age > OLD_POSE_MS ? `pose ${duration(age)} old` : "";
+}
+
+/** The map in a sentence or two, for those who do not see it. */
+export function mapSentence({ vehicle, task, lastTask }, age) {
+  const said = [];
+  if (vehicle?.pose) {
+    const { x_m, y_m, yaw_rad } = vehicle.pose;
+    const place = `x ${x_m.toFixed(1)} m, y ${y_m.toFixed(1)} m`;
+    const heading = `heading ${Math.round((yaw_rad * 180) / Math.PI)} degrees`;
+    said.push(`Vehicle at ${place}, ${heading}, ${speedWords(vehicle.speed_mps)}.`);
+  } else said.push("Where the vehicle is, is not known.");
+  if (age) said.push(`This is old: ${age}.`);
+  if (task) {
+    const error = task.cross_track_error_m;
+    const beside = typeof error === "number" ? `, ${besidePath(error)}` : "";
+    said.push(`Task ${task.id}, ${percent(task.progress)} done, ${waypointWords(task)}${beside}.`);
+  } else if (lastTask) said.push(`${endWords(lastTask)}.`);
+  return said.join(" ");
+}
+
+/** What part of the world the map shows. */
+export function viewSentence({ x_m, y_m, scale, width, height }) {
+  const size = `${metres(width / scale)} by ${metres(height / scale)}`;
+  return `The map shows ${size} around x ${metres(x_m)}, y ${metres(y_m)}.`;
+}
+
+/** The facts of a preview, each a line. */
+export function previewLines(preview, speed_mps) {
+  const { waypoint_count, length_m, spacing, min_radius_m, vehicle_min_radius_m } = preview;
+  const lines = [
+    `${metres(length_m)}, ${waypoint_count} waypoints, ${spacing.median_m.toFixed(2)} m apart`,
+  ];
+  if (typeof preview.duration_s === "number")
+    lines.push(`About ${duration(preview.duration_s * 1000)} at ${speed_mps} m/s`);
+  const limit = `the vehicle turns in ${metres(vehicle_min_radius_m)}`;
+  lines.push(
+    typeof min_radius_m === "number"
+      ? `Tightest radius ${metres(min_radius_m)}; ${limit}`
+      : "Straight all the way",
+  );
+  if (preview.start) {
+    const turn = Math.round((Math.abs(preview.start.heading_error_rad) * 180) / Math.PI);
+    lines.push(
+      `Begins ${metres(preview.start.distance_m)} from the vehicle, ${turn}° off its heading`,
+    );
+  }
+  return lines;
+}
