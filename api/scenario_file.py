@@ -13,7 +13,7 @@ from typing import Any
 from pydantic import ValidationError
 
 from api.bodies import InvalidBodyError
-from api.schemas.simulation import SimulationBody
+from api.schemas.simulation import SimulationBody, place_in_body
 from api.simulation.posted import robot_for
 from domain.errors import InvalidModelError, PilothouseError
 from domain.findings import Finding
@@ -100,8 +100,8 @@ def load_scenario(
         robot: File with other settings than those of the scenario.
 
     Raises:
-        UnreadableFileError: There is no such file, or it is not a text.
-        InvalidScenarioError: Something in it is wrong.
+        UnreadableFileError: One of these files is not there, or is not a text.
+        InvalidScenarioError: Something in the scenario, or in what it names, is wrong.
     """
     path = _STANDARD_INPUT if name == "-" else Path(name)
     folder = Path() if name == "-" else path.parent
@@ -113,12 +113,12 @@ def load_scenario(
     robot_file = _named_file(source, data, "robot", folder, robot)
     source.raise_if_faulty()
     if model_file is not None:
-        data["model"] = _text_for(source, "model_file", model_file)
+        data["model"] = _text_for(source, "model", model_file, model)
     settings = source
     if robot_file is not None:
-        text = _text_for(source, "robot_file", robot_file)
+        text = _text_for(source, "robot", robot_file, robot)
         settings, data["robot"] = _read_yaml(str(robot_file), text)
-        if "start_task" in (data["robot"] or ()):
+        if isinstance(data["robot"], dict) and "start_task" in data["robot"]:
             message = "a simulation drives no start task: say it as a step of the scenario"
             settings.complain(("start_task",), message)
             settings.raise_if_faulty()
@@ -200,17 +200,19 @@ def _named_file(
     return None if named is None else folder / named
 
 
-def _text_for(source: _Source, key: str, path: Path) -> str:
-    """Return the text of a file that is named at `key`, or by an option.
+def _text_for(source: _Source, what: str, path: Path, given: Path | None) -> str:
+    """Return the text of a file that the scenario names, or that was given instead.
 
     Raises:
-        InvalidScenarioError: It cannot be read.
+        UnreadableFileError: The one that was given cannot be read.
+        InvalidScenarioError: The other one cannot be.
     """
     try:
         return read_text_file(path)
     except UnreadableFileError as error:
-        source.complain((key,), error.message, error.code)
-        source.raise_if_faulty()
+        if given is None:
+            source.complain((f"{what}_file",), error.message, error.code)
+            source.raise_if_faulty()
         raise
 
 
@@ -261,8 +263,10 @@ def _validated(source: _Source, settings: _Source, data: dict[str, Any]) -> Simu
         body = SimulationBody.model_validate(data)
     except ValidationError as error:
         faults = error.errors(include_url=False, include_input=False)
-        _blame(source, settings, ((_keys(fault["loc"]), _words(fault)) for fault in faults))
+        _blame(source, settings, ((place_in_body(fault["loc"]), _words(fault)) for fault in faults))
         raise
+    if body.begin is not None:
+        source.complain(("from",), "there is no live robot here; leave it out")
     late = [index for index, step in enumerate(body.steps) if step.t_s > body.until_s]
     for index in late:
         message = f"this is after the end, until_s {body.until_s:g}"
@@ -323,12 +327,6 @@ def _blame(source: _Source, settings: _Source, faults: Iterator[tuple[Keys, str]
             for finding in file.findings
         ]
     )
-
-
-def _keys(place: Keys) -> Keys:
-    """Return the keys of a fault; pydantic adds to a step what kind of step it took it for."""
-    is_in_step = place[:1] == ("steps",) and len(place) > 2
-    return (*place[:2], *place[3:]) if is_in_step else place
 
 
 def _words(fault: Any) -> str:  # noqa: ANN401  # of pydantic

@@ -26,6 +26,7 @@ from api.schemas.tasks import (
 )
 from domain.errors import InvalidValueError, UnknownControllerError, UnknownTaskError
 from domain.messages import CancelTaskRequest, TaskRequest
+from domain.tracking.trackers import TRACKERS
 from service.files.waypoint_file import Heading
 from service.jobs import Jobs
 from service.supervisor import Supervisor
@@ -136,7 +137,8 @@ async def preview_task(
 async def list_tasks(supervisor: SupervisorDep) -> TasksJson:
     """List the tasks that are kept, the newest first."""
     tasks = supervisor.core.driving.tasks()
-    return TasksJson(items=[TaskJson.of(view, supervisor.clock) for view in tasks])
+    items = [TaskJson.of(view, supervisor.clock) for view in tasks]
+    return TasksJson(items=items, controllers=list(TRACKERS))
 
 
 @router.get("/current")

@@ -38,11 +38,8 @@ def _checked_depth(value: Any) -> Any:  # noqa: ANN401
         nested = [item for item in level if isinstance(item, dict | list)]
         if not nested:
             return value
-        level = [
-            inner
-            for item in nested
-            for inner in (item.values() if isinstance(item, dict) else item)
-        ]
+        inners = (item.values() if isinstance(item, dict) else item for item in nested)
+        level = [inner for items in inners for inner in items]
     raise ValueError(f"more than {MAX_DEPTH} objects and lists in each other")
 
 
@@ -194,6 +191,16 @@ Step = Annotated[
     | Annotated[ExpectStep, Tag("expect")],
     Discriminator(_kind_of),
 ]
+
+
+def place_in_body(location: tuple[int | str, ...]) -> tuple[int | str, ...]:
+    """Return the keys that lead to a fault of a scenario.
+
+    Args:
+        location: As pydantic tells it: to a step it adds what kind of step it took it for.
+    """
+    is_in_step = location[:1] == ("steps",) and len(location) > 2
+    return (*location[:2], *location[3:]) if is_in_step else location
 
 
 class SimulationBody(Body):

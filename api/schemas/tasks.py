@@ -6,6 +6,7 @@ from pydantic import Field
 
 from api.schemas.base import Body, Json, Timestamp, timestamp, timestamp_or_none
 from domain.snapshot import HoldView, TaskPhase, TaskView, VehicleView
+from domain.tracking.trackers import TRACKERS
 from domain.vehicle import DriveCommand, Point, Pose, VehicleLimits
 from service.clock import Clock
 
@@ -16,7 +17,9 @@ MAX_HOLD_REASON = 500
 DIGITS = 6
 """Of m, rad and m/s as they are shown: micrometres, without the noise of the last bits."""
 
-Controller = Annotated[str, Field(max_length=64, description="`pure_pursuit` or `stanley`")]
+Controller = Annotated[
+    str, Field(max_length=64, description=f"A path tracker: {', '.join(TRACKERS)}")
+]
 Number = Annotated[float, Field(allow_inf_nan=False)]
 
 
@@ -85,6 +88,7 @@ class TasksJson(Json):
     """Tasks, the newest first."""
 
     items: list[TaskJson]
+    controllers: list[str] = Field(description="The path trackers that a task may name")
 
 
 class WaypointJson(Json):

@@ -9,8 +9,10 @@ from datetime import UTC, datetime
 from types import MappingProxyType
 from typing import Any
 
-from api.bodies import InvalidBodyError, parse_body
-from api.schemas.simulation import SimulationBody
+from pydantic import ValidationError
+
+from api.bodies import InvalidBodyError, faults_of, parse_json
+from api.schemas.simulation import SimulationBody, place_in_body
 from api.simulation.simulation import Simulation
 from domain.errors import InvalidValueError
 from domain.onboard import Onboard
@@ -76,10 +78,19 @@ def simulate_posted(raw: bytes, model_text: str, live: LiveCopy | None) -> bytes
     Raises:
         PilothouseError: The body is invalid, or too much would happen.
     """
-    body = parse_body(SimulationBody, raw)
+    body = _read(raw)
     simulation = Simulation(body, robot_for(body, model_text, live))
     simulation.run()
     return simulation.as_json().encode()
+
+
+def _read(raw: bytes) -> SimulationBody:
+    try:
+        return SimulationBody.model_validate(parse_json(raw))
+    except ValidationError as error:
+        faults = error.errors(include_url=False)
+        placed = ({**fault, "loc": place_in_body(fault["loc"])} for fault in faults)
+        raise InvalidBodyError(faults_of(placed)) from error
 
 
 def robot_for(body: SimulationBody, model_text: str, live: LiveCopy | None) -> VirtualRobot:

@@ -10,6 +10,7 @@ from array import array
 from bisect import bisect_right
 from dataclasses import dataclass
 from math import atan2, copysign, hypot, inf, pi, sqrt
+from typing import TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
@@ -51,6 +52,10 @@ class Projection:
     """Where the path leads there."""
 
 
+_Array: TypeAlias = NDArray[np.float64]
+_State: TypeAlias = tuple[_Array, _Array, _Array, _Array, tuple[float, float]]
+
+
 class Path:
     """The line through waypoints; it never changes. Distances count from waypoint 0, in metres."""
 
@@ -81,14 +86,23 @@ class Path:
         recorded = np.concatenate(([0.0], np.cumsum(_lengths(np.diff(places, axis=0)))))
         self._distances = np.interp(recorded, recorded[kept], self._along)
         self._origin = (float(knots[0, 0]), float(knots[0, 1]))
+        self._take_numbers()
+
+    def _take_numbers(self) -> None:
+        """Hold what single numbers are read from, in the form in which that is quickest."""
         self._s = _numbers(self._along)
         self._x, self._y, self._ux, self._uy, self._sum_x, self._sum_y = map(
             _numbers, self._knots.T
         )
 
-    def __reduce__(self) -> tuple[type["Path"], tuple[NDArray[np.float64]]]:
-        # Only the waypoints are sent to another process: all else follows from them.
-        return Path, (self.waypoints,)
+    def __getstate__(self) -> _State:
+        # What took time to find is sent to another process, too: who receives it has none to spare.
+        return self.waypoints, self._along, self._knots, self._distances, self._origin
+
+    def __setstate__(self, state: _State) -> None:
+        self.waypoints, self._along, self._knots, self._distances, self._origin = state
+        self.waypoints.flags.writeable = False
+        self._take_numbers()
 
     @property
     def count(self) -> int:

@@ -95,22 +95,14 @@ def preview(
     start = None if pose is None else _start(path, pose)
     distances = np.hypot(*np.diff(path.waypoints[:, :2], axis=0).T)
     spacing = Spacing(float(distances.min()), float(np.median(distances)), float(distances.max()))
-    warnings = []
+    warnings = [*_spacing_warnings(distances), *_start_warnings(start)]
     if not steerable and radius is not None:
         message = (
             f"a bend of {radius:.1f} m radius; the vehicle needs {vehicle_radius:.1f} m, "
             "and will leave the path there"
         )
-        warnings.append(PathWarning("TOO_TIGHT", message, path.index_after(float(at[tightest]))))
-    if spacing.max_m > _SPARSE_M:
-        index = int(distances.argmax())
-        message = f"{spacing.max_m:.1f} m from one waypoint to the next: straight in between"
-        warnings.append(PathWarning("SPARSE", message, index))
-    standing = int((distances < _STANDING_M).sum())
-    if standing > _MANY_STANDING:
-        message = f"{standing} waypoints stand where the one before them does"
-        warnings.append(PathWarning("STANDS_STILL", message))
-    warnings += _start_warnings(start)
+        index = path.index_after(float(at[tightest]))
+        warnings.insert(0, PathWarning("TOO_TIGHT", message, index))
     return PathPreview(
         path.count,
         path.length_m,
@@ -129,6 +121,20 @@ def _start(path: Path, pose: Pose) -> StartDistance:
     distance = math.hypot(first.x_m - pose.x_m, first.y_m - pose.y_m)
     turned = math.remainder(pose.yaw_rad - path.heading_at(0.0), math.tau)
     return StartDistance(distance, turned)
+
+
+def _spacing_warnings(distances: NDArray[np.float64]) -> list[PathWarning]:
+    """Tell of waypoints that are far from each other, or not at all; distances in m, shape (n,)."""
+    warnings = []
+    widest = float(distances.max())
+    if widest > _SPARSE_M:
+        message = f"{widest:.1f} m from one waypoint to the next: straight in between"
+        warnings.append(PathWarning("SPARSE", message, int(distances.argmax())))
+    standing = int((distances < _STANDING_M).sum())
+    if standing > _MANY_STANDING:
+        message = f"{standing} waypoints stand where the one before them does"
+        warnings.append(PathWarning("STANDS_STILL", message))
+    return warnings
 
 
 def _start_warnings(start: StartDistance | None) -> list[PathWarning]:

@@ -1,13 +1,14 @@
 """What can be set about tasks and how they are driven, and the task to begin with."""
 
-from typing import Annotated, Literal, TypeAlias
+from typing import Annotated, TypeAlias
 
-from pydantic import Field
+from pydantic import AfterValidator, Field
 
 from domain.navigation import NavigationSettings
 from domain.paths.speed_profile import SpeedLimits
 from domain.tasks.settings import TaskSettings
 from domain.timebase import seconds
+from domain.tracking.trackers import TRACKERS
 from service.files.robot_settings import Seconds, SettingsBlock
 
 Positive: TypeAlias = Annotated[float, Field(gt=0, le=1_000, allow_inf_nan=False)]
@@ -56,12 +57,18 @@ class DrivingBlock(SettingsBlock):
         )
 
 
+def _known_controller(name: str) -> str:
+    if name not in TRACKERS:
+        raise ValueError(f"there is no path tracker {name!r}; there are {', '.join(TRACKERS)}")
+    return name
+
+
 class StartTaskBlock(SettingsBlock):
     """A task that is served when the service starts; it waits until nothing holds it."""
 
     file: str = Field(min_length=1, max_length=1_000)
     """CSV with `x,y,yaw` in m, m and rad; a relative path counts from the robot file."""
-    controller: Literal["pure_pursuit", "stanley"] = "pure_pursuit"
+    controller: Annotated[str, AfterValidator(_known_controller)] = "pure_pursuit"
     """What follows the path."""
     speed_mps: Positive = 2.8
     """Cruise speed, in m/s."""

@@ -110,6 +110,7 @@ function loadMock() {
 /** A service without examples answers 404, and there is no button then. */
 function loadTracks() {
   load(["/examples/tracks"], ([{ items }]) => (taskPanel.tracks = items));
+  load(["/tasks"], ([{ controllers }]) => (taskPanel.controllers = controllers));
 }
 
 function resync({ epoch }) {

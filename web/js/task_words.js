@@ -5,7 +5,10 @@ import { duration, timeOfDay } from "/web/js/words.js";
 // Of a vehicle at rest frames tell once a second only, so a pose of a second is not old yet.
 const OLD_POSE_MS = 1500;
 
-export const CONTROLLERS = { pure_pursuit: "Pure Pursuit", stanley: "Stanley" };
+/** "Pure Pursuit" for pure_pursuit. */
+export function controllerName(name) {
+  return name.replace(/(^|_)([a-z])/g, (_, before, letter) => (before && " ") + letter.toUpperCase());
+}
 
 export const TASK_STATUS = {
   RUNNING: "Running",

@@ -7,7 +7,7 @@
 import { ProblemError, request, requestText } from "/web/js/api.js";
 import { el, renderOnce, setAttribute, setText } from "/web/js/dom.js";
 import { problemLines } from "/web/js/problem.js";
-import { CONTROLLERS, previewLines } from "/web/js/task_words.js";
+import { controllerName, previewLines } from "/web/js/task_words.js";
 
 const UPLOAD_MS = 30_000;
 // More than the largest track there may be; a film dropped by mistake is not even read.
@@ -28,7 +28,7 @@ class TaskForm extends HTMLElement {
   #busy = false;
 
   connectedCallback() {
-    this.controller = select(CONTROLLERS, () => this.#look());
+    this.controller = select({}, () => this.#look());
     this.heading = select(HEADINGS, () => this.#look());
     this.speed = el("input", { type: "number", min: 0.1, max: 11.2, step: 0.1, value: 2.8 });
     this.speed.addEventListener("change", () => this.#look());
@@ -55,6 +55,13 @@ class TaskForm extends HTMLElement {
     );
     this.append(this.fields);
     this.#takeDrops();
+  }
+
+  set controllers(names) {
+    const chosen = this.controller.value;
+    const named = names.map((name) => [name, controllerName(name)]);
+    this.controller.replaceChildren(...options(Object.fromEntries(named)));
+    if (names.includes(chosen)) this.controller.value = chosen;
   }
 
   set tracks(items) {
@@ -235,9 +242,12 @@ function field(label, input) {
   return el("label", { class: "field" }, el("span", { class: "quiet" }, label), input);
 }
 
-function select(options, act) {
-  const items = Object.entries(options).map(([value, text]) => el("option", { value }, text));
-  return el("select", { onchange: act }, ...items);
+function select(texts, act) {
+  return el("select", { onchange: act }, ...options(texts));
+}
+
+function options(texts) {
+  return Object.entries(texts).map(([value, text]) => el("option", { value }, text));
 }
 
 customElements.define("ph-task-form", TaskForm);

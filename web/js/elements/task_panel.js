@@ -50,6 +50,11 @@ class TaskPanel extends HTMLElement {
     this.addEventListener("ph-file", () => (this.fold.open = true));
   }
 
+  /** The path trackers that a task may name. */
+  set controllers(names) {
+    this.form.controllers = names;
+  }
+
   /** The tracks that come with the service, or none. */
   set tracks(items) {
     this.form.tracks = items;
@@ -71,7 +76,7 @@ class TaskPanel extends HTMLElement {
     const { id, status, controller, progress, distance_m, length_m } = task;
     setText(this.status, words.TASK_STATUS[status]);
     const then = enabled ? "" : `, as of ${timeOfDay(at)}`;
-    setText(this.name, `task ${id}, ${words.CONTROLLERS[controller] ?? controller}${then}`);
+    setText(this.name, `task ${id}, ${words.controllerName(controller)}${then}`);
     this.bar.value = progress;
     const of = `${words.metres(distance_m)} of ${words.metres(length_m)}`;
     setText(this.way, `${words.percent(progress)}, ${of}`);
