@@ -75,6 +75,7 @@ class _RobotCollector(Collector):
             "part",
             ((str(name), 1.0) for name in islice(deviating, _MAX_PARTS)),
         )
+        yield from self._driving()
         now = self._supervisor.clock.now()
         yield _gauge(
             "pilothouse_signal_age_seconds",
@@ -86,6 +87,30 @@ class _RobotCollector(Collector):
                 if signal.received_at is not None
             ),
         )
+
+
+    def _driving(self) -> Iterator[Metric]:
+        driving = self._supervisor.core.driving
+        yield _gauge(
+            "pilothouse_hold_active",
+            "1 for each hold that keeps the task from running",
+            "owner",
+            ((owner, 1.0) for owner in driving.holds),
+        )
+        task = driving.current_task
+        if task is None:
+            return
+        yield GaugeMetricFamily(
+            "pilothouse_task_progress_ratio",
+            "Covered share of the current task's path",
+            value=task.progress,
+        )
+        if task.cross_track_error_m is not None:
+            yield GaugeMetricFamily(
+                "pilothouse_cross_track_error_meters",
+                "Distance from the path; positive: left of it",
+                value=task.cross_track_error_m,
+            )
 
 
 class _ServiceCollector(Collector):

@@ -8,9 +8,16 @@ from fastapi import FastAPI
 from prometheus_client.parser import text_string_to_metric_families
 
 from api.app import create_app
-from domain.messages import EmergencyStopRequest, ModeRequest, Reading
+from domain.messages import (
+    EmergencyStopRequest,
+    HoldRequest,
+    ModeRequest,
+    Reading,
+    TaskRequest,
+)
 from domain.system_model import PartName
 from service.supervisor import Supervisor
+from tests.support.driver import straight
 from tests.support.frames import event
 from tests.support.live_robot import make_supervisor, running
 from tests.support.manual_clock import ManualClock
@@ -168,3 +175,18 @@ async def test_a_service_asked_twice_counts_each_tick_once(
         await clock.advance(0.5)
 
     assert await metric(http, "pilothouse_publish_period_seconds_count") == 10
+
+
+async def test_a_task_is_told_by_progress_and_error_and_its_holds_by_owner(
+    http: httpx.AsyncClient, supervisor: Supervisor, clock: ManualClock
+) -> None:
+    async with running(supervisor):
+        assert await metric(http, "pilothouse_task_progress_ratio") is None
+        supervisor.submit(TaskRequest(straight(), 0, "stanley", 2.8))
+        await clock.advance(5)
+        supervisor.submit(HoldRequest("operator", "lunch"))
+
+        progress = await metric(http, "pilothouse_task_progress_ratio")
+        assert progress == pytest.approx(0.5, abs=0.1)
+        assert await metric(http, "pilothouse_cross_track_error_meters") == pytest.approx(0.0)
+        assert await metric(http, "pilothouse_hold_active", owner="operator") == 1.0
