@@ -25,60 +25,69 @@ _TRANSITIONS = ("configure", "activate", "deactivate", "cleanup", "shutdown")
 
 _EXAMPLES = """\
 examples:
-  pilothouse serve                              the built-in example robot, all simulated
-  pilothouse check robot.yaml                   is this model right?
-  pilothouse serve robot.yaml --port 9000       supervise it, with simulated nodes
-  pilothouse mode actuation PERFORMANCE         change a mode, and follow the steps
-  pilothouse state drive_base deactivate        take a part through a lifecycle transition
-  pilothouse task track.csv --preview           look at waypoints before they are driven
-  pilothouse task track.csv                     drive them, and follow how far it is
-  pilothouse simulate scenario.yaml             what would happen, and is that as expected?
+  pilothouse serve                        the built-in robot, all simulated
+  pilothouse check robot.yaml             is this model right?
+  pilothouse serve robot.yaml --port 9000 supervise it, with simulated nodes
+  pilothouse mode actuation PERFORMANCE   change a mode, and follow the steps
+  pilothouse state drive_base deactivate  take a part through a transition
+  pilothouse task track.csv --preview     look at waypoints before the drive
+  pilothouse task track.csv               drive them, and follow how far it is
+  pilothouse simulate scenario.yaml       does it go as expected?
 """
 _SERVE = """\
-Run the service until Ctrl-C or SIGTERM; the nodes are left as they are then.
+Run the service until Ctrl-C or SIGTERM; then the vehicle is stopped, and nodes are
+left as they are.
 
-It listens on this machine only. Another --host makes it reachable for everybody there, without a
-password: say --anonymous if that is what you want. A page asks by the name in its address, so a
-name that is not this machine's own must be told with --allowed-host.
+It listens on this machine only. Another --host makes it reachable for
+everybody there, without a password: say --anonymous if that is what you want.
+A page asks by the name in its address, so a name that is not this machine's
+own must be told with --allowed-host.
 """
 _CHECK = """\
-Check a model file: everything that is wrong, and what is odd, with line and column.
+Check a model file: all that is wrong, and what is odd, with line and column.
 
 exit code: 0 valid, perhaps with warnings; 1 invalid
 """
 _SIMULATE = """\
-Let a scenario happen in virtual time, by the code that supervises a real robot, and
-compare what is seen with what the scenario expects. Nothing runs for it, and nothing
-is changed.
+Let a scenario happen in virtual time, by the code that supervises a real
+robot, and compare what is seen with what the scenario expects. No service is
+needed, and nothing real is changed.
 
-A scenario is YAML or JSON: the body of POST /simulations. Besides, a file may name
-model_file, robot_file, and task: {file: track.csv}, with paths beside the scenario:
+A scenario is YAML or JSON: the body of POST /simulations. Besides, it may name
+model_file, robot_file and task: {file: track.csv}, beside the scenario.
 
-  title: The battery runs low
-  until_s: 3
+  title: The battery runs low on the way
+  until_s: 9
   robot: {signals: {stale_after_s: 0}}
   steps:
     - {t_s: 0, reading: {battery_level: 1.0}}
-    - {t_s: 1, reading: {battery_level: 0.4}}
-    - {t_s: 2, expect: {system_state: {state: ERROR, errors: [BATTERY_LOW]}}}
-    - {t_s: 2, task: {file: track.csv, controller: stanley, heading: deg}}
+    - {t_s: 1, task: {file: track.csv, controller: stanley, heading: deg}}
+    - {t_s: 4, reading: {battery_level: 0.4}}
+    - {t_s: 4, expect: {system_state: {state: ERROR, errors: [BATTERY_LOW]}}}
+    - {t_s: 9, expect: {vehicle: {speed_mps: 0}, events: {task.paused: 1}}}
 
-A step that is refused fails the scenario, unless it says `refused: true`.
+What is expected are members of a sample as far as they matter, last_task (also
+when it has ended), and events, counted by kind. A number may be {above: 1},
+{below: 1}, {at_least: 1, at_most: 2}; a state with its mode is active.FAST.
+A step that is refused fails the scenario, unless it says refused: true.
 
-exit code: 0 all is as expected; 1 something is not, or was refused; 2 invalid file
+exit code: 0 all is as expected; 1 something is not, or a step was refused;
+           2 invalid file
 """
 _TASK = """\
-Drive along the waypoints of a CSV, in place of the current task, and follow that to
-its end. A line is x,y,yaw in m, m and rad; --heading says if yaw is something else.
+Drive along the waypoints of a CSV, in place of the current task, and follow
+that to its end. A line is x,y,yaw in m, m and rad; --heading says if yaw is
+something else.
 
-While something holds the vehicle, as an error does, the task waits. Ctrl-C ends the
-following only: the task goes on.
+While something holds the vehicle, as an error does, the task waits. Ctrl-C
+ends the following only: the task goes on, and --cancel ends it.
 
 exit code: 0 succeeded, or as asked; 1 refused, canceled or aborted;
            2 unknown: no answer
 """
 _CHANGE = """\
-exit code: 0 succeeded; 1 refused or failed; 2 unknown: not ended in time, or no answer
+exit code: 0 succeeded; 1 refused or failed;
+           2 unknown: not ended in time, or no answer
 """
 
 

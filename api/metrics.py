@@ -88,7 +88,6 @@ class _RobotCollector(Collector):
             ),
         )
 
-
     def _driving(self) -> Iterator[Metric]:
         driving = self._supervisor.core.driving
         yield _gauge(

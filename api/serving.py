@@ -121,8 +121,9 @@ async def run_service(
     """Run robot and web server until a signal or a failure, and return the exit code.
 
     A supervisor that died takes the web server with it: a page that looks alive over a robot that
-    nobody watches is the worst of ends. On a signal the nodes are left as they are, and clients are
-    told that the service goes (close code 1012). A second signal ends the process at once.
+    nobody watches is the worst of ends. On a signal the vehicle is stopped, nodes are left as they
+    are, and clients are told that the service goes (close code 1012). A second signal ends the
+    process at once.
     """
     stopping = asyncio.Event()
     _on_signals(stopping)
@@ -132,6 +133,8 @@ async def run_service(
             supervising = tasks.create_task(supervisor.run(), name="supervisor")
             serving = tasks.create_task(_serve_until(stopping, server, sockets), name="web server")
             await stopping.wait()
+            # The robot first: the rest may take a moment.
+            supervisor.stop_driving()
             supervisor.stop_waiting()
             server.should_exit = True
             await serving
@@ -162,7 +165,7 @@ def greet(supervisor: Supervisor, options: ServeOptions, url: str) -> Iterator[s
         yield f"Simulated: {', '.join(supervisor.simulated)}. Nothing here moves a real robot."
     for warning in supervisor.warnings:
         yield finding_line(source, warning)
-    yield "Ctrl-C ends it; nodes are left as they are."
+    yield "Ctrl-C ends it; the vehicle is stopped, nodes are left as they are."
 
 
 def _on_signals(stopping: asyncio.Event) -> None:

@@ -11,7 +11,6 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from typing import TypeAlias
 
-from domain.errors import PilothouseError
 from domain.messages import (
     Drive,
     GoalFeedback,
@@ -167,8 +166,10 @@ class Navigation:
         """Ask the tracker; whatever is wrong with it or its answer ends the goal."""
         try:
             step = run.tracker.control_step(state, run.goal.path, run.target_index)
-        except (ArithmeticError, LookupError, ValueError, PilothouseError) as error:
-            raise _GivenUpError(f"{run.goal.controller} failed: {error}") from error
+        except Exception as error:
+            # A tracker may be somebody else's: a fault in it ends the drive, not the supervision.
+            kind = type(error).__name__
+            raise _GivenUpError(f"{run.goal.controller} failed: {kind}: {error}") from error
         if not math.isfinite(step.steering_angle_rad):
             raise _GivenUpError(f"{run.goal.controller} commands a number that is not finite")
         return step

@@ -15,6 +15,7 @@ from domain.findings import Finding
 from domain.health.signals import ESTOP_SIGNAL
 from domain.messages import (
     ChangeId,
+    HoldRequest,
     Input,
     Outputs,
     PreemptGoal,
@@ -223,6 +224,10 @@ class Supervisor:
             with suppress(asyncio.CancelledError):
                 await timer
         return self.core.change(change)
+
+    def stop_driving(self) -> None:
+        """Hold the task and let the vehicle stand still, since the service ends."""
+        self.submit(HoldRequest("service", "the service ends", "service"))
 
     def stop_waiting(self) -> None:
         """Let everybody who waits for a change go, since the service ends."""

@@ -23,7 +23,6 @@ _TURN_RAD = 1.001 * tau
 """More than this is no heading in radians, unless one that was counted on over several turns."""
 _FEW_WAYS = 3
 _MISFIT_RAD = 0.3
-_FIT_RAD = 0.1
 _GAIN = 4.0
 """So much better must another unit fit than no heading at all: small degrees are about 0."""
 
@@ -191,7 +190,7 @@ def _better_unit(ways: Ways, yaws: NDArray[np.float64], *, within_a_turn: bool) 
     if not within_a_turn:
         return None if own < min(misfits[best], _MISFIT_RAD) else best
     silent = ways.misfit(_yaws(np.zeros_like(yaws), best))
-    clear = misfits[best] < _FIT_RAD and misfits[best] * _GAIN < silent
+    clear = misfits[best] * _GAIN < silent
     return best if clear and own > _MISFIT_RAD and ways.count >= _FEW_WAYS else None
 
 

@@ -112,7 +112,7 @@ def test_the_robot_does_what_the_vector_says_unless_it_is_overruled(
     vector: Vector, driver: type[OverStateManager]
 ) -> None:
     if driver is OverSupervision and "task_status_injection" in vector["needs"]:
-        pytest.skip("the core has a planner of its own; a status can be told to the state manager alone")
+        pytest.skip("the core has a planner of its own: test_planner_vectors serves a real task")
     failures = play(vector, driver(vector), expectation(vector))
 
     if vector["name"] in OVERRULED:

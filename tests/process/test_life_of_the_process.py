@@ -1,17 +1,21 @@
 """How the real process begins and ends."""
 
 import asyncio
+import json
 import shlex
 import signal
 import socket
 import sys
 import textwrap
+from collections.abc import Callable
 from pathlib import Path
+from typing import Any
 from urllib.parse import urlsplit
 
 import httpx
 import pytest
 import websockets
+from websockets.asyncio.client import ClientConnection
 
 from tests.support.process import connect, read_on, run, service
 from tests.support.waiting import until
@@ -32,6 +36,40 @@ async def test_sigterm_ends_it_in_time_and_clients_are_told_that_it_goes() -> No
     assert seconds < 2
     assert closed.value.rcvd is not None
     assert closed.value.rcvd.code == 1012
+
+
+async def test_sigterm_while_it_drives_stops_the_vehicle_first() -> None:
+    line = "".join(f"{x},0,0\n" for x in range(100))
+    with service() as running:
+        http = httpx.AsyncClient(base_url=running.url)
+        async with http, connect(running.stream_url) as client:
+            await http.post("/tasks", content=line, headers={"Content-Type": "text/csv"})
+            moving = await _frame_where(client, lambda frame: _commanded(frame) > 0.2)
+            assert moving["task"]["status"] == "RUNNING"
+
+            running.send_signal(signal.SIGTERM)
+            held = await _frame_where(client, lambda frame: frame.get("kind") == "hold.set")
+            stopped = await _frame_where(client, lambda frame: _commanded(frame) == 0)
+            code, _, _ = await asyncio.to_thread(running.ended)
+    assert held["data"] == {"owner": "service", "reason": "the service ends"}
+    assert stopped["system_state"]["task_status"] == "PAUSED_TASK"
+    assert code == 0
+
+
+async def _frame_where(
+    client: ClientConnection, is_it: Callable[[dict[str, Any]], bool]
+) -> dict[str, Any]:
+    """Return the first frame from now on that is it; the time is limited by that of the test."""
+    while True:
+        frame: dict[str, Any] = json.loads(await client.recv())
+        if is_it(frame):
+            return frame
+
+
+def _commanded(frame: dict[str, Any]) -> float:
+    """Return the speed that the vehicle was told by a frame that says so; else less than none."""
+    vehicle = frame.get("vehicle")
+    return -1.0 if vehicle is None else float(vehicle["command"]["speed_mps"])
 
 
 def test_ctrl_c_ends_it_like_sigterm() -> None:
@@ -110,7 +148,7 @@ def test_a_task_that_fails_ends_the_process_and_is_named(tmp_path: Path) -> None
         code, _, errors = running.ended()
 
     assert code == 1
-    assert "'nodes'" in errors
+    assert "'robot'" in errors
     assert "the bus is gone" in errors
 
 
@@ -118,7 +156,7 @@ def test_the_greeting_says_what_is_simulated_and_what_to_try() -> None:
     with service() as running:
         greeting = running.greeting
 
-    assert "Simulated: nodes, signals." in greeting
+    assert "Simulated: nodes, signals, vehicle." in greeting
     assert "curl -X POST" in greeting
 
 

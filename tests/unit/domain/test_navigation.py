@@ -306,14 +306,14 @@ def test_a_command_that_is_no_number_is_never_sent(steering_rad: float) -> None:
 
 
 @pytest.mark.parametrize(
-    "error", [ZeroDivisionError("by zero"), IndexError("out of range"), InvalidValueError("odd")]
+    "error", [ZeroDivisionError("by zero"), TypeError("odd"), InvalidValueError("odd")]
 )
 def test_a_tracker_that_fails_ends_its_goal_with_the_reason(error: Exception) -> None:
     drive = Drive20Hz(Straight(fails_with=error))
     drive.report()
     drive.send()
 
-    assert result_of(drive).reason == f"test failed: {error}"
+    assert result_of(drive).reason == f"test failed: {type(error).__name__}: {error}"
 
 
 @pytest.mark.parametrize(

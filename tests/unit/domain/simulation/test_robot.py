@@ -102,6 +102,15 @@ def test_what_a_command_leads_to_at_once_is_due_at_once() -> None:
     assert robot.wake_at() == seconds(0.03)
 
 
+def test_what_is_done_to_a_signal_is_due_at_once() -> None:
+    robot = SimulatedRobot(MODEL, 0, mock=True)
+    heard(robot, 0.0, 0.0)
+    assert robot.mock is not None
+    robot.mock.hold("estop", True, seconds(0.03))
+
+    assert robot.wake_at() == seconds(0.03)
+
+
 def test_after_it_was_advanced_it_wants_to_be_woken_later() -> None:
     robot = SimulatedRobot(MODEL, 0, mock=True)
     robot.advance(seconds(0.12))

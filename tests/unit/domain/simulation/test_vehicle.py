@@ -369,6 +369,23 @@ def test_noise_is_in_the_reports_and_not_in_how_the_vehicle_moves() -> None:
         assert spread == pytest.approx(deviation, rel=0.1)
 
 
+@pytest.mark.parametrize(
+    ("noise", "differs"),
+    [
+        (Noise(position_m=0.1), (True, True, False, False)),
+        (Noise(yaw_rad=0.1), (False, False, True, False)),
+        (Noise(speed_mps=0.1), (False, False, False, True)),
+        (Noise(), (False, False, False, False)),
+    ],
+)
+def test_noise_is_added_to_what_it_is_of(noise: Noise, differs: tuple[bool, ...]) -> None:
+    (report,) = vehicle(Plant(noise=noise)).advance(START)
+    pose = report.state.pose
+
+    values = (pose.x_m, pose.y_m, pose.yaw_rad, report.state.speed_mps)
+    assert tuple(value != 0.0 for value in values) == differs
+
+
 def test_the_same_seed_gives_the_same_noise_and_another_one_another() -> None:
     def reports(seed: int) -> tuple[VehicleReport, ...]:
         return vehicle(Plant(noise=Noise(position_m=0.1, seed=seed))).advance(at(1.0))
