@@ -29,7 +29,7 @@ class Operator:
         self.frames: list[dict[str, Any]] = []
         self.events: list[dict[str, Any]] = []
 
-    async def serve(self, csv: str, **query: object) -> dict[str, Any]:
+    async def serve(self, csv: str, **query: float) -> dict[str, Any]:
         answer = await self.robot.http.post("/tasks", content=csv, headers=CSV, params=query)
         assert answer.status_code == 201, answer.text
         assert answer.headers["location"] == f"/tasks/{answer.json()['id']}"

@@ -16,6 +16,7 @@ from hypothesis import given, settings
 from api.posted_tasks import task_of
 from api.routes.tasks import serve
 from api.schemas.simulation import SimulationBody
+from api.schemas.tasks import TaskBody
 from api.simulation.posted import robot_for
 from api.simulation.simulation import Simulation
 from domain.errors import PilothouseError
@@ -178,8 +179,7 @@ def _act(robot: HttpRobot, step: dict[str, Any]) -> None:
         if step["task"] is None:
             supervisor.submit(CancelTaskRequest())
         else:
-            body = SimulationBody.model_validate({"until_s": END_S, "steps": [step]}).steps[0]
-            serve(supervisor, task_of(body.task), "")  # type: ignore[union-attr]
+            serve(supervisor, task_of(TaskBody.model_validate(step["task"])), "")
     elif "change" in step:
         asked = step["change"]
         part = PartName(asked["part"])

@@ -237,6 +237,27 @@ def test_no_answer_is_told_in_words(service: Service, answer: Answer, message: s
         service.client().path_of("actuation")
 
 
+def test_a_csv_is_sent_as_it_is_with_its_query() -> None:
+    asked: list[httpx.Request] = []
+
+    def answer(request: httpx.Request) -> httpx.Response:
+        asked.append(request)
+        return httpx.Response(201, json={"id": "t1"})
+
+    client = ServiceClient(URL, httpx.MockTransport(answer))
+
+    assert client.call("POST", "/tasks", csv="0,0,0\n", query={"speed_mps": 1.5}) == {"id": "t1"}
+    assert asked[0].content == b"0,0,0\n"
+    assert asked[0].headers["content-type"] == "text/csv"
+    assert asked[0].url.raw_path == b"/tasks?speed_mps=1.5"
+
+
+def test_an_answer_without_content_is_empty(service: Service) -> None:
+    service.answers["DELETE /tasks/current"] = httpx.Response(204)
+
+    assert service.client().call("DELETE", "/tasks/current") == {}
+
+
 @pytest.mark.parametrize("url", ["robot:8000", "ftp://robot", "http://", "", "/ws"])
 def test_what_is_no_address_is_refused_before_anything_is_sent(url: str) -> None:
     with pytest.raises(NoAnswerError, match="is no address"), service_at(url):

@@ -1,14 +1,18 @@
 import socket
 from collections.abc import Callable
+from pathlib import Path
 
 import pytest
 
 from api import command_line, distribution
 from api.client import NoAnswerError, Outcome, ServiceClient, ServiceProblemError
 from api.command_line import main
-from api.serving import ServeOptions
+from api.serving import EXAMPLE, ServeOptions
+from api.task_command import TaskOptions
 
 Output = pytest.CaptureFixture[str]
+
+COMMANDS = ("serve", "check", "mode", "state", "task", "simulate")
 
 
 def exit_code(*arguments: str) -> int:
@@ -23,7 +27,8 @@ def test_without_a_command_it_says_what_there_is(capsys: Output) -> None:
     assert main([]) == 2
 
     told = capsys.readouterr().out
-    for command in ("serve", "check", "mode", "state"):
+    assert [line for line in told.splitlines() if len(line) > 80] == []
+    for command in COMMANDS:
         assert f"pilothouse {command} " in told
 
 
@@ -32,10 +37,17 @@ def test_it_tells_its_version(capsys: Output) -> None:
     assert capsys.readouterr().out.startswith("pilothouse 0.")
 
 
-@pytest.mark.parametrize("command", ["serve", "check", "mode", "state"])
-def test_each_command_explains_itself(command: str, capsys: Output) -> None:
+@pytest.mark.parametrize("command", COMMANDS)
+def test_each_command_explains_itself_in_80_columns(
+    command: str, capsys: Output, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv("COLUMNS", "80")
+
     assert exit_code(command, "--help") == 0
-    assert "usage: pilothouse" in capsys.readouterr().out
+
+    told = capsys.readouterr().out
+    assert "usage: pilothouse" in told
+    assert [line for line in told.splitlines() if len(line) > 80] == []
 
 
 @pytest.mark.parametrize(
@@ -47,6 +59,12 @@ def test_each_command_explains_itself(command: str, capsys: Output) -> None:
         (["mode", "actuation", "FAST", "--wait", "nan"], "not within 0 to 3600"),
         (["mode", "actuation", "FAST", "--wait", "-1"], "not within 0 to 3600"),
         (["state", "actuation", "fly"], "invalid choice"),
+        (["task"], "FILE --cancel is required"),
+        (["task", "a.csv", "--cancel"], "not allowed with argument FILE"),
+        (["task", "a.csv", "--heading", "up"], "invalid choice"),
+        (["task", "a.csv", "--speed", "fast"], "invalid float value"),
+        (["simulate"], "SCENARIO"),
+        (["simulate", "a.yaml", "--format", "xml"], "invalid choice"),
         (["fly"], "invalid choice"),
     ],
 )
@@ -64,6 +82,56 @@ def test_serve_hands_on_what_it_was_told(monkeypatch: pytest.MonkeyPatch) -> Non
     main(["serve", "--port", "0", "--allowed-host", "robot.local", "--allowed-host", "robot"])
 
     assert given == [ServeOptions(port=0, allowed_hosts=("robot.local", "robot"))]
+
+
+def test_task_hands_on_what_it_was_told(monkeypatch: pytest.MonkeyPatch) -> None:
+    given: list[TaskOptions] = []
+
+    def run_task(_: ServiceClient, asked: TaskOptions, __: object) -> Outcome:
+        given.append(asked)
+        return Outcome.FAILED
+
+    monkeypatch.setattr("api.task_command.run_task", run_task)
+
+    assert main(["task", "a.csv"]) == 1
+    options = ["--controller", "stanley", "--speed", "1.5", "--heading", "deg"]
+    main(["task", "-", *options, "--start-index", "3", "--preview", "--no-wait"])
+
+    assert given == [
+        TaskOptions("a.csv"),
+        TaskOptions("-", "stanley", 1.5, "deg", 3, preview=True, wait=False),
+    ]
+
+
+def test_task_cancels_where_it_is_told_to(monkeypatch: pytest.MonkeyPatch) -> None:
+    asked: list[str] = []
+
+    def cancel(client: ServiceClient, _: object) -> Outcome:
+        asked.append(client.url)
+        return Outcome.SUCCEEDED
+
+    monkeypatch.setattr("api.task_command.cancel", cancel)
+
+    assert main(["task", "--cancel", "--url", "http://robot:9000"]) == 0
+    assert asked == ["http://robot:9000"]
+
+
+def test_simulate_hands_on_what_it_was_told(monkeypatch: pytest.MonkeyPatch) -> None:
+    given: list[tuple[object, ...]] = []
+
+    def simulate(*asked: object) -> int:
+        given.append(asked)
+        return 1
+
+    monkeypatch.setattr("api.simulate_command.simulate", simulate)
+
+    assert main(["simulate", "s.yaml"]) == 1
+    assert main(["simulate", "-", "--format", "json", "--robot", "r", "--model", "m"]) == 1
+
+    assert given == [
+        ("s.yaml", "text", EXAMPLE, None, None),
+        ("-", "json", EXAMPLE, Path("m"), Path("r")),
+    ]
 
 
 def test_nobody_at_the_address_ends_with_two(capsys: Output) -> None:

@@ -114,8 +114,8 @@ async def test_what_cannot_be_is_refused_with_its_place(robot: HttpRobot) -> Non
         "/until_s": {"until_s": 86_401},
         "/sample_period_s": {"sample_period_s": 0},
         "": {"sample_period_s": 0.0001},
-        "/steps/0": {"steps": [{"t_s": 0}]},
-        "/steps/0/task/why": {"steps": [{"t_s": 0, "task": None, "why": "x"}]},
+        "/steps/0/reading": {"steps": [{"t_s": 0}]},
+        "/steps/0/why": {"steps": [{"t_s": 0, "task": None, "why": "x"}]},
         "/robot/wings": {"robot": {"wings": 2}},
         "/from": {"from": "dead"},
         "/wings": {"wings": 2},
@@ -124,7 +124,7 @@ async def test_what_cannot_be_is_refused_with_its_place(robot: HttpRobot) -> Non
     for pointer, body in wrong.items():
         answer = await robot.http.post("/simulations", json={"until_s": 10, **body})
         assert answer.status_code == 422, body
-        assert answer.json()["errors"][0]["pointer"].startswith(pointer)
+        assert answer.json()["errors"][0]["pointer"] == pointer
 
 
 async def test_a_wrong_model_is_refused_with_its_findings(robot: HttpRobot) -> None:
@@ -164,17 +164,3 @@ async def test_a_refused_step_is_told_with_the_document_of_the_interface(
     (refused,) = told["refusals"]
     assert (refused["step"], refused["t_s"], refused["problem"]["status"]) == (1, 1.0, 409)
     assert refused["problem"]["blockers"][0]["code"] == "ESTOP"
-
-
-async def test_expectations_are_told_with_their_differences(robot: HttpRobot) -> None:
-    steps = [
-        {"t_s": 1, "expect": {"system_state": {"state": "IDLE"}}},
-        {"t_s": 1, "expect": {"system_state": {"state": "RUNNING"}}},
-    ]
-
-    told = await simulate(robot, robot=NEVER_STALE, steps=steps)
-
-    assert [found["differences"] for found in told["expectations"]] == [
-        [],
-        [{"path": "system_state.state", "expected": "RUNNING", "seen": "IDLE"}],
-    ]

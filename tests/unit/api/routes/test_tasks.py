@@ -29,7 +29,7 @@ TASK_FIELDS = {
 }
 
 
-async def post(robot: HttpRobot, csv: str = LINE, **query: object) -> httpx.Response:
+async def post(robot: HttpRobot, csv: str = LINE, **query: str | float) -> httpx.Response:
     return await robot.http.post("/tasks", content=csv, headers=CSV, params=query)
 
 

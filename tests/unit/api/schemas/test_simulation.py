@@ -13,6 +13,7 @@ from api.schemas.simulation import (
     SimulationBody,
     TaskStep,
     VehicleStep,
+    place_in_body,
 )
 from domain.simulation.node_settings import Fault
 
@@ -153,3 +154,19 @@ def test_readings_are_counted_with_all_their_repetitions() -> None:
 )
 def test_repetitions_go_up_to_and_with_their_end(step: dict[str, Any], count: int) -> None:
     assert ReadingStep.model_validate({"t_s": 0, **READING, **step}).count(10) == count
+
+
+@pytest.mark.parametrize(
+    ("location", "keys"),
+    [
+        (("until_s",), ("until_s",)),
+        (("steps", 3), ("steps", 3)),
+        (("steps", 3, "node"), ("steps", 3)),
+        (("steps", 3, "reading", "reading", "estop"), ("steps", 3, "reading", "estop")),
+        (("robot", "nodes", "arm"), ("robot", "nodes", "arm")),
+    ],
+)
+def test_a_fault_of_a_step_is_placed_without_the_kind_of_the_step(
+    location: tuple[int | str, ...], keys: tuple[int | str, ...]
+) -> None:
+    assert place_in_body(location) == keys

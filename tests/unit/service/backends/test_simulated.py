@@ -5,7 +5,15 @@ import pytest
 
 from domain.errors import UnknownParameterError, UnknownPartError
 from domain.lifecycle import LifecycleState, Transition
-from domain.messages import AskTransition, BackendStatus, Drive, NodeReport, Readings, VehicleReport
+from domain.messages import (
+    AskTransition,
+    BackendStatus,
+    Drive,
+    NodeAnswer,
+    NodeReport,
+    Readings,
+    VehicleReport,
+)
 from domain.simulation.node_settings import Fault
 from domain.simulation.robot import SimulatedRobot
 from domain.system_model import PartName
@@ -57,6 +65,16 @@ async def test_a_node_arrives_exactly_after_its_time(listening: Listening) -> No
     await listening.clock.advance(1.0)
 
     assert listening.of(NodeReport)[-1] == (1.3, NodeReport(BASE, state=LifecycleState.INACTIVE))
+
+
+async def test_a_node_answers_without_waiting_for_the_next_report_of_the_vehicle(
+    listening: Listening,
+) -> None:
+    await listening.clock.advance(1.01)
+    listening.backend.send(AskTransition(1, BASE, Transition.CONFIGURE))
+    await settle()
+
+    assert listening.of(NodeAnswer) == [(1.01, NodeAnswer(1, BASE, True))]
 
 
 async def test_a_fault_takes_effect_at_once(listening: Listening) -> None:

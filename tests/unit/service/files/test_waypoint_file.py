@@ -221,6 +221,14 @@ def test_degrees_within_a_turn_of_radians_are_refused_where_they_alone_fit(
     assert [(fault.code, fault.line) for fault in error.findings] == [("NOT_RADIANS", 1)]
 
 
+@pytest.mark.parametrize("seed", range(10))
+def test_headings_of_more_than_a_turn_that_fit_as_nothing_are_refused(seed: int) -> None:
+    places, yaws = drive(BEND)
+    headings = np.random.default_rng(seed).uniform(0.0, 360.0, yaws.shape)
+
+    assert refused(csv(places, headings)).findings[0].code == "NOT_RADIANS"
+
+
 def test_standing_still_with_a_heading_of_many_turns_is_refused() -> None:
     assert faults("1,1,90\n1,1,90\n1,1,90\n") == [("NOT_RADIANS", 1, 5)]
 
