@@ -35,8 +35,8 @@ examples:
   pilothouse simulate scenario.yaml       does it go as expected?
 """
 _SERVE = """\
-Run the service until Ctrl-C or SIGTERM; then the vehicle is stopped, and nodes are
-left as they are.
+Run the service until Ctrl-C or SIGTERM; then the vehicle is stopped, and nodes
+are left as they are.
 
 It listens on this machine only. Another --host makes it reachable for
 everybody there, without a password: say --anonymous if that is what you want.

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from api.bodies import InvalidBodyError, parse_body, parse_text
+from api.bodies import InvalidBodyError, MalformedBodyError, parse_body, parse_text
 from api.schemas.path_preview import MAX_DRAWN, PathPreviewJson
 from api.schemas.tasks import TaskBody, WaypointJson, WaypointsJson
 from domain.errors import InvalidValueError
@@ -57,7 +57,11 @@ def read_posted_task(raw: bytes, csv: TaskOptions | None) -> PostedTask:
     if csv is not None:
         waypoints = read_waypoints_csv(parse_text(raw), csv.heading)
         return PostedTask(Path(waypoints), csv.start_index, csv.controller, csv.speed_mps)
-    return task_of(parse_body(TaskBody, raw))
+    try:
+        return task_of(parse_body(TaskBody, raw))
+    except MalformedBodyError as error:
+        error.hint = "a CSV is sent with Content-Type: text/csv"
+        raise
 
 
 def task_of(body: TaskBody) -> PostedTask:

@@ -15,7 +15,7 @@ from pydantic import ValidationError
 from api.bodies import InvalidBodyError
 from api.schemas.simulation import SimulationBody, place_in_body
 from api.simulation.posted import robot_for
-from domain.errors import InvalidModelError, PilothouseError
+from domain.errors import InvalidModelError
 from domain.findings import Finding
 from service.files.parameter_file import scalar_value
 from service.files.text_file import UnreadableFileError, read_text_file
@@ -39,10 +39,11 @@ _NOTHING = frozenset(["", "~", "null", "Null", "NULL"])
 _WORDS = {"extra_forbidden": "there is no such key", "missing": "this key is missing"}
 
 
-class InvalidScenarioError(PilothouseError):
-    """A scenario with faults; `findings` hold them, each with the name of its file."""
+class InvalidScenarioError(Exception):
+    """A scenario with faults; `findings` hold them, each with the name of its file.
 
-    code = "INVALID_SCENARIO"
+    Only the command meets it: a scenario that is posted is a body like any other.
+    """
 
     def __init__(self, findings: Sequence[tuple[str, Finding]]) -> None:
         more = f" (and {len(findings) - 1} more)" if len(findings) > 1 else ""

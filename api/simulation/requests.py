@@ -2,19 +2,15 @@
 
 import asyncio
 import json
-from collections.abc import Callable
 from http import HTTPStatus
-from typing import NoReturn, TypeVarTuple
 
 import httpx
 
 from api.problems import MEDIA_TYPE, Problem, make_problem
+from api.robot_app import create_robot_app
 from api.schemas.simulation import AskedRequest
-from domain.errors import RefusedError
 from service.jobs import InlineJobs
 from service.supervisor import Supervisor
-
-Given = TypeVarTuple("Given")
 
 _HOST = "simulation"
 
@@ -23,13 +19,8 @@ class Requests:
     """The interface of one robot. Nothing in it waits: what takes time is answered as begun."""
 
     def __init__(self, supervisor: Supervisor, runner: asyncio.Runner) -> None:
-        # Here and not above: the application itself leads here, by its route for simulations.
-        from api.app import create_app
-
         self._runner = runner
-        app = create_app(
-            supervisor, allowed_hosts=[_HOST], worker=InlineJobs(), simulator=_Nested()
-        )
+        app = create_robot_app(supervisor, InlineJobs(), allowed_hosts=[_HOST])
         self._client = httpx.AsyncClient(transport=httpx.ASGITransport(app))
 
     def send(self, asked: AskedRequest) -> Problem | None:
@@ -37,6 +28,9 @@ class Requests:
         return self._runner.run(self._send(asked))
 
     async def _send(self, asked: AskedRequest) -> Problem | None:
+        if asked.path.startswith("/simulations"):
+            detail = "a simulation begins no other one"
+            return make_problem(HTTPStatus.CONFLICT, "REFUSED", detail, asked.path)
         # Not by httpx's own encoder, which raises for what is not JSON: the interface refuses that.
         body = None if asked.body is None else json.dumps(asked.body)
         headers = {} if body is None else {"Content-Type": "application/json"}
@@ -54,15 +48,3 @@ class Requests:
             status = HTTPStatus(answer.status_code)
             return make_problem(status, "FAILED", f"answered: {answer.text:.500}", asked.path)
         return Problem.model_validate_json(answer.content)
-
-
-class _Nested(InlineJobs):
-    """Refuses a simulation within a simulation."""
-
-    async def call(self, function: Callable[[*Given], object], *arguments: *Given) -> NoReturn:
-        """Refuse.
-
-        Raises:
-            RefusedError: Always.
-        """
-        raise RefusedError("a simulation begins no other one")

@@ -63,12 +63,17 @@ def _known_controller(name: str) -> str:
     return name
 
 
+Controller: TypeAlias = Annotated[
+    str, AfterValidator(_known_controller), Field(json_schema_extra={"enum": [*TRACKERS]})
+]
+
+
 class StartTaskBlock(SettingsBlock):
     """A task that is served when the service starts; it waits until nothing holds it."""
 
     file: str = Field(min_length=1, max_length=1_000)
     """CSV with `x,y,yaw` in m, m and rad; a relative path counts from the robot file."""
-    controller: Annotated[str, AfterValidator(_known_controller)] = "pure_pursuit"
+    controller: Controller = "pure_pursuit"
     """What follows the path."""
     speed_mps: Positive = 2.8
     """Cruise speed, in m/s."""

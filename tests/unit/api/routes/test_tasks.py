@@ -160,6 +160,16 @@ async def test_options_in_the_query_are_not_silently_ignored_beside_json(
     assert "controller in the query is for a CSV" in answer.json()["detail"]
 
 
+@pytest.mark.parametrize("times", [1, 100])
+async def test_a_csv_that_does_not_say_so_is_refused_with_what_to_say(
+    robot: HttpRobot, times: int
+) -> None:
+    answer = await robot.http.post("/tasks", content=LINE * times)
+
+    assert (answer.status_code, answer.json()["code"]) == (400, "MALFORMED")
+    assert answer.json()["hint"] == "a CSV is sent with Content-Type: text/csv"
+
+
 async def test_a_body_without_end_is_refused(
     robot: HttpRobot, monkeypatch: pytest.MonkeyPatch
 ) -> None:

@@ -92,7 +92,7 @@ def test_a_failure_that_is_no_problem_document_is_told_as_it_is(
     async def fail(scope: Scope, receive: Receive, send: Send) -> None:
         await JSONResponse({"id": "c1", "status": "failed"}, 409)(scope, receive, send)
 
-    monkeypatch.setattr("api.app.create_app", lambda *_, **__: fail)
+    monkeypatch.setattr("api.simulation.requests.create_robot_app", lambda *_, **__: fail)
     asked = AskedRequest(method="POST", path="/nodes/drive_base/mode?wait=1")
 
     with asyncio.Runner() as runner:

@@ -1,0 +1,101 @@
+"""The HTTP interface of one robot, live or in a simulation."""
+
+from collections.abc import Callable, Sequence
+from contextlib import AbstractAsyncContextManager
+from functools import partial
+from typing import TypeAlias
+
+from fastapi import FastAPI
+from starlette.middleware import Middleware
+
+from api.distribution import installed_version
+from api.gate import Gate, SecurityHeaders, UnexpectedErrors
+from api.openapi import describe
+from api.problem_handlers import add_problem_handlers
+from api.routes import (
+    changes,
+    emergency_stop,
+    events,
+    example_tracks,
+    holds,
+    inference,
+    mock,
+    model,
+    parameters,
+    parts,
+    service_health,
+    signals,
+    stream,
+    system_state,
+    tasks,
+    vehicle,
+)
+from api.static_page import page_routes
+from service.jobs import Jobs
+from service.supervisor import Supervisor
+
+_RESOURCES = (
+    # Before the parts: the path of a part matches everything below /nodes.
+    parameters.router,
+    changes.router,
+    model.router,
+    inference.router,
+    signals.router,
+    system_state.router,
+    emergency_stop.router,
+    mock.router,
+    tasks.router,
+    holds.router,
+    vehicle.router,
+    example_tracks.router,
+    events.router,
+    stream.router,
+    service_health.router,
+)
+
+
+Lifespan: TypeAlias = Callable[[FastAPI], AbstractAsyncContextManager[None]]
+
+
+def create_robot_app(
+    supervisor: Supervisor,
+    worker: Jobs,
+    *,
+    allowed_hosts: Sequence[str],
+    lifespan: Lifespan | None = None,
+) -> FastAPI:
+    """Return the interface; it starts no task and no process.
+
+    Args:
+        supervisor: What is served.
+        worker: Does what would keep the event loop.
+        allowed_hosts: Names by which this service may be asked, beside those of loopback.
+        lifespan: What is to be done before the first and after the last request.
+    """
+    app = FastAPI(
+        title="Pilothouse",
+        summary="States and modes of a robot's systems and nodes, its health, and why",
+        version=installed_version(),
+        docs_url=None,
+        redoc_url=None,
+        redirect_slashes=False,
+        lifespan=lifespan,
+        # "default" keeps the framework from describing an answer that is never given.
+        responses={"default": {"description": "A problem"}},
+        middleware=[
+            Middleware(SecurityHeaders),
+            Middleware(Gate, allowed_hosts=allowed_hosts),
+            Middleware(UnexpectedErrors),
+        ],
+    )
+    app.state.supervisor = supervisor
+    app.state.worker = worker
+    app.state.model_json = model.encode_model(supervisor)
+    add_problem_handlers(app, supervisor.clock)
+    for router in _RESOURCES:
+        app.include_router(router)
+    for prefix in ("systems", "nodes"):
+        app.include_router(parts.router, prefix=f"/{prefix}", tags=[prefix])
+    app.include_router(page_routes())
+    app.openapi = partial(describe, app)  # type: ignore[method-assign]
+    return app
