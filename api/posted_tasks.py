@@ -17,6 +17,7 @@ from domain.paths.path import Path
 from domain.paths.preview import preview
 from domain.paths.speed_profile import SpeedLimits
 from domain.paths.waypoints import checked_waypoints
+from domain.tasks.task_planner import check_cruise
 from domain.vehicle import Pose, VehicleLimits
 from service.files.waypoint_file import Heading, read_waypoints_csv
 
@@ -99,9 +100,10 @@ def preview_posted(
         PilothouseError: The body or its waypoints are invalid.
     """
     task = read_posted_task(raw, csv)
-    if not 0 < task.speed_mps <= vehicle.max_speed_mps:
-        message = f"not above 0 and at most {vehicle.max_speed_mps:g} m/s"
-        raise InvalidBodyError.at("speed_mps", InvalidValueError(message))
+    try:
+        check_cruise(task.speed_mps, vehicle)
+    except InvalidValueError as error:
+        raise InvalidBodyError.at(error.pointer, error) from error
     found = preview(task.path, task.speed_mps, pose, vehicle, limits)
     waypoints = task.path.waypoints
     drawn = waypoints[thinned(len(waypoints), MAX_DRAWN), :2].tolist()

@@ -98,19 +98,19 @@ class Navigation:
 
     def handle(self, command: SendGoal | PreemptGoal, now: Instant) -> None:
         """Take a goal, whose first control step is due at once, or drop it."""
-        if isinstance(command, PreemptGoal):
-            if self._run is not None and self._run.goal.goal == command.goal:
-                self._run = None
-            return
+        if isinstance(command, SendGoal):
+            self._begin(command, now)
+        elif self._run is not None and self._run.goal.goal == command.goal:
+            self._run = None
+
+    def _begin(self, goal: SendGoal, now: Instant) -> None:
         speed = 0.0 if self._state is None else max(self._state.speed_mps, 0.0)
         self._run = _Run(
-            goal=command,
-            tracker=self._trackers[command.controller](self._limits),
-            profile=SpeedProfile(
-                command.path, command.speed_mps, self.settings.speed, self._limits
-            ),
+            goal=goal,
+            tracker=self._trackers[goal.controller](self._limits),
+            profile=SpeedProfile(goal.path, goal.speed_mps, self.settings.speed, self._limits),
             next_at=now,
-            target_index=command.start_index,
+            target_index=goal.start_index,
             speed_mps=speed,
             best_m=-math.inf,
             best_at=now,

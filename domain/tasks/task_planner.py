@@ -32,6 +32,22 @@ from domain.tracking.trackers import TRACKERS
 from domain.vehicle import Point, VehicleLimits
 
 
+MIN_CRUISE_MPS = 0.1
+"""Slower than this a task would soon be given up for want of progress."""
+
+
+def check_cruise(speed_mps: float, limits: VehicleLimits) -> None:
+    """Refuse a cruise speed that the vehicle cannot go.
+
+    Raises:
+        InvalidValueError: It is less than `MIN_CRUISE_MPS`, or more than the vehicle's top speed.
+    """
+    top = limits.max_speed_mps
+    if not MIN_CRUISE_MPS <= speed_mps <= top:
+        message = f"speed {speed_mps:g} m/s is not within {MIN_CRUISE_MPS:g} to {top:g} m/s"
+        raise InvalidValueError(message, "speed_mps")
+
+
 class TaskPlanner:
     """One current task at most, the holds, and the goal that navigation has."""
 
@@ -60,7 +76,7 @@ class TaskPlanner:
         Raises:
             UnknownControllerError: There is no path tracker of that name.
             InvalidValueError: A start that is no waypoint with a path behind it, or a speed that
-                the vehicle cannot go.
+                the vehicle does not go.
             FarStartError: It begins too far from the vehicle.
         """
         if request.controller not in TRACKERS:
@@ -71,10 +87,7 @@ class TaskPlanner:
             raise InvalidValueError(message, "start_index")
         if path.distance_of(index) >= path.length_m:
             raise InvalidValueError("nothing of the path is left from there", "start_index")
-        top = self._limits.max_speed_mps
-        if not 0 < request.speed_mps <= top:
-            message = f"speed {request.speed_mps:g} m/s is not above 0 and at most {top:g} m/s"
-            raise InvalidValueError(message, "speed_mps")
+        check_cruise(request.speed_mps, self._limits)
         if (distance := self._too_far(path.waypoint(index))) is not None:
             raise FarStartError(distance, self._settings.max_start_distance_m)
 
