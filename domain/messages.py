@@ -100,6 +100,8 @@ class GoalFeedback:
     """The point that is steered to."""
     command: DriveCommand
     """What the vehicle was told with this."""
+    left_out_m: float = 0.0
+    """Of the path behind it, what the vehicle was never near."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -278,6 +280,8 @@ class SendGoal:
     """First waypoint not yet passed: where this goal begins."""
     controller: str
     speed_mps: float
+    left_out_m: float = 0.0
+    """Of the path before `start_index`, what an earlier goal of the task left out."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -66,7 +66,14 @@ class _Run:
     best_m: float
     """Furthest along the path so far, in steps that count as progress."""
     best_at: Instant
+    reached_m: float
+    """Up to where along the path it is known what was passed and what left out."""
+    left_out_m: float
+    """Of the path, together: what lay further from the vehicle than it may be off the path."""
     off_path_since: Instant | None = None
+
+
+_PASSED_STEP_M = 0.25
 
 
 class _GivenUpError(Exception):
@@ -114,6 +121,8 @@ class Navigation:
             speed_mps=speed,
             best_m=-math.inf,
             best_at=now,
+            reached_m=goal.path.distance_of(max(goal.start_index - 1, goal.first_index)),
+            left_out_m=goal.left_out_m,
         )
 
     def wake_at(self) -> Instant | None:
@@ -141,6 +150,7 @@ class Navigation:
         state = self._fresh_state(now)
         step = self._steer(run, state)
         self._judge(run, step, now)
+        self._note_passed(run, step, state)
         run.target_index = step.target_index
         command = self._command(run, step)
         feedback = GoalFeedback(
@@ -150,6 +160,7 @@ class Navigation:
             step.cross_track_error_m,
             step.lookahead,
             command,
+            run.left_out_m,
         )
         if self._has_arrived(run, step, state):
             self._run = None
@@ -192,6 +203,20 @@ class Navigation:
         elif now - run.best_at >= settings.no_progress_for:
             raise _GivenUpError(f"no progress for {to_seconds(settings.no_progress_for):g} s")
 
+    def _note_passed(self, run: _Run, step: ControlStep, state: VehicleState) -> None:
+        """Tell what of the path was passed since the step before from what was left out.
+
+        A vehicle that cannot steer a hairpin is found again behind it: the hairpin was not driven.
+        """
+        path, pose = run.goal.path, state.pose
+        while run.reached_m < step.distance_m:
+            until_m = min(run.reached_m + _PASSED_STEP_M, step.distance_m)
+            middle = path.point_at((run.reached_m + until_m) / 2)
+            away_m = math.hypot(middle.x_m - pose.x_m, middle.y_m - pose.y_m)
+            if away_m > self.settings.max_cross_track_m:
+                run.left_out_m += until_m - run.reached_m
+            run.reached_m = until_m
+
     def _command(self, run: _Run, step: ControlStep) -> DriveCommand:
         """Return steering within its limit, and a speed that rises no faster than is wanted."""
         limit = self._limits.max_steering_angle_rad
@@ -201,12 +226,20 @@ class Navigation:
         return DriveCommand(run.speed_mps, steering)
 
     def _has_arrived(self, run: _Run, step: ControlStep, state: VehicleState) -> bool:
+        """Tell whether the goal is reached.
+
+        Raises:
+            _GivenUpError: It never will be: the end is passed, and too much was left out.
+        """
         path = run.goal.path
         begun = path.distance_of(run.goal.first_index)
-        covered = (step.distance_m - begun) / (path.length_m - begun)
+        covered = (step.distance_m - begun - run.left_out_m) / (path.length_m - begun)
+        is_past_end = step.distance_m >= path.length_m
         if covered <= COVERED_SHARE:
+            if is_past_end:
+                raise _GivenUpError(f"the end is passed, and {run.left_out_m:.1f} m were left out")
             return False
-        if step.distance_m >= path.length_m:
+        if is_past_end:
             return True
         end = path.waypoint(path.count - 1)
         left_m = math.hypot(end.x_m - state.pose.x_m, end.y_m - state.pose.y_m)

@@ -26,6 +26,8 @@ class Task:
     target_index: int = 0
     distance_m: float = 0.0
     cross_track_error_m: float | None = None
+    left_out_m: float = 0.0
+    """Of the path behind it, what the vehicle was never near."""
     reason: str | None = None
     ended_at: Instant | None = None
 
@@ -43,6 +45,7 @@ class Task:
         self.target_index = max(self.target_index, feedback.target_index)
         self.distance_m = max(self.distance_m, feedback.distance_m - begun)
         self.cross_track_error_m = feedback.cross_track_error_m
+        self.left_out_m = feedback.left_out_m
 
     def end(self, phase: TaskPhase, reason: str | None, now: Instant) -> None:
         """Record how it ended."""

@@ -31,7 +31,6 @@ from domain.timebase import Instant
 from domain.tracking.trackers import TRACKERS
 from domain.vehicle import Point, VehicleLimits
 
-
 MIN_CRUISE_MPS = 0.1
 """Slower than this a task would soon be given up for want of progress."""
 
@@ -233,6 +232,7 @@ class TaskPlanner:
                 task.target_index,
                 task.controller,
                 task.speed_mps,
+                task.left_out_m,
             )
         )
 

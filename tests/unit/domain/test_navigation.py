@@ -329,3 +329,38 @@ def test_after_its_end_a_goal_commands_nothing(end: Callable[[Drive20Hz], object
 
     assert drive.said == []
     assert drive.navigation.wake_at() is None
+
+
+# --- what was left out ---------------------------------------------------------------------------
+
+
+def test_an_end_that_is_passed_with_a_part_left_out_is_no_success() -> None:
+    drive = Drive20Hz()
+    drive.report(5.0)
+    drive.send(start_index=5)
+    drive.step(12.0)
+    drive.step(20.5)
+
+    assert not result_of(drive).succeeded
+    assert result_of(drive).reason == "the end is passed, and 9.5 m were left out"
+
+
+def test_what_an_earlier_goal_of_the_task_left_out_counts() -> None:
+    drive = Drive20Hz()
+    drive.report(19.0)
+    goal = SendGoal(GoalId(1), drive.path, 0, 19, "test", 2.8, left_out_m=1.5)
+    drive.navigation.handle(goal, drive.now)
+    drive.act()
+    drive.step(20.5)
+
+    assert result_of(drive).reason == "the end is passed, and 1.5 m were left out"
+
+
+def test_a_stretch_within_three_metres_was_not_left_out_however_fast_it_went() -> None:
+    drive = Drive20Hz()
+    drive.report(15.0)
+    drive.send(start_index=15)
+    drive.step(17.9)
+    drive.step(20.5)
+
+    assert result_of(drive).succeeded
