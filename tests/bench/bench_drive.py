@@ -1,39 +1,31 @@
-"""What driving costs, and what else goes on meanwhile must not cost it.
+"""How soon a drive is stopped, and that what else the service works on disturbs no drive.
 
 Times of several processes are compared: `time.perf_counter` is one clock for all of a machine.
 """
 
 import asyncio
-import io
 import json
-import pickle
 import random
 import signal
 import sys
 import time
-from collections.abc import AsyncIterator, Callable, Sequence
+from bisect import bisect
+from collections.abc import AsyncIterator, Iterator, Sequence
 from contextlib import asynccontextmanager
 from dataclasses import dataclass, field
 from itertools import pairwise
 from pathlib import Path as FilePath
 from typing import Any
+from urllib.parse import urlsplit
 
 import httpx
 import numpy as np
 import pytest
-from numpy.typing import NDArray
 
-from api.simulation.posted import simulate_posted
-from domain.paths.path import Path
-from domain.paths.speed_profile import SpeedLimits, SpeedProfile
-from domain.tracking.trackers import TRACKERS
-from domain.vehicle import Pose, VehicleState
 from service.example_tracks import track_text
 from tests.support.bench import Row, quantiles, report
-from tests.support.good import GOOD
-from tests.support.http_robot import ACTUATION
+from tests.support.drive_loads import as_posted, dense, example_loop, hour
 from tests.support.process import ServiceProcess, connect, service
-from tests.support.track_study import LIMITS, track
 
 pytestmark = pytest.mark.bench
 
@@ -41,11 +33,11 @@ ROUNDS = 300
 ORIGINAL_P99_MS = 95.0
 """Of smart_polaris, by design: the result of a Monte Carlo study, not a measurement."""
 
-POINTS = 100_000
 PERIOD_S = 0.05
 MINUTE_S = 60.0
 UPLOADS = 20
-HOUR_S = 3_600
+SIMULATIONS = 14
+"""In half a minute, one after the other."""
 
 ROBOT = "signals: {estop: {min_on_s: 0}}\n"
 """An error that ends at once, so that more of them fit into a minute."""
@@ -126,27 +118,28 @@ class Watched:
 
 @dataclass(frozen=True, slots=True)
 class Posts:
-    """What is posted meanwhile: path, content type and file, in turn."""
+    """What is posted meanwhile: so many of path, content type and file, in turn."""
 
-    items: Sequence[tuple[str, str, FilePath]]
-    every_s: float
     count: int
+    every_s: float
+    items: Sequence[tuple[str, str, FilePath]]
 
 
 class DrivingService:
     """A service whose vehicle drives the loop, and what it did."""
 
-    def __init__(self, process: ServiceProcess, http: httpx.AsyncClient, record: FilePath) -> None:
+    def __init__(self, process: ServiceProcess, record: FilePath) -> None:
         self.process = process
-        self.http = http
         self._record = record
 
     async def watch(self, seconds: float, posts: Posts | None = None) -> tuple[Watched, list[Any]]:
         """Follow the stream, with a bare loop beside it, and return what was posted as well."""
+        bare = await _python(BARE, str(round(seconds / PERIOD_S)))
+        posting = None if posts is None else await self._posting(posts)
         async with connect(f"{self.process.stream_url}?topics=task") as client:
+            # The greeting, and a frame at once: only those after them come with the ticks.
             await client.recv()
-            bare = await _python(BARE, str(round(seconds / PERIOD_S)))
-            posting = None if posts is None else await self._post(posts)
+            await client.recv()
             begin = time.perf_counter()
             seen = Watched((begin, begin + seconds))
             while time.perf_counter() < begin + seconds:
@@ -155,11 +148,11 @@ class DrivingService:
                     seen.arrivals.append(time.perf_counter())
                     if frame.get("task"):
                         seen.tasks.append(frame["task"])
-            seen.bare.extend(json.loads((await bare.communicate())[0]))
-            done = [] if posting is None else json.loads((await posting.communicate())[0])
+        seen.bare.extend(json.loads((await bare.communicate())[0]))
+        done = [] if posting is None else json.loads((await posting.communicate())[0])
         return seen, done
 
-    async def _post(self, posts: Posts) -> asyncio.subprocess.Process:
+    async def _posting(self, posts: Posts) -> asyncio.subprocess.Process:
         words = [str(word) for item in posts.items for word in item]
         host = self.process.url.removeprefix("http://")
         return await _python(POSTING, host, str(posts.every_s), str(posts.count), *words)
@@ -180,44 +173,55 @@ async def driving(folder: FilePath) -> AsyncIterator[DrivingService]:
     robot.write_text(ROBOT)
     command = (sys.executable, str(script), str(record))
     with service("--robot", str(robot), command=command) as process:
-        async with httpx.AsyncClient(base_url=process.url, timeout=20) as http:
-            kind = {"Content-Type": "text/csv"}
-            answer = await http.post("/tasks", content=track_text("loop"), headers=kind)
-            assert answer.status_code == httpx.codes.CREATED, answer.text
-            await asyncio.sleep(2)
-            yield DrivingService(process, http, record)
+        async with httpx.AsyncClient(headers={"Content-Type": "text/csv"}) as http:
+            answer = await http.post(f"{process.url}/tasks", content=track_text("loop"))
+        assert answer.status_code == httpx.codes.CREATED, answer.text
+        await asyncio.sleep(4)
+        yield DrivingService(process, record)
+
+
+class Asker:
+    """Asks over one connection, without a library, whose time would be measured as well."""
+
+    def __init__(self, reader: asyncio.StreamReader, writer: asyncio.StreamWriter) -> None:
+        self._reader, self._writer = reader, writer
+
+    async def ask(self, request: str, body: str = "") -> tuple[float, float]:
+        """Return when a request was sent, and how many seconds the answer took."""
+        head = f"{request} HTTP/1.1\r\nHost: 127.0.0.1\r\nContent-Length: {len(body)}\r\n\r\n"
+        begin = time.perf_counter()
+        self._writer.write((head + body).encode())
+        answer = (await self._reader.readuntil(b"\r\n\r\n")).decode().lower()
+        took = time.perf_counter() - begin
+        assert answer.startswith("http/1.1 200"), answer
+        length = answer.partition("content-length:")[2].partition("\r\n")[0]
+        await self._reader.readexactly(int(length))
+        return begin, took
+
+    async def close(self) -> None:
+        """Close the connection."""
+        self._writer.close()
+        await self._writer.wait_closed()
 
 
 async def test_a_bad_reading_stops_the_vehicle(tmp_path: FilePath) -> None:
     chance = random.Random(1)
     asked, answered, control = [], [], []
     async with driving(tmp_path) as robot:
-
-        async def timed(method: str, path: str, body: object = None) -> tuple[float, float]:
-            begin = time.perf_counter()
-            answer = await robot.http.request(method, path, json=body)
-            took = time.perf_counter() - begin
-            assert answer.status_code == httpx.codes.OK, answer.text
-            return begin, took
-
+        address = urlsplit(robot.process.url)
+        asker = Asker(*await asyncio.open_connection(address.hostname, address.port))
         for _ in range(ROUNDS):
             # Anywhere between two ticks, and long enough after the release to drive again.
             await asyncio.sleep(0.15 + 0.05 * chance.random())
-            control.append((await timed("GET", "/livez"))[1])
-            begin, took = await timed("POST", "/signals/estop", {"value": True})
+            control.append((await asker.ask("GET /livez"))[1])
+            begin, took = await asker.ask("POST /signals/estop", '{"value": true}')
             asked.append(begin)
             answered.append(took)
-            await timed("POST", "/signals/estop", {"value": False})
+            await asker.ask("POST /signals/estop", '{"value": false}')
+        await asker.close()
         drives = robot.end()["drives"]
-    times = [at for at, _ in drives]
-    zeros = [at for at, speed in drives if speed == 0]
-    taken = []
-    for begin in asked:
-        before = int(np.searchsorted(times, begin)) - 1
-        assert drives[before][1] > 0, "it did not drive"
-        taken.append(zeros[int(np.searchsorted(zeros, begin))] - begin)
     rows: dict[str, Row] = {
-        "reading to speed 0 at the vehicle": quantiles(taken),
+        "reading to speed 0 at the vehicle": quantiles(list(_until_zero(asked, drives))),
         "reading to answer": quantiles(answered),
         "GET /livez to answer (control)": quantiles(control),
         "smart_polaris, by design (constant)": {"p99_ms": ORIGINAL_P99_MS},
@@ -226,44 +230,33 @@ async def test_a_bad_reading_stops_the_vehicle(tmp_path: FilePath) -> None:
     assert rows["reading to speed 0 at the vehicle"]["p99_ms"] <= 10
 
 
-def test_what_a_control_step_costs() -> None:
-    rows: dict[str, Row] = {}
-    for label, path in {"3,822 points": _loop(), "100,000 points": Path(_dense())}.items():
-        for controller in TRACKERS:
-            rows[f"{controller}, {label}"] = _microseconds(_steps(path, controller))
-    report("drive_control_step", rows)
-    for row in rows.values():
-        assert row["p99_us"] < 100
-
-
-def test_what_a_long_path_costs() -> None:
-    dense = _dense()
-    path = Path(dense)
-    pickled = pickle.dumps(path)
-    rows: dict[str, Row] = {
-        "making a Path": _cost(lambda: Path(dense)),
-        "pickling it": _cost(lambda: pickle.dumps(path)),
-        "unpickling it": _cost(lambda: pickle.loads(pickled)),
-        "its SpeedProfile": _cost(lambda: SpeedProfile(path, 2.8, SpeedLimits(), LIMITS)),
-    }
-    report("drive_long_path", rows)
+def _until_zero(asked: list[float], drives: list[tuple[float, float]]) -> Iterator[float]:
+    """Yield the seconds from each reading to the next command of speed 0."""
+    times = [at for at, _ in drives]
+    zeros = [at for at, speed in drives if speed == 0]
+    for begin in asked:
+        assert drives[bisect(times, begin) - 1][1] > 0, "it did not drive"
+        yield zeros[bisect(zeros, begin)] - begin
 
 
 @pytest.mark.timeout(200)
 async def test_uploads_disturb_neither_the_frames_nor_the_drive(tmp_path: FilePath) -> None:
-    as_csv, as_json = _uploads(tmp_path)
-    previews = [
-        ("/tasks/preview", "application/json", as_json),
-        ("/tasks/preview", "text/csv", as_csv),
-    ]
+    points = dense(example_loop())
+    kinds = {"application/json": tmp_path / "dense.json", "text/csv": tmp_path / "dense.csv"}
+    kinds["application/json"].write_text(json.dumps(as_posted(points)))
+    np.savetxt(kinds["text/csv"], points, "%.9g", ",")
+    previews = [("/tasks/preview", kind, file) for kind, file in kinds.items()]
     async with driving(tmp_path) as robot:
         idle, _ = await robot.watch(MINUTE_S / 2)
-        busy, done = await robot.watch(MINUTE_S, Posts(previews, MINUTE_S / UPLOADS, UPLOADS))
-        last = Posts([("/tasks", "application/json", as_json)], 0, 1)
+        busy, done = await robot.watch(MINUTE_S, Posts(UPLOADS, MINUTE_S / UPLOADS, previews))
+        # It goes on where it is, or it would be refused.
+        index = int(busy.tasks[-1]["progress"] * (len(points) - 1))
+        kinds["application/json"].write_text(json.dumps(as_posted(points, index)))
+        last = Posts(1, 0, [("/tasks", "application/json", kinds["application/json"])])
         served, (task,) = await robot.watch(5, last)
         found = robot.end()
     rows = _periods({"idle": idle, "20 uploads": busy, "a task of 100,000": served}, found)
-    for kind in ("application/json", "text/csv"):
+    for kind in kinds:
         rows[f"preview, {kind}"] = quantiles([took for k, _, _, took in done if k == kind])
     rows["task, application/json"] = quantiles([task[3]])
     rows["cross-track error, idle"] = _errors_of(idle)
@@ -273,7 +266,7 @@ async def test_uploads_disturb_neither_the_frames_nor_the_drive(tmp_path: FilePa
     assert task[1] == httpx.codes.CREATED
     for seen in (idle, busy):
         _assert_it_went_on(seen)
-    assert served.tasks[-1]["waypoint_count"] == POINTS
+    assert served.tasks[-1]["waypoint_count"] == len(points)
     assert rows["20 uploads, tick at the server"]["p99_ms"] < 5
     assert rows["20 uploads, frame at a client"]["p99_ms"] < 5
 
@@ -281,10 +274,10 @@ async def test_uploads_disturb_neither_the_frames_nor_the_drive(tmp_path: FilePa
 @pytest.mark.timeout(200)
 async def test_a_simulation_disturbs_neither_the_frames_nor_the_drive(tmp_path: FilePath) -> None:
     scenario = tmp_path / "hour.json"
-    scenario.write_bytes(_hour())
+    scenario.write_bytes(hour())
     async with driving(tmp_path) as robot:
         idle, _ = await robot.watch(MINUTE_S / 2)
-        posts = Posts([("/simulations", "application/json", scenario)], 0, 4)
+        posts = Posts(SIMULATIONS, 0, [("/simulations", "application/json", scenario)])
         busy, done = await robot.watch(MINUTE_S / 2, posts)
         found = robot.end()
     rows = _periods({"idle": idle, "simulations": busy}, found)
@@ -293,98 +286,11 @@ async def test_a_simulation_disturbs_neither_the_frames_nor_the_drive(tmp_path: 
         "megabytes": round(done[0][2] / 1e6, 2),
     }
     report("drive_simulations", rows)
-    assert [status for _, status, _, _ in done] == [httpx.codes.OK] * 4
+    assert [status for _, status, _, _ in done] == [httpx.codes.OK] * SIMULATIONS
     _assert_it_went_on(idle)
     _assert_it_went_on(busy)
     assert rows["simulations, tick at the server"]["p99_ms"] < 5
     assert rows["simulations, frame at a client"]["p99_ms"] < 5
-
-
-def test_an_hour_in_virtual_time() -> None:
-    raw = _hour()
-    answers, took = [], []
-    for _ in range(2):
-        begin = time.perf_counter()
-        answers.append(simulate_posted(raw, ACTUATION, None))
-        took.append(time.perf_counter() - begin)
-    samples = json.loads(answers[0])["samples"]
-    driven = sum(sample["task"] is not None for sample in samples)
-    rows: dict[str, Row] = {
-        "an hour": {
-            "best_s": round(min(took), 2),
-            "worst_s": round(max(took), 2),
-            "driven_s": driven,
-            "megabytes": round(len(answers[0]) / 1e6, 2),
-            "identical": float(answers[0] == answers[1]),
-        }
-    }
-    report("drive_hour", rows)
-    assert answers[0] == answers[1]
-    assert 280 < driven < 320
-    assert min(took) < 5
-
-
-def _loop() -> Path:
-    return track("tracks/gem_e2_loop.csv")
-
-
-def _dense() -> NDArray[np.float64]:
-    """Return the loop with 100,000 waypoints, shape (100,000, 3)."""
-    loop = _loop()
-    along = np.linspace(0, loop.length_m, POINTS).tolist()
-    places = [loop.point_at(distance) for distance in along]
-    yaws = [loop.heading_at(distance) for distance in along]
-    return np.array([(p.x_m, p.y_m, yaw) for p, yaw in zip(places, yaws, strict=True)])
-
-
-def _uploads(folder: FilePath) -> tuple[FilePath, FilePath]:
-    """Write the loop with 100,000 waypoints as CSV and as JSON."""
-    as_csv, as_json = folder / "dense.csv", folder / "dense.json"
-    rows, text = _dense(), io.StringIO()
-    np.savetxt(text, rows, "%.9g", ",")
-    as_csv.write_text(text.getvalue())
-    items = [{"x_m": x, "y_m": y, "yaw_rad": yaw} for x, y, yaw in rows.tolist()]
-    as_json.write_text(json.dumps({"waypoints": items}))
-    return as_csv, as_json
-
-
-def _hour() -> bytes:
-    """Return a scenario: an hour, in which a drive of 5 minutes begins at once."""
-    loop = [
-        {"x_m": x, "y_m": y, "yaw_rad": yaw}
-        for x, y, yaw in np.loadtxt(io.StringIO(track_text("loop")), delimiter=",")[:, :3].tolist()
-    ]
-    steps = [{"t_s": 0, "reading": dict(GOOD)}, {"t_s": 0.5, "task": {"waypoints": loop}}]
-    robot = {"signals": {"stale_after_s": 0}}
-    body = {"robot": robot, "until_s": HOUR_S, "sample_period_s": 1, "steps": steps}
-    return json.dumps(body).encode()
-
-
-def _steps(path: Path, controller: str) -> list[float]:
-    """Return how long control steps take all along a path, 50 mm beside it, s."""
-    tracker = TRACKERS[controller](LIMITS)
-    took = []
-    for distance in np.linspace(0, path.length_m, 10_000).tolist():
-        place, index = path.point_at(distance), path.index_after(distance)
-        state = VehicleState(Pose(place.x_m, place.y_m + 0.05, path.heading_at(distance)), 2.8, 0.0)
-        begin = time.perf_counter()
-        tracker.control_step(state, path, index)
-        took.append(time.perf_counter() - begin)
-    return took
-
-
-def _microseconds(times: Sequence[float]) -> dict[str, float]:
-    found = quantiles([1000 * each for each in times])
-    return {name.replace("_ms", "_us"): value for name, value in found.items()}
-
-
-def _cost(work: Callable[[], object]) -> dict[str, float]:
-    times = []
-    for _ in range(11):
-        begin = time.perf_counter()
-        work()
-        times.append(time.perf_counter() - begin)
-    return quantiles(times)
 
 
 def _periods(watched: dict[str, Watched], found: dict[str, list[Any]]) -> dict[str, Row]:

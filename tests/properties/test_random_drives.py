@@ -20,7 +20,7 @@ from domain.simulation.vehicle_settings import Noise, Plant, VehicleSettings
 from domain.snapshot import TaskPhase
 from domain.supervision import SupervisionSettings
 from domain.system_model import SmhModel
-from domain.timebase import seconds
+from domain.timebase import seconds, to_seconds
 from domain.tracking.trackers import TRACKERS
 from domain.vehicle import Pose, VehicleLimits
 from service.files.robot_settings import SignalsBlock
@@ -62,6 +62,8 @@ class Errand:
     bearing_rad: float
     """In which direction from there."""
     yaw_rad: float
+    held_s: tuple[float, float]
+    """After how many seconds somebody holds it, and for how many; 0: nobody does."""
 
     @property
     def waypoints(self) -> NDArray[np.float64]:
@@ -102,6 +104,11 @@ ERRANDS = st.builds(
     beside_m=st.one_of(st.just(0.0), st.floats(0.0, 3.0)),
     bearing_rad=ANGLES,
     yaw_rad=ANGLES,
+    held_s=st.one_of(
+        st.just((0.0, 0.0)),
+        st.just((0.0, 0.0)),
+        st.tuples(st.floats(0.0, 8.0), st.floats(0.05, 3.0)),
+    ),
 )
 
 
@@ -120,6 +127,7 @@ class Outing:
         for _ in range(round(self.longest_s / _PERIOD_S)):
             if self.robot.task.status in _ENDS:
                 break
+            self._hold_or_release()
             self.robot.advance(_PERIOD_S)
             self._look()
 
@@ -129,9 +137,10 @@ class Outing:
 
         A vehicle that goes nowhere is given up after 20 s. One that goes on is as fast as its task,
         its bends of 2 m/s at least, and its acceleration allow; that it loses its path and turns
-        back to it makes it several times as long.
+        back to it makes it several times as long. What holds it adds its time.
         """
-        return 60.0 + 4 * self.path.length_m / min(self.errand.speed_mps, 2.0)
+        driving_s = 4 * self.path.length_m / min(self.errand.speed_mps, 2.0)
+        return 60.0 + driving_s + self.errand.held_s[1]
 
     def passed_share(self) -> float:
         """Return how much of the path the vehicle really passed, in its order, 0 to 1."""
@@ -150,6 +159,15 @@ class Outing:
         braking_s = 0.0 if braking is None else abs(vehicle.state.speed_mps) / braking
         self.robot.advance(1.0 + braking_s)
         return vehicle.state.speed_mps
+
+    def _hold_or_release(self) -> None:
+        after_s, for_s = self.errand.held_s
+        since_s = to_seconds(self.robot.now) - after_s
+        held = bool(self.robot.core.driving.holds)
+        if 0 <= since_s < for_s and not held:
+            self.robot.hold()
+        elif since_s >= for_s and held:
+            self.robot.release()
 
     def _look(self) -> None:
         pose = self.robot.robot.vehicle.state.pose

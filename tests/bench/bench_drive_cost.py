@@ -1,0 +1,95 @@
+"""What driving costs: a control step, a path of 100,000 waypoints, an hour in virtual time."""
+
+import json
+import pickle
+import time
+from collections.abc import Callable
+
+import numpy as np
+import pytest
+
+from api.simulation.posted import simulate_posted
+from domain.paths.path import Path
+from domain.paths.speed_profile import SpeedLimits, SpeedProfile
+from domain.tracking.trackers import TRACKERS
+from domain.vehicle import Pose, VehicleState
+from tests.support.bench import Row, quantiles, report
+from tests.support.drive_loads import dense, hour
+from tests.support.http_robot import ACTUATION
+from tests.support.track_study import LIMITS, track
+
+pytestmark = pytest.mark.bench
+
+LOOP = "tracks/gem_e2_loop.csv"
+
+
+def test_what_a_control_step_costs() -> None:
+    loop = track(LOOP)
+    rows: dict[str, Row] = {}
+    for label, path in {"3,822 points": loop, "100,000 points": Path(dense(loop))}.items():
+        for controller in TRACKERS:
+            # What `quantiles` calls milliseconds are microseconds of a thousand times as much.
+            found = quantiles([1000 * took for took in _steps(path, controller)])
+            rows[f"{controller}, {label}"] = {
+                f"{name.removesuffix('ms')}us": value for name, value in found.items()
+            }
+    report("drive_control_step", rows)
+    for row in rows.values():
+        # The median: what else the machine does shows in all others.
+        assert row["p50_us"] < 100
+
+
+def test_what_a_long_path_costs() -> None:
+    waypoints = dense(track(LOOP))
+    path = Path(waypoints)
+    pickled = pickle.dumps(path)
+    work: dict[str, Callable[[], object]] = {
+        "making a Path": lambda: Path(waypoints),
+        "pickling it": lambda: pickle.dumps(path),
+        "unpickling it": lambda: pickle.loads(pickled),
+        "its SpeedProfile": lambda: SpeedProfile(path, 2.8, SpeedLimits(), LIMITS),
+    }
+    report("drive_long_path", {name: quantiles(_seconds(each)) for name, each in work.items()})
+
+
+def test_an_hour_in_virtual_time() -> None:
+    raw = hour()
+    answers: list[bytes] = []
+    took = _seconds(lambda: answers.append(simulate_posted(raw, ACTUATION, None)), rounds=2)
+    samples = json.loads(answers[0])["samples"]
+    driven = sum(sample["task"] is not None for sample in samples)
+    rows: dict[str, Row] = {
+        "an hour": {
+            "best_s": round(min(took), 2),
+            "worst_s": round(max(took), 2),
+            "driven_s": driven,
+            "megabytes": round(len(answers[0]) / 1e6, 2),
+            "identical": float(answers[0] == answers[1]),
+        }
+    }
+    report("drive_hour", rows)
+    assert answers[0] == answers[1]
+    assert 280 < driven < 320
+    assert min(took) < 5
+
+
+def _steps(path: Path, controller: str) -> list[float]:
+    """Return how long control steps take all along a path, 50 mm beside it, s."""
+    tracker = TRACKERS[controller](LIMITS)
+    took = []
+    for distance in np.linspace(0, path.length_m, 10_000).tolist():
+        place, index = path.point_at(distance), path.index_after(distance)
+        state = VehicleState(Pose(place.x_m, place.y_m + 0.05, path.heading_at(distance)), 2.8, 0.0)
+        begin = time.perf_counter()
+        tracker.control_step(state, path, index)
+        took.append(time.perf_counter() - begin)
+    return took
+
+
+def _seconds(work: Callable[[], object], rounds: int = 11) -> list[float]:
+    times = []
+    for _ in range(rounds):
+        begin = time.perf_counter()
+        work()
+        times.append(time.perf_counter() - begin)
+    return times
