@@ -280,8 +280,10 @@ class SendGoal:
     """First waypoint not yet passed: where this goal begins."""
     controller: str
     speed_mps: float
+    reached_m: float = 0.0
+    """How far along the path earlier goals of the task came, from waypoint 0."""
     left_out_m: float = 0.0
-    """Of the path before `start_index`, what an earlier goal of the task left out."""
+    """Of that, what the vehicle was never near."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -121,7 +121,7 @@ class Navigation:
             speed_mps=speed,
             best_m=-math.inf,
             best_at=now,
-            reached_m=goal.path.distance_of(max(goal.start_index - 1, goal.first_index)),
+            reached_m=max(goal.reached_m, goal.path.distance_of(goal.first_index)),
             left_out_m=goal.left_out_m,
         )
 

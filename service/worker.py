@@ -8,14 +8,21 @@ we end, since its standard input ends then.
 
 import asyncio
 import os
-import pickle
 import sys
 from asyncio.subprocess import PIPE, Process
 from collections.abc import Callable, Sequence
 from typing import TypeVar, TypeVarTuple, cast
 
 from domain.errors import PilothouseError
-from service.worker_process import LENGTH_BYTES, ErrorParcel, Reply, length_of, pack
+from service.worker_process import (
+    LENGTH_BYTES,
+    ErrorParcel,
+    Reply,
+    large,
+    numbers_in,
+    pack,
+    unpack,
+)
 
 Given = TypeVarTuple("Given")
 Result = TypeVar("Result")
@@ -112,7 +119,8 @@ class Worker:
         self._jobs += 1
         try:
             async with self._turn:
-                reply = await self._exchange(pack((function, arguments)))
+                job = pack((function, tuple(map(large, arguments))))
+                reply = await self._exchange(job)
         finally:
             self._jobs -= 1
         if isinstance(reply.value, ErrorParcel):
@@ -121,7 +129,7 @@ class Worker:
             raise JobFailedError(reply.value)
         return cast("Result", reply.value)
 
-    async def _exchange(self, job: bytes) -> Reply:
+    async def _exchange(self, job: Sequence[bytes | memoryview]) -> Reply:
         """Send a job and wait for what becomes of it; a process that fails is not used again.
 
         One that was there before may have died before this job: then a new one is tried.
@@ -173,14 +181,17 @@ class Worker:
         return self._process
 
 
-async def _ask(process: Process, job: bytes) -> Reply:
+async def _ask(process: Process, job: Sequence[bytes | memoryview]) -> Reply:
     """Write a job and read the reply."""
     if process.stdin is None or process.stdout is None:
         raise ConnectionError("the worker has no pipes")
-    process.stdin.write(job)
-    await process.stdin.drain()
-    head = await process.stdout.readexactly(LENGTH_BYTES)
-    reply = pickle.loads(await process.stdout.readexactly(length_of(head)))
+    for piece in job:
+        process.stdin.write(piece)
+        await process.stdin.drain()
+    replies = process.stdout
+    (count,) = numbers_in(await replies.readexactly(LENGTH_BYTES))
+    lengths = numbers_in(await replies.readexactly(count * LENGTH_BYTES))
+    reply = unpack([await replies.readexactly(length) for length in lengths])
     if not isinstance(reply, Reply):
         raise ConnectionError("the worker sent something else than a reply")
     return reply

@@ -1,7 +1,7 @@
 """The other side of `service.worker`: take one job after the other from standard input, for ever.
 
-A message is a length and that many bytes of pickle. Only `service.worker` writes here, and it
-writes only functions of this program and their arguments.
+Messages are pickles. Only `service.worker` writes here, and it writes only functions of this
+program and their arguments.
 """
 
 import importlib
@@ -10,7 +10,8 @@ import pickle
 import struct
 import sys
 import traceback
-from typing import BinaryIO, Literal, NamedTuple
+from collections.abc import Sequence
+from typing import Any, BinaryIO, Literal, NamedTuple
 
 from domain.errors import PilothouseError
 
@@ -50,39 +51,71 @@ class ErrorParcel(NamedTuple):
         return error
 
 
-def pack(message: object) -> bytes:
-    """Return a message as it is sent: its length, then itself."""
-    data = pickle.dumps(message)
-    return _LENGTH.pack(len(data)) + data
+def large(value: object) -> object:
+    """Return bytes such that they are sent beside the pickle and not copied into it."""
+    return pickle.PickleBuffer(value) if isinstance(value, bytes) else value
 
 
-def length_of(head: bytes) -> int:
-    """Return how many bytes follow the first `LENGTH_BYTES` of a message."""
-    length: int = _LENGTH.unpack(head)[0]
-    return length
+def pack(message: object) -> list[bytes | memoryview]:
+    """Return a message as it is sent, in pieces: nothing large is copied.
+
+    First the number of pieces that follow, then the length of each, then they themselves: a pickle,
+    and what lies beside it, such as a body or the numbers of a path.
+    """
+    beside: list[pickle.PickleBuffer] = []
+    data = pickle.dumps(message, protocol=5, buffer_callback=beside.append)
+    pieces: list[bytes | memoryview] = [data, *(buffer.raw() for buffer in beside)]
+    lengths = b"".join(number_of(len(piece)) for piece in pieces)
+    return [number_of(len(pieces)) + lengths, *pieces]
+
+
+def unpack(pieces: Sequence[bytes]) -> object:
+    """Return a message of which all pieces are there."""
+    message: object = pickle.loads(pieces[0], buffers=pieces[1:])
+    return message
+
+
+def number_of(value: int) -> bytes:
+    """Return a number or length as it is sent."""
+    return _LENGTH.pack(value)
+
+
+def numbers_in(head: bytes) -> tuple[int, ...]:
+    """Return the numbers or lengths in some bytes."""
+    return tuple(number for (number,) in _LENGTH.iter_unpack(head))
+
+
+def read(stream: BinaryIO) -> object | None:
+    """Return the next message; None: it breaks off, or there is none."""
+    head = stream.read(LENGTH_BYTES)
+    if len(head) < LENGTH_BYTES:
+        return None
+    (count,) = numbers_in(head)
+    lengths = numbers_in(stream.read(count * LENGTH_BYTES))
+    return unpack([stream.read(length) for length in lengths])
 
 
 def serve(jobs: BinaryIO, replies: BinaryIO) -> None:
     """Do jobs until there is nobody who could send more."""
-    while len(head := jobs.read(LENGTH_BYTES)) == LENGTH_BYTES:
-        reply = do(jobs.read(length_of(head)))
-        replies.write(pack(reply))
+    while (job := read(jobs)) is not None:
+        for piece in pack(do(job)):
+            replies.write(piece)
         replies.flush()
 
 
-def do(job: bytes) -> Reply:
+def do(job: Any) -> Reply:  # noqa: ANN401  # whatever `service.worker` sent
     """Do one job.
 
     Args:
-        job: A pickled function and its arguments.
+        job: A function and its arguments.
 
     Raises:
         MemoryError: The job wants more than there is. What it left behind is unknown: the process
             has to end.
     """
-    function, arguments = pickle.loads(job)
+    function, arguments = job
     try:
-        return Reply("done", function(*arguments))
+        return Reply("done", large(function(*arguments)))
     except PilothouseError as error:
         return Reply("refused", ErrorParcel.of(error))
     except MemoryError:

@@ -39,6 +39,11 @@ class Task:
         """Return how long the path is from where the task began."""
         return self.path.length_m - self.path.distance_of(self.start_index)
 
+    @property
+    def reached_m(self) -> float:
+        """Return how far along the path it came, from waypoint 0."""
+        return self.path.distance_of(self.start_index) + self.distance_m
+
     def advance(self, feedback: GoalFeedback) -> None:
         """Take over how far it is; never backwards."""
         begun = self.path.distance_of(self.start_index)

@@ -232,6 +232,7 @@ class TaskPlanner:
                 task.target_index,
                 task.controller,
                 task.speed_mps,
+                task.reached_m,
                 task.left_out_m,
             )
         )

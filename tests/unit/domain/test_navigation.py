@@ -56,7 +56,10 @@ class Drive20Hz:
         self.navigation.take_report(VehicleReport(state), self.now)
 
     def send(self, goal: int = 1, start_index: int = 0, speed_mps: float = 2.8) -> None:
-        given = SendGoal(GoalId(goal), self.path, 0, start_index, "test", speed_mps)
+        reached_m = self.path.distance_of(max(start_index - 1, 0))
+        given = SendGoal(
+            GoalId(goal), self.path, 0, start_index, "test", speed_mps, reached_m=reached_m
+        )
         self.navigation.handle(given, self.now)
         self.act()
 
@@ -348,7 +351,7 @@ def test_an_end_that_is_passed_with_a_part_left_out_is_no_success() -> None:
 def test_what_an_earlier_goal_of_the_task_left_out_counts() -> None:
     drive = Drive20Hz()
     drive.report(19.0)
-    goal = SendGoal(GoalId(1), drive.path, 0, 19, "test", 2.8, left_out_m=1.5)
+    goal = SendGoal(GoalId(1), drive.path, 0, 19, "test", 2.8, reached_m=19.0, left_out_m=1.5)
     drive.navigation.handle(goal, drive.now)
     drive.act()
     drive.step(20.5)

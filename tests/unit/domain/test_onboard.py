@@ -120,3 +120,18 @@ def test_it_wakes_for_whichever_of_the_two_is_first(robot: VirtualRobot) -> None
     robot.serve(straight())
 
     assert robot.onboard.wake_at() == robot.now + seconds(0.05)
+
+
+def test_holds_between_waypoints_far_apart_leave_nothing_of_the_path_out(
+    robot: VirtualRobot,
+) -> None:
+    """What was driven before a hold was driven, though its next waypoint is still ahead."""
+    robot.serve(straight(80.0, spacing_m=20.0))
+    for _ in range(3):
+        drive(robot, 7)
+        robot.hold()
+        drive(robot, 2)
+        robot.release()
+    drive(robot, 30)
+
+    assert robot.task.status is TaskPhase.SUCCEEDED

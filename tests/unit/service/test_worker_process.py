@@ -7,7 +7,9 @@ import pytest
 
 from domain.errors import BlockedError, InvalidValueError
 from domain.findings import Blocker
-from service.worker_process import LENGTH_BYTES, ErrorParcel, Reply, do, length_of, pack, serve
+from domain.paths.path import Path
+from service.worker_process import ErrorParcel, Reply, do, large, pack, read, serve
+from tests.support.driver import straight
 
 
 def refuse() -> None:
@@ -18,35 +20,61 @@ def run_out_of_memory() -> None:
     raise MemoryError
 
 
-def replies_to(sent: bytes) -> list[Reply]:
-    jobs, replies = io.BytesIO(sent), io.BytesIO()
-    serve(jobs, replies)
+def sent(message: object) -> bytes:
+    return b"".join(pack(message))
+
+
+def replies_to(jobs: bytes) -> list[object]:
+    replies = io.BytesIO()
+    serve(io.BytesIO(jobs), replies)
     replies.seek(0)
     found = []
-    while head := replies.read(LENGTH_BYTES):
-        found.append(pickle.loads(replies.read(length_of(head))))
+    while (reply := read(replies)) is not None:
+        found.append(reply)
     return found
 
 
 def test_jobs_are_done_in_order_until_there_are_no_more() -> None:
-    assert replies_to(pack((abs, (-1,))) + pack((max, (1, 2)))) == [
+    assert replies_to(sent((abs, (-1,))) + sent((max, (1, 2)))) == [
         Reply("done", 1),
         Reply("done", 2),
     ]
 
 
 def test_a_message_that_breaks_off_is_the_end() -> None:
-    assert replies_to(pack((abs, (-1,))) + b"\x00\x00") == [Reply("done", 1)]
+    assert replies_to(sent((abs, (-1,))) + b"\x00\x00") == [Reply("done", 1)]
+
+
+def test_a_body_is_sent_beside_the_pickle_and_arrives_as_it_was() -> None:
+    body = bytes(range(256)) * 1_000
+    pieces = pack((len, (large(body),)))
+
+    assert [len(piece) for piece in pieces[2:]] == [len(body)]
+    assert len(pieces[1]) < 200
+    assert replies_to(b"".join(pieces)) == [Reply("done", len(body))]
+
+
+def test_what_is_answered_in_bytes_arrives_as_bytes() -> None:
+    assert replies_to(sent((bytes, (3,)))) == [Reply("done", b"\x00\x00\x00")]
+
+
+def test_a_path_that_was_sent_is_the_same_path() -> None:
+    (reply,) = replies_to(sent((straight, (20.0,))))
+
+    assert isinstance(reply, Reply)
+    assert isinstance(reply.value, Path)
+    assert reply.value.length_m == 20.0
+    assert reply.value.point_at(7.5).x_m == 7.5
 
 
 def test_a_refusal_and_a_fault_are_told_apart() -> None:
-    assert do(pickle.dumps((refuse, ()))).outcome == "refused"
-    assert do(pickle.dumps((abs, ("x",)))).outcome == "failed"
+    assert do((refuse, ())).outcome == "refused"
+    assert do((abs, ("x",))).outcome == "failed"
 
 
 def test_a_process_without_memory_does_not_go_on() -> None:
     with pytest.raises(MemoryError):
-        do(pickle.dumps((run_out_of_memory, ())))
+        do((run_out_of_memory, ()))
 
 
 def test_an_error_arrives_with_its_facts() -> None:
