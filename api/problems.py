@@ -127,6 +127,8 @@ def problem_of(error: PilothouseError, clock: Clock, instance: str = "") -> Prob
         more["hint"] = error.hint
     if isinstance(error, BlockedError):
         more["blockers"] = [BlockerJson.of(blocker, clock) for blocker in error.blockers]
+    if isinstance(error, FarStartError) and error.nearest is not None:
+        more["available"] = [str(error.nearest[0])]
     if isinstance(error, IllegalTransitionError):
         more["available"] = [str(transition) for transition in error.available]
     if isinstance(error, InvalidModelError | InvalidWaypointsError):

@@ -120,10 +120,24 @@ class FarStartError(InvalidValueError):
 
     code = "FAR_START"
 
-    def __init__(self, distance_m: float, limit_m: float) -> None:
+    def __init__(
+        self, distance_m: float, limit_m: float, nearest: tuple[int, float] | None = None
+    ) -> None:
+        """Say how far it is.
+
+        Args:
+            distance_m: Between the vehicle and where the path would begin.
+            limit_m: So far it may be.
+            nearest: The waypoint that is nearest to the vehicle, and how far that is, m; None: it
+                is too far as well.
+        """
         message = f"the path begins {distance_m:.1f} m from the vehicle; at most {limit_m:g} m"
         super().__init__(message, "waypoints")
+        self.nearest = nearest
         self.hint = "drive closer, or begin at another waypoint with start_index"
+        if nearest is not None:
+            index, away_m = nearest
+            self.hint = f"waypoint {index} is {away_m:.1f} m away: begin there with start_index"
 
 
 class InvalidModelError(PilothouseError):

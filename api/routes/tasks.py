@@ -24,7 +24,7 @@ from api.schemas.tasks import (
     TasksJson,
     WaypointsJson,
 )
-from domain.errors import InvalidValueError, UnknownControllerError, UnknownTaskError
+from domain.errors import FarStartError, InvalidValueError, UnknownControllerError, UnknownTaskError
 from domain.messages import CancelTaskRequest, TaskRequest
 from domain.tracking.trackers import TRACKERS
 from service.files.waypoint_file import Heading
@@ -109,6 +109,9 @@ def serve(supervisor: Supervisor, posted: PostedTask, actor: str) -> TaskJson:
     asked = TaskRequest(posted.path, posted.start_index, posted.controller, posted.speed_mps, actor)
     try:
         identity = supervisor.submit(asked).task
+    except FarStartError:
+        # It says more than the place in the body: where the task could begin instead.
+        raise
     except InvalidValueError as error:
         raise InvalidBodyError.at(error.pointer, error) from error
     except UnknownControllerError as error:

@@ -9,6 +9,8 @@ Source: smart_polaris, `task_planner_node.py`.
 
 from collections.abc import Iterator
 
+import numpy as np
+
 from domain.errors import FarStartError, InvalidValueError, UnknownControllerError
 from domain.messages import (
     Drive,
@@ -21,6 +23,7 @@ from domain.messages import (
     TaskRequest,
 )
 from domain.outbox import Outbox
+from domain.paths.path import Path
 from domain.snapshot import TaskPhase, TaskStatus, TaskView
 from domain.tasks.holds import Holds
 from domain.tasks.settings import TaskSettings
@@ -88,7 +91,8 @@ class TaskPlanner:
             raise InvalidValueError("nothing of the path is left from there", "start_index")
         check_cruise(request.speed_mps, self._limits)
         if (distance := self._too_far(path.waypoint(index))) is not None:
-            raise FarStartError(distance, self._settings.max_start_distance_m)
+            limit_m = self._settings.max_start_distance_m
+            raise FarStartError(distance, limit_m, self._nearest(path))
 
     def serve(self, request: TaskRequest, now: Instant) -> TaskId:
         """Take a checked task in place of the current one, and start it unless it is held."""
@@ -279,6 +283,17 @@ class TaskPlanner:
         self._outbox.task_changed = True
         identity = "" if self._current is None else self._current.id
         return self._outbox.emit(kind, {"task": identity, **data}, cause)
+
+    def _nearest(self, path: Path) -> tuple[int, float] | None:
+        """Return the waypoint nearest to the vehicle that a task may begin with, and how far."""
+        state = self._vehicle.view.state
+        if state is None:
+            return None
+        x, y = path.waypoints[:-1, 0], path.waypoints[:-1, 1]
+        distances = np.hypot(x - state.pose.x_m, y - state.pose.y_m)
+        index = int(distances.argmin())
+        away_m = float(distances[index])
+        return (index, away_m) if away_m <= self._settings.max_start_distance_m else None
 
     def _too_far(self, start: Point) -> float | None:
         """Return the distance to where a path begins if it is too large."""

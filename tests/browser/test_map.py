@@ -131,6 +131,20 @@ def test_the_example_drives_at_one_click(
     assert complaints.messages == []
 
 
+def test_a_track_that_begins_far_away_can_be_begun_where_it_passes_the_vehicle(
+    desktop: Page, service: Service
+) -> None:
+    pose = desktop.request.get(f"{service.url}/vehicle").json()["pose"]
+    x, y = pose["x_m"], pose["y_m"]
+    passing = "".join(f"{x + step},{y},0\n" for step in range(-20, 21))
+    choose(desktop, passing.encode(), "passing.csv")
+    button(desktop, "Start").click()
+    expect(desktop.locator("ph-task-form").get_by_role("alert")).to_contain_text("begins 20.0 m")
+    button(desktop, "Begin at waypoint 20").click()
+
+    expect(sentence(desktop)).to_contain_text("RUNNING: task ")
+
+
 def test_a_refused_file_shows_the_line_and_starts_nothing(desktop: Page, service: Service) -> None:
     choose(desktop, b"0,0,0\n1,0,0\n2,zwei<b>,0\n3,0,0\n", "bad.csv")
     alert = desktop.locator("ph-task-form").get_by_role("alert")

@@ -161,16 +161,29 @@ class TaskForm extends HTMLElement {
     this.#show(answer);
   }
 
-  async #start() {
-    const { answer, problem } = await this.#work(() => this.#post("/tasks", this.#file.text));
+  async #start(startIndex = null) {
+    const text = async () => this.#file.text;
+    const { answer, problem } = await this.#work(() => this.#serve(text, startIndex));
     if (answer) this.#discard();
     this.#problem = problem;
   }
 
-  async #drive() {
+  async #drive(startIndex = null) {
     const path = `/examples/tracks/${encodeURIComponent(this.#track().name)}`;
-    const drive = async () => this.#post("/tasks", await requestText(path));
+    const drive = () => this.#serve(() => requestText(path), startIndex);
     this.#problem = (await this.#work(drive)).problem;
+  }
+
+  async #serve(text, startIndex) {
+    return this.#post("/tasks", await text(), startIndex === null ? {} : { start_index: startIndex });
+  }
+
+  /** A vehicle in the middle of a track may go on from there. */
+  #elsewhere() {
+    const { code, available = [] } = this.#problem;
+    if (code !== "FAR_START" || available.length === 0) return null;
+    const begin = () => (this.#file ? this.#start(available[0]) : this.#drive(available[0]));
+    return el("button", { type: "button", onclick: begin }, `Begin at waypoint ${available[0]}`);
   }
 
   #discard() {
@@ -190,11 +203,12 @@ class TaskForm extends HTMLElement {
     this.#show(null);
   }
 
-  #post(path, text) {
+  #post(path, text, more = {}) {
     const query = new URLSearchParams({
       controller: this.controller.value,
       speed_mps: this.speed.value,
       heading: this.heading.value,
+      ...more,
     });
     return request("POST", `${path}?${query}`, text, { type: "text/csv", timeoutMs: UPLOAD_MS });
   }
@@ -222,7 +236,8 @@ class TaskForm extends HTMLElement {
       const said = detail?.includes(message) ? "" : `: ${message}`;
       return el("li", {}, `Line ${line}${said}`, text ? el("code", {}, text) : null);
     });
-    return [...problemLines(this.#problem), el("ul", { class: "findings" }, ...items)];
+    const list = items.length ? el("ul", { class: "findings" }, ...items) : null;
+    return [...problemLines(this.#problem), list, this.#elsewhere()].filter(Boolean);
   }
 
   #findings() {

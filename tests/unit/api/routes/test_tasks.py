@@ -149,6 +149,17 @@ async def test_a_path_that_begins_far_away_is_refused_with_a_hint(robot: HttpRob
 
     assert (answer.status_code, answer.json()["code"]) == (422, "FAR_START")
     assert "start_index" in answer.json()["hint"]
+    assert "available" not in answer.json(), "all of it is far away"
+
+
+async def test_a_path_that_passes_by_can_be_begun_where_it_is_nearest(robot: HttpRobot) -> None:
+    passing = "".join(f"{x},1,0\n" for x in range(-20, 21))
+    refused = (await post(robot, passing)).json()
+    assert refused["hint"] == "waypoint 20 is 1.0 m away: begin there with start_index"
+    assert refused["errors"][0]["pointer"] == "/waypoints"
+    answer = await post(robot, passing, start_index=int(refused["available"][0]))
+
+    assert answer.status_code == 201
 
 
 async def test_options_in_the_query_are_not_silently_ignored_beside_json(
