@@ -11,6 +11,7 @@ from api.metrics import Metrics, metrics
 from api.problems import Problem, make_problem, problem_response
 from api.schemas.base import Json
 from api.streaming.hub import StreamHubDep
+from domain.tasks.holds import VEHICLE_HOLD
 from domain.timebase import Duration, seconds, to_seconds
 from service.supervisor import Supervisor
 
@@ -117,6 +118,9 @@ def _warnings(supervisor: Supervisor, *, exposed: bool) -> Iterator[WarningJson]
         if signal.skewed:
             message = f"the clock of who sends {name} differs from ours by more than 1 s"
             yield WarningJson(code="CLOCK_SKEW", message=message)
+    lost = supervisor.core.driving.holds.get(VEHICLE_HOLD)
+    if lost is not None:
+        yield WarningJson(code="NO_POSE", message=lost.reason)
     if supervisor.late_ticks:
         message = f"{supervisor.late_ticks} ticks were skipped since the start: the machine is slow"
         yield WarningJson(code="LATE_TICKS", message=message)

@@ -131,3 +131,17 @@ async def test_a_service_that_anybody_can_reach_warns_of_it(
     app.state.exposed = True
 
     assert "NO_AUTHENTICATION" in await warnings(http)
+
+
+async def test_a_vehicle_that_does_not_tell_where_it_is_is_a_warning(
+    http: httpx.AsyncClient, supervisor: Supervisor, clock: ManualClock
+) -> None:
+    assert (await warnings(http))["NO_POSE"] == "the vehicle never told where it is"
+    async with running(supervisor):
+        assert "NO_POSE" not in await warnings(http)
+        parts = supervisor.simulated_parts
+        assert parts is not None
+        parts[1].vehicle.set_reporting(False, clock.now())
+        await clock.advance(1)
+
+        assert (await warnings(http))["NO_POSE"] == "no pose of the vehicle for 0.3 s"
