@@ -54,6 +54,15 @@ def hold(button: Locator, page: Page) -> None:
     page.mouse.up()
 
 
+def until(page: Page, function: str, argument: object = None) -> None:
+    """Wait until a function of the page holds; Playwright's own way evaluates text in the page."""
+    for _ in range(50):
+        if page.evaluate(function, argument):
+            return
+        page.wait_for_timeout(100)
+    raise AssertionError(f"it never came: {function}")
+
+
 def shown_width_m(page: Page) -> float:
     """Width of the part of the world that is shown, m."""
     page.wait_for_timeout(1300)
@@ -165,9 +174,9 @@ def test_a_preview_is_drawn_and_gone_when_it_is_discarded(
     before = desktop.evaluate(picture)
     choose(desktop, service.track_ahead(30))
     expect(panel(desktop)).to_contain_text("Preview of field.csv")
-    desktop.wait_for_function(f"(before) => {picture} !== before", arg=before)
+    until(desktop, f"(before) => {picture} !== before", before)
     button(desktop, "Discard").click()
-    desktop.wait_for_function(f"(before) => {picture} === before", arg=before)
+    until(desktop, f"(before) => {picture} === before", before)
     assert complaints.messages == []
 
 
@@ -313,7 +322,7 @@ def test_one_finger_scrolls_the_page_and_two_zoom_the_map(touch_phone: Page) -> 
     for step in range(1, 11):
         touch("touchMove", (x, y - 12 * step))
     touch("touchEnd")
-    touch_phone.wait_for_function("scrollY > 50")
+    until(touch_phone, "() => scrollY > 50")
 
 
 def test_without_contact_the_map_says_of_when_it_is(desktop: Page, service: Service) -> None:

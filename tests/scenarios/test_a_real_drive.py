@@ -34,6 +34,7 @@ def test_a_drive_is_followed_to_its_end_and_the_next_one_is_left_and_canceled(
         stdout=subprocess.PIPE,
         stderr=subprocess.PIPE,
         text=True,
+        preexec_fn=hear_ctrl_c,
     )
     until_running(serving)
     watched.send_signal(signal.SIGINT)
@@ -56,6 +57,11 @@ def test_waypoints_that_cannot_be_driven_are_refused(serving: ServiceProcess) ->
     assert "1600 waypoints" in told
     assert complaints.startswith("refused: ")
     assert "Traceback" not in complaints
+
+
+def hear_ctrl_c() -> None:
+    """Undo what is inherited where the tests run in the background: there Ctrl-C is ignored."""
+    signal.signal(signal.SIGINT, signal.SIG_DFL)
 
 
 def until_running(serving: ServiceProcess) -> None:
