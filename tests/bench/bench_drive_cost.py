@@ -1,18 +1,15 @@
-"""What driving costs: a control step, a path of 100,000 waypoints, an hour in virtual time."""
+"""What driving costs: a path of 100,000 waypoints, and an hour in virtual time."""
 
 import json
 import pickle
 import time
 from collections.abc import Callable
 
-import numpy as np
 import pytest
 
 from api.simulation.posted import simulate_posted
 from domain.paths.path import Path
 from domain.paths.speed_profile import SpeedLimits, SpeedProfile
-from domain.tracking.trackers import TRACKERS
-from domain.vehicle import Pose, VehicleState
 from tests.support.bench import Row, quantiles, report
 from tests.support.drive_loads import dense, hour
 from tests.support.http_robot import ACTUATION
@@ -21,22 +18,6 @@ from tests.support.track_study import LIMITS, track
 pytestmark = pytest.mark.bench
 
 LOOP = "tracks/gem_e2_loop.csv"
-
-
-def test_what_a_control_step_costs() -> None:
-    loop = track(LOOP)
-    rows: dict[str, Row] = {}
-    for label, path in {"3,822 points": loop, "100,000 points": Path(dense(loop))}.items():
-        for controller in TRACKERS:
-            # What `quantiles` calls milliseconds are microseconds of a thousand times as much.
-            found = quantiles([1000 * took for took in _steps(path, controller)])
-            rows[f"{controller}, {label}"] = {
-                f"{name.removesuffix('ms')}us": value for name, value in found.items()
-            }
-    report("drive_control_step", rows)
-    for row in rows.values():
-        # The median: what else the machine does shows in all others.
-        assert row["p50_us"] < 100
 
 
 def test_what_a_long_path_costs() -> None:
@@ -71,19 +52,6 @@ def test_an_hour_in_virtual_time() -> None:
     assert answers[0] == answers[1]
     assert 280 < driven < 320
     assert min(took) < 5
-
-
-def _steps(path: Path, controller: str) -> list[float]:
-    """Return how long control steps take all along a path, 50 mm beside it, s."""
-    tracker = TRACKERS[controller](LIMITS)
-    took = []
-    for distance in np.linspace(0, path.length_m, 10_000).tolist():
-        place, index = path.point_at(distance), path.index_after(distance)
-        state = VehicleState(Pose(place.x_m, place.y_m + 0.05, path.heading_at(distance)), 2.8, 0.0)
-        begin = time.perf_counter()
-        tracker.control_step(state, path, index)
-        took.append(time.perf_counter() - begin)
-    return took
 
 
 def _seconds(work: Callable[[], object], rounds: int = 11) -> list[float]:
