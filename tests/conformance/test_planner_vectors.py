@@ -5,13 +5,14 @@ navigation and simulated vehicle, in virtual time.
 """
 
 from collections.abc import Mapping
+from dataclasses import replace
 from pathlib import Path as FilePath
 from typing import Any
 
 import pytest
 
 from domain.errors import PilothouseError
-from domain.messages import SendGoal, TaskId
+from domain.messages import TaskId
 from domain.paths.path import Path
 from domain.supervision import SupervisionSettings
 from domain.system_model import SmhModel
@@ -48,14 +49,15 @@ class OnTheRobot:
     """Everything that runs live, in virtual time."""
 
     def __init__(self, vector: Vector) -> None:
-        self._robot = VirtualRobot(SmhModel({}, {}), NOT_STALE)
+        self._virtual = VirtualRobot(SmhModel({}, {}), NOT_STALE)
+        self._robot: VirtualRobot | Driver = self._virtual
         self._files: dict[TaskId, str] = {}
         start_task = vector["config"].get("waypoint_file")
         if start_task is not None:
             self.serve(start_task)
 
     def advance_to(self, at_s: float) -> None:
-        self._robot.advance(at_s - self._robot.now / seconds(1))
+        self._virtual.advance(at_s - self._virtual.now / seconds(1))
 
     def reading(self, signal: str, value: object) -> None:
         self._robot.read(**{signal: value})  # type: ignore[arg-type]
@@ -91,54 +93,31 @@ class OnTheRobot:
         )
 
 
-class OnTheSupervision:
+class OnTheSupervision(OnTheRobot):
     """The supervision alone: the vector says what navigation does."""
 
     def __init__(self, vector: Vector) -> None:
-        self._robot = Driver(settings=NOT_STALE, good=False)
-        self._files: dict[TaskId, str] = {}
+        self._driver = Driver(settings=NOT_STALE, good=False)
+        self._robot = self._driver
+        self._files = {}
 
     def advance_to(self, at_s: float) -> None:
-        while self._robot.now < seconds(at_s):
-            self._robot.now = min(self._robot.now + seconds(0.05), seconds(at_s))
-            self._robot.report()
-
-    def reading(self, signal: str, value: object) -> None:
-        self._robot.read(**{signal: value})  # type: ignore[arg-type]
-
-    def serve(self, file: str) -> bool:
-        try:
-            task = self._robot.serve(read_path(file)).task
-        except (PilothouseError, FileNotFoundError):
-            return False
-        assert task is not None
-        self._files[task] = file
-        return True
-
-    def cancel(self) -> None:
-        self._robot.cancel()
+        while self._driver.now < seconds(at_s):
+            self._driver.now = min(self._driver.now + seconds(0.05), seconds(at_s))
+            self._driver.report()
 
     def controller(self, step: Mapping[str, Any]) -> None:
         if step["controller"] == "feedback":
-            self._robot.feedback(step["target_index"])
+            self._driver.feedback(step["target_index"])
         else:
-            self._robot.arrive(succeeded=step["controller"] == "succeed")
+            self._driver.arrive(succeeded=step["controller"] == "succeed")
 
     def observe(self) -> Seen:
-        core = self._robot.core
-        view, task = core.system_state(), core.driving.current_task
-        last = next(iter(core.driving.tasks()), None)
-        goals: list[SendGoal] = self._robot.goals
-        runs = view.task_status == "RUNNING_TASK"
-        return Seen(
-            state=view.state,
-            errors=frozenset(view.errors),
-            planner=view.task_status,
-            start_index=None if task is None else task.target_index,
-            active_goal_start_index=goals[-1].start_index if runs else None,
-            task_file=None if task is None else self._files[task.id],
-            commanded_mps=core.driving.vehicle.command.speed_mps,
-            last_progress=None if last is None else last.progress,
+        seen = super().observe()
+        runs = seen.planner == "RUNNING_TASK"
+        return replace(
+            seen,
+            active_goal_start_index=self._driver.goals[-1].start_index if runs else None,
         )
 
 
