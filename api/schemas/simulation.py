@@ -173,9 +173,9 @@ class ExpectStep(TimedStep):
 _KINDS = ("reading", "task", "change", "node", "vehicle", "request", "expect")
 
 
-def _kind_of(step: object) -> str:
+def _kind_of(step: object) -> str | None:
     names = step if isinstance(step, dict) else getattr(type(step), "model_fields", {})
-    return next((kind for kind in _KINDS if kind in names), _KINDS[0])
+    return next((kind for kind in _KINDS if kind in names), None)
 
 
 AnyStep: TypeAlias = (
@@ -189,7 +189,11 @@ Step = Annotated[
     | Annotated[VehicleStep, Tag("vehicle")]
     | Annotated[RequestStep, Tag("request")]
     | Annotated[ExpectStep, Tag("expect")],
-    Discriminator(_kind_of),
+    Discriminator(
+        _kind_of,
+        custom_error_type="unknown_step",
+        custom_error_message=f"a step has t_s and one of {', '.join(_KINDS)}",
+    ),
 ]
 
 

@@ -114,7 +114,7 @@ async def test_what_cannot_be_is_refused_with_its_place(robot: HttpRobot) -> Non
         "/until_s": {"until_s": 86_401},
         "/sample_period_s": {"sample_period_s": 0},
         "": {"sample_period_s": 0.0001},
-        "/steps/0/reading": {"steps": [{"t_s": 0}]},
+        "/steps/0": {"steps": [{"t_s": 0, "what": 1}]},
         "/steps/0/why": {"steps": [{"t_s": 0, "task": None, "why": "x"}]},
         "/robot/wings": {"robot": {"wings": 2}},
         "/from": {"from": "dead"},

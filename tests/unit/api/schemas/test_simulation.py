@@ -71,7 +71,8 @@ def test_a_fault_is_set_or_ended(fault: str, meant: Fault | None) -> None:
 @pytest.mark.parametrize(
     ("step", "words"),
     [
-        ({}, "Field required"),
+        ({}, "one of reading, task, change, node, vehicle, request, expect"),
+        ({"what": 1}, "one of reading, task, change"),
         ({"reading": {}}, "at least 1"),
         ({"reading": {"battery_level": None}}, "a value of a signal"),
         ({**READING, "repeat_hz": 0}, "greater than 0"),
