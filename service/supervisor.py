@@ -227,7 +227,9 @@ class Supervisor:
 
     def stop_driving(self) -> None:
         """Hold the task and let the vehicle stand still, since the service ends."""
-        self.submit(HoldRequest("service", "the service ends", "service"))
+        # Refused only where there is no room for one more hold, and so it stands already.
+        with suppress(PilothouseError):
+            self.submit(HoldRequest("service", "the service ends", "service"))
 
     def stop_waiting(self) -> None:
         """Let everybody who waits for a change go, since the service ends."""

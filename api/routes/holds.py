@@ -3,7 +3,7 @@
 from http import HTTPStatus
 from typing import Annotated
 
-from fastapi import APIRouter, Body, Path, Response
+from fastapi import APIRouter, Path, Response
 
 from api.dependencies import ActorDep, SupervisorDep
 from api.json_route import JsonRoute
@@ -35,13 +35,13 @@ async def set_hold(
     owner: OwnerPath,
     supervisor: SupervisorDep,
     actor: ActorDep,
-    body: Annotated[HoldBody, Body(default_factory=HoldBody)],
+    body: HoldBody | None = None,
 ) -> HoldJson:
     """Hold the task: speed 0 is commanded at once. To repeat it renews the reason only.
 
     A hold lasts until its owner lets go, whatever task is served in between.
     """
-    supervisor.submit(HoldRequest(owner, body.reason, actor))
+    supervisor.submit(HoldRequest(owner, body.reason if body else "", actor))
     return HoldJson.of(supervisor.core.driving.holds[owner], supervisor.clock)
 
 

@@ -12,18 +12,22 @@ from domain.messages import (
     ChangeId,
     Drive,
     EmergencyStopRequest,
+    HoldRequest,
     ModeRequest,
     NodeCommand,
     NodeReport,
     Reading,
+    TaskRequest,
 )
 from domain.simulation.robot import SimulatedRobot
 from domain.snapshot import ChangeStatus, SystemState
 from domain.system_model import PartName
+from domain.tasks.holds import MAX_HOLDS
 from service.files.model_file import LoadedModel
 from service.frame_feed import Frame
 from service.ports import BackendMessage
 from service.supervisor import Supervisor, TaskFailedError
+from tests.support.driver import straight
 from tests.support.live_robot import make_onboard, make_supervisor, running
 from tests.support.manual_clock import ManualClock
 from tests.support.models import ACTUATION, BASE, PERFORMANCE, actuation_model
@@ -296,3 +300,26 @@ async def test_commands_reach_the_nodes_before_anybody_is_told() -> None:
         supervisor.submit(EmergencyStopRequest(engaged=True, reason="", actor="test"))
         assert backend.sent == []
         assert supervisor.core.emergency_stop().engaged
+
+
+async def test_a_service_that_ends_holds_the_task_and_stops_the_vehicle() -> None:
+    clock = ManualClock()
+    supervisor = make_supervisor(clock)
+    async with running(supervisor):
+        supervisor.submit(TaskRequest(straight(), 0, "stanley", 2.8))
+        await clock.advance(3)
+        supervisor.stop_driving()
+
+        assert supervisor.core.driving.vehicle.command.speed_mps == 0.0
+        assert "service" in supervisor.core.driving.holds
+
+
+async def test_a_service_that_ends_does_so_also_where_there_is_no_room_for_a_hold() -> None:
+    supervisor = make_supervisor()
+    async with running(supervisor):
+        supervisor.submit(TaskRequest(straight(), 0, "stanley", 2.8))
+        for number in range(MAX_HOLDS):
+            supervisor.submit(HoldRequest(f"o{number}", "test"))
+        supervisor.stop_driving()
+
+        assert supervisor.core.driving.vehicle.command.speed_mps == 0.0

@@ -39,6 +39,14 @@ async def test_a_hold_needs_no_body(robot: HttpRobot) -> None:
     assert (answer.status_code, answer.json()["reason"]) == (200, "")
 
 
+async def test_null_is_as_no_body_and_a_list_is_none(robot: HttpRobot) -> None:
+    null = await robot.http.put("/holds/gate", content="null")
+    listed = await robot.http.put("/holds/gate", content="[]")
+
+    assert (null.status_code, null.json()["reason"]) == (200, "")
+    assert listed.status_code == 422
+
+
 async def test_releasing_what_is_not_held_is_right(robot: HttpRobot) -> None:
     assert (await robot.http.delete("/holds/operator")).status_code == 204
 
