@@ -9,15 +9,18 @@ from collections.abc import Callable, Generator, Sequence
 import uvicorn
 from fastapi import FastAPI
 from uvicorn.protocols.http.httptools_impl import HttpToolsProtocol
-from uvicorn.protocols.websockets.websockets_sansio_impl import WebSocketsSansIOProtocol
 
-MAX_MESSAGE_BYTES = 65_536
+from api.limits import ServiceLimits
+from api.websocket_protocol import WebSocketProtocol
+
 MAX_HEAD_BYTES = 65_536
 _SEND_BUFFER_BYTES = 65_536
 _PING_INTERVAL_S = 2.0
-_PING_TIMEOUT_S = 5.0
-_LAST_WORDS_S = 1.0
+_PING_TIMEOUT_S = 2.5
+"""A client that stopped reading is so dropped within 4.5 s: it answers no ping either."""
 _GRACE_S = 1
+_OTHER_FILES = 500
+"""Beside those of the stream: connections of requests, pipes to workers, files."""
 
 
 class ListenError(Exception):
@@ -69,22 +72,6 @@ class _Http(HttpToolsProtocol):
                 self.send_400_response("The head of the request is too large.")
 
 
-class _WebSocket(WebSocketsSansIOProtocol):
-    """A WebSocket that ends when it is ended.
-
-    `transport.close()` waits until everything was sent. To a client that does not read, that is
-    never, and its buffers would stay.
-    """
-
-    async def run_asgi(self) -> None:
-        await super().run_asgi()
-        self.loop.call_later(_LAST_WORDS_S, self.transport.abort)
-
-    def keepalive_timeout(self) -> None:
-        super().keepalive_timeout()
-        self.transport.abort()
-
-
 def web_server(app: FastAPI, on_started: Callable[[], None]) -> WebServer:
     """Return a server that is stopped by `should_exit`.
 
@@ -92,14 +79,16 @@ def web_server(app: FastAPI, on_started: Callable[[], None]) -> WebServer:
     a word, and what waits for it in buffers is old.
 
     Args:
-        app: What is served.
+        app: What is served, with its limits.
         on_started: Called once connections are accepted.
     """
+    limits: ServiceLimits = app.state.limits
+    _allow_open_files(limits.stream_clients + _OTHER_FILES)
     config = uvicorn.Config(
         app,
         http=_Http,
-        ws=_WebSocket,
-        ws_max_size=MAX_MESSAGE_BYTES,
+        ws=WebSocketProtocol,
+        ws_max_size=limits.message_bytes,
         ws_per_message_deflate=False,
         ws_ping_interval=_PING_INTERVAL_S,
         ws_ping_timeout=_PING_TIMEOUT_S,
@@ -167,6 +156,18 @@ def url_of(sockets: Sequence[socket.socket], host: str) -> str:
     if host in ("0.0.0.0", "::"):
         host = "127.0.0.1"
     return f"http://[{host}]:{port}" if ":" in host else f"http://{host}:{port}"
+
+
+def _allow_open_files(count: int) -> None:
+    """Let this process have so many files and connections open, as far as it may say so itself."""
+    try:
+        import resource
+    except ImportError:  # There is none for Windows.
+        return
+    soft, hard = resource.getrlimit(resource.RLIMIT_NOFILE)
+    most = count if hard == resource.RLIM_INFINITY else min(count, hard)
+    if soft != resource.RLIM_INFINITY and soft < most:
+        resource.setrlimit(resource.RLIMIT_NOFILE, (most, hard))
 
 
 def _listener(family: socket.AddressFamily, address: str, port: int) -> socket.socket:

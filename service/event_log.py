@@ -110,6 +110,16 @@ class EventReader:
             self._lost = Gap(after + 1, None, epoch or log.epoch)
             self._at = 0
 
+    @property
+    def position(self) -> tuple[int, Gap | None]:
+        """Return what tells this place from others in the same log."""
+        return self._at, self._lost
+
+    @property
+    def is_behind(self) -> bool:
+        """Tell whether there is something to take."""
+        return self._at != self._log.newest or self._lost is not None
+
     def take(self, limit: int) -> list[Event | Gap]:
         """Return what follows: at most `limit` events, and the gap before them."""
         found: list[Event | Gap] = []

@@ -90,6 +90,11 @@ class FrameReader:
         self._feed = feed
         self._seen: int | None = None
 
+    @property
+    def position(self) -> int | None:
+        """Return the number of the frame that was taken last; None before the first."""
+        return self._seen
+
     def take(self) -> tuple[Frame, int] | None:
         """Return the newest frame and how many were missed before it; None when it is known.
 

@@ -1,33 +1,38 @@
 """`WS /ws`: frames and events to each client at its own pace, and readings from it.
 
-Nothing is queued for a client. Its writer looks at what is newest whenever it has sent what it had;
-a slow client so skips frames, and one that does not take a frame for seconds is dropped.
+What is published is written by `api.streaming.fan_out`, to all clients at once. Here each client
+has one coroutine that lets it in and hears what it says.
 """
 
 import asyncio
 import logging
 from collections.abc import Mapping
-from contextlib import ExitStack
+from contextlib import suppress
+from http import HTTPStatus
 from typing import Any
 
 from fastapi import APIRouter, WebSocket, WebSocketDisconnect
 
+from api.access import UnauthorizedError
+from api.schemas.stream import AuthMessage
 from api.streaming.hub import StreamHub, StreamHubDep
 from api.streaming.messages import read_client_message
-from api.streaming.query import StreamQuery, read_stream_query
+from api.streaming.prepared import KEEPALIVE_TIMEOUT, text_frame, transport_of
+from api.streaming.query import read_stream_query
 from domain.errors import PilothouseError
-from service.event_log import EventReader, Gap
-from service.frame_feed import FrameReader
 
 router = APIRouter()
 log = logging.getLogger(__name__)
 
-SEND_TIMEOUT_S = 5.0
+AUTH_TIMEOUT_S = 5.0
+"""For a client to say who it is."""
+ANSWER_TIMEOUT_S = 4.5
+"""For a client to take the answer to what it said."""
 _CLOSE_TIMEOUT_S = 1.0
-_EVENTS_AT_ONCE = 32
 
 _POLICY_VIOLATION = 1008
 _TRY_AGAIN_LATER = 1013
+_UNAUTHORIZED = 4401
 
 
 @router.websocket("/ws")
@@ -38,132 +43,144 @@ async def stream(socket: WebSocket, hub: StreamHubDep) -> None:
     code 1008, since a browser does not show a page why its handshake was refused.
     """
     await socket.accept()
-    if hub.is_full:
-        await socket.close(_TRY_AGAIN_LATER, "too many clients")
-        return
-    with hub.count_client():
-        client = _Client(socket, hub)
-        try:
-            query = read_stream_query(socket.query_params)
-        except PilothouseError as error:
-            await client.refuse(error)
-        else:
-            await client.serve(query)
+    client = _Client(socket, hub)
+    with suppress(_GoneError):
+        if not await client.is_let_in():
+            return
+        if hub.is_full:
+            await client.send_away()
+            return
+        with hub.count_client():
+            await client.serve()
 
 
 class _GoneError(Exception):
     """The client is not there any more."""
 
 
-class _TooSlowError(Exception):
-    """The client did not take what was sent to it."""
-
-
 class _Client:
-    """One client: a task that reads what it says, and one that writes what it gets."""
+    """One client, as the interface hears it."""
 
     def __init__(self, socket: WebSocket, hub: StreamHub) -> None:
         self._socket = socket
+        self._transport = transport_of(socket.scope)
         self._hub = hub
         self._address = socket.client.host if socket.client else "unknown"
 
-    async def refuse(self, error: PilothouseError) -> None:
-        """Say what is wrong with the address, and close."""
+    async def is_let_in(self) -> bool:
+        """Ask for the token, where one is needed and the handshake did not hold it.
+
+        Whoever does not give it is told so, and the connection is closed.
+
+        Raises:
+            _GoneError: The client went.
+        """
+        hub = self._hub
+        if hub.access.accepts_header(self._socket.headers):
+            return True
+        if hub.has_many_strangers:
+            await self.send_away()
+            return False
         try:
-            await self._send(self._hub.encoder.problem(error))
-            await self._close(_POLICY_VIOLATION, error.code)
-        except (_GoneError, _TooSlowError):
-            pass
+            with hub.count_stranger():
+                await self._hear_token()
+        except UnauthorizedError as error:
+            hub.refusals.note(HTTPStatus.UNAUTHORIZED, self._address)
+            await self._refuse(error, _UNAUTHORIZED)
+            return False
+        return True
 
-    async def serve(self, query: StreamQuery) -> None:
-        """Read and write until either side ends."""
+    async def send_away(self) -> None:
+        """Close, since there are too many already."""
+        await self._close(_TRY_AGAIN_LATER, "too many clients")
+
+    async def serve(self) -> None:
+        """Write to the client and hear it until it goes.
+
+        Raises:
+            _GoneError: It went.
+        """
         try:
-            async with asyncio.TaskGroup() as tasks:
-                tasks.create_task(self._read(), name="stream reader")
-                tasks.create_task(self._write(query), name="stream writer")
-        except* _GoneError:
-            pass
-        except* _TooSlowError:
-            self._hub.dropped += 1
-            log.info("dropped %s: it read nothing for %g s", self._address, SEND_TIMEOUT_S)
-            await self._close(_TRY_AGAIN_LATER, "too slow")
-
-    # --- writing ---------------------------------------------------------------------------------
-
-    async def _write(self, query: StreamQuery) -> None:
-        supervisor = self._hub.supervisor
-        frames = FrameReader(supervisor.frames) if query.wants_state else None
-        events = None
-        woken = asyncio.Event()
-        with ExitStack() as watching:
-            if query.wants_state:
-                watching.enter_context(supervisor.frames.watch(woken.set))
-            if query.wants_events:
-                events = EventReader(supervisor.events, query.after, query.epoch)
-                watching.enter_context(supervisor.events.watch(woken.set))
-            await self._send(self._hub.encoder.hello(query.topics))
-            while True:
-                woken.clear()
-                more = events is not None and await self._send_events(events)
-                if frames is not None:
-                    await self._send_frame(frames, query.topics)
-                # A transport with room does not let others run; a long history must not keep the
-                # loop for itself.
-                await (asyncio.sleep(0) if more else woken.wait())
-
-    async def _send_events(self, events: EventReader) -> bool:
-        """Send some of the events that are not sent yet; tell whether there may be more."""
+            query = read_stream_query(self._socket.query_params)
+        except PilothouseError as error:
+            await self._refuse(error, _POLICY_VIOLATION)
+            return
         encoder = self._hub.encoder
-        found = events.take(_EVENTS_AT_ONCE)
-        for item in found:
-            await self._send(encoder.gap(item) if isinstance(item, Gap) else encoder.event(item))
-        return bool(found)
+        self._transport.write(text_frame(encoder.hello(query.topics)))
+        complete = self._hub.supervisor.frames.complete()
+        if complete is not None:
+            await encoder.prepare(complete, query.topics)
+        with self._hub.fan_out.serve(self._transport, query, self._address):
+            await self._listen()
 
-    async def _send_frame(self, frames: FrameReader, topics: frozenset[str]) -> None:
-        taken = frames.take()
-        if taken is not None:
-            frame, skipped = taken
-            encoder = self._hub.encoder
-            self._hub.skipped += skipped
-            await encoder.prepare(frame, topics)
-            await self._send(encoder.frame(frame, skipped, topics))
+    async def _hear_token(self) -> None:
+        """Take the first message.
 
-    async def _send(self, text: str) -> None:
+        Raises:
+            UnauthorizedError: It is not the right token, or does not come soon.
+        """
         try:
-            async with asyncio.timeout(SEND_TIMEOUT_S):
-                await self._socket.send_text(text)
+            async with asyncio.timeout(AUTH_TIMEOUT_S):
+                message = await self._receive()
         except TimeoutError as error:
-            raise _TooSlowError from error
-        except (WebSocketDisconnect, RuntimeError) as error:
+            raise UnauthorizedError(f"no token came within {AUTH_TIMEOUT_S:g} s") from error
+        try:
+            said = read_client_message(message)
+        except PilothouseError:
+            said = None
+        if not isinstance(said, AuthMessage):
+            raise UnauthorizedError("the first message has to be the token")
+        if not self._hub.access.accepts(said.token):
+            raise UnauthorizedError("this is not the token of the service")
+
+    async def _listen(self) -> None:
+        """Take one message after the other; the next waits in the client until this one is done."""
+        while True:
+            message = await self._receive()
+            try:
+                self._take(message)
+            except PilothouseError as error:
+                await self._answer(error)
+            # Messages that came together are all there at once: others get their turn in between.
+            await asyncio.sleep(0)
+
+    async def _receive(self) -> Mapping[str, Any]:
+        message = await self._socket.receive()
+        if message["type"] == "websocket.disconnect":
+            if message.get("code") == KEEPALIVE_TIMEOUT:
+                self._hub.fan_out.drop(self._transport, self._address)
+            raise _GoneError
+        return message
+
+    def _take(self, message: Mapping[str, Any]) -> None:
+        supervisor = self._hub.supervisor
+        given = read_client_message(message)
+        if isinstance(given, AuthMessage):
+            # A page that still has a token sends it, whether or not it is needed.
+            return
+        reading = given.reading(given.signal, supervisor.clock)
+        supervisor.submit_readings([reading], given.source, f"websocket:{self._address}")
+
+    async def _answer(self, error: PilothouseError) -> None:
+        """Say what is wrong, once the client has taken most of what was written before."""
+        try:
+            async with asyncio.timeout(ANSWER_TIMEOUT_S):
+                await self._socket.send_text(self._hub.encoder.problem(error))
+        except TimeoutError as late:
+            self._hub.fan_out.drop(self._transport, self._address)
+            raise _GoneError from late
+        except (WebSocketDisconnect, RuntimeError) as gone:
             # RuntimeError: the server itself closed the connection just now, as for a message that
-            # is too large, and the reader has not heard of it yet.
-            raise _GoneError from error
+            # is too large, and that was not heard of yet.
+            raise _GoneError from gone
+
+    async def _refuse(self, error: PilothouseError, code: int) -> None:
+        await self._answer(error)
+        await self._close(code, error.code)
 
     async def _close(self, code: int, reason: str) -> None:
-        """Close; behind what a slow client has not taken yet there is no waiting for long."""
         try:
             async with asyncio.timeout(_CLOSE_TIMEOUT_S):
                 await self._socket.close(code, reason)
         except (TimeoutError, WebSocketDisconnect, RuntimeError):
             log.debug("%s went without a goodbye", self._address)
-
-    # --- reading ---------------------------------------------------------------------------------
-
-    async def _read(self) -> None:
-        """Take one message after the other; the next waits in the client until this one is done."""
-        while True:
-            message = await self._socket.receive()
-            if message["type"] == "websocket.disconnect":
-                raise _GoneError
-            try:
-                self._take(message)
-            except PilothouseError as error:
-                await self._send(self._hub.encoder.problem(error))
-            # Messages that came together are all there at once: others get their turn in between.
-            await asyncio.sleep(0)
-
-    def _take(self, message: Mapping[str, Any]) -> None:
-        supervisor = self._hub.supervisor
-        given = read_client_message(message)
-        reading = given.reading(given.signal, supervisor.clock)
-        supervisor.submit_readings([reading], given.source, f"websocket:{self._address}")

@@ -1,4 +1,4 @@
-"""What all clients of the stream share: the encoder, their number, and what became of them."""
+"""What all clients of the stream share: the encoder, the fan-out, how many and who may come."""
 
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -7,28 +7,42 @@ from typing import Annotated
 from fastapi import Depends, FastAPI
 from fastapi.requests import HTTPConnection
 
+from api.access import Access
+from api.gate.refusals import Refusals
 from api.streaming.encoder import StreamEncoder
+from api.streaming.fan_out import FanOut
 from service.supervisor import Supervisor
 
-MAX_CLIENTS = 200
+MAX_STRANGERS = 100
+"""Clients that have not given the token yet; beside those that have, whom they keep out of nothing.
+"""
 
 
 class StreamHub:
     """The clients of one service."""
 
-    def __init__(self, supervisor: Supervisor) -> None:
+    def __init__(
+        self, supervisor: Supervisor, max_clients: int, access: Access, refusals: Refusals
+    ) -> None:
         self.supervisor = supervisor
+        self.access = access
+        self.refusals = refusals
         self.encoder = StreamEncoder(supervisor)
+        self.fan_out = FanOut(supervisor, self.encoder)
         self.clients = 0
-        self.dropped = 0
-        """Clients that were cut off because they read too slowly."""
-        self.skipped = 0
-        """Frames that clients missed."""
+        self.strangers = 0
+        """Connections that have not given the token that is needed, and still may."""
+        self._max_clients = max_clients
 
     @property
     def is_full(self) -> bool:
         """Tell whether the next client is one too many."""
-        return self.clients >= MAX_CLIENTS
+        return self.clients >= self._max_clients
+
+    @property
+    def has_many_strangers(self) -> bool:
+        """Tell whether the next stranger is one too many."""
+        return self.strangers >= MAX_STRANGERS
 
     @contextmanager
     def count_client(self) -> Iterator[None]:
@@ -39,12 +53,24 @@ class StreamHub:
         finally:
             self.clients -= 1
 
+    @contextmanager
+    def count_stranger(self) -> Iterator[None]:
+        """Count one more stranger as long as the context lasts."""
+        self.strangers += 1
+        try:
+            yield
+        finally:
+            self.strangers -= 1
+
 
 def stream_hub(app: FastAPI) -> StreamHub:
     """Return the hub of an application; the first who asks makes it."""
     hub = getattr(app.state, "stream_hub", None)
     if not isinstance(hub, StreamHub):
-        hub = app.state.stream_hub = StreamHub(app.state.supervisor)
+        state = app.state
+        limit = state.limits.stream_clients
+        hub = StreamHub(state.supervisor, limit, state.access, state.refusals)
+        state.stream_hub = hub
     return hub
 
 

@@ -1,23 +1,26 @@
-"""What clients may say over the stream: readings, one per message."""
+"""What clients may say over the stream: who they are, and readings, one per message."""
 
 from collections.abc import Mapping
 from typing import Any
 
-from api.bodies import parse_body
-from api.schemas.stream import ReadingMessage
+from api.bodies import check_body, parse_json
+from api.schemas.stream import AuthMessage, ReadingMessage
 from domain.errors import InvalidValueError
 
 
-def read_client_message(message: Mapping[str, Any]) -> ReadingMessage:
+def read_client_message(message: Mapping[str, Any]) -> ReadingMessage | AuthMessage:
     """Return what a client said.
 
     Args:
         message: As ASGI has it, with `text` or `bytes`.
 
     Raises:
-        PilothouseError: It is no reading.
+        PilothouseError: It is neither a reading nor a token.
     """
     text = message.get("text")
     if text is None:
         raise InvalidValueError("binary messages are not read; send JSON as text")
-    return parse_body(ReadingMessage, text.encode())
+    said = parse_json(text.encode())
+    if isinstance(said, dict) and said.get("type") == "auth":
+        return check_body(AuthMessage, said)
+    return check_body(ReadingMessage, said)

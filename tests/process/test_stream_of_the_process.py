@@ -5,6 +5,7 @@ import json
 import socket
 import time
 from collections.abc import Iterator
+from pathlib import Path
 from typing import Any
 from urllib.parse import urlsplit
 
@@ -146,15 +147,14 @@ async def test_a_message_that_is_too_large_ends_that_connection_only(
     assert frames
 
 
-async def test_two_hundred_clients_are_served_and_the_next_is_told_to_come_later(
-    running: ServiceProcess,
-) -> None:
-    clients = [await connect(f"{running.stream_url}?topics=events") for _ in range(200)]
-    try:
+async def test_as_many_clients_are_served_as_the_robot_file_allows(tmp_path: Path) -> None:
+    robot = tmp_path / "robot.yaml"
+    robot.write_text("limits: {stream_clients: 3}\n")
+    with service("--robot", str(robot)) as running:
+        clients = [await connect(running.stream_url) for _ in range(3)]
         async with connect(running.stream_url) as one_too_many:
             with pytest.raises(websockets.ConnectionClosed) as closed:
                 await one_too_many.recv()
-    finally:
         await asyncio.gather(*(client.close() for client in clients))
 
     assert closed.value.rcvd is not None

@@ -2,7 +2,8 @@
 
 import asyncio
 import json
-from collections.abc import MutableMapping
+import struct
+from collections.abc import Iterator, Mapping, MutableMapping
 from contextlib import suppress
 from types import TracebackType
 from typing import Any, Self
@@ -10,21 +11,35 @@ from urllib.parse import urlencode
 
 from starlette.types import ASGIApp
 
+from api.streaming.prepared import EXTENSION
+
 Message = MutableMapping[str, Any]
 
 
 class WebSocketClient:
     """Speaks to one route, and keeps what it is sent until it is read.
 
+    It is its own transport, for frames that are prepared (`api.streaming.prepared`).
+
     Args:
         app: The application.
-        query: Of the address.
         path: Of the address.
+        headers: Of the handshake, beside `Host`.
+        query: Of the address.
     """
 
-    def __init__(self, app: ASGIApp, path: str = "/ws", **query: object) -> None:
+    def __init__(
+        self,
+        app: ASGIApp,
+        path: str = "/ws",
+        headers: Mapping[str, str] | None = None,
+        **query: object,
+    ) -> None:
         self.closed: int | None = None
         """Code with which the server closed; None: it did not."""
+        self.cut_off = False
+        """Whether the application cut this client off without a goodbye."""
+        self._waiting: list[bytes] = []
         self._app = app
         self._scope = {
             "type": "websocket",
@@ -35,12 +50,15 @@ class WebSocketClient:
             "raw_path": path.encode(),
             "root_path": "",
             "query_string": urlencode(query).encode(),
-            "headers": [(b"host", b"127.0.0.1:8000")],
+            "headers": [
+                (name.encode(), value.encode())
+                for name, value in {"host": "127.0.0.1:8000", **(headers or {})}.items()
+            ],
             "client": ("127.0.0.1", 40_000),
             "server": ("127.0.0.1", 8000),
             "subprotocols": [],
             "state": {},
-            "extensions": {},
+            "extensions": {EXTENSION: {"transport": self}},
         }
         self._to_app: asyncio.Queue[Message] = asyncio.Queue()
         self._from_app: asyncio.Queue[Message] = asyncio.Queue()
@@ -79,6 +97,9 @@ class WebSocketClient:
     def go_on_reading(self) -> None:
         """Take what waits."""
         self._reads.set()
+        for frames in self._waiting:
+            self._read_frames(frames)
+        self._waiting.clear()
 
     def send(self, message: object) -> None:
         """Send a message as JSON."""
@@ -122,6 +143,31 @@ class WebSocketClient:
         await asyncio.wait_for(self.running, 5)
         return self.closed
 
+    def write(self, frames: bytes) -> None:
+        """Take whole WebSocket frames, as the transport of this client."""
+        if self._reads.is_set():
+            self._read_frames(frames)
+        else:
+            self._waiting.append(frames)
+
+    def get_write_buffer_size(self) -> int:
+        """Return the bytes that this client has not read."""
+        return sum(map(len, self._waiting))
+
+    def is_closing(self) -> bool:
+        """Tell whether nothing can be sent to this client any more."""
+        return self.cut_off or self.closed is not None
+
+    def abort(self) -> None:
+        """Cut this client off."""
+        self.cut_off = True
+        self._waiting.clear()
+        self._to_app.put_nowait({"type": "websocket.disconnect", "code": 1006})
+
+    def _read_frames(self, frames: bytes) -> None:
+        for text in texts_of(frames):
+            self._from_app.put_nowait({"type": "websocket.send", "text": text})
+
     async def _run(self) -> None:
         await self._app(self._scope, self._to_app.get, self._take)
 
@@ -130,3 +176,17 @@ class WebSocketClient:
         if message["type"] == "websocket.close":
             self.closed = message.get("code")
         self._from_app.put_nowait(message)
+
+
+def texts_of(frames: bytes) -> Iterator[str]:
+    """Yield the texts of whole WebSocket frames from a server (RFC 6455, 5.2)."""
+    while frames:
+        assert frames[0] == 0x81, "a final frame of text"
+        head, length = 2, frames[1]
+        if length == 126:
+            head, (length,) = 4, struct.unpack("!H", frames[2:4])
+        elif length == 127:
+            head, (length,) = 10, struct.unpack("!Q", frames[2:10])
+        assert len(frames) >= head + length
+        yield frames[head : head + length].decode()
+        frames = frames[head + length :]

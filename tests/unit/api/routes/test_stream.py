@@ -6,9 +6,11 @@ from collections.abc import AsyncIterator
 import pytest
 from fastapi import FastAPI
 
-import api.streaming.hub
+from api.access import Access
 from api.app import create_app
+from api.limits import ServiceLimits
 from api.routes import stream
+from api.streaming import hub
 from api.streaming.hub import stream_hub
 from domain.messages import EmergencyStopRequest, ModeRequest
 from domain.system_model import PartName
@@ -176,12 +178,13 @@ async def test_a_slow_client_skips_is_told_how_many_and_gets_everything_then(
         client.stop_reading()
         await clock.advance(0.5)
         client.go_on_reading()
+        await clock.advance(0.05)
         waited = await client.frame("state")
         after = await client.frame("state")
 
     assert waited["skipped"] == 0
     assert after["seq"] == waited["seq"] + after["skipped"] + 1
-    assert after["skipped"] == 8
+    assert after["skipped"] == 9
     assert len(after["parts"]) == 3
 
 
@@ -197,25 +200,43 @@ async def test_a_slow_client_delays_nobody(app: FastAPI, clock: ManualClock) -> 
     assert not any(frame.get("skipped") for frame in frames)
 
 
-async def test_a_client_that_does_not_read_at_all_is_dropped_and_told_to_come_later(
-    app: FastAPI, clock: ManualClock, monkeypatch: pytest.MonkeyPatch
+async def test_a_client_that_does_not_read_at_all_is_cut_off_within_five_seconds(
+    app: FastAPI, clock: ManualClock
 ) -> None:
-    monkeypatch.setattr(stream, "SEND_TIMEOUT_S", 0.01)
     async with WebSocketClient(app) as client:
         await in_step(client)
         client.stop_reading()
-        await clock.advance(0.1)
-        await until(lambda: stream_hub(app).dropped == 1)
-        client.go_on_reading()
+        await clock.advance(4)
+        assert not client.cut_off
+        await clock.advance(1)
 
-        assert await client.end() == 1013
+        assert client.cut_off
+        await client.end()
+    assert stream_hub(app).fan_out.dropped == 1
     assert stream_hub(app).clients == 0
 
 
+async def test_a_client_that_answers_no_ping_is_counted_as_dropped(app: FastAPI) -> None:
+    async with WebSocketClient(app) as client:
+        await in_step(client)
+
+        client.leave(1011)
+        await client.end()
+
+    assert stream_hub(app).fan_out.dropped == 1
+
+
+async def test_a_client_that_leaves_by_itself_is_not(app: FastAPI) -> None:
+    async with WebSocketClient(app) as client:
+        await in_step(client)
+
+    assert stream_hub(app).fan_out.dropped == 0
+
+
 async def test_one_client_too_many_is_told_to_come_later(
-    app: FastAPI, monkeypatch: pytest.MonkeyPatch
+    supervisor: Supervisor,
 ) -> None:
-    monkeypatch.setattr(api.streaming.hub, "MAX_CLIENTS", 1)
+    app = create_app(supervisor, allowed_hosts=[], limits=ServiceLimits(stream_clients=1))
 
     async with WebSocketClient(app) as first, WebSocketClient(app) as second:
         assert await second.end() == 1013
@@ -241,7 +262,7 @@ async def test_a_client_that_left_leaves_its_place_to_the_next(app: FastAPI) -> 
 async def test_what_is_wrong_with_the_address_is_told_before_it_is_closed(
     app: FastAPI, query: dict[str, str], words: str
 ) -> None:
-    async with WebSocketClient(app, **query) as client:
+    async with WebSocketClient(app, "/ws", None, **query) as client:
         problem = await client.frame()
 
         assert await client.end() == 1008
@@ -335,3 +356,87 @@ async def test_a_flood_of_messages_does_not_keep_others_from_their_turn(
         await clock.advance(0.05)
 
         assert (await other.frame("state"))["skipped"] == 0
+
+
+TOKEN = "correct horse battery staple"
+
+
+@pytest.fixture
+def closed_app(supervisor: Supervisor) -> FastAPI:
+    """The interface of a service that was started with a token."""
+    return create_app(supervisor, allowed_hosts=[], access=Access.with_token(TOKEN))
+
+
+async def test_a_client_that_gives_the_token_first_is_let_in(closed_app: FastAPI) -> None:
+    async with WebSocketClient(closed_app) as client:
+        client.send({"type": "auth", "token": TOKEN})
+
+        assert (await client.frame())["type"] == "hello"
+        assert (await client.frame("state"))["skipped"] == 0
+
+
+async def test_a_client_that_gives_it_in_the_handshake_is_let_in(closed_app: FastAPI) -> None:
+    headers = {"authorization": f"Bearer {TOKEN}"}
+    async with WebSocketClient(closed_app, headers=headers) as client:
+        assert (await client.frame())["type"] == "hello"
+
+
+@pytest.mark.parametrize(
+    ("text", "words"),
+    [
+        ('{"type":"auth","token":"a guess"}', "not the token"),
+        ('{"type":"auth","token":7}', "first message"),
+        ('{"type":"reading","signal":"estop","value":true}', "first message"),
+        ("{", "first message"),
+    ],
+)
+async def test_a_client_that_gives_something_else_is_told_and_sees_nothing_of_the_robot(
+    closed_app: FastAPI, supervisor: Supervisor, text: str, words: str
+) -> None:
+    async with WebSocketClient(closed_app) as client:
+        client.send_text(text)
+        problem = await client.frame()
+
+        assert await client.end() == 4401
+        assert client.frames() == []
+    assert (problem["type"], problem["status"]) == ("problem", 401)
+    assert problem["code"] == "UNAUTHORIZED"
+    assert words in problem["detail"]
+    assert not supervisor.core.system_state().errors
+    assert closed_app.state.refusals.counts == {401: 1}
+
+
+async def test_a_client_that_says_nothing_is_closed_in_the_end(
+    closed_app: FastAPI, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(stream, "AUTH_TIMEOUT_S", 0.01)
+    async with WebSocketClient(closed_app) as client:
+        problem = await client.frame()
+
+        assert await client.end() == 4401
+    assert "no token came" in problem["detail"]
+
+
+async def test_strangers_keep_out_other_strangers_only(
+    closed_app: FastAPI, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(hub, "MAX_STRANGERS", 1)
+    headers = {"authorization": f"Bearer {TOKEN}"}
+    async with WebSocketClient(closed_app) as waits:
+        async with WebSocketClient(closed_app) as stranger:
+            assert await stranger.end() == 1013
+        async with WebSocketClient(closed_app, headers=headers) as known:
+            assert (await known.frame())["type"] == "hello"
+        waits.send({"type": "auth", "token": TOKEN})
+        assert (await waits.frame())["type"] == "hello"
+
+
+async def test_a_token_that_nobody_asked_for_is_passed_over(
+    app: FastAPI, supervisor: Supervisor
+) -> None:
+    async with WebSocketClient(app, topics="events") as client:
+        await client.frame("hello")
+        client.send({"type": "auth", "token": TOKEN})
+        supervisor.submit(EmergencyStopRequest(True, "test", "operator"))
+
+        assert (await client.frame())["type"] == "event"

@@ -1,5 +1,6 @@
 import pytest
 
+from api.schemas.stream import AuthMessage, ReadingMessage
 from api.streaming.messages import read_client_message
 from domain.errors import InvalidValueError, PilothouseError
 
@@ -9,13 +10,23 @@ def test_a_reading_is_read() -> None:
 
     given = read_client_message({"type": "websocket.receive", "text": text})
 
+    assert isinstance(given, ReadingMessage)
     assert (given.signal, given.value, given.source) == ("estop", True, "pendant")
 
 
 def test_who_measured_may_be_left_out() -> None:
     text = '{"type":"reading","signal":"battery_level","value":1}'
 
-    assert read_client_message({"text": text}).source is None
+    given = read_client_message({"text": text})
+
+    assert isinstance(given, ReadingMessage)
+    assert given.source is None
+
+
+def test_a_token_is_read() -> None:
+    given = read_client_message({"text": '{"type":"auth","token":"secret"}'})
+
+    assert given == AuthMessage(type="auth", token="secret")
 
 
 def test_a_binary_message_is_not_read() -> None:
@@ -28,10 +39,11 @@ def test_a_binary_message_is_not_read() -> None:
     [
         '{"type":"readings","signal":"estop","value":true}',
         '{"type":"reading","signal":"","value":true}',
+        '{"type":"auth"}',
         '{"type":"reading","signal":"estop","value":[true]}',
         '{"type":"reading","signal":"estop","value":true,"stamp":1}',
     ],
-    ids=["unknown type", "no name", "a list", "a stamp that is no text"],
+    ids=["unknown type", "no name", "no token", "a list", "a stamp that is no text"],
 )
 def test_what_is_no_reading_is_refused(text: str) -> None:
     with pytest.raises(PilothouseError):

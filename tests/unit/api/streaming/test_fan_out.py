@@ -1,0 +1,237 @@
+"""Many clients of one robot, in virtual time, each with a transport that a test can clog."""
+
+import asyncio
+import json
+from collections.abc import AsyncIterator
+from contextlib import ExitStack
+from typing import Any
+
+import pytest
+
+from api.streaming.encoder import StreamEncoder
+from api.streaming.fan_out import FanOut
+from api.streaming.query import TOPICS, StreamQuery
+from domain.messages import EmergencyStopRequest
+from service.supervisor import Supervisor
+from tests.support.live_robot import make_supervisor, running
+from tests.support.manual_clock import ManualClock, settle
+from tests.support.websocket import texts_of
+
+STATE = StreamQuery(frozenset({"system_state"}), None, None)
+EVENTS = StreamQuery(frozenset({"events"}), 0, None)
+ALL = StreamQuery(frozenset(TOPICS), None, None)
+
+
+class Wire(asyncio.WriteTransport):
+    """Takes what is written while it flows; else keeps it."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.written: list[bytes] = []
+        self.waiting = 0
+        self.flows = True
+        self.closing = False
+
+    def write(self, data: Any) -> None:  # noqa: ANN401
+        assert not self.closing
+        self.written.append(data)
+        if not self.flows:
+            self.waiting += len(data)
+
+    def get_write_buffer_size(self) -> int:
+        return self.waiting
+
+    def is_closing(self) -> bool:
+        return self.closing
+
+    def abort(self) -> None:
+        self.closing = True
+
+    def flow(self) -> None:
+        self.flows, self.waiting = True, 0
+
+    @property
+    def frames(self) -> list[dict[str, Any]]:
+        return [json.loads(text) for text in texts_of(b"".join(self.written))]
+
+
+@pytest.fixture
+def clock() -> ManualClock:
+    return ManualClock()
+
+
+@pytest.fixture
+async def supervisor(clock: ManualClock) -> AsyncIterator[Supervisor]:
+    supervisor = make_supervisor(clock)
+    async with running(supervisor):
+        yield supervisor
+
+
+@pytest.fixture
+def fan_out(supervisor: Supervisor) -> FanOut:
+    return FanOut(supervisor, StreamEncoder(supervisor))
+
+
+def press_and_release_the_stop(supervisor: Supervisor) -> None:
+    for engaged in (True, False):
+        supervisor.submit(EmergencyStopRequest(engaged, "test", "operator"))
+
+
+async def test_clients_in_step_are_written_the_very_same_bytes(
+    fan_out: FanOut, clock: ManualClock
+) -> None:
+    first, second = Wire(), Wire()
+    with fan_out.serve(first, STATE, "first"), fan_out.serve(second, STATE, "second"):
+        await clock.advance(1)
+
+    assert len(first.written) == 21
+    assert all(a is b for a, b in zip(first.written, second.written, strict=True))
+
+
+async def test_events_and_the_frame_that_follows_are_one_write(
+    fan_out: FanOut, supervisor: Supervisor
+) -> None:
+    wire = Wire()
+    with fan_out.serve(wire, ALL, "page"):
+        await settle()
+        wire.written.clear()
+        supervisor.submit(EmergencyStopRequest(True, "test", "operator"))
+        await settle()
+
+    assert len(wire.written) == 1
+    assert wire.frames[0]["type"] == "event"
+    assert wire.frames[-1]["system_state"]["state"] == "ERROR"
+
+
+async def test_a_clogged_client_is_left_out_and_joins_again_without_a_hole(
+    fan_out: FanOut, clock: ManualClock
+) -> None:
+    slow, quick = Wire(), Wire()
+    with fan_out.serve(slow, ALL, "slow"), fan_out.serve(quick, ALL, "quick"):
+        await clock.advance(0.2)
+        slow.flows = False
+        await clock.advance(1)
+        slow.flow()
+        await clock.advance(0.2)
+
+    assert fan_out.skipped == 19
+    assert not any(frame.get("skipped") for frame in quick.frames)
+    states = [frame for frame in slow.frames if frame["type"] == "state"]
+    (late,) = [frame for frame in states if frame["skipped"]]
+    assert (late["skipped"], len(late["parts"])) == (19, 3)
+    assert states[-1]["seq"] == quick.frames[-1]["seq"]
+    assert slow.written[-1] is quick.written[-1]
+
+
+async def test_a_clogged_client_misses_no_event(
+    fan_out: FanOut, supervisor: Supervisor, clock: ManualClock
+) -> None:
+    wire = Wire()
+    with fan_out.serve(wire, EVENTS, "log"):
+        await clock.advance(0.1)
+        wire.flows = False
+        for _ in range(40):
+            press_and_release_the_stop(supervisor)
+            await settle()
+        wire.flow()
+        await clock.advance(0.1)
+
+    ids = [frame["id"] for frame in wire.frames]
+    assert ids == list(range(1, supervisor.events.newest + 1))
+    assert len(ids) > 40
+
+
+async def test_a_long_history_is_written_without_waiting_for_the_next_tick(
+    fan_out: FanOut, supervisor: Supervisor
+) -> None:
+    for _ in range(100):
+        press_and_release_the_stop(supervisor)
+    wire = Wire()
+    with fan_out.serve(wire, EVENTS, "log"):
+        await settle()
+
+    assert [frame["id"] for frame in wire.frames] == list(range(1, supervisor.events.newest + 1))
+    assert len(wire.written) > 1
+
+
+async def test_a_client_that_takes_a_little_now_and_then_is_kept(
+    fan_out: FanOut, clock: ManualClock
+) -> None:
+    wire = Wire()
+    wire.flows = False
+    with fan_out.serve(wire, STATE, "slow"):
+        await clock.advance(0.1)
+        for _ in range(10):
+            wire.waiting -= 1
+            await clock.advance(1)
+
+    assert fan_out.dropped == 0
+    assert not wire.closing
+
+
+async def test_a_client_that_takes_nothing_is_dropped_once(
+    fan_out: FanOut, clock: ManualClock
+) -> None:
+    wire = Wire()
+    wire.flows = False
+    with fan_out.serve(wire, STATE, "mute"):
+        await clock.advance(10)
+
+    assert wire.closing
+    assert fan_out.dropped == 1
+
+
+async def test_nothing_is_written_to_a_connection_that_closes(
+    fan_out: FanOut, clock: ManualClock
+) -> None:
+    wire, other = Wire(), Wire()
+    with fan_out.serve(wire, STATE, "gone"), fan_out.serve(other, STATE, "other"):
+        await clock.advance(0.5)
+        wire.closing = True
+        await clock.advance(0.5)
+
+    assert len(other.written) == 2 * len(wire.written) - 1
+
+
+async def test_clients_come_and_go_while_others_are_written_to(
+    fan_out: FanOut, clock: ManualClock
+) -> None:
+    stays = Wire()
+    with fan_out.serve(stays, STATE, "stays"):
+        for _ in range(20):
+            with ExitStack() as guests:
+                for number in range(150):
+                    guests.enter_context(fan_out.serve(Wire(), STATE, f"guest {number}"))
+                await clock.advance(0.05)
+
+    assert len(stays.written) == 21
+
+
+async def test_whoever_is_alone_begins_with_everything(fan_out: FanOut, clock: ManualClock) -> None:
+    for _ in range(2):
+        wire = Wire()
+        with fan_out.serve(wire, ALL, "page"):
+            await clock.advance(0.1)
+
+        first = next(frame for frame in wire.frames if frame["type"] == "state")
+        assert (first["skipped"], len(first["parts"])) == (0, 3)
+
+
+async def test_when_the_fan_out_fails_nobody_is_left_with_a_silent_connection(
+    fan_out: FanOut,
+    supervisor: Supervisor,
+    clock: ManualClock,
+    monkeypatch: pytest.MonkeyPatch,
+    caplog: pytest.LogCaptureFixture,
+) -> None:
+    first, second, later = Wire(), Wire(), Wire()
+    with monkeypatch.context() as broken:
+        broken.setattr(StreamEncoder, "frame", None)
+        with fan_out.serve(first, STATE, "first"), fan_out.serve(second, ALL, "second"):
+            await clock.advance(0.1)
+
+    assert (first.closing, second.closing) == (True, True)
+    assert "the fan-out failed" in caplog.text
+    with fan_out.serve(later, STATE, "later"):
+        await clock.advance(0.1)
+    assert later.frames

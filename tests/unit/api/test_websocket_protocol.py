@@ -1,0 +1,207 @@
+"""The extended protocol between a real client's bytes and an application, without a network."""
+
+import asyncio
+from collections.abc import AsyncIterator, Callable
+from typing import Any
+
+import pytest
+import uvicorn
+from starlette.types import Receive, Scope, Send
+from uvicorn.server import ServerState
+from websockets.client import ClientProtocol
+from websockets.frames import Frame, Opcode
+from websockets.http11 import Response
+from websockets.uri import parse_uri
+
+from api.streaming.prepared import EXTENSION, text_frame
+from api.websocket_protocol import WebSocketProtocol
+from tests.support.waiting import until
+
+
+class Wire(asyncio.Transport):
+    """What the server writes goes to the client at once."""
+
+    def __init__(self, client: ClientProtocol) -> None:
+        super().__init__()
+        self.aborted = False
+        self._client = client
+        self._closing = False
+
+    def write(self, data: bytes | bytearray | memoryview) -> None:
+        self._client.receive_data(bytes(data))
+
+    def get_write_buffer_size(self) -> int:
+        return 0
+
+    def is_closing(self) -> bool:
+        return self._closing
+
+    def close(self) -> None:
+        self._closing = True
+
+    def abort(self) -> None:
+        self._closing = self.aborted = True
+
+    def pause_reading(self) -> None:
+        pass
+
+    def resume_reading(self) -> None:
+        pass
+
+
+class Link:
+    """A client that is connected to an application behind the protocol."""
+
+    def __init__(self, monkeypatch: pytest.MonkeyPatch) -> None:
+        self.scope: Scope = {}
+        self.heard: list[Any] = []
+        self.parsed = 0
+        config = uvicorn.Config(
+            self._app,
+            ws=WebSocketProtocol,
+            ws_ping_interval=0.001,
+            ws_ping_timeout=0.05,
+            ws_per_message_deflate=False,
+            interface="asgi3",
+            log_config=None,
+        )
+        config.load()
+        self.client = ClientProtocol(parse_uri("ws://localhost/ws"))
+        self.wire = Wire(self.client)
+        self.server = WebSocketProtocol(config, ServerState(), {})
+        self.server.connection_made(self.wire)
+        handle = self.server.handle_events
+        monkeypatch.setattr(self.server, "handle_events", lambda: self._note_parsed(handle))
+
+    async def connect(self) -> None:
+        self.client.send_request(self.client.connect())
+        self.flush()
+        await until(lambda: bool(self.heard))
+
+    async def end(self) -> None:
+        self.server.connection_lost(ConnectionResetError())
+        await until(lambda: not self.server.tasks)
+
+    def flush(self, piece: int | None = None) -> None:
+        """Let the server receive what the client has to say, in pieces of so many bytes."""
+        data = b"".join(self.client.data_to_send())
+        for at in range(0, len(data), piece or max(1, len(data))):
+            self.server.data_received(data[at : at + (piece or len(data))])
+
+    async def ping(self) -> Frame:
+        """Wait for a ping; the client has the answer ready then."""
+        found: list[Frame] = []
+
+        def is_there() -> bool:
+            events = self.client.events_received()
+            assert not any(isinstance(event, Response) and event.body for event in events)
+            found.extend(e for e in events if isinstance(e, Frame) and e.opcode is Opcode.PING)
+            return bool(found)
+
+        await until(is_there)
+        return found[-1]
+
+    def _note_parsed(self, handle: Callable[[], None]) -> None:
+        self.parsed += 1
+        handle()
+
+    async def _app(self, scope: Scope, receive: Receive, send: Send) -> None:
+        self.scope = scope
+        while True:
+            message = await receive()
+            self.heard.append(message)
+            if message["type"] == "websocket.connect":
+                await send({"type": "websocket.accept"})
+            elif message["type"] == "websocket.disconnect":
+                return
+
+
+@pytest.fixture
+async def link(monkeypatch: pytest.MonkeyPatch) -> AsyncIterator[Link]:
+    link = Link(monkeypatch)
+    await link.connect()
+    yield link
+    await link.end()
+
+
+async def test_an_application_can_write_prepared_frames_to_the_transport(link: Link) -> None:
+    link.client.events_received()
+
+    link.scope["extensions"][EXTENSION]["transport"].write(text_frame("state"))
+
+    frames = [e for e in link.client.events_received() if isinstance(e, Frame)]
+    assert [bytes(frame.data) for frame in frames if frame.opcode is Opcode.TEXT] == [b"state"]
+
+
+async def test_an_answered_ping_keeps_the_connection_without_the_parser(link: Link) -> None:
+    before = link.parsed
+    for _ in range(3):
+        await link.ping()
+        link.flush()
+
+    assert link.parsed == before
+    assert not link.wire.aborted
+
+
+async def test_an_answer_to_another_ping_does_not_count(link: Link) -> None:
+    await link.ping()
+    link.client.data_to_send()
+    link.client.send_pong(b"nope")
+    link.flush()
+
+    await until(lambda: link.wire.aborted)
+
+
+async def test_who_answers_no_ping_is_cut_off_and_the_application_is_told_why(link: Link) -> None:
+    await until(lambda: link.wire.aborted)
+    await until(lambda: link.heard[-1]["type"] == "websocket.disconnect")
+
+    assert link.heard[-1]["code"] == 1011
+
+
+@pytest.mark.parametrize("length", [0, 4, 125, 126, 70_000])
+async def test_what_a_client_says_between_pings_is_heard(link: Link, length: int) -> None:
+    await link.ping()
+    link.flush()
+
+    link.client.send_text(b"x" * length)
+    link.flush()
+    await until(lambda: link.heard[-1]["type"] == "websocket.receive")
+    await link.ping()
+    before = link.parsed
+    link.flush()
+
+    assert link.heard[-1]["text"] == "x" * length
+    assert link.parsed == before
+    assert not link.wire.aborted
+
+
+async def test_bytes_that_look_like_an_answer_inside_a_message_are_part_of_it(link: Link) -> None:
+    # It holds, on the wire, what a whole masked pong looks like, and that comes as a piece of its
+    # own, as from a slow network.
+    link.client.send_binary(bytes(30))
+    data = b"".join(link.client.data_to_send())
+    pong = b"\x8a\x84" + bytes(8)
+
+    for piece in (data[:16], pong, data[26:]):
+        link.server.data_received(piece)
+    await until(lambda: link.heard[-1]["type"] == "websocket.receive")
+
+    assert len(link.heard[-1]["bytes"]) == 30
+
+
+async def test_an_answer_in_pieces_is_understood(link: Link) -> None:
+    await link.ping()
+    link.flush(piece=3)
+
+    assert link.server.pending_ping_payload is None
+
+
+async def test_when_the_application_ends_so_does_the_connection(
+    link: Link, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("api.websocket_protocol._LAST_WORDS_S", 0.0)
+    link.client.send_close(1000)
+    link.flush()
+
+    await until(lambda: link.wire.aborted)
