@@ -6,15 +6,29 @@ from contextlib import asynccontextmanager
 from fastapi import FastAPI
 
 from api import posted_models, posted_tasks
+from api.access import Access
+from api.documents.asyncapi import stream_document
+from api.gate.audit import Audit
+from api.gate.headers import SecurityHeaders
+from api.gate.origin import OriginGate
+from api.gate.rate import RateGate
+from api.gate.token import TokenGate
+from api.limits import USUAL_LIMITS, ServiceLimits
 from api.robot_app import create_robot_app
-from api.routes import simulations
+from api.routes import documents, simulations
 from service.supervisor import Supervisor
 from service.worker import Worker
 
 SIMULATION_DEADLINE_S = 120.0
 
 
-def create_app(supervisor: Supervisor, *, allowed_hosts: Sequence[str]) -> FastAPI:
+def create_app(
+    supervisor: Supervisor,
+    *,
+    allowed_hosts: Sequence[str],
+    access: Access | None = None,
+    limits: ServiceLimits = USUAL_LIMITS,
+) -> FastAPI:
     """Return the application; it starts no task and no process.
 
     Whoever serves it calls `prepare` before, and `close_workers` after; its lifespan does the
@@ -25,21 +39,40 @@ def create_app(supervisor: Supervisor, *, allowed_hosts: Sequence[str]) -> FastA
     Args:
         supervisor: What is served.
         allowed_hosts: Names by which this service may be asked, beside those of loopback.
+        access: Whom it lets in; None: everybody.
+        limits: How much may be asked of it.
     """
     worker = Worker([posted_models.__name__, posted_tasks.__name__])
-    app = create_robot_app(supervisor, worker, allowed_hosts=allowed_hosts, lifespan=_lifespan)
+    app = create_robot_app(supervisor, worker, access=access, limits=limits, lifespan=_lifespan)
     app.state.simulator = Worker(deadline_s=SIMULATION_DEADLINE_S)
     app.include_router(simulations.router)
+    app.include_router(documents.router)
+    _guard(app, supervisor, allowed_hosts)
     return app
 
 
+def _guard(app: FastAPI, supervisor: Supervisor, allowed_hosts: Sequence[str]) -> None:
+    """Put the gates before the application; of these lines, the last is what a request meets first.
+
+    Who asks too often is turned away before anything is done for it, and before tokens are tried.
+    """
+    state = app.state
+    refusals, clock, per_s = state.refusals, supervisor.clock, state.limits.requests_per_s
+    app.add_middleware(Audit, record=supervisor.submit)
+    app.add_middleware(TokenGate, access=state.access, refusals=refusals)
+    app.add_middleware(OriginGate, allowed_hosts=allowed_hosts, refusals=refusals)
+    app.add_middleware(RateGate, per_s=per_s, clock=clock, refusals=refusals)
+    app.add_middleware(SecurityHeaders)
+
+
 def prepare(app: FastAPI) -> None:
-    """Build what the framework would build at the first requests.
+    """Build what else would be built at the first requests: the documents of the interface.
 
     It takes some 0.2 s, in which nothing else is done: before the robot is supervised these do no
     harm.
     """
     app.openapi()
+    stream_document()
 
 
 @asynccontextmanager

@@ -12,11 +12,8 @@ from pydantic import BaseModel, Field, ValidationError
 from api.schemas.base import Json
 from domain.errors import PilothouseError
 
-MAX_JSON_BYTES = 256 * 1024
-"""Parsed on the event loop in about 3 ms at worst."""
-
-MAX_MODEL_BYTES = 8 * 1024 * 1024
-"""Of what only the worker parses."""
+MAX_MODEL_BYTES = 16 * 1024 * 1024
+"""Of a model in a body, whatever the limits of the service are: as of a model file."""
 
 AnyBody = TypeVar("AnyBody", bound=BaseModel)
 
@@ -131,8 +128,17 @@ def parse_body(kind: type[AnyBody], raw: bytes) -> AnyBody:
         MalformedBodyError: It is not JSON.
         InvalidBodyError: It is not a `kind`.
     """
+    return check_body(kind, parse_json(raw))
+
+
+def check_body(kind: type[AnyBody], value: object) -> AnyBody:
+    """Return what a JSON text says as a `kind`.
+
+    Raises:
+        InvalidBodyError: It is not a `kind`.
+    """
     try:
-        return kind.model_validate(parse_json(raw))
+        return kind.model_validate(value)
     except ValidationError as error:
         raise InvalidBodyError(faults_of(error.errors(include_url=False))) from error
 

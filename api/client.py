@@ -3,6 +3,7 @@
 It needs nothing but the HTTP interface, so that it works against any service within reach.
 """
 
+import os
 import time
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
@@ -12,9 +13,14 @@ from urllib.parse import quote, urlsplit
 
 import httpx
 
+from api.access import FILE_VARIABLE, TOKEN_VARIABLE, InvalidTokenError, read_token
+
 _POLL_S = 0.1
 _TIMEOUT = httpx.Timeout(10.0, connect=3.0)
 _LOOPBACK = frozenset({"127.0.0.1", "::1", "localhost"})
+
+_NO_TOKEN = f"set {TOKEN_VARIABLE} to the token of the service, or {FILE_VARIABLE} to its file"
+_OTHER_TOKEN = f"the token in {TOKEN_VARIABLE} or {FILE_VARIABLE} is that of another service"
 
 Json = Mapping[str, Any]
 
@@ -43,12 +49,18 @@ class NoAnswerError(Exception):
 class ServiceClient:
     """A running service at `url`."""
 
-    def __init__(self, url: str, transport: httpx.BaseTransport | None = None) -> None:
+    def __init__(
+        self,
+        url: str,
+        transport: httpx.BaseTransport | None = None,
+        token: str | None = None,
+    ) -> None:
         """Prepare to talk to the service; nothing is sent yet.
 
         Args:
             url: Where the service runs, as in `http://127.0.0.1:8000`.
             transport: How requests are sent; None: over the network.
+            token: Sent with each request; None: the service wants none.
 
         Raises:
             NoAnswerError: `url` is no address of a web server.
@@ -59,8 +71,13 @@ class ServiceClient:
         self.url = url.rstrip("/")
         # A proxy of the environment does not lead back to this machine.
         trust_env = parts.hostname not in _LOOPBACK
+        self._has_token = token is not None
         self._http = httpx.Client(
-            base_url=self.url, timeout=_TIMEOUT, trust_env=trust_env, transport=transport
+            base_url=self.url,
+            timeout=_TIMEOUT,
+            trust_env=trust_env,
+            transport=transport,
+            headers={} if token is None else {"Authorization": f"Bearer {token}"},
         )
 
     def close(self) -> None:
@@ -124,6 +141,8 @@ class ServiceClient:
             answer = None
         if not isinstance(answer, dict):
             raise NoAnswerError(f"what answers at {self.url} is not Pilothouse")
+        if response.status_code == httpx.codes.UNAUTHORIZED:
+            answer["hint"] = _OTHER_TOKEN if self._has_token else _NO_TOKEN
         if response.is_error:
             raise ServiceProblemError(answer)
         return answer
@@ -131,8 +150,15 @@ class ServiceClient:
 
 @contextmanager
 def service_at(url: str) -> Iterator[ServiceClient]:
-    """Return a client that is closed at the end of the context."""
-    client = ServiceClient(url)
+    """Return a client with the token of the environment, closed at the end of the context.
+
+    Raises:
+        NoAnswerError: Nobody can be asked: the address is none, or the token cannot be used.
+    """
+    try:
+        client = ServiceClient(url, token=read_token(os.environ))
+    except InvalidTokenError as error:
+        raise NoAnswerError(str(error)) from error
     try:
         yield client
     finally:

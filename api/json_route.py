@@ -6,7 +6,8 @@ from typing import Any
 from fastapi import Request, Response
 from fastapi.routing import APIRoute
 
-from api.bodies import MAX_JSON_BYTES, parse_json, read_limited
+from api.bodies import parse_json
+from api.request_bodies import limits_of, read_body
 
 
 class JsonRoute(APIRoute):
@@ -39,7 +40,7 @@ class _JsonRequest(Request):
         headers = [item for item in request.scope["headers"] if item[0] != b"content-type"]
         headers.append((b"content-type", b"application/json"))
         read = cls({**request.scope, "headers": headers}, request.receive)
-        read._raw = await read_limited(request.stream(), MAX_JSON_BYTES)
+        read._raw = await read_body(request, limits_of(request).json_bytes)
         read._parsed = parse_json(read._raw) if read._raw else None
         return read
 

@@ -9,6 +9,7 @@ from prometheus_client.core import CounterMetricFamily, GaugeMetricFamily
 from prometheus_client.metrics_core import Metric
 from prometheus_client.registry import Collector
 
+from api.gate.refusals import COUNTED, Refusals
 from api.streaming.hub import StreamHub, stream_hub
 from domain.snapshot import ChangeStatus, SystemState
 from domain.timebase import to_seconds
@@ -26,7 +27,7 @@ _PERIODS_S = (0.025, 0.045, 0.049, 0.05, 0.051, 0.055, 0.075, 0.1, 0.2, 1.0)
 class Metrics:
     """The metrics of one service, in a registry of their own."""
 
-    def __init__(self, hub: StreamHub) -> None:
+    def __init__(self, hub: StreamHub, refusals: Refusals) -> None:
         self.registry = CollectorRegistry(auto_describe=False)
         period = Histogram(
             "pilothouse_publish_period_seconds",
@@ -37,13 +38,14 @@ class Metrics:
         hub.supervisor.on_tick.append(period.observe)
         self.registry.register(_RobotCollector(hub.supervisor))
         self.registry.register(_ServiceCollector(hub))
+        self.registry.register(_GateCollector(refusals))
 
 
 def metrics(app: FastAPI) -> Metrics:
     """Return the metrics of an application; the first who asks makes them."""
     known = getattr(app.state, "metrics", None)
     if not isinstance(known, Metrics):
-        known = app.state.metrics = Metrics(stream_hub(app))
+        known = app.state.metrics = Metrics(stream_hub(app), app.state.refusals)
     return known
 
 
@@ -129,17 +131,35 @@ class _ServiceCollector(Collector):
         yield CounterMetricFamily(
             "pilothouse_ws_dropped",
             "Clients cut off because they read too slowly",
-            value=self._hub.dropped,
+            value=self._hub.fan_out.dropped,
         )
         yield CounterMetricFamily(
             "pilothouse_ws_frames_skipped",
             "Frames that clients were too slow for",
-            value=self._hub.skipped,
+            value=self._hub.fan_out.skipped,
         )
         changes = CounterMetricFamily("pilothouse_changes", "Changes that ended", labels=["status"])
         for status in _ENDS:
             changes.add_metric([status], supervisor.ended_changes[status])
         yield changes
+
+
+class _GateCollector(Collector):
+    """Who was turned away."""
+
+    def __init__(self, refusals: Refusals) -> None:
+        self._refusals = refusals
+
+    def collect(self) -> Iterator[Metric]:
+        refused = CounterMetricFamily(
+            "pilothouse_requests_refused",
+            "Requests and handshakes turned away before a route saw them, by status: 401 without "
+            "the token, 403 by a foreign page or name, 429 too many from one address",
+            labels=["status"],
+        )
+        for status in COUNTED:
+            refused.add_metric([str(status.value)], self._refusals.counts[status])
+        yield refused
 
 
 def _gauge(

@@ -21,9 +21,6 @@ from domain.tasks.task_planner import check_cruise
 from domain.vehicle import Pose, VehicleLimits
 from service.files.waypoint_file import Heading, read_waypoints_csv
 
-MAX_WAYPOINTS_BYTES = 16 * 1024 * 1024
-"""Enough for 100,000 waypoints as JSON with all digits."""
-
 
 @dataclass(frozen=True, slots=True)
 class TaskOptions:

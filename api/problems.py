@@ -10,6 +10,7 @@ from fastapi import HTTPException
 from fastapi.responses import Response
 from pydantic import Field
 
+from api.access import UnauthorizedError
 from api.bodies import (
     BodyFault,
     BodyTooLargeError,
@@ -50,6 +51,7 @@ from service.worker import TooComplexError, WorkerBusyError, WorkerClosedError
 STATUS_OF: Mapping[type[PilothouseError], HTTPStatus] = {
     PilothouseError: HTTPStatus.INTERNAL_SERVER_ERROR,
     MalformedBodyError: HTTPStatus.BAD_REQUEST,
+    UnauthorizedError: HTTPStatus.UNAUTHORIZED,
     BodyTooLargeError: HTTPStatus.REQUEST_ENTITY_TOO_LARGE,
     UnknownNameError: HTTPStatus.NOT_FOUND,
     UnknownPartError: HTTPStatus.NOT_FOUND,

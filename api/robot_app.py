@@ -1,6 +1,6 @@
 """The HTTP interface of one robot, live or in a simulation."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from contextlib import AbstractAsyncContextManager
 from functools import partial
 from typing import TypeAlias
@@ -8,9 +8,12 @@ from typing import TypeAlias
 from fastapi import FastAPI
 from starlette.middleware import Middleware
 
+from api.access import Access
 from api.distribution import installed_version
-from api.gate import Gate, SecurityHeaders, UnexpectedErrors
-from api.openapi import describe
+from api.documents.openapi import describe
+from api.gate.faults import UnexpectedErrors
+from api.gate.refusals import Refusals
+from api.limits import USUAL_LIMITS, ServiceLimits
 from api.problem_handlers import add_problem_handlers
 from api.routes import (
     changes,
@@ -61,15 +64,17 @@ def create_robot_app(
     supervisor: Supervisor,
     worker: Jobs,
     *,
-    allowed_hosts: Sequence[str],
+    access: Access | None = None,
+    limits: ServiceLimits = USUAL_LIMITS,
     lifespan: Lifespan | None = None,
 ) -> FastAPI:
-    """Return the interface; it starts no task and no process.
+    """Return the interface, without what guards it against the network; it starts no task.
 
     Args:
         supervisor: What is served.
         worker: Does what would keep the event loop.
-        allowed_hosts: Names by which this service may be asked, beside those of loopback.
+        access: Whom it lets in; None: everybody.
+        limits: How much may be asked of it.
         lifespan: What is to be done before the first and after the last request.
     """
     app = FastAPI(
@@ -82,14 +87,13 @@ def create_robot_app(
         lifespan=lifespan,
         # "default" keeps the framework from describing an answer that is never given.
         responses={"default": {"description": "A problem"}},
-        middleware=[
-            Middleware(SecurityHeaders),
-            Middleware(Gate, allowed_hosts=allowed_hosts),
-            Middleware(UnexpectedErrors),
-        ],
+        middleware=[Middleware(UnexpectedErrors)],
     )
     app.state.supervisor = supervisor
     app.state.worker = worker
+    app.state.access = access or Access.open()
+    app.state.limits = limits
+    app.state.refusals = Refusals(supervisor.clock)
     app.state.model_json = model.encode_model(supervisor)
     add_problem_handlers(app, supervisor.clock)
     for router in _RESOURCES:

@@ -119,6 +119,19 @@ class TimePassed:
     """Nothing but time."""
 
 
+@dataclass(frozen=True, slots=True)
+class WriteRecord:
+    """A request from outside that was to change something, and how it was answered."""
+
+    method: str
+    path: str
+    status: int
+    """Of HTTP."""
+    address: str
+    """Host and port of who asked."""
+    actor: str = ""
+
+
 # --- requests ------------------------------------------------------------------------------------
 
 
@@ -224,6 +237,7 @@ Input: TypeAlias = (
     | GoalFeedback
     | GoalResult
     | TimePassed
+    | WriteRecord
     | ChangeRequest
     | CancelRequest
     | EmergencyStopRequest

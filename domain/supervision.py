@@ -44,6 +44,7 @@ from domain.messages import (
     TimePassed,
     TransitionRequest,
     VehicleReport,
+    WriteRecord,
 )
 from domain.mode_inference import ModeInference
 from domain.outbox import Outbox
@@ -142,6 +143,8 @@ class Supervision:
                 self._take_drive_request(given)
             case BackendStatus():
                 self._take_backend_status(given)
+            case WriteRecord():
+                self._take_write_record(given)
             case TimePassed():
                 pass
         self._views.settle(self._now)
@@ -236,6 +239,16 @@ class Supervision:
             self._begin_input(kind, {"reason": status.reason})
             self._outbox.record_input()
         self._backend = status
+
+    def _take_write_record(self, record: WriteRecord) -> None:
+        data = {
+            "method": record.method,
+            "path": record.path,
+            "status": record.status,
+            "address": record.address,
+        }
+        self._begin_input("audit.write", data, record.actor)
+        self._outbox.record_input()
 
     def _take_vehicle_report(self, report: VehicleReport) -> None:
         self.driving.check(report)

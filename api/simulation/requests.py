@@ -20,7 +20,7 @@ class Requests:
 
     def __init__(self, supervisor: Supervisor, runner: asyncio.Runner) -> None:
         self._runner = runner
-        app = create_robot_app(supervisor, InlineJobs(), allowed_hosts=[_HOST])
+        app = create_robot_app(supervisor, InlineJobs())
         self._client = httpx.AsyncClient(transport=httpx.ASGITransport(app))
 
     def send(self, asked: AskedRequest) -> Problem | None:

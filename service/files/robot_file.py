@@ -20,6 +20,7 @@ from domain.system_model import PartName, SmhModel
 from domain.tasks.settings import TaskSettings
 from domain.timebase import seconds
 from service.files.driving_block import DrivingBlock, StartTaskBlock
+from service.files.limits_block import LimitsBlock
 from service.files.parameter_file import scalar_value
 from service.files.robot_settings import ChangesBlock, NodeBlock, SettingsBlock, SignalsBlock
 from service.files.text_file import read_text_file
@@ -58,6 +59,8 @@ class RobotSettings(SettingsBlock):
     """What the vehicle can do, and what a simulated one is like."""
     driving: DrivingBlock = DrivingBlock()
     """When a task may begin, how fast it is driven, and when it is given up."""
+    limits: LimitsBlock = LimitsBlock()
+    """How much clients may ask of the service."""
     start_task: StartTaskBlock | None = None
     """A task that is served when the service starts. Not in simulations, which name no files."""
 

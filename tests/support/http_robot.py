@@ -7,7 +7,9 @@ from typing import Any, TypeVar
 
 import httpx
 
+from api.access import Access
 from api.app import close_workers, create_app
+from api.limits import USUAL_LIMITS, ServiceLimits
 from domain.findings import Finding
 from domain.messages import Drive, NodeCommand
 from domain.simulation.node_settings import Fault, NodeSettings
@@ -73,6 +75,8 @@ class HttpRobot:
         nodes: Mapping[str, NodeSettings] | None = None,
         vehicle: VehicleSettings | None = None,
         warnings: Sequence[Finding] = (),
+        access: Access | None = None,
+        limits: ServiceLimits = USUAL_LIMITS,
     ) -> None:
         self.clock = ManualClock()
         model = read_model(text).model
@@ -87,7 +91,9 @@ class HttpRobot:
             self.backend.mock,
             simulated=robot.what,
         )
-        self.app = create_app(self.supervisor, allowed_hosts=["robot"])
+        self.app = create_app(
+            self.supervisor, allowed_hosts=["robot"], access=access, limits=limits
+        )
         transport = httpx.ASGITransport(self.app)
         self.http = httpx.AsyncClient(transport=transport, base_url="http://robot:8000")
 

@@ -1,5 +1,7 @@
 /** Requests to the server; whatever goes wrong becomes a ProblemError with words to show. */
 
+import { token } from "/web/js/token.js";
+
 /** A refusal or failure as RFC 9457 describes it. */
 export class ProblemError extends Error {
   constructor(problem) {
@@ -23,6 +25,8 @@ const NO_ANSWER = {
  *
  * A body is sent as JSON, or as the text it is where its media `type` is given.
  *
+ * Where the token is missing or wrong, the document hears `ph-unauthorized` besides.
+ *
  * @throws {ProblemError} On any status from 400, and where no answer comes within `timeoutMs`.
  */
 export async function request(method, path, body, options = {}) {
@@ -42,6 +46,8 @@ async function exchange(
 ) {
   const options = { method, keepalive, cache: "no-store", headers: { Accept: accept } };
   options.signal = AbortSignal.timeout(timeoutMs);
+  const sent = token();
+  if (sent !== null) options.headers.Authorization = `Bearer ${sent}`;
   if (body !== undefined) {
     options.headers["Content-Type"] = type ?? "application/json";
     options.body = type ? body : JSON.stringify(body);
@@ -54,6 +60,9 @@ async function exchange(
     throw new ProblemError(NO_ANSWER);
   }
   if (response.ok) return text;
+  // An answer to what was sent with an earlier token says nothing about the one in use.
+  if (response.status === 401 && sent === token())
+    document.dispatchEvent(new CustomEvent("ph-unauthorized"));
   const unnamed = { title: `HTTP ${response.status}`, detail: response.statusText };
   throw new ProblemError({ ...unnamed, ...parse(text), status: response.status });
 }

@@ -1,13 +1,16 @@
 /** The stream: a WebSocket that comes back by itself and never hides how old its last frame is. */
 
 import { localNow } from "/web/js/clock.js";
+import { token } from "/web/js/token.js";
 
 const LATE_MS = 2500;
 const LOST_MS = 3000;
 const SILENCE_MS = 5000;
 const RETRY_MS = [500, 1000, 2000, 4000, 8000];
+const UNAUTHORIZED = 4401;
 
-/** Dispatches `frame` with the decoded frame as `detail`.
+/** Dispatches `frame` with the decoded frame as `detail`, and `unauthorized` where the token is
+ * missing or wrong; then it does not come back by itself.
  *
  * `resume()` returns the query to go on with, or null to begin anew.
  */
@@ -18,6 +21,7 @@ export class Connection extends EventTarget {
   #startedAt = 0;
   #lastFrameAt = null;
   #retryAt = null;
+  #stopped = false;
 
   constructor(resume) {
     super();
@@ -31,6 +35,7 @@ export class Connection extends EventTarget {
 
   /** Drop what there is and connect at once. */
   tryNow() {
+    this.#stopped = false;
     this.#retryAt = null;
     this.#startedAt = localNow();
     this.#drop();
@@ -40,8 +45,22 @@ export class Connection extends EventTarget {
     if (query) url.search = new URLSearchParams(query);
     const socket = new WebSocket(url);
     this.#socket = socket;
+    // A browser cannot give the handshake a header.
+    socket.onopen = () => {
+      if (token() !== null) socket.send(JSON.stringify({ type: "auth", token: token() }));
+    };
     socket.onmessage = ({ data }) => this.#take(JSON.parse(data));
-    socket.onclose = () => this.#closed();
+    socket.onclose = ({ code }) => {
+      if (code === UNAUTHORIZED) this.#refused();
+      else this.#closed();
+    };
+  }
+
+  /** Drop what there is, until `tryNow` is called. */
+  stop() {
+    this.#stopped = true;
+    this.#retryAt = null;
+    this.#drop();
   }
 
   /** How good the contact is: "connecting" (never had any), "live", "late" or "lost". */
@@ -68,6 +87,11 @@ export class Connection extends EventTarget {
     this.dispatchEvent(new CustomEvent("frame", { detail: frame }));
   }
 
+  #refused() {
+    this.stop();
+    this.dispatchEvent(new CustomEvent("unauthorized"));
+  }
+
   #closed() {
     this.#socket = null;
     const wait = RETRY_MS[Math.min(this.#attempts, RETRY_MS.length - 1)];
@@ -88,13 +112,14 @@ export class Connection extends EventTarget {
 
   /** A page that was asleep does not wait for its timers. */
   #recheck() {
+    if (this.#stopped) return;
     const quiet = this.#lastFrameAt !== null && this.silenceMs() > LOST_MS;
     if (!document.hidden && (quiet || this.#retryAt !== null)) this.tryNow();
   }
 
   #drop() {
     if (this.#socket === null) return;
-    this.#socket.onmessage = this.#socket.onclose = null;
+    this.#socket.onopen = this.#socket.onmessage = this.#socket.onclose = null;
     this.#socket.close();
     this.#socket = null;
   }

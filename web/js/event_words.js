@@ -31,6 +31,8 @@ const EVENT_WORDS = {
     because(`${task} at ${percent(progress)}`, reason),
   "hold.set": ({ owner, reason }) => because(owner, reason),
   "hold.released": ({ owner }) => owner,
+  "audit.write": ({ method, path, status, address }) =>
+    `${method} ${path} from ${address}, answered ${status}`,
 };
 
 /** What happened, in words; an event of a kind not known here tells its data as they are. */

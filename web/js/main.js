@@ -5,6 +5,7 @@ import { localNow, ServerClock } from "/web/js/clock.js";
 import { Connection } from "/web/js/connection.js";
 import { emptyState, fold } from "/web/js/store.js";
 import { TaskWatch } from "/web/js/task_watch.js";
+import "/web/js/elements/token_form.js";
 import "/web/js/elements/pills.js";
 import "/web/js/elements/hold_button.js";
 import "/web/js/elements/state_bar.js";
@@ -32,6 +33,7 @@ const taskWatch = new TaskWatch(take);
 const panel = document.querySelector("ph-part-panel");
 const map = document.querySelector("ph-map");
 const taskPanel = document.querySelector("ph-task-panel");
+const tokenForm = document.querySelector("ph-token-form");
 const elements = document.querySelectorAll(
   "ph-state-bar, ph-stop-button, ph-task-panel, ph-part-tree, ph-map, ph-part-panel, " +
     "ph-signal-list, ph-event-list",
@@ -71,8 +73,8 @@ function draw() {
 /** The title tells a hidden page too, so it does not wait for an animation frame. */
 function title() {
   const level = connection.level();
-  const word = level === "lost" ? "No contact" : (state.systemState?.state ?? "Connecting");
-  const text = `${word} · Pilothouse`;
+  const known = level === "lost" ? "No contact" : (state.systemState?.state ?? "Connecting");
+  const text = `${tokenForm.isOpen ? "Token needed" : known} · Pilothouse`;
   if (document.title !== text) document.title = text;
 }
 
@@ -124,6 +126,16 @@ function resync({ epoch }) {
   panel.refresh();
 }
 
+/** What was drawn stays below, hidden: it is of before, and nobody may act on it. */
+function askForToken() {
+  connection.stop();
+  tokenForm.ask();
+  title();
+}
+
+connection.addEventListener("unauthorized", askForToken);
+document.addEventListener("ph-unauthorized", askForToken);
+document.addEventListener("ph-token", () => connection.tryNow());
 connection.addEventListener("frame", ({ detail: frame }) => {
   if (frame.type === "hello") resync(frame);
   if (frame.type === "event" && frame.kind.startsWith("emergency_stop")) loadLatch();
@@ -163,3 +175,5 @@ setInterval(() => {
   taskWatch.loadHolds();
 }, SLOW_REFRESH_MS);
 connection.tryNow();
+// A service that wants a token says so at once to a request; the stream waits for it first.
+load(["/system_state"], () => {});

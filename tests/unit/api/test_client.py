@@ -4,6 +4,7 @@ from typing import Any
 import httpx
 import pytest
 
+from api.access import FILE_VARIABLE, TOKEN_VARIABLE
 from api.client import (
     NoAnswerError,
     Outcome,
@@ -262,3 +263,53 @@ def test_an_answer_without_content_is_empty(service: Service) -> None:
 def test_what_is_no_address_is_refused_before_anything_is_sent(url: str) -> None:
     with pytest.raises(NoAnswerError, match="is no address"), service_at(url):
         pass
+
+
+# --- with a token -------------------------------------------------------------------------------
+
+
+def asked_with(token: str | None) -> httpx.Request:
+    asked: list[httpx.Request] = []
+
+    def answer(request: httpx.Request) -> httpx.Response:
+        asked.append(request)
+        return httpx.Response(200, json={})
+
+    ServiceClient(URL, httpx.MockTransport(answer), token).call("GET", "/systems")
+    return asked[0]
+
+
+def test_the_token_goes_with_each_request_and_nowhere_else() -> None:
+    asked = asked_with("correct-horse-battery")
+
+    assert asked.headers["authorization"] == "Bearer correct-horse-battery"
+    assert "correct-horse-battery" not in str(asked.url)
+    assert "authorization" not in asked_with(None).headers
+
+
+@pytest.mark.parametrize(
+    ("token", "hint"),
+    [(None, f"set {TOKEN_VARIABLE} to the token"), ("wrong", "is that of another service")],
+)
+def test_who_has_no_or_another_token_is_told_what_to_do(token: str | None, hint: str) -> None:
+    refused = problem(401, "UNAUTHORIZED", hint="send the header `Authorization: Bearer TOKEN`")
+    client = ServiceClient(URL, httpx.MockTransport(lambda _: refused), token)
+
+    with pytest.raises(ServiceProblemError) as caught:
+        client.path_of("actuation")
+
+    lines = list(refusal_lines(caught.value.problem))
+    assert lines[0] == "refused: it is so"
+    assert hint in lines[-1]
+    assert FILE_VARIABLE in lines[-1]
+
+
+def test_the_token_of_the_environment_is_taken(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv(TOKEN_VARIABLE, "two words")
+
+    with pytest.raises(NoAnswerError, match=TOKEN_VARIABLE), service_at(URL):
+        pass
+
+    monkeypatch.setenv(TOKEN_VARIABLE, "correct-horse-battery")
+    with service_at(URL) as client:
+        assert client.url == URL

@@ -4,7 +4,7 @@ from collections.abc import AsyncIterator
 
 import pytest
 
-from api.bodies import MAX_JSON_BYTES
+from api.limits import USUAL_LIMITS
 from tests.support.http_robot import HttpRobot
 
 PATH = "/emergency_stop"
@@ -28,7 +28,7 @@ async def test_no_type_will_do_as_well(robot: HttpRobot) -> None:
 async def test_a_body_whose_length_nobody_told_is_counted_as_it_comes(robot: HttpRobot) -> None:
     async def chunks() -> AsyncIterator[bytes]:
         for _ in range(10):
-            yield b" " * (MAX_JSON_BYTES // 8)
+            yield b" " * (USUAL_LIMITS.json_bytes // 8)
 
     answer = await robot.http.put(PATH, content=chunks())
 
@@ -36,7 +36,7 @@ async def test_a_body_whose_length_nobody_told_is_counted_as_it_comes(robot: Htt
 
 
 async def test_a_body_of_just_the_limit_is_read(robot: HttpRobot) -> None:
-    body = PRESS + " " * (MAX_JSON_BYTES - len(PRESS))
+    body = PRESS + " " * (USUAL_LIMITS.json_bytes - len(PRESS))
 
     assert (await robot.http.put(PATH, content=body)).status_code == 200
 

@@ -190,3 +190,13 @@ async def test_a_task_is_told_by_progress_and_error_and_its_holds_by_owner(
         assert progress == pytest.approx(0.5, abs=0.1)
         assert await metric(http, "pilothouse_cross_track_error_meters") == pytest.approx(0.0)
         assert await metric(http, "pilothouse_hold_active", owner="operator") == 1.0
+
+
+async def test_who_was_turned_away_is_counted_by_why(http: httpx.AsyncClient) -> None:
+    assert await metric(http, "pilothouse_requests_refused_total", status="403") == 0
+
+    await http.get("/systems", headers={"host": "evil.example"})
+
+    assert await metric(http, "pilothouse_requests_refused_total", status="403") == 1
+    assert await metric(http, "pilothouse_requests_refused_total", status="401") == 0
+    assert await metric(http, "pilothouse_requests_refused_total", status="429") == 0

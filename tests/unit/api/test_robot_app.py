@@ -4,7 +4,7 @@ from tests.support.live_robot import make_supervisor
 
 
 def test_the_interface_of_one_robot_has_no_simulations_in_it() -> None:
-    app = create_robot_app(make_supervisor(), InlineJobs(), allowed_hosts=[])
+    app = create_robot_app(make_supervisor(), InlineJobs())
     paths = app.openapi()["paths"]
 
     assert "/tasks" in paths

@@ -1,16 +1,22 @@
+import os
 from pathlib import Path
 
 import pytest
 
-from api.serving import ServeOptions, compose, greet, serve
+from api.access import FILE_VARIABLE, TOKEN_VARIABLE, Access
+from api.serving import MisuseError, ServeOptions, access_of, compose, greet, serve
 from service.files.robot_file import RobotSettings
 from tests.support.manual_clock import ManualClock
 
 URL = "http://127.0.0.1:8000"
 
 
-def greeting(options: ServeOptions) -> str:
-    return "\n".join(greet(compose(options, ManualClock()), options, URL))
+TOKEN = "correct-horse-battery"
+
+
+def greeting(options: ServeOptions, access: Access | None = None) -> str:
+    supervisor = compose(options, ManualClock())
+    return "\n".join(greet(supervisor, options, URL, access or Access.open()))
 
 
 @pytest.fixture
@@ -57,12 +63,85 @@ def test_the_greeting_says_what_is_served_where_and_what_is_not_real() -> None:
     assert "Simulated: nodes, signals, vehicle." in told
 
 
+def test_the_greeting_of_a_service_with_a_token_shows_how_to_send_it_and_not_the_token() -> None:
+    told = greeting(ServeOptions(), Access.with_token(TOKEN))
+
+    assert f'curl -H "Authorization: Bearer $PILOTHOUSE_TOKEN" {URL}/systems/actuation' in told
+    assert f'Bearer $PILOTHOUSE_TOKEN" -X POST {URL}/systems/actuation/mode' in told
+    assert "token needed" in told
+    assert TOKEN not in told
+    assert "token" not in greeting(ServeOptions()).lower()
+
+
+# --- who is let in ------------------------------------------------------------------------------
+
+
 @pytest.mark.parametrize("host", ["0.0.0.0", "::", "192.0.2.1"])
-def test_an_address_that_others_reach_is_refused_without_a_word_about_passwords(
+def test_an_address_that_others_reach_is_refused_until_it_is_said_who_may(
     host: str, capsys: pytest.CaptureFixture[str]
 ) -> None:
     assert serve(ServeOptions(host=host, port=0)) == 2
-    assert "--anonymous" in capsys.readouterr().err
+
+    told = capsys.readouterr().err
+    for way in (TOKEN_VARIABLE, FILE_VARIABLE, "--anonymous"):
+        assert way in told
+
+
+@pytest.mark.parametrize("host", ["127.0.0.1", "0.0.0.0"])
+def test_a_token_is_asked_for_wherever_the_service_listens(host: str) -> None:
+    access = access_of(ServeOptions(host=host), TOKEN)
+
+    assert access.required
+    assert access.accepts(TOKEN)
+
+
+def test_this_machine_alone_needs_no_token() -> None:
+    assert not access_of(ServeOptions(), None).required
+
+
+def test_everybody_is_let_in_where_that_is_said() -> None:
+    assert not access_of(ServeOptions(host="0.0.0.0", anonymous=True), None).required
+
+
+@pytest.mark.parametrize("host", ["127.0.0.1", "0.0.0.0"])
+def test_a_token_and_everybody_contradict_each_other(host: str) -> None:
+    with pytest.raises(MisuseError, match="leave out one of them") as caught:
+        access_of(ServeOptions(host=host, anonymous=True), TOKEN)
+    assert TOKEN not in str(caught.value)
+
+
+def test_a_short_token_works_with_a_warning(caplog: pytest.LogCaptureFixture) -> None:
+    assert access_of(ServeOptions(), "short").accepts("short")
+    assert "shorter than 16 characters" in caplog.text
+    caplog.clear()
+    access_of(ServeOptions(), "x" * 16)
+    assert caplog.text == ""
+
+
+@pytest.mark.parametrize(
+    ("environ", "why"),
+    [
+        ({TOKEN_VARIABLE: ""}, "it is empty"),
+        ({TOKEN_VARIABLE: "two words"}, "a space"),
+        ({FILE_VARIABLE: "/nowhere"}, "cannot read /nowhere"),
+        ({TOKEN_VARIABLE: TOKEN, FILE_VARIABLE: "/nowhere"}, "both set"),
+    ],
+)
+def test_a_token_that_cannot_be_used_ends_the_service_before_it_begins(
+    environ: dict[str, str],
+    why: str,
+    monkeypatch: pytest.MonkeyPatch,
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    for name, value in environ.items():
+        monkeypatch.setenv(name, value)
+
+    assert serve(ServeOptions(port=0)) == 2
+
+    told = capsys.readouterr().err
+    assert why in told
+    assert TOKEN not in told
+    assert TOKEN_VARIABLE not in os.environ
 
 
 def test_nothing_set_is_a_robot_file_without_content() -> None:

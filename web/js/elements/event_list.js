@@ -14,6 +14,8 @@ const REPORTS = new Set([
   "goal.feedback",
   "goal.ended",
   "time.passed",
+  // Beside what the write led to, which has a line of its own.
+  "audit.write",
 ]);
 
 class EventList extends HTMLElement {

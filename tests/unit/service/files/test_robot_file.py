@@ -15,6 +15,7 @@ from domain.system_model import NodeModel, PartName, SmhModel
 from domain.tasks.settings import TaskSettings
 from domain.timebase import seconds
 from domain.vehicle import Pose, VehicleLimits
+from service.files.limits_block import LimitsBlock
 from service.files.model_file import load_model
 from service.files.robot_file import (
     InvalidRobotFileError,
@@ -50,6 +51,7 @@ def test_a_robot_of_which_nothing_is_said_is_as_usual(text: str) -> None:
     assert settings.to_vehicle_settings() == VehicleSettings()
     assert settings.to_task_settings() == TaskSettings()
     assert settings.to_navigation_settings() == NavigationSettings()
+    assert settings.limits == LimitsBlock()
     assert settings.start_task is None
 
 
@@ -279,3 +281,14 @@ def test_the_schema_in_the_documentation_is_that_of_the_code() -> None:
     expected = {"$schema": "https://json-schema.org/draft/2020-12/schema", **schema}
 
     assert json.loads(SCHEMA.read_text(encoding="utf-8")) == expected
+
+
+def test_limits_are_set_in_a_robot_file_and_do_no_harm_in_a_simulation() -> None:
+    limits = {"json_bytes": 2_000, "requests_per_s": 5}
+
+    assert read_robot_file("limits: {json_bytes: 2000, requests_per_s: 5}", MODEL).limits == (
+        LimitsBlock.model_validate(limits)
+    )
+    assert robot_settings_of({"limits": limits}, MODEL).limits.requests_per_s == 5
+    assert faults("limits:\n  json_bytes: 1\n") == [(2, 3, "INVALID_VALUE")]
+    assert faults("limits:\n  bytes: 1\n") == [(2, 3, "UNKNOWN_KEY")]

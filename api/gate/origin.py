@@ -1,60 +1,22 @@
-"""What every request passes before a route sees it, and every answer on its way out.
+"""What a page of another site can make a browser send to this service."""
 
-Plain ASGI, so that it holds for WebSocket handshakes as well, and costs little.
-"""
-
-import logging
 import re
 from collections.abc import Iterable
 from http import HTTPStatus
-from typing import ClassVar
 from urllib.parse import urlsplit
 
-from starlette.datastructures import Headers, MutableHeaders
-from starlette.types import ASGIApp, Message, Receive, Scope, Send
+from starlette.datastructures import Headers
+from starlette.types import ASGIApp, Receive, Scope, Send
 
-from api.problems import Problem, make_problem, problem_response
-
-log = logging.getLogger(__name__)
+from api.gate.refusals import Refusals, address_of, refuse
+from api.problems import Problem, make_problem
 
 LOOPBACK_NAMES = ("localhost", "127.0.0.1", "[::1]")
-
-CONTENT_SECURITY_POLICY = (
-    "default-src 'none'; script-src 'self'; style-src 'self'; img-src 'self'; connect-src 'self'; "
-    "base-uri 'none'; form-action 'none'; frame-ancestors 'none'"
-)
 
 _SAFE_METHODS = frozenset({"GET", "HEAD", "OPTIONS"})
 
 
-class SecurityHeaders:
-    """Tell browsers to be strict with whatever comes from here."""
-
-    HEADERS: ClassVar = {
-        "Content-Security-Policy": CONTENT_SECURITY_POLICY,
-        "X-Content-Type-Options": "nosniff",
-        "Referrer-Policy": "no-referrer",
-        # Of a robot only the present is worth anything; the page's files say otherwise themselves.
-        "Cache-Control": "no-store",
-    }
-
-    def __init__(self, app: ASGIApp) -> None:
-        self._app = app
-
-    async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
-        """Add to the headers of the answer what it does not say itself."""
-
-        async def send_with_headers(message: Message) -> None:
-            if message["type"] == "http.response.start":
-                headers = MutableHeaders(scope=message)
-                for name, value in self.HEADERS.items():
-                    headers.setdefault(name, value)
-            await send(message)
-
-        await self._app(scope, receive, send_with_headers)
-
-
-class Gate:
+class OriginGate:
     """Refuse what a page of another site can make a browser send to this service.
 
     * A name in `Host` that is not ours: a foreign name that was made to resolve to our address (DNS
@@ -63,14 +25,16 @@ class Gate:
     * A write from a page with a body of a type that browsers send without asking first (a form).
     """
 
-    def __init__(self, app: ASGIApp, allowed_hosts: Iterable[str]) -> None:
+    def __init__(self, app: ASGIApp, allowed_hosts: Iterable[str], refusals: Refusals) -> None:
         """Guard `app`.
 
         Args:
             app: What is behind the gate.
             allowed_hosts: Names and addresses in `Host`, without port, beside those of loopback.
+            refusals: Counts who was refused.
         """
         self._app = app
+        self._refusals = refusals
         self._hosts = {_bare(host) for host in (*LOOPBACK_NAMES, *allowed_hosts)}
 
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
@@ -78,7 +42,8 @@ class Gate:
         if scope["type"] in ("http", "websocket"):
             problem = self._find_fault(scope)
             if problem is not None:
-                await _refuse(problem, scope, receive, send)
+                self._refusals.note(HTTPStatus(problem.status), address_of(scope))
+                await refuse(problem, scope, receive, send)
                 return
         await self._app(scope, receive, send)
 
@@ -114,36 +79,6 @@ class Gate:
             detail = "a page sends JSON, YAML or CSV, and says so"
             return make_problem(HTTPStatus.UNSUPPORTED_MEDIA_TYPE, "UNSUPPORTED_TYPE", detail, path)
         return None
-
-
-class UnexpectedErrors:
-    """The edge of the service: what nobody foresaw is logged, and answered without its inside."""
-
-    def __init__(self, app: ASGIApp) -> None:
-        self._app = app
-
-    async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
-        """Answer 500 where the application raises."""
-        if scope["type"] != "http":
-            await self._app(scope, receive, send)
-            return
-        has_begun = False
-
-        async def send_and_note(message: Message) -> None:
-            nonlocal has_begun
-            has_begun = True
-            await send(message)
-
-        try:
-            await self._app(scope, receive, send_and_note)
-        except Exception:
-            log.exception("%s %s failed", scope["method"], scope["path"])
-            if has_begun:
-                raise
-            status = HTTPStatus.INTERNAL_SERVER_ERROR
-            detail = "this is a fault in Pilothouse; its log tells more"
-            problem = make_problem(status, "INTERNAL", detail, scope["path"])
-            await problem_response(problem)(scope, receive, send)
 
 
 def is_same_origin(origin: str, host: str) -> bool:
@@ -189,11 +124,3 @@ _TYPES = frozenset(
 
 def _is_typed(headers: Headers) -> bool:
     return headers.get("content-type", "").partition(";")[0].strip().lower() in _TYPES
-
-
-async def _refuse(problem: Problem, scope: Scope, receive: Receive, send: Send) -> None:
-    if scope["type"] == "websocket":
-        # Closed before it was accepted: the server answers 403. A page is not shown a body anyway.
-        await send({"type": "websocket.close", "code": 1008})
-    else:
-        await problem_response(problem)(scope, receive, send)

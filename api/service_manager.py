@@ -1,0 +1,106 @@
+"""Tells the manager of services that started this one, which is systemd, how it fares.
+
+The protocol is that of `sd_notify`: a datagram of text to the socket that `NOTIFY_SOCKET` names.
+"""
+
+import logging
+import os
+import socket
+from collections.abc import Mapping
+from typing import Self
+
+from service.supervisor import Supervisor
+
+log = logging.getLogger(__name__)
+
+SOCKET_VARIABLE = "NOTIFY_SOCKET"
+WATCHDOG_VARIABLE = "WATCHDOG_USEC"
+WATCHED_VARIABLE = "WATCHDOG_PID"
+
+_USEC_PER_S = 1e6
+
+
+class UnknownManagerError(Exception):
+    """What the environment says of a service manager makes no sense; the message says what."""
+
+
+class ServiceManager:
+    """Whoever wants to know that the service is ready, that it ticks, and that it ends.
+
+    It is told from within the tick, so a supervisor that no longer ticks, and an event loop that
+    no longer turns, feed no watchdog.
+
+    Args:
+        address: Path of its socket, or `@` and an abstract name; None: nobody wants to know.
+        watchdog_s: It ends the service that is silent for as many seconds; None: it does not.
+    """
+
+    def __init__(self, address: str | None = None, watchdog_s: float | None = None) -> None:
+        self._address = address
+        # Half of it, so that one late tick or lost message does not end the service.
+        self._feed_every_s = None if watchdog_s is None else watchdog_s / 2
+        self._silent_for_s = 0.0
+        self._ready = False
+
+    @classmethod
+    def of(cls, environ: Mapping[str, str]) -> Self:
+        """Return the manager that the environment of this process names, or nobody.
+
+        Args:
+            environ: As `os.environ`.
+
+        Raises:
+            UnknownManagerError: A variable has a value that no manager gives it.
+        """
+        address = environ.get(SOCKET_VARIABLE)
+        if not address:
+            return cls()
+        if address[0] not in "/@":
+            raise UnknownManagerError(
+                f"{SOCKET_VARIABLE} is {address!r}, and neither a path nor @ and a name"
+            )
+        return cls(address, _watchdog_s(environ))
+
+    def watch(self, supervisor: Supervisor) -> None:
+        """Tell of each tick from now on; the first says that the service is ready."""
+        if self._address is not None:
+            supervisor.on_tick.append(self._ticked)
+
+    def say_stopping(self) -> None:
+        """Tell that the service winds down, so that nobody takes its end for a failure."""
+        self._tell("STOPPING=1")
+
+    def _ticked(self, period_s: float) -> None:
+        self._silent_for_s += period_s
+        if not self._ready:
+            self._ready = True
+            self._tell("READY=1")
+        elif self._feed_every_s is not None and self._silent_for_s >= self._feed_every_s:
+            self._silent_for_s = 0.0
+            self._tell("WATCHDOG=1")
+
+    def _tell(self, message: str) -> None:
+        if self._address is None:
+            return
+        address = self._address
+        if address.startswith("@"):
+            address = "\0" + address[1:]
+        try:
+            with socket.socket(socket.AF_UNIX, socket.SOCK_DGRAM) as sender:
+                # The tick waits for nobody.
+                sender.setblocking(False)
+                sender.sendto(message.encode("ascii"), address)
+        except OSError as error:
+            log.warning("cannot tell %s to the service manager: %s", message, error)
+
+
+def _watchdog_s(environ: Mapping[str, str]) -> float | None:
+    """Return after how many seconds of silence the service is ended; None: never."""
+    text = environ.get(WATCHDOG_VARIABLE)
+    if text is None or environ.get(WATCHED_VARIABLE, str(os.getpid())) != str(os.getpid()):
+        return None
+    if not (text.isascii() and text.isdecimal() and int(text) > 0):
+        raise UnknownManagerError(
+            f"{WATCHDOG_VARIABLE} is {text!r}, and no whole number of microseconds above 0"
+        )
+    return int(text) / _USEC_PER_S
