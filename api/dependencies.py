@@ -5,7 +5,7 @@ All are coroutines: the framework would call plain functions in a thread.
 
 from typing import Annotated
 
-from fastapi import Depends, Request
+from fastapi import Depends, Path, Request
 from fastapi.requests import HTTPConnection
 
 from domain.errors import UnknownPartError
@@ -43,7 +43,11 @@ ActorDep = Annotated[str, Depends(_actor)]
 """Who asks, as events record it."""
 
 
-async def _part(part: str, request: Request, supervisor: SupervisorDep) -> PartName:
+async def _part(
+    part: Annotated[str, Path(description="Its name as in the model file; it may hold slashes")],
+    request: Request,
+    supervisor: SupervisorDep,
+) -> PartName:
     """Return the part that the path names.
 
     Raises:

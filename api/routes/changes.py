@@ -3,7 +3,7 @@
 from collections.abc import Iterator
 from typing import Annotated
 
-from fastapi import APIRouter, Query, Response
+from fastapi import APIRouter, Path, Query, Response
 
 from api.dependencies import ActorDep, SupervisorDep
 from api.long_lists import json_list
@@ -17,11 +17,15 @@ router = APIRouter(prefix="/changes", tags=["changes"])
 MAX_CHANGES = 1_000
 _DEFAULT_CHANGES = 100
 
+ChangePath = Annotated[str, Path(description="Its id, as in `Location` of the request")]
+
 
 @router.get("", response_model=ChangesJson)
 async def list_changes(
     supervisor: SupervisorDep,
-    limit: Annotated[int, Query(ge=1, le=MAX_CHANGES)] = _DEFAULT_CHANGES,
+    limit: Annotated[
+        int, Query(ge=1, le=MAX_CHANGES, description="At most so many")
+    ] = _DEFAULT_CHANGES,
     part: Annotated[
         str | None, Query(description="Only changes that were asked of this system or node")
     ] = None,
@@ -36,13 +40,15 @@ async def list_changes(
 
 
 @router.get("/{change}")
-async def get_change(change: str, supervisor: SupervisorDep) -> ChangeJson:
+async def get_change(change: ChangePath, supervisor: SupervisorDep) -> ChangeJson:
     """Show one change with its steps."""
     return ChangeJson.of(supervisor.core.change(change), supervisor.clock)
 
 
 @router.delete("/{change}")
-async def cancel_change(change: str, supervisor: SupervisorDep, actor: ActorDep) -> ChangeJson:
+async def cancel_change(
+    change: ChangePath, supervisor: SupervisorDep, actor: ActorDep
+) -> ChangeJson:
     """Cancel a change: no further step is begun; one in flight is not recalled.
 
     A change that has ended stays as it ended.

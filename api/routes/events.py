@@ -25,7 +25,9 @@ async def get_events(
         int | None, Query(ge=0, lt=2**63, description="Id of the last event known")
     ] = None,
     epoch: Annotated[str | None, Query(max_length=64, description="Epoch of that id")] = None,
-    limit: Annotated[int, Query(ge=1, le=MAX_EVENTS)] = _DEFAULT_EVENTS,
+    limit: Annotated[
+        int, Query(ge=1, le=MAX_EVENTS, description="At most so many")
+    ] = _DEFAULT_EVENTS,
     kind: Annotated[
         str | None,
         Query(max_length=100, description="`change.failed`, or `change` for all that begin so"),

@@ -1,6 +1,8 @@
 """Tracks to try a simulated vehicle on."""
 
-from fastapi import APIRouter, Response
+from typing import Annotated
+
+from fastapi import APIRouter, Path, Response
 
 from api.dependencies import SupervisorDep
 from api.schemas.example_tracks import ExampleTrackJson, ExampleTracksJson
@@ -19,8 +21,15 @@ async def list_example_tracks(supervisor: SupervisorDep) -> ExampleTracksJson:
     )
 
 
-@router.get("/{name}", response_class=Response, responses={200: {"content": {"text/csv": {}}}})
-async def get_example_track(name: str, supervisor: SupervisorDep) -> Response:
+@router.get(
+    "/{name}",
+    response_class=Response,
+    responses={200: {"content": {"text/csv": {"schema": {"type": "string"}}}}},
+)
+async def get_example_track(
+    name: Annotated[str, Path(description="As in `GET /examples/tracks`")],
+    supervisor: SupervisorDep,
+) -> Response:
     """Return a track as CSV, as `POST /tasks` takes it."""
     offered = [known for known, _ in _offered(supervisor)]
     if name not in offered:

@@ -17,7 +17,6 @@ OwnerPath = Annotated[
     Path(
         pattern=r"^[a-zA-Z0-9][a-zA-Z0-9_.-]{0,63}$",
         description="Any name but `error` and `vehicle`, which are Pilothouse's own",
-        examples=["operator"],
     ),
 ]
 
@@ -47,5 +46,5 @@ async def set_hold(
 
 @router.delete("/{owner}", status_code=HTTPStatus.NO_CONTENT, response_class=Response)
 async def release_hold(owner: OwnerPath, supervisor: SupervisorDep, actor: ActorDep) -> None:
-    """Let go; with the last hold the task goes on. Nothing happens if there is no such hold."""
+    """Release a hold; with the last one the task goes on. Without such a hold nothing happens."""
     supervisor.submit(ReleaseRequest(owner, actor))

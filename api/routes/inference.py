@@ -2,9 +2,10 @@
 
 from fastapi import APIRouter, Request, Response
 
-from api.bodies import MAX_MODEL_BYTES, parse_body, read_limited
+from api.bodies import parse_body
 from api.dependencies import SupervisorDep, WorkerDep
 from api.posted_models import infer, infer_posted
+from api.request_bodies import limits_of, read_body
 from api.schemas.inference import InferenceBody, InferenceJson
 
 router = APIRouter(tags=["inference"])
@@ -34,7 +35,7 @@ async def infer_from_facts(
     Without a `model`, the loaded one is meant. A node left out, or without a `state`, never
     reported. A `mode` is what the node reported; without one it is inferred from the parameters.
     """
-    raw = await read_limited(request.stream(), MAX_MODEL_BYTES)
+    raw = await read_body(request, limits_of(request).model_bytes)
     if len(raw) <= _MAX_BYTES_HERE and len(supervisor.model.parts) <= _MAX_PARTS_HERE:
         body = parse_body(InferenceBody, raw)
         if body.model is None:

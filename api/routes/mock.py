@@ -1,8 +1,9 @@
 """The mock: signals of a robot that is not there. 404 where it does not run."""
 
 from http import HTTPStatus
+from typing import Annotated
 
-from fastapi import APIRouter
+from fastapi import APIRouter, Path
 
 from api.bodies import InvalidBodyError
 from api.dependencies import ActorDep, SupervisorDep
@@ -24,7 +25,10 @@ async def get_mock(supervisor: SupervisorDep) -> MockJson:
 
 @router.patch("/{signal}")
 async def change_mock(
-    signal: str, body: MockBody, supervisor: SupervisorDep, actor: ActorDep
+    signal: Annotated[str, Path(description="One of those in `GET /mock`")],
+    body: MockBody,
+    supervisor: SupervisorDep,
+    actor: ActorDep,
 ) -> MockSignalJson:
     """Hold another value of a signal, or stop or resume its publishing; both, or none, are done."""
     mock = _mock_of(supervisor)

@@ -2,9 +2,9 @@
 
 from fastapi import APIRouter, Request, Response
 
-from api.bodies import MAX_MODEL_BYTES, read_limited
 from api.dependencies import SupervisorDep, WorkerDep
 from api.posted_models import check_posted
+from api.request_bodies import limits_of, read_body
 from api.schemas.base import FindingJson
 from api.schemas.inference import ModelCheckJson, ModelJson, NodeModelJson, SystemModelJson
 from service.supervisor import Supervisor
@@ -48,5 +48,5 @@ async def get_model(request: Request, supervisor: SupervisorDep) -> Response:
 )
 async def check_posted_model(request: Request, worker: WorkerDep) -> Response:
     """Check a model (SMH, YAML): everything that is wrong with it, and what is odd, at once."""
-    raw = await read_limited(request.stream(), MAX_MODEL_BYTES)
+    raw = await read_body(request, limits_of(request).model_bytes)
     return Response(await worker.call(check_posted, raw), media_type="application/json")

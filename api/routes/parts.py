@@ -30,7 +30,7 @@ router = APIRouter(route_class=JsonRoute)
 
 @router.get("", response_model=PartsJson)
 async def list_parts(request: Request, supervisor: SupervisorDep) -> Response:
-    """List all of this kind, in the order of the model file."""
+    """List all systems, or all nodes, in the order of the model file."""
     kind = "system" if request.url.path == "/systems" else "node"
     views = (view for view in supervisor.core.parts().values() if view.kind == kind)
     clock = supervisor.clock

@@ -8,7 +8,7 @@ from fastapi import APIRouter, Depends, Request, Response
 from prometheus_client import CONTENT_TYPE_LATEST, generate_latest
 
 from api.metrics import Metrics, metrics
-from api.problems import Problem, make_problem, problem_response
+from api.problems import make_problem, problem_response
 from api.schemas.base import Json
 from api.streaming.hub import StreamHubDep
 from domain.tasks.holds import VEHICLE_HOLD
@@ -58,11 +58,11 @@ class HealthJson(Json):
 
 @router.get("/livez")
 async def get_livez() -> LiveJson:
-    """Answer at all: the event loop turns."""
+    """Tell that the event loop turns."""
     return LiveJson()
 
 
-@router.get("/readyz", response_model=ReadyJson, responses={503: {"model": Problem}})
+@router.get("/readyz", response_model=ReadyJson, responses={503: {"description": "It does not"}})
 async def get_readyz(hub: StreamHubDep, request: Request) -> ReadyJson | Response:
     """Tell whether the model is loaded and the core ticks; 503 if not."""
     checks = _checks(hub.supervisor)
@@ -92,7 +92,11 @@ async def _metrics(request: Request) -> Metrics:
     return metrics(request.app)
 
 
-@router.get("/metrics", response_class=Response)
+@router.get(
+    "/metrics",
+    response_class=Response,
+    responses={200: {"content": {"text/plain": {"schema": {"type": "string"}}}}},
+)
 async def get_metrics(known: Annotated[Metrics, Depends(_metrics)]) -> Response:
     """Return the metrics in the text format of Prometheus."""
     return Response(generate_latest(known.registry), media_type=CONTENT_TYPE_LATEST)

@@ -2,7 +2,7 @@
 
 from typing import Annotated
 
-from fastapi import APIRouter, Body
+from fastapi import APIRouter, Body, Path
 
 from api.bodies import InvalidBodyError
 from api.dependencies import ActorDep, SupervisorDep
@@ -15,6 +15,8 @@ from domain.messages import Reading
 
 router = APIRouter(prefix="/signals", tags=["health"], route_class=JsonRoute)
 
+SignalPath = Annotated[str, Path(description="One of those in `GET /signals`")]
+
 
 @router.get("")
 async def list_signals(supervisor: SupervisorDep) -> SignalsJson:
@@ -25,8 +27,8 @@ async def list_signals(supervisor: SupervisorDep) -> SignalsJson:
 
 
 @router.get("/{signal}")
-async def get_signal(signal: str, supervisor: SupervisorDep) -> SignalJson:
-    """Show one signal."""
+async def get_signal(signal: SignalPath, supervisor: SupervisorDep) -> SignalJson:
+    """Show one signal: the value held, and what is judged of it."""
     clock = supervisor.clock
     return SignalJson.at(supervisor.core.signal(signal), clock, clock.now())
 
@@ -35,7 +37,7 @@ async def get_signal(signal: str, supervisor: SupervisorDep) -> SignalJson:
 async def post_readings(
     body: Annotated[
         dict[str, SentSignalValue],
-        Body(min_length=1, examples=[{"battery_level": 0.9, "estop": False}]),
+        Body(min_length=1, description="Values by the names of their signals"),
     ],
     supervisor: SupervisorDep,
     actor: ActorDep,
@@ -62,7 +64,7 @@ async def post_readings(
 
 @router.post("/{signal}")
 async def post_reading(
-    signal: str, body: ReadingBody, supervisor: SupervisorDep, actor: ActorDep
+    signal: SignalPath, body: ReadingBody, supervisor: SupervisorDep, actor: ActorDep
 ) -> SystemStateJson:
     """Hand in a reading; it is decided on arrival, and the system state that follows is returned.
 

@@ -2,8 +2,8 @@
 
 from fastapi import APIRouter, Request, Response
 
-from api.bodies import MAX_MODEL_BYTES, read_limited
 from api.dependencies import SimulatorDep, SupervisorDep
+from api.request_bodies import limits_of, read_body
 from api.schemas.simulation import SimulationJson
 from api.simulation.posted import LiveCopy, copy_of, simulate_posted
 from service.supervisor import Supervisor
@@ -31,7 +31,7 @@ async def simulate(
     Supervision, planner, navigation and simulated robot are those that run live. Readings come from
     the scenario alone, unless `robot` says `mock: true`.
     """
-    raw = await read_limited(request.stream(), MAX_MODEL_BYTES)
+    raw = await read_body(request, limits_of(request).model_bytes)
     # Looked at only when it may be asked for: a copy takes time on the loop.
     live = _copy(supervisor) if b'"live"' in raw else None
     content = await simulator.call(simulate_posted, raw, supervisor.model_text, live)

@@ -1,6 +1,8 @@
 """The state of the robot as a whole, and its errors."""
 
-from fastapi import APIRouter
+from typing import Annotated
+
+from fastapi import APIRouter, Path
 
 from api.dependencies import ActorDep, SupervisorDep
 from api.schemas.health import SystemStateJson
@@ -27,7 +29,9 @@ async def get_system_state(supervisor: SupervisorDep) -> SystemStateJson:
 
 @router.post("/errors/{error}/acknowledge")
 async def acknowledge_error(
-    error: str, supervisor: SupervisorDep, actor: ActorDep
+    error: Annotated[str, Path(description="One of `errors` in `GET /system_state`")],
+    supervisor: SupervisorDep,
+    actor: ActorDep,
 ) -> SystemStateJson:
     """Acknowledge an error whose recovery needs that; it ends once its cause is gone as well."""
     supervisor.submit(AcknowledgeRequest(error, actor))

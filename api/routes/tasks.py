@@ -3,18 +3,18 @@
 from http import HTTPStatus
 from typing import Annotated
 
-from fastapi import APIRouter, Depends, Query, Request, Response
+from fastapi import APIRouter, Depends, Path, Query, Request, Response
 
-from api.bodies import InvalidBodyError, read_limited
+from api.bodies import InvalidBodyError
 from api.dependencies import ActorDep, SupervisorDep, WorkerDep
 from api.posted_tasks import (
-    MAX_WAYPOINTS_BYTES,
     PostedTask,
     TaskOptions,
     encode_waypoints,
     preview_posted,
     read_posted_task,
 )
+from api.request_bodies import limits_of, read_body
 from api.schemas.path_preview import PathPreviewJson
 from api.schemas.tasks import (
     DEFAULT_CONTROLLER,
@@ -42,10 +42,7 @@ _BODY = {
         "required": True,
         "content": {
             "application/json": {"schema": {"$ref": "#/components/schemas/TaskBody"}},
-            "text/csv": {
-                "schema": {"type": "string"},
-                "example": "0.0,0.0,0.0\n1.0,0.0,0.0\n2.0,0.1,0.1\n",
-            },
+            "text/csv": {"schema": {"type": "string"}},
         },
     }
 }
@@ -53,11 +50,22 @@ _BODY = {
 
 async def _csv_options(
     request: Request,
-    controller: Annotated[Controller | None, Query()] = None,
-    speed_mps: Annotated[float | None, Query(allow_inf_nan=False)] = None,
-    start_index: Annotated[int | None, Query(ge=0)] = None,
+    controller: Annotated[
+        Controller | None,
+        Query(description=f"Of a CSV: the path tracker, {DEFAULT_CONTROLLER} unless told"),
+    ] = None,
+    speed_mps: Annotated[
+        float | None,
+        Query(
+            allow_inf_nan=False,
+            description=f"Of a CSV: the cruise speed, {DEFAULT_SPEED_MPS} m/s unless told",
+        ),
+    ] = None,
+    start_index: Annotated[
+        int | None, Query(ge=0, description="Of a CSV: the waypoint to begin with, from 0")
+    ] = None,
     heading: Annotated[
-        Heading | None, Query(description="What the third column is; `rad` unless told")
+        Heading | None, Query(description="Of a CSV: what its third column is, `rad` unless told")
     ] = None,
 ) -> TaskOptions | None:
     """Return how a CSV is to be driven; None: the body is JSON, and says so itself."""
@@ -77,6 +85,7 @@ async def _csv_options(
     return None
 
 
+TaskPath = Annotated[str, Path(description="Its id, as in `Location` of `POST /tasks`")]
 CsvOptionsDep = Annotated[TaskOptions | None, Depends(_csv_options)]
 
 
@@ -93,7 +102,7 @@ async def serve_task(
     They are JSON, or CSV with `x,y,yaw` in m, m and rad (`Content-Type: text/csv`). While something
     holds the vehicle, as an error does, the task is taken and waits.
     """
-    raw = await read_limited(request.stream(), MAX_WAYPOINTS_BYTES)
+    raw = await read_body(request, limits_of(request).waypoints_bytes)
     posted = await _read(raw, csv, worker)
     task = serve(supervisor, posted, actor)
     headers = {"Location": f"/tasks/{task.id}"}
@@ -126,7 +135,7 @@ async def preview_task(
     request: Request, csv: CsvOptionsDep, supervisor: SupervisorDep, worker: WorkerDep
 ) -> Response:
     """Check waypoints and describe their path; nothing is started."""
-    raw = await read_limited(request.stream(), MAX_WAYPOINTS_BYTES)
+    raw = await read_body(request, limits_of(request).waypoints_bytes)
     driving = supervisor.core.driving
     state = driving.vehicle.state
     pose = None if state is None else state.pose
@@ -160,14 +169,14 @@ async def cancel_task(supervisor: SupervisorDep, actor: ActorDep) -> None:
 
 
 @router.get("/{task}")
-async def get_task(task: str, supervisor: SupervisorDep) -> TaskJson:
+async def get_task(task: TaskPath, supervisor: SupervisorDep) -> TaskJson:
     """Show one task, also one that has ended."""
     return TaskJson.of(supervisor.core.driving.task(task), supervisor.clock)
 
 
 @router.get("/{task}/waypoints", response_model=WaypointsJson)
 async def get_waypoints(
-    task: str,
+    task: Annotated[str, Path(description="Its id, or `current`")],
     supervisor: SupervisorDep,
     worker: WorkerDep,
     max_points: Annotated[

@@ -230,9 +230,10 @@ class SimulationBody(Body):
     def _fits(self) -> Self:
         if self.begin is not None and (self.model is not None or self.robot is not None):
             raise ValueError("a copy of the live robot has its own model and settings")
-        samples = int(self.until_s / self.sample_period_s) + 1
-        if samples > MAX_SAMPLES:
-            message = f"{samples} samples; at most {MAX_SAMPLES}: sample less often"
+        # No integer: the shortest of periods make it infinite.
+        periods = self.until_s / self.sample_period_s
+        if periods >= MAX_SAMPLES:
+            message = f"{periods + 1:.0f} samples; at most {MAX_SAMPLES}: sample less often"
             raise ValueError(message)
         readings = sum(
             len(step.reading) * step.count(self.until_s)

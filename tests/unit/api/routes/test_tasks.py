@@ -181,15 +181,6 @@ async def test_a_csv_that_does_not_say_so_is_refused_with_what_to_say(
     assert answer.json()["hint"] == "a CSV is sent with Content-Type: text/csv"
 
 
-async def test_a_body_without_end_is_refused(
-    robot: HttpRobot, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    monkeypatch.setattr("api.routes.tasks.MAX_WAYPOINTS_BYTES", 100)
-    answer = await post(robot, LINE * 10)
-
-    assert answer.status_code == 413
-
-
 # --- looking and ending --------------------------------------------------------------------------
 
 

@@ -114,6 +114,7 @@ def test_as_deep_as_is_allowed_is_taken() -> None:
         ({"until_s": None}, "valid number"),
         ({"sample_period_s": 0}, "greater than 0"),
         ({"until_s": 20_000, "sample_period_s": 1}, "20001 samples; at most 20000"),
+        ({"until_s": 20_000, "sample_period_s": 5e-324}, "samples; at most 20000"),
         ({"begin": "live", "model": "a: {}"}, "its own model"),
         ({"from": "live", "robot": {}}, "its own model and settings"),
         ({"from": "dead"}, "'live'"),

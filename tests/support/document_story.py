@@ -1,0 +1,238 @@
+"""The requests that the OpenAPI document shows: a day of the example robot, in virtual time."""
+
+from dataclasses import dataclass, field
+from typing import Any
+
+from tests.support.http_robot import ACTUATION
+
+JSON = "application/json"
+YAML = "application/yaml"
+CSV = "text/csv"
+
+
+@dataclass(frozen=True, slots=True)
+class Asked:
+    """One request of the story.
+
+    Args:
+        operation: As in the document: `GET /changes/{change}`.
+        summary: What it is an example of.
+        path: Values of the parameters in the path.
+        query: Of the address.
+        body: None: without one.
+        body_type: Media type of the body.
+        accept: Media type that is asked for.
+        then_s: Time that passes afterwards; with `wait`, meanwhile.
+    """
+
+    operation: str
+    summary: str
+    path: dict[str, str] = field(default_factory=dict)
+    query: dict[str, str] = field(default_factory=dict)
+    body: Any = None
+    body_type: str = JSON
+    accept: str = "*/*"
+    then_s: float = 0.0
+
+
+def _waypoints(count: int) -> list[dict[str, float]]:
+    return [{"x_m": 2.0 * n, "y_m": 0.0, "yaw_rad": 0.0} for n in range(count)]
+
+
+SHORT_TASK = {"waypoints": _waypoints(6), "controller": "stanley", "speed_mps": 2.0}
+SHORT_CSV = "".join(f"{2 * n}.0,0.0,0.0\n" for n in range(12))
+BAD_MODEL = """\
+arm:
+  ros__parameters:
+    type: node
+    modes:
+      SLOW: {ros__parameters: {max_speed: 0.2}}
+"""
+SCENARIO = {
+    "title": "The battery goes flat",
+    "until_s": 1,
+    "sample_period_s": 1,
+    "steps": [
+        {"t_s": 0.5, "reading": {"battery_level": 0.42}},
+        {"t_s": 1, "expect": {"system_state": {"state": "ERROR"}}},
+    ],
+}
+FACTS = {
+    "targets": {"actuation": "active.PERFORMANCE"},
+    "nodes": {
+        "drive_base": {"state": "active", "parameters": {"max_speed": 0.2, "controller": "PID"}},
+        "manipulator": "active.WEAK",
+    },
+}
+SHUTDOWN = {"transition": "shutdown"}
+
+ACTUATOR = {"part": "actuation"}
+BASE = {"part": "drive_base"}
+ARM = {"part": "manipulator"}
+BATTERY = {"signal": "battery_level"}
+OPERATOR = {"owner": "operator"}
+
+_MODES_AND_STATES = (
+    Asked("GET /systems", "After the start"),
+    Asked("GET /nodes", "After the start"),
+    Asked("GET /systems/{part}/states", "Of a system", ACTUATOR),
+    Asked("GET /nodes/{part}/states", "Of a node", BASE),
+    Asked("GET /systems/{part}/modes", "What can be entered", ACTUATOR),
+    Asked(
+        "POST /systems/{part}/mode",
+        "What would be done",
+        ACTUATOR,
+        {"dry_run": "true"},
+        {"mode": "PERFORMANCE"},
+    ),
+    Asked(
+        "POST /systems/{part}/mode",
+        "Begin, and look later",
+        ACTUATOR,
+        body={"mode": "PERFORMANCE"},
+        then_s=3,
+    ),
+    Asked("GET /changes/{change}", "It has succeeded", {"change": "c1"}),
+    Asked("GET /systems/{part}", "In a mode", ACTUATOR),
+    Asked("GET /nodes/{part}", "In a mode", BASE),
+    Asked("GET /systems/{part}/state", "In a mode", ACTUATOR),
+    Asked("GET /nodes/{part}/state", "In a mode", BASE),
+    Asked("GET /systems/{part}/mode", "In a mode", ACTUATOR),
+    Asked("GET /nodes/{part}/mode", "In a mode", BASE),
+    Asked("GET /nodes/{part}/modes", "What can be entered", BASE),
+    Asked("GET /nodes/{part}/parameters", "In a mode", BASE),
+    Asked(
+        "PATCH /nodes/{part}/parameters",
+        "Set by hand",
+        BASE,
+        {"wait": "5"},
+        {"max_speed": 0.4},
+        then_s=1,
+    ),
+    Asked("PATCH /nodes/{part}/parameters", "Set back", BASE, body={"max_speed": 0.9}, then_s=1),
+    Asked(
+        "POST /nodes/{part}/mode",
+        "Wait for the end",
+        BASE,
+        {"wait": "5"},
+        {"mode": "SLOW"},
+        then_s=3,
+    ),
+    Asked(
+        "POST /nodes/{part}/mode", "Begin, and look later", BASE, body={"mode": "FAST"}, then_s=3
+    ),
+    Asked(
+        "POST /nodes/{part}/state",
+        "Deactivate a node",
+        BASE,
+        body={"transition": "deactivate"},
+        then_s=3,
+    ),
+    Asked(
+        "POST /nodes/{part}/state",
+        "Activate it again",
+        BASE,
+        {"wait": "5"},
+        {"transition": "activate"},
+        then_s=3,
+    ),
+    Asked(
+        "POST /systems/{part}/state",
+        "Deactivate all of a system",
+        ACTUATOR,
+        {"wait": "5"},
+        {"transition": "deactivate"},
+        then_s=3,
+    ),
+    Asked("POST /systems/{part}/state", "Activate it", ACTUATOR, body={"transition": "activate"}),
+    Asked("DELETE /changes/{change}", "While it runs", {"change": "c8"}, then_s=3),
+    Asked("GET /changes", "The newest two", query={"limit": "2"}),
+)
+
+_HEALTH = (
+    Asked("GET /signals", "All is well"),
+    Asked("GET /signals/{signal}", "All is well", BATTERY),
+    Asked("GET /system_state", "All is well"),
+    Asked("GET /mock", "All is well"),
+    Asked(
+        "PATCH /mock/{signal}",
+        "Silence a signal",
+        {"signal": "temperature"},
+        body={"publishing": False},
+    ),
+    Asked(
+        "PATCH /mock/{signal}",
+        "Speak again",
+        {"signal": "temperature"},
+        body={"value": 30.0, "publishing": True},
+        then_s=1,
+    ),
+    Asked("POST /signals/{signal}", "The battery is flat", BATTERY, body={"value": 0.42}),
+    Asked("POST /errors/{error}/acknowledge", "A flat battery", {"error": "BATTERY_LOW"}),
+    Asked(
+        "POST /signals",
+        "Two at once, from a named sender",
+        body={"battery_level": 0.9, "estop": False, "source": "bench"},
+        then_s=1,
+    ),
+    Asked(
+        "PUT /emergency_stop", "Engage it", body={"engaged": True, "reason": "smoke"}, then_s=0.1
+    ),
+    Asked("GET /emergency_stop", "Engaged"),
+    Asked("PUT /emergency_stop", "Release it", body={"engaged": False}, then_s=1),
+)
+
+_DRIVE = (
+    Asked("GET /examples/tracks", "With a simulated vehicle"),
+    Asked("GET /examples/tracks/{name}", "The first waypoints", {"name": "loop"}),
+    Asked("POST /tasks/preview", "As JSON", body=SHORT_TASK),
+    Asked("POST /tasks/preview", "As CSV", body=SHORT_CSV, body_type=CSV),
+    Asked("POST /tasks", "As JSON", body=SHORT_TASK),
+    Asked(
+        "POST /tasks",
+        "As CSV, instead of the first",
+        query={"speed_mps": "2.5"},
+        body=SHORT_CSV,
+        body_type=CSV,
+        then_s=3,
+    ),
+    Asked("GET /tasks/current", "On its way"),
+    Asked("GET /vehicle", "On its way"),
+    Asked("PUT /holds/{owner}", "While loading", OPERATOR, body={"reason": "loading"}),
+    Asked("GET /holds", "One hold"),
+    Asked("DELETE /holds/{owner}", "Let go", OPERATOR),
+    Asked("GET /tasks/{task}", "It was replaced", {"task": "t1"}),
+    Asked("GET /tasks/{task}/waypoints", "Three of them", {"task": "t2"}, {"max_points": "3"}),
+    Asked("DELETE /tasks/current", "Give it up", then_s=2),
+    Asked("GET /tasks", "One was replaced, one given up"),
+)
+
+_BESIDE = (
+    Asked("GET /model", "What was read"),
+    Asked("GET /model", "The file", accept=YAML),
+    Asked("POST /model/check", "One that is right", body=ACTUATION, body_type=YAML),
+    Asked("POST /model/check", "One with a fault", body=BAD_MODEL, body_type=YAML),
+    Asked("POST /inference", "A mode that is not reached", body=FACTS),
+    Asked("POST /simulations", "A flat battery", body=SCENARIO),
+    Asked("GET /events", "The newest two", query={"limit": "2"}),
+    Asked("GET /livez", "Alive"),
+    Asked("GET /readyz", "Ready"),
+    Asked("GET /healthz", "Well"),
+    Asked("GET /metrics", "Some of them"),
+)
+
+_REFUSED = (
+    Asked("GET /nodes/{part}", "No such part", {"part": "drive_bas"}),
+    Asked("POST /systems/{part}/mode", "A body that is wrong", ACTUATOR, body={"mode": 7}),
+    Asked("POST /nodes/{part}/state", "Shut a node down", ARM, {"wait": "5"}, SHUTDOWN, then_s=3),
+    Asked("GET /systems/{part}/modes", "What stands against entering them", ACTUATOR),
+    Asked(
+        "POST /systems/{part}/mode",
+        "What stands against it",
+        ACTUATOR,
+        body={"mode": "PERFORMANCE"},
+    ),
+)
+
+STORY = (*_MODES_AND_STATES, *_HEALTH, *_DRIVE, *_BESIDE, *_REFUSED)
+"""Every operation is in it; what is refused comes last."""

@@ -1,0 +1,13 @@
+import pytest
+
+from api.command_line import main
+from api.serving import ServeOptions
+
+
+def test_serve_hands_on_what_it_was_told(monkeypatch: pytest.MonkeyPatch) -> None:
+    given: list[ServeOptions] = []
+    monkeypatch.setattr("api.serving.serve", given.append)
+
+    main(["serve", "--port", "0", "--allowed-host", "robot.local", "--allowed-host", "robot"])
+
+    assert given == [ServeOptions(port=0, allowed_hosts=("robot.local", "robot"))]
