@@ -1,0 +1,129 @@
+"""Parts and signals as rows, and which of them are shown where there is no room for all."""
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any, Generic, Protocol, Self, TypeVar
+
+Json = Mapping[str, Any]
+
+UNREACHABLE, WRONG, CHANGES, CALM = "x", "!", ">", " "
+"""Marks in front of a row, the most urgent first."""
+
+_URGENCY = (UNREACHABLE, WRONG, CHANGES, CALM)
+
+
+class Row(Protocol):
+    """One line of a table."""
+
+    @property
+    def name(self) -> str:
+        """Return what it is about."""
+
+    @property
+    def mark(self) -> str:
+        """Return what needs attention."""
+
+    def alone(self) -> Self:
+        """Return the row as it is shown without those around it."""
+
+
+RowType = TypeVar("RowType", bound=Row)
+
+
+@dataclass(frozen=True, slots=True)
+class PartRow:
+    """A system or node in the tree."""
+
+    part: Json
+    depth: int = 0
+    """0 for a part of no system."""
+
+    @property
+    def name(self) -> str:
+        """Return its name."""
+        return str(self.part["name"])
+
+    @property
+    def mark(self) -> str:
+        """Return what needs attention; that a node of a system is not reachable, the node tells."""
+        part = self.part
+        if not part.get("reachable", True) and part.get("kind") == "node":
+            return UNREACHABLE
+        if part.get("change"):
+            return CHANGES
+        return CALM if part["converged"] else WRONG
+
+    def alone(self) -> "PartRow":
+        """Return it without an indent."""
+        return PartRow(self.part)
+
+
+@dataclass(frozen=True, slots=True)
+class SignalRow:
+    """A signal."""
+
+    signal: Json
+
+    @property
+    def name(self) -> str:
+        """Return its name."""
+        return str(self.signal["signal"])
+
+    @property
+    def mark(self) -> str:
+        """Return what needs attention; `>` is an error that comes if it stays bad."""
+        if self.signal["error"] or self.signal["stale"]:
+            return WRONG
+        return CHANGES if self.signal["pending"] else CALM
+
+    def alone(self) -> "SignalRow":
+        """Return itself."""
+        return self
+
+
+@dataclass(frozen=True, slots=True)
+class Chosen(Generic[RowType]):
+    """The rows for which there is room, and how many there are besides."""
+
+    rows: tuple[RowType, ...]
+    left_out: int = 0
+    marked: int = 0
+    """Of those left out, the ones that need attention."""
+
+
+def part_rows(parts: Mapping[str, Json]) -> list[PartRow]:
+    """Return a row for each part, below its system; a part of two systems has two.
+
+    Args:
+        parts: By name.
+    """
+    owned = {child for part in parts.values() for child in part.get("parts", ())}
+    rows: list[PartRow] = []
+    for name in parts:
+        if name not in owned:
+            rows.extend(_below(parts, name, 0))
+    return rows
+
+
+def _below(parts: Mapping[str, Json], name: str, depth: int) -> Iterator[PartRow]:
+    yield PartRow(parts[name], depth)
+    for child in parts[name].get("parts", ()):
+        if child in parts:
+            yield from _below(parts, child, depth + 1)
+
+
+def choose(rows: Sequence[RowType], room: int | None) -> Chosen[RowType]:
+    """Return all rows where they fit; else first those that need attention, then the others.
+
+    Args:
+        rows: In their usual order.
+        room: Number of lines, of which the last counts what is left out; None: as many as needed.
+    """
+    if room is None or len(rows) <= room:
+        return Chosen(tuple(rows))
+    urgent = {row.name: row.alone() for row in rows if row.mark != CALM}
+    # Sorting is stable: what is equally urgent keeps its order.
+    first = sorted(urgent.values(), key=lambda row: _URGENCY.index(row.mark))
+    ordered = [*first, *(row for row in rows if row.mark == CALM)]
+    kept = ordered[: max(0, room - 1)]
+    return Chosen(tuple(kept), len(ordered) - len(kept), max(0, len(first) - len(kept)))

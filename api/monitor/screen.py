@@ -1,0 +1,90 @@
+"""A terminal that is drawn on: the alternate screen, and only the lines that changed.
+
+Rich would write the whole screen for each picture; over a serial line of 9600 baud that takes two
+seconds.
+"""
+
+import sys
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
+
+from rich.console import Console
+from rich.text import Text
+
+_ERASE_LINE = "\x1b[K"
+_ERASE_SCREEN = "\x1b[2J"
+
+
+class Screen:
+    """What a terminal shows, line by line."""
+
+    def __init__(self, console: Console) -> None:
+        """Show nothing yet.
+
+        Args:
+            console: Where to write.
+        """
+        self._console = console
+        self._shown: list[str] = []
+        self._size = console.size
+
+    def forget(self) -> None:
+        """Draw everything anew with the next picture: something else has written."""
+        self._shown = []
+
+    def draw(self, lines: Sequence[Text]) -> None:
+        """Show lines, from the top; where nothing changed, nothing is written."""
+        size = self._console.size
+        if size != self._size:
+            self._size = size
+            self.forget()
+        drawn = [self._codes(line, size.width) for line in lines[: size.height]]
+        drawn += [_ERASE_LINE] * (size.height - len(drawn))
+        text = ""
+        if not self._shown:
+            text = _ERASE_SCREEN
+            self._shown = [_ERASE_LINE] * size.height
+        for number, (new, old) in enumerate(zip(drawn, self._shown, strict=True), start=1):
+            if new != old:
+                text += f"\x1b[{number};1H{new}"
+        self._shown = drawn
+        if text:
+            self._console.file.write(text)
+            self._console.file.flush()
+
+    def _codes(self, line: Text, width: int) -> str:
+        """Return what writes a line over another one."""
+        with self._console.capture() as captured:
+            self._console.print(line, end="", no_wrap=True, overflow="crop")
+        # Behind a line that is full, terminals would erase its last character.
+        return captured.get() + (_ERASE_LINE if line.cell_len < width else "")
+
+
+@contextmanager
+def alternate_screen(console: Console) -> Iterator[Screen]:
+    """Draw on a screen of its own; at the end, however that comes, there is what was before.
+
+    Args:
+        console: Of a terminal.
+    """
+    with console.screen(), _without_echo():
+        yield Screen(console)
+
+
+@contextmanager
+def _without_echo() -> Iterator[None]:
+    """Keep keys that somebody presses from being written over the picture."""
+    if sys.platform == "win32" or not sys.stdin.isatty():
+        yield
+        return
+    import termios
+
+    before = termios.tcgetattr(sys.stdin)
+    local_modes = before[3]
+    quiet = [*before[:3], local_modes & ~termios.ECHO, *before[4:]]
+    termios.tcsetattr(sys.stdin, termios.TCSADRAIN, quiet)
+    try:
+        yield
+    finally:
+        # What was typed was not meant for the shell.
+        termios.tcsetattr(sys.stdin, termios.TCSAFLUSH, before)

@@ -1,0 +1,115 @@
+"""`pilothouse monitor` as a process of its own, beside a real service."""
+
+import fcntl
+import json
+import os
+import pty
+import select
+import signal
+import socket
+import struct
+import subprocess
+import termios
+
+import httpx
+
+from tests.support.process import COMMAND, run, service
+
+
+def test_once_is_the_whole_picture_as_plain_text() -> None:
+    with service() as running:
+        httpx.post(
+            f"{running.url}/systems/actuation/mode?wait=20",
+            json={"mode": "PERFORMANCE"},
+            timeout=30,
+        )
+        code, output, errors = run("monitor", running.url, "--once")
+
+    assert (code, errors) == (0, "")
+    assert "\x1b" not in output
+    lines = [line.split() for line in output.splitlines()]
+    assert ["actuation", "active.PERFORMANCE", "active(*)", "PERFORMANCE(*)"] in lines
+    assert ["drive_base", "active.FAST", "active", "FAST(*)"] in lines
+    assert ["battery_level", "100", "%", "now", "ok"] in lines
+    assert all(len(line) <= 80 for line in output.splitlines())
+
+
+def test_once_as_json_is_one_object_with_each_member_as_the_interface_has_it() -> None:
+    with service() as running:
+        httpx.post(f"{running.url}/signals/battery_level", json={"value": 0.42})
+        code, output, errors = run("monitor", running.url, "--once", "--format", "json")
+        systems, holds = (
+            httpx.get(f"{running.url}/{what}").json() for what in ("systems", "holds")
+        )
+
+    assert (code, errors) == (0, "")
+    seen = json.loads(output)
+    assert list(seen) == [
+        "at",
+        "system_state",
+        "parts",
+        "signals",
+        "task",
+        "vehicle",
+        "emergency_stop",
+        "holds",
+    ]
+    assert seen["system_state"]["errors"] == ["BATTERY_LOW"]
+    assert seen["parts"]["actuation"] == systems["items"][0]
+    assert seen["holds"] == holds["items"]
+
+
+def test_where_no_service_is_that_is_told_in_one_line() -> None:
+    with socket.create_server(("127.0.0.1", 0)) as listener:
+        port = listener.getsockname()[1]
+
+    code, output, errors = run("monitor", f"http://127.0.0.1:{port}", "--once")
+
+    assert (code, output) == (2, "")
+    assert errors == (
+        f"pilothouse: no service answers at http://127.0.0.1:{port}: is it running?\n"
+    )
+
+
+def test_on_a_terminal_it_follows_an_error_and_leaves_the_terminal_as_it_was() -> None:
+    controller, terminal = pty.openpty()
+    fcntl.ioctl(terminal, termios.TIOCSWINSZ, struct.pack("HHHH", 24, 80, 0, 0))
+    before = termios.tcgetattr(terminal)
+    with service() as running:
+        environment = {**os.environ, "TERM": "xterm-256color"}
+        watching = subprocess.Popen(
+            [*COMMAND, "monitor", running.url],
+            stdin=terminal,
+            stdout=terminal,
+            stderr=terminal,
+            env=environment,
+        )
+        try:
+            begin = _read_until(controller, b"manipulator")
+            httpx.post(f"{running.url}/signals/battery_level", json={"value": 0.42})
+            error = _read_until(controller, b"battery 42 % is below 50 %")
+            watching.send_signal(signal.SIGINT)
+            end = _read_until(controller, b"\x1b[?25h")
+            code = watching.wait(10)
+        finally:
+            watching.kill()
+            watching.wait()
+    after = termios.tcgetattr(terminal)
+    os.close(controller)
+    os.close(terminal)
+
+    assert b"\x1b[?1049h" in begin
+    # Only what changed is written.
+    assert b"manipulator" not in error
+    assert b"\x1b[?1049l" in end
+    assert code == 0
+    assert after == before
+
+
+def _read_until(controller: int, wanted: bytes) -> bytes:
+    """Return what a terminal is written, up to and with some text; the test limits the time."""
+    seen = b""
+    while wanted not in seen:
+        select.select([controller], [], [])
+        seen += os.read(controller, 65_536)
+    return seen
