@@ -9,7 +9,7 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from enum import IntEnum
 from typing import Any
-from urllib.parse import quote, urlsplit
+from urllib.parse import SplitResult, quote, urlsplit
 
 import httpx
 
@@ -65,9 +65,7 @@ class ServiceClient:
         Raises:
             NoAnswerError: `url` is no address of a web server.
         """
-        parts = urlsplit(url)
-        if parts.scheme not in ("http", "https") or not parts.hostname:
-            raise NoAnswerError(f"{url!r} is no address such as http://127.0.0.1:8000")
+        parts = split_address(url)
         self.url = url.rstrip("/")
         # A proxy of the environment does not lead back to this machine.
         trust_env = parts.hostname not in _LOOPBACK
@@ -142,10 +140,31 @@ class ServiceClient:
         if not isinstance(answer, dict):
             raise NoAnswerError(f"what answers at {self.url} is not Pilothouse")
         if response.status_code == httpx.codes.UNAUTHORIZED:
-            answer["hint"] = _OTHER_TOKEN if self._has_token else _NO_TOKEN
+            answer["hint"] = token_hint(given=self._has_token)
         if response.is_error:
             raise ServiceProblemError(answer)
         return answer
+
+
+def split_address(url: str) -> SplitResult:
+    """Return the parts of the address of a web server.
+
+    Raises:
+        NoAnswerError: It is none.
+    """
+    try:
+        parts = urlsplit(url)
+        is_one = parts.scheme in ("http", "https") and parts.hostname and parts.port != 0
+    except ValueError:
+        is_one = False
+    if not is_one:
+        raise NoAnswerError(f"{url!r} is no address such as http://127.0.0.1:8000")
+    return parts
+
+
+def token_hint(*, given: bool) -> str:
+    """Say what to do about a service that wants a token, or another one than was given."""
+    return _OTHER_TOKEN if given else _NO_TOKEN
 
 
 @contextmanager

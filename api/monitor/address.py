@@ -3,7 +3,7 @@
 from dataclasses import dataclass, field
 from urllib.parse import urlencode, urlsplit
 
-from api.client import NoAnswerError
+from api.client import split_address
 
 _LOOPBACK = frozenset({"127.0.0.1", "::1", "localhost"})
 
@@ -28,13 +28,7 @@ class Address:
         Raises:
             NoAnswerError: `url` is no address of a web server.
         """
-        try:
-            parts = urlsplit(url)
-            is_one = parts.scheme in ("http", "https") and parts.hostname and parts.port != 0
-        except ValueError:
-            is_one = False
-        if not is_one:
-            raise NoAnswerError(f"{url!r} is no address such as http://127.0.0.1:8000")
+        split_address(url)
         return cls(url.rstrip("/"), token)
 
     @property

@@ -17,8 +17,7 @@ import httpx
 import websockets
 from websockets.asyncio.client import ClientConnection
 
-from api.access import FILE_VARIABLE, TOKEN_VARIABLE
-from api.client import NoAnswerError, ServiceProblemError
+from api.client import NoAnswerError, ServiceProblemError, token_hint
 from api.monitor.address import Address
 from api.monitor.store import Json
 from api.monitor.together import together
@@ -32,7 +31,6 @@ _CLOSING_S = 1.0
 _RETRY_S = (0.5, 1.0, 2.0, 4.0)
 _MOST_BYTES = 64 * 2**20
 """Of a frame; one with 10,000 parts has some 4 MB."""
-_HINT = f"set {TOKEN_VARIABLE} to the token of the service, or {FILE_VARIABLE} to its file"
 _ENDINGS = frozenset({1001, 1012})
 
 
@@ -90,7 +88,7 @@ class Link:
             )
         except websockets.InvalidStatus as error:
             status = error.response.status_code
-            raise _refusal(_problem_in(error.response.body, status)) from error
+            raise _refusal(_problem_in(error.response.body, status), self._address) from error
         except (OSError, websockets.WebSocketException) as error:
             raise NoAnswerError(f"no stream at {address.url}: {_why(error)}") from error
         try:
@@ -108,7 +106,7 @@ class Link:
             except websockets.ConnectionClosed as error:
                 raise NoAnswerError(_closing_words(error)) from error
             if frame["type"] == "problem":
-                raise _refusal(frame)
+                raise _refusal(frame, self._address)
             self._watch.take(frame)
             if frame["type"] == "hello":
                 self._watch.take({"type": "structure", "items": structure})
@@ -159,7 +157,7 @@ class Link:
             why = str(error) or f"none within {_ANSWER_S:g} s"
             raise NoAnswerError(f"no answer from {url}: {why}") from error
         if response.is_error:
-            raise _refusal(_problem_in(response.content, response.status_code))
+            raise _refusal(_problem_in(response.content, response.status_code), self._address)
         answer = _object_in(response.content)
         if answer is None:
             raise NoAnswerError(f"what answers at {url} is not Pilothouse")
@@ -203,10 +201,10 @@ def _problem_in(content: bytes | bytearray | None, status: int) -> dict[str, Any
     return {**found, "status": status}
 
 
-def _refusal(problem: Json) -> ServiceProblemError | NoAnswerError:
+def _refusal(problem: Json, address: Address) -> ServiceProblemError | NoAnswerError:
     """Return what a problem means for us: to try again does not help, or it may."""
     if problem["status"] == HTTPStatus.UNAUTHORIZED:
-        return ServiceProblemError({**problem, "hint": _HINT})
+        return ServiceProblemError({**problem, "hint": token_hint(given=address.token is not None)})
     if problem["status"] == HTTPStatus.FORBIDDEN:
         return ServiceProblemError(problem)
     return NoAnswerError(str(problem.get("detail") or problem.get("title") or problem["status"]))
