@@ -1,0 +1,25 @@
+"""All pages that follow from the code, by the name of their file in `docs/reference`."""
+
+from collections.abc import Callable, Mapping
+from pathlib import Path
+from types import MappingProxyType
+
+from docs.generate.blockers_page import blockers_page
+from docs.generate.command_line_page import command_line_page
+from docs.generate.events_page import events_page
+from docs.generate.metrics_page import metrics_page
+from docs.generate.problems_page import problems_page
+from docs.generate.settings_page import settings_page
+
+FOLDER = Path(__file__).resolve().parents[1] / "reference"
+
+PAGES: Mapping[str, Callable[[], str]] = MappingProxyType(
+    {
+        "blockers.md": blockers_page,
+        "command-line.md": command_line_page,
+        "events.md": events_page,
+        "metrics.md": metrics_page,
+        "problems.md": problems_page,
+        "settings.md": settings_page,
+    }
+)

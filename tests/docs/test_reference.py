@@ -1,0 +1,195 @@
+"""Pages of the reference that follow from the code are what the code says."""
+
+import re
+from pathlib import Path
+
+import pytest
+import yaml
+
+from api.command_line import main
+from api.problems import STATUS_OF
+from api.schemas.simulation import SimulationBody
+from api.simulation.posted import robot_for
+from api.simulation.simulation import Simulation
+from docs.generate.__main__ import main as renew
+from docs.generate.events_page import KINDS
+from docs.generate.pages import FOLDER, PAGES
+from docs.generate.source_scan import UndescribedError, codes_given_to, require_described
+from domain.changes.admission import ADVISORY
+from domain.messages import BackendStatus, Event, Input, WriteRecord
+from domain.supervision import Supervision, SupervisionSettings
+from tests.support.good import GOOD
+from tests.support.http_robot import ACTUATION
+from tests.support.models import actuation_model
+
+STRAIGHT = [{"x_m": float(x), "y_m": 0.0, "yaw_rad": 0.0} for x in range(31)]
+# Nothing follows from feedback, so that it is not recorded.
+NEVER_SEEN_HERE = {"goal.feedback"}
+# They have parameters, from which their mode is inferred.
+NOT_BY_SIMULATED_NODES = {"mode"}
+
+
+@pytest.mark.parametrize("name", sorted(PAGES))
+def test_a_page_is_what_the_code_says(name: str) -> None:
+    checked_in = (FOLDER / name).read_text(encoding="utf-8")
+
+    # Without line breaks: argparse of another Python breaks its lines elsewhere.
+    assert checked_in.split() == PAGES[name]().split(), "run `python -m docs.generate`"
+
+
+def test_only_what_differs_is_written_anew(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("docs.generate.__main__.PAGES", {"a.md": lambda: "A", "b.md": lambda: "B"})
+    (tmp_path / "a.md").write_text("A", encoding="utf-8")
+    renew(tmp_path)
+
+    assert capsys.readouterr().out == "renewed b.md\n"
+    assert (tmp_path / "b.md").read_text(encoding="utf-8") == "B"
+
+
+def test_every_command_has_its_help_on_the_page(capsys: pytest.CaptureFixture[str]) -> None:
+    page = (FOLDER / "command-line.md").read_text(encoding="utf-8")
+    with pytest.raises(SystemExit):
+        main(["--help"])
+    named = re.search(r"COMMAND\n((?:    \w+ .*\n)+)", capsys.readouterr().out)
+    assert named is not None
+
+    for line in named[1].splitlines():
+        assert f"usage: pilothouse {line.split()[0]} " in page
+
+
+def test_every_code_of_an_error_is_on_the_page_of_problems() -> None:
+    page = (FOLDER / "problems.md").read_text(encoding="utf-8")
+
+    assert [error.code for error in STATUS_OF if f"| `{error.code}` |" not in page] == []
+
+
+def test_every_blocker_is_on_its_page() -> None:
+    page = (FOLDER / "blockers.md").read_text(encoding="utf-8")
+
+    assert [code for code in ADVISORY if f"| `{code}` | no |" not in page] == []
+
+
+def test_what_nobody_described_is_told_by_name() -> None:
+    with pytest.raises(UndescribedError, match=r"events: describe \['a\.b'\], remove \['c\.d'\]"):
+        require_described("events", {"a.b", "x.y"}, {"c.d", "x.y"})
+
+
+def test_codes_are_found_as_arguments_and_as_constants() -> None:
+    assert {"HOST_NOT_ALLOWED", "NO_MOCK"} <= codes_given_to("make_problem", "HttpError")
+
+
+# --- events --------------------------------------------------------------------------------------
+
+
+def happened(*steps: dict[str, object], until_s: float = 20, **robot: object) -> list[Event]:
+    """Return the events of a scenario of the robot of Annex 4."""
+    settings = {"signals": {"stale_after_s": 0}, **robot}
+    first = {"t_s": 0, "reading": dict(GOOD)}
+    body = SimulationBody.model_validate(
+        {"until_s": until_s, "robot": settings, "steps": [first, *steps]}
+    )
+    simulation = Simulation(body, robot_for(body, ACTUATION, None))
+    simulation.run()
+    assert [refusal.problem.detail for refusal in simulation.unexpected_refusals()] == []
+    return list(simulation.events)
+
+
+def request(t_s: float, method: str, path: str, **body: object) -> dict[str, object]:
+    return {"t_s": t_s, "request": {"method": method, "path": path, "body": body or None}}
+
+
+def a_drive() -> list[Event]:
+    """Stops of all kinds, a release, a cancel, and a task that is given up."""
+    return happened(
+        {"t_s": 1, "task": {"waypoints": STRAIGHT}},
+        request(3, "PUT", "/holds/operator", reason="loading"),
+        request(4, "DELETE", "/holds/operator"),
+        request(6, "PUT", "/emergency_stop", engaged=True, reason="look"),
+        request(8, "PUT", "/emergency_stop", engaged=False, reason="fine"),
+        {"t_s": 9, "vehicle": "silent"},
+        {"t_s": 10, "vehicle": "recover"},
+        {"t_s": 11, "task": None},
+        {"t_s": 12, "task": {"waypoints": STRAIGHT, "start_index": 8}},
+        {"t_s": 40, "task": {"waypoints": [*STRAIGHT[27:], *reversed(STRAIGHT[:29])]}},
+        until_s=80,
+        vehicle={"plant": {"braking_mps2": 2.0, "acceleration_mps2": 2.0}},
+        driving={"max_cross_track_m": 0.3},
+    )
+
+
+def a_sick_robot() -> list[Event]:
+    """Errors that wait, clocks that differ, changes that end in every way."""
+    mode = {"part": "actuation", "mode": "PERFORMANCE"}
+    return happened(
+        {"t_s": 1, "reading": {"gps_accuracy": 500}},
+        {"t_s": 2, "reading": {"gps_accuracy": 10}, "stamp_offset_s": 5},
+        {"t_s": 3, "reading": {"estop": True}},
+        {"t_s": 4, "reading": {"estop": False}},
+        request(5, "POST", "/errors/ESTOP/acknowledge"),
+        {"t_s": 6, "change": mode},
+        request(6.1, "DELETE", "/changes/c1"),
+        {"t_s": 10, "change": mode},
+        {"t_s": 10.1, "change": {"part": "drive_base", "mode": "SLOW"}},
+        {"t_s": 15, "node": "drive_base", "parameters": {"max_speed": 0.5}},
+        {"t_s": 16, "node": "manipulator", "fault": "refuse"},
+        {"t_s": 17, "change": {"part": "manipulator", "transition": "cleanup"}},
+        {"t_s": 20, "node": "manipulator", "fault": "slow"},
+        {"t_s": 21, "change": {"part": "manipulator", "transition": "deactivate"}},
+        {"t_s": 21.5, "node": "manipulator", "fault": "silent"},
+        request(40, "PATCH", "/nodes/drive_base/parameters", max_speed=0.2),
+        {"t_s": 50, "node": "drive_base", "fault": "die"},
+        {"t_s": 55, "node": "drive_base", "fault": "recover"},
+        until_s=60,
+        signals={"stale_after_s": 0, "estop": {"recovery": "acknowledge"}},
+        changes={"transition_deadline_s": 2.0},
+    )
+
+
+def a_lost_backend() -> list[Event]:
+    return told(BackendStatus(available=False, reason="no network"), BackendStatus(available=True))
+
+
+def a_write() -> list[Event]:
+    return told(WriteRecord("PUT", "/holds/operator", 200, "10.0.0.7:50000", "http:10.0.0.7"))
+
+
+def told(*inputs: Input) -> list[Event]:
+    """Return the events of a core that is given what no scenario holds."""
+    core = Supervision(actuation_model(), SupervisionSettings(), 0)
+    return [event for given in inputs for event in core.handle(given, 1).events]
+
+
+def the_examples() -> list[Event]:
+    events: list[Event] = []
+    for path in sorted((FOLDER.parents[1] / "examples" / "scenarios").glob("*.yaml")):
+        events += _example(path)
+    return events
+
+
+def _example(path: Path) -> list[Event]:
+    """Play a scenario that names no files."""
+    text = yaml.safe_load(path.read_text(encoding="utf-8"))
+    steps = [step for step in text["steps"] if not (step.get("task") or {}).get("file")]
+    own = {key: value for key, value in text.items() if key != "title" and "_file" not in key}
+    body = SimulationBody.model_validate({**own, "steps": steps})
+    simulation = Simulation(body, robot_for(body, ACTUATION, None))
+    simulation.run()
+    return list(simulation.events)
+
+
+def test_events_that_happen_are_listed_with_what_they_carry() -> None:
+    seen: dict[str, list[set[str]]] = {}
+    stories = (a_drive, a_sick_robot, a_lost_backend, a_write, the_examples)
+    for event in (event for story in stories for event in story()):
+        seen.setdefault(event.kind, []).append(set(event.data))
+    listed = {kind.name: kind for kind in KINDS}
+
+    assert set(seen) - set(listed) == set()
+    for name, carried in sorted(seen.items()):
+        always = {key for key in listed[name].keys if not key.endswith("?")}
+        allowed = {key.removesuffix("?") for key in listed[name].keys}
+        assert all(always <= keys <= allowed for keys in carried), name
+        assert allowed - set().union(*carried) <= NOT_BY_SIMULATED_NODES, name
+    assert sorted(set(listed) - set(seen)) == sorted(NEVER_SEEN_HERE)
