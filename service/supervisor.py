@@ -186,7 +186,9 @@ class Supervisor:
             return self.submit(Readings(tuple(items), source or _UNNAMED, actor))
         for readings in mock.due():
             self.submit(readings)
-        stands_in = source is None and all(mock.holds(item.signal) for item in items)
+        # Any of them: an e-stop that came together with a signal of another kind has to be released
+        # by the next reading without a name too.
+        stands_in = source is None and any(mock.holds(item.signal) for item in items)
         own = mock.source if stands_in else source or _UNNAMED
         outputs = self.submit(Readings(tuple(items), own, actor))
         for item in items:

@@ -4,6 +4,8 @@ from collections.abc import AsyncIterator
 
 import pytest
 
+from domain.health.signals import SignalKind, SignalSettings, SignalSpec, default_signals
+from domain.supervision import SupervisionSettings
 from tests.support.http_robot import HttpRobot, http_robot
 
 GOOD = {
@@ -241,3 +243,14 @@ async def test_the_mock_does_not_release_a_stop_that_was_pressed_under_a_name(
     released = await robot.http.post("/signals/estop", json={"value": False})
 
     assert "ESTOP" in released.json()["errors"]
+
+
+async def test_an_e_stop_that_came_with_another_signal_is_released_like_any_other() -> None:
+    load = SignalSettings(SignalSpec("load", SignalKind.NUMBER), (), stale_after=0)
+    settings = SupervisionSettings(signals=(*default_signals(), load))
+    async with http_robot(settings=settings) as robot:
+        await robot.http.post("/signals", json={"load": 300, "estop": True})
+        await robot.http.post("/signals/estop", json={"value": False})
+        await robot.pass_time(1)
+
+        assert (await robot.get("/system_state"))["errors"] == []
