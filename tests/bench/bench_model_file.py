@@ -19,14 +19,20 @@ def test_a_model_of_ten_thousand_nodes_is_read_in_seconds() -> None:
     for nodes in SIZES:
         text = big_model_text(nodes)
         times = [_seconds_to_read(text) for _ in range(ROUNDS)]
-        rows[f"{nodes} nodes"] = {
+        rows[f"{nodes:,} nodes"] = {
             "megabytes": round(len(text) / 1e6, 2),
             "best_s": round(min(times), 3),
             "median_s": round(sorted(times)[ROUNDS // 2], 3),
         }
 
-    report("model_file", rows)
-    assert rows["10000 nodes"]["best_s"] < 3
+    report(
+        "model_file",
+        "Reading a model",
+        f"From YAML to a model that is checked and linted, {ROUNDS} times.",
+        rows,
+        asked="10,000 nodes in less than 3 s.",
+    )
+    assert rows["10,000 nodes"]["best_s"] < 3
 
 
 def _seconds_to_read(text: str) -> float:

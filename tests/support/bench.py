@@ -1,12 +1,22 @@
 """What benches have in common: quantiles, a table to look at, and a file to compare with later."""
 
 import json
+import os
 from collections.abc import Mapping, Sequence
+from datetime import UTC, datetime
 from pathlib import Path
 
-RESULTS = Path(__file__).resolve().parents[2] / "build" / "bench"
+from tests.support.machine import machine_facts
+
+PROJECT = Path(__file__).resolve().parents[2]
+RESULTS = PROJECT / "build" / "bench"
 
 Row = Mapping[str, float]
+
+
+def quantile(values: Sequence[float], share: float) -> float:
+    """Return the value below which a share of all lies, as the nearest one that was seen."""
+    return sorted(values)[round(share * (len(values) - 1))]
 
 
 def quantiles(values: Sequence[float]) -> dict[str, float]:
@@ -20,13 +30,56 @@ def quantiles(values: Sequence[float]) -> dict[str, float]:
     }
 
 
-def report(name: str, rows: Mapping[str, Row]) -> None:
-    """Print a table with one line per row, and store it as `build/bench/<name>.json`."""
+def report(
+    name: str,
+    title: str,
+    how: str,
+    rows: Mapping[str, Row],
+    *,
+    asked: str = "",
+    notes: Sequence[str] = (),
+) -> None:
+    """Print a table, and store it for `docs/benchmarks.md` as `build/bench/<name>.json`.
+
+    Args:
+        name: Of the file.
+        title: A headline.
+        how: What is measured, and how.
+        rows: Figures by label.
+        asked: The bounds that the figures are to keep.
+        notes: What a reader has to know of this very run.
+    """
+    result = {
+        "title": title,
+        "how": how,
+        "asked": asked,
+        "notes": list(notes),
+        "bench": os.environ["PYTEST_CURRENT_TEST"].partition("::")[0],
+        "measured_at": datetime.now(UTC).isoformat(timespec="minutes"),
+        "machine": machine_facts(),
+        "rows": rows,
+    }
     RESULTS.mkdir(parents=True, exist_ok=True)
-    (RESULTS / f"{name}.json").write_text(json.dumps(rows, indent=2) + "\n")
-    columns = list(dict.fromkeys(column for row in rows.values() for column in row))
+    (RESULTS / f"{name}.json").write_text(json.dumps(result, indent=2) + "\n")
+    _print(name, rows, notes)
+
+
+def columns_of(rows: Mapping[str, Row]) -> list[str]:
+    """Return all columns of a table, in the order in which they first appear."""
+    return list(dict.fromkeys(column for row in rows.values() for column in row))
+
+
+def _print(name: str, rows: Mapping[str, Row], notes: Sequence[str]) -> None:
+    columns = columns_of(rows)
     width = max(map(len, rows))
     print(f"\n{name:{width}} " + " ".join(f"{column:>10}" for column in columns))
     for label, row in rows.items():
-        cells = (f"{row[column]:>10g}" if column in row else " " * 10 for column in columns)
+        cells = (
+            f"{row[column]:>{max(10, len(column))}g}"
+            if column in row
+            else " " * max(10, len(column))
+            for column in columns
+        )
         print(f"{label:{width}} " + " ".join(cells))
+    for note in notes:
+        print(f"  {note}")
