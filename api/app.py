@@ -32,9 +32,9 @@ def create_app(
     """Return the application; it starts no task and no process.
 
     Whoever serves it calls `prepare` before, and `close_workers` after; its lifespan does the
-    second, and starts the worker process before there is work for it. Simulations have a further
-    process, started with the first of them: they may take a minute, and a task that is posted
-    meanwhile must not wait.
+    second. What takes long is done by a worker process; simulations have a further one, since they
+    may take a minute, and a task that is posted meanwhile must not wait. Each is started with the
+    first work for it, which so takes half a second longer; a robot that is only watched has none.
 
     Args:
         supervisor: What is served.
@@ -77,7 +77,6 @@ def prepare(app: FastAPI) -> None:
 
 @asynccontextmanager
 async def _lifespan(app: FastAPI) -> AsyncIterator[None]:
-    await app.state.worker.start()
     try:
         yield
     finally:

@@ -6,6 +6,7 @@ that nobody can explain.
 """
 
 from collections.abc import Iterable, Mapping, Sequence
+from functools import cache
 from importlib import metadata
 from importlib.util import find_spec
 from pathlib import Path
@@ -24,6 +25,7 @@ class ForeignPackageError(Exception):
         self.package = package
 
 
+@cache
 def installed_version() -> str:
     """Return the version of the installed distribution."""
     try:

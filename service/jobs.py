@@ -10,10 +10,6 @@ Result = TypeVar("Result")
 class Jobs(Protocol):
     """Takes jobs, one after the other."""
 
-    async def start(self) -> None:
-        """Get ready, so that the first job need not wait."""
-        ...
-
     async def close(self) -> None:
         """End for good; jobs that are not done fail."""
         ...
@@ -33,9 +29,6 @@ class Jobs(Protocol):
 
 class InlineJobs:
     """Does jobs at once, for who is in a worker process already."""
-
-    async def start(self) -> None:
-        """Do nothing: there is no process."""
 
     async def close(self) -> None:
         """Do nothing: there is no process."""

@@ -81,15 +81,6 @@ class Worker:
         self._jobs = 0
         self._is_closed = False
 
-    async def start(self) -> None:
-        """Start the process now, so that the first job need not wait for it.
-
-        Raises:
-            WorkerClosedError: `close` was called.
-        """
-        async with self._turn:
-            await self._running()
-
     async def close(self) -> None:
         """End the process for good: the job that it is at, those that wait and any new one fail."""
         self._is_closed = True

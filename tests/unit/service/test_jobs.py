@@ -24,9 +24,8 @@ async def test_what_a_job_refuses_is_refused() -> None:
         await InlineJobs().call(refuse, "x")
 
 
-async def test_there_is_nothing_to_start_and_nothing_to_close() -> None:
+async def test_there_is_nothing_to_close() -> None:
     jobs = InlineJobs()
-    await jobs.start()
     await jobs.close()
 
     assert await jobs.call(abs, -1) == 1
@@ -35,7 +34,6 @@ async def test_there_is_nothing_to_start_and_nothing_to_close() -> None:
 async def test_whoever_does_jobs_takes_them_in_the_same_way() -> None:
     everybody: list[Jobs] = [InlineJobs(), Worker()]
     for jobs in everybody:
-        await jobs.start()
         try:
             assert await jobs.call(divmod, 7, 3) == (2, 1)
             with pytest.raises(UnknownPartError):

@@ -155,7 +155,7 @@ async def test_a_queue_that_is_full_takes_no_more(worker: Worker) -> None:
 async def test_a_job_that_nobody_waits_for_any_more_gives_its_result_to_nobody_else(
     worker: Worker,
 ) -> None:
-    await worker.start()
+    await worker.call(os.getpid)
     job = asyncio.create_task(worker.call(time.sleep, 60))
     await asyncio.sleep(0.1)
     job.cancel()
@@ -177,7 +177,7 @@ async def test_the_process_ends_with_the_worker_and_a_closed_one_can_be_closed_a
 
 async def test_a_job_does_not_hold_up_the_end() -> None:
     worker = Worker()
-    await worker.start()
+    await worker.call(os.getpid)
     job = asyncio.create_task(worker.call(time.sleep, 60))
     await asyncio.sleep(0.1)
 
@@ -193,7 +193,7 @@ async def test_jobs_that_wait_at_the_end_fail_at_once_and_start_nothing(
 ) -> None:
     worker = Worker()
     if has_process:
-        await worker.start()
+        await worker.call(os.getpid)
     started = 0
     create = asyncio.create_subprocess_exec
 
