@@ -15,10 +15,10 @@ ARGS ?=
 # `make -j` runs one step after the other: tests that measure time do not share the machine, and two
 # installs do not share the environment.
 .NOTPARALLEL:
-.PHONY: help run test lint types imports pytest format bench soak lowest lock clean
+.PHONY: help run test test-image lint types imports pytest format docs bench coverage mutation soak lowest lock clean
 
 help: ## list the targets
-	@awk -F ':.*## ' '/^[a-z]+:.*## / {printf "  make %-8s %s\n", $$1, $$2}' $(firstword $(MAKEFILE_LIST))
+	@awk -F ':.*## ' '/^[a-z-]+:.*## / {printf "  make %-10s %s\n", $$1, $$2}' $(firstword $(MAKEFILE_LIST))
 	@echo "  Variables: PYTHON=$(PYTHON) (interpreter), ARGS (for run: more options, for pytest: what to run)"
 
 run: $(INSTALLED) ## start the example robot; prints the address of its page
@@ -39,15 +39,37 @@ imports: $(INSTALLED_DEV) ## who may import whom
 pytest: $(INSTALLED_DEV) ## the tests; one of them with ARGS=tests/unit/test_structure.py
 	@$(BIN)/pytest -rs $(ARGS)
 
+test-image: $(INSTALLED_DEV) ## build the image and talk to it in a container; needs root
+	@$(BIN)/hadolint docker/Dockerfile docker/Dockerfile.dev
+	@bash docker/build_here.sh
+	@$(BIN)/pytest -rs -m image tests/image $(ARGS)
+
 format: $(INSTALLED_DEV) ## let ruff format and fix what it can
 	@$(BIN)/ruff check --fix .
 	@$(BIN)/ruff format .
 
-bench: $(INSTALLED_DEV) ## measure latency, jitter and cost
-	@$(BIN)/pytest -s -m bench --timeout=0 $(ARGS)
+docs: $(INSTALLED_DEV) ## renew what follows from the code: OpenAPI, AsyncAPI, pages of docs/reference
+	@$(BIN)/python -m tests.support.document_examples
+	@$(BIN)/python -m api.documents.renew
+	@$(BIN)/python -m docs.generate
 
-soak: $(INSTALLED_DEV) ## all tests with many more generated examples, and those that run for minutes
-	@PILOTHOUSE_SOAK=1 $(BIN)/pytest -rs -m "not bench and not browser" --timeout=0 $(ARGS)
+bench: $(INSTALLED_DEV) ## measure, beside what others do, and write docs/benchmarks.md
+	@$(if $(ARGS),,rm -f build/bench/*.json)
+	@$(BIN)/pytest -s -m bench --timeout=0 $(or $(ARGS),tests/bench); code=$$?; \
+	  $(BIN)/python -m tests.support.bench_document && exit $$code
+
+coverage: $(INSTALLED_DEV) ## branches of the core that its tests reach, each module by its own test file
+	@$(BIN)/pytest -q tests/unit/domain --cov --cov-context=test --cov-report=
+	@$(BIN)/python -m tests.support.module_coverage
+
+mutation: $(INSTALLED_DEV) ## change the core in some 7,600 ways, and count what its tests notice
+	@rm -rf mutants
+	@$(BIN)/mutmut run
+	@$(BIN)/python -m tests.support.mutation_score
+
+# With ARGS only these tests are meant.
+soak: $(INSTALLED_DEV) $(if $(ARGS),,coverage mutation) ## coverage, mutation, and all tests with many more generated examples
+	@PILOTHOUSE_SOAK=1 $(BIN)/pytest -rs -m "not bench and not browser and not image" --timeout=0 $(ARGS)
 
 lowest: $(INSTALLED_DEV) ## the tests, with the oldest dependencies that pyproject.toml allows
 	@$(PIP_INSTALL) uv
@@ -67,7 +89,7 @@ lock: $(INSTALLED_DEV) ## renew requirements.lock
 	@mv requirements.lock.new requirements.lock
 
 clean: ## remove the environment, caches and builds
-	rm -rf $(VENV) build dist *.egg-info .hypothesis .import_linter_cache .mypy_cache .pytest_cache .ruff_cache
+	rm -rf $(VENV) build dist mutants *.egg-info .coverage .hypothesis .import_linter_cache .mypy_cache .pytest_cache .ruff_cache
 	find api domain service web tests -name __pycache__ -type d -prune -exec rm -rf {} +
 
 $(BIN)/python:

@@ -1,0 +1,67 @@
+#!/usr/bin/env bash
+# Builds the image on a machine that has no engine and reaches no registry of images: with buildah,
+# on a base that debootstrap makes once. For `make test-image`; docs/how-to/deploy.md says how to
+# build it elsewhere.
+set -euo pipefail
+cd "$(dirname "${BASH_SOURCE[0]}")/.."
+
+CACHE="${XDG_CACHE_HOME:-$HOME/.cache}/pilothouse"
+SUITE=bookworm
+BASE="localhost/pilothouse-base:$SUITE"
+IMAGE=localhost/pilothouse
+
+if [ "$(id -u)" -ne 0 ]; then
+    echo "No image is built: buildah needs root here."
+    exit 0
+fi
+
+if ! { command -v buildah && command -v debootstrap; } >/dev/null; then
+    if ! command -v apt-get >/dev/null; then
+        echo "No image is built: buildah and debootstrap are not installed."
+        exit 0
+    fi
+    echo "Installing buildah and debootstrap ..."
+    export DEBIAN_FRONTEND=noninteractive
+    { apt-get update -qq && apt-get install -y -qq --no-install-recommends buildah debootstrap; } \
+        </dev/null >/dev/null 2>&1 || { echo "They are not to be had." >&2; exit 1; }
+fi
+
+mkdir -p "$CACHE"
+exec 9>"$CACHE/lock"
+flock 9
+images() { buildah --storage-driver vfs --root "$CACHE/images" --runroot "$CACHE/run" "$@"; }
+WORK=$(mktemp -d)
+trap 'rm -rf "$WORK"' EXIT
+
+# Says what a step is for, and all that it said if it fails.
+quietly() {
+    echo "$1 ..."
+    shift
+    "$@" </dev/null >"$WORK/log" 2>&1 || { cat "$WORK/log" >&2; exit 1; }
+}
+
+make_base() {
+    local container
+    debootstrap --variant=minbase --include=ca-certificates,python3,python3-venv \
+        "$SUITE" "$WORK/root" &&
+    tar -C "$WORK/root" --exclude='./var/cache/apt/*' --exclude='./var/lib/apt/lists/*' \
+        -cf "$WORK/root.tar" . &&
+    container=$(images from scratch) &&
+    images add "$container" "$WORK/root.tar" / &&
+    images commit --format docker --rm "$container" "$BASE"
+}
+
+build() {
+    local more=()
+    # For pip, where this machine has certificates of its own.
+    [ ! -d /etc/ssl/certs ] || more+=(--volume /etc/ssl/certs:/etc/ssl/certs:ro)
+    images bud --isolation chroot --format docker --build-arg "BASE=$BASE" "${more[@]}" \
+        --tag "$IMAGE" --file docker/Dockerfile .
+}
+
+if ! images inspect --type image "$BASE" >/dev/null 2>&1; then
+    quietly "Making the base of the image, once" make_base
+fi
+quietly "Building the image" build
+# The image that had the name before.
+images rmi --prune >/dev/null
