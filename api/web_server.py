@@ -15,9 +15,6 @@ from api.websocket_protocol import WebSocketProtocol
 
 MAX_HEAD_BYTES = 65_536
 _SEND_BUFFER_BYTES = 65_536
-_PING_INTERVAL_S = 2.0
-_PING_TIMEOUT_S = 2.5
-"""A client that stopped reading is so dropped within 4.5 s: it answers no ping either."""
 _GRACE_S = 1
 _OTHER_FILES = 500
 """Beside those of the stream: connections of requests, pipes to workers, files."""
@@ -75,9 +72,6 @@ class _Http(HttpToolsProtocol):
 def web_server(app: FastAPI, on_started: Callable[[], None]) -> WebServer:
     """Return a server that is stopped by `should_exit`.
 
-    A client that answers no ping for some seconds is cut off: it reads nothing, or is gone without
-    a word, and what waits for it in buffers is old.
-
     Args:
         app: What is served, with its limits.
         on_started: Called once connections are accepted.
@@ -90,8 +84,8 @@ def web_server(app: FastAPI, on_started: Callable[[], None]) -> WebServer:
         ws=WebSocketProtocol,
         ws_max_size=limits.message_bytes,
         ws_per_message_deflate=False,
-        ws_ping_interval=_PING_INTERVAL_S,
-        ws_ping_timeout=_PING_TIMEOUT_S,
+        # By `api.streaming.fan_out`, to all at once.
+        ws_ping_interval=None,
         lifespan="on",
         log_config=None,
         access_log=False,

@@ -2,18 +2,20 @@
 
 Three things differ from `WebSocketsSansIOProtocol`, and only these:
 
-* The scope holds the transport, so that prepared frames can be written to it
-  (`api.streaming.prepared`).
-* The answer to a ping, which each client sends every other second, is recognised without the
-  parser, which takes ten times as long.
+* The scope holds the connection, so that prepared frames can be written to its transport, by
+  somebody who learns how it fares (`api.streaming.prepared`).
+* The answer to a ping is recognised without the parser, which takes ten times as long.
 * A connection that is ended, ends. `transport.close()` waits until everything was sent; to a client
   that does not read, that is never, and its buffers would stay.
 """
 
-from uvicorn.protocols.websockets.websockets_sansio_impl import WebSocketsSansIOProtocol
-from websockets.frames import Frame, Opcode
+import asyncio
+from typing import cast
 
-from api.streaming.prepared import EXTENSION, KEEPALIVE_TIMEOUT
+from uvicorn.protocols.websockets.websockets_sansio_impl import WebSocketsSansIOProtocol
+from websockets.frames import Opcode
+
+from api.streaming.prepared import EXTENSION, Connection, Listener
 
 _LAST_WORDS_S = 1.0
 _PONG_HEAD = bytes((0x80 | Opcode.PONG, 0x80 | 4))
@@ -24,31 +26,47 @@ _PONG_BYTES = 10
 class WebSocketProtocol(WebSocketsSansIOProtocol):
     """One connection."""
 
+    _listener: Listener | None = None
     _between_frames = False
     """Whether what comes next is surely the begin of a frame."""
 
+    def connection_made(self, transport: asyncio.BaseTransport) -> None:
+        """Take over a connection, on which whatever waits is told at once."""
+        super().connection_made(transport)
+        cast("asyncio.WriteTransport", transport).set_write_buffer_limits(high=0)
+
     async def run_asgi(self) -> None:
         """Let the application serve this client, then see that the connection ends."""
-        self.scope["extensions"][EXTENSION] = {"transport": self.transport}
+        connection = Connection(self.transport, self._listen)
+        self.scope["extensions"][EXTENSION] = {"connection": connection}
         await super().run_asgi()
         self.loop.call_later(_LAST_WORDS_S, self.transport.abort)
 
-    def keepalive_timeout(self) -> None:
-        """Cut off a client that did not answer a ping, and tell the application why."""
-        super().keepalive_timeout()
-        self.queue.put_nowait({"type": "websocket.disconnect", "code": KEEPALIVE_TIMEOUT})
-        self.transport.abort()
+    def pause_writing(self) -> None:
+        """Tell that the network does not take all."""
+        super().pause_writing()
+        if self._listener is not None:
+            self._listener.clogged()
+
+    def connection_lost(self, exc: Exception | None) -> None:
+        """Tell that the client is gone."""
+        if self._listener is not None:
+            self._listener.lost()
+        super().connection_lost(exc)
 
     def data_received(self, data: bytes) -> None:
         """Take what the client sent."""
+        if self._listener is not None:
+            self._listener.heard()
         if self._between_frames and len(data) == _PONG_BYTES and data.startswith(_PONG_HEAD):
-            mask, masked = int.from_bytes(data[2:6]), int.from_bytes(data[6:])
-            self.handle_pong(Frame(Opcode.PONG, (mask ^ masked).to_bytes(4)))
             return
         # The first is the handshake, and ends where the frames begin.
         first = not self.handshake_initiated
         self._between_frames = first or (self._between_frames and _holds_whole_frames(data))
         super().data_received(data)
+
+    def _listen(self, listener: Listener | None) -> None:
+        self._listener = listener
 
 
 def _holds_whole_frames(data: bytes) -> bool:

@@ -17,7 +17,7 @@ from api.access import UnauthorizedError
 from api.schemas.stream import AuthMessage
 from api.streaming.hub import StreamHub, StreamHubDep
 from api.streaming.messages import read_client_message
-from api.streaming.prepared import KEEPALIVE_TIMEOUT, text_frame, transport_of
+from api.streaming.prepared import connection_of, text_frame
 from api.streaming.query import read_stream_query
 from domain.errors import PilothouseError
 
@@ -63,7 +63,7 @@ class _Client:
 
     def __init__(self, socket: WebSocket, hub: StreamHub) -> None:
         self._socket = socket
-        self._transport = transport_of(socket.scope)
+        self._connection = connection_of(socket.scope)
         self._hub = hub
         self._address = socket.client.host if socket.client else "unknown"
 
@@ -106,11 +106,11 @@ class _Client:
             await self._refuse(error, _POLICY_VIOLATION)
             return
         encoder = self._hub.encoder
-        self._transport.write(text_frame(encoder.hello(query.topics)))
+        self._connection.transport.write(text_frame(encoder.hello(query.topics)))
         complete = self._hub.supervisor.frames.complete()
         if complete is not None:
             await encoder.prepare(complete, query.topics)
-        with self._hub.fan_out.serve(self._transport, query, self._address):
+        with self._hub.fan_out.serve(self._connection, query, self._address):
             await self._listen()
 
     async def _hear_token(self) -> None:
@@ -147,8 +147,6 @@ class _Client:
     async def _receive(self) -> Mapping[str, Any]:
         message = await self._socket.receive()
         if message["type"] == "websocket.disconnect":
-            if message.get("code") == KEEPALIVE_TIMEOUT:
-                self._hub.fan_out.drop(self._transport, self._address)
             raise _GoneError
         return message
 
@@ -167,7 +165,7 @@ class _Client:
             async with asyncio.timeout(ANSWER_TIMEOUT_S):
                 await self._socket.send_text(self._hub.encoder.problem(error))
         except TimeoutError as late:
-            self._hub.fan_out.drop(self._transport, self._address)
+            self._hub.fan_out.drop(self._connection.transport, self._address)
             raise _GoneError from late
         except (WebSocketDisconnect, RuntimeError) as gone:
             # RuntimeError: the server itself closed the connection just now, as for a message that

@@ -2,25 +2,50 @@
 
 Frames of a server are not masked (RFC 6455, 5.1), so that without compression the bytes are the
 same for all clients. ASGI knows only messages, each of which would be framed anew for each client,
-by a coroutine of its own. So the server offers an extension in the scope of a WebSocket: the
-transport of the connection, as `scope["extensions"][EXTENSION]["transport"]`. Nothing else of ASGI
-changes; messages and prepared frames may follow each other in any order.
+by a coroutine of its own. So the server offers an extension in the scope of a WebSocket: a
+`Connection`, as `scope["extensions"][EXTENSION]["connection"]`. Nothing else of ASGI changes;
+messages and prepared frames may follow each other in any order.
 """
 
 import asyncio
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Protocol
 
 from starlette.types import Scope
 from websockets.frames import Frame, Opcode
 
 EXTENSION = "pilothouse.frames"
 
-KEEPALIVE_TIMEOUT = 1011
-"""Code of a `websocket.disconnect` when the client did not answer a ping in time, and so does not
-read."""
+
+class Listener(Protocol):
+    """Learns how a connection fares, at once and not when it is next looked at."""
+
+    def clogged(self) -> None:
+        """Learn that not all that was written could be sent; it waits in the transport."""
+        ...
+
+    def heard(self) -> None:
+        """Learn that the client sent something, be it only the answer to a ping."""
+        ...
+
+    def lost(self) -> None:
+        """Learn that nothing can be written any more."""
+        ...
 
 
-def transport_of(scope: Scope) -> asyncio.WriteTransport:
-    """Return the connection of a client; to be written to once the client is accepted.
+@dataclass(frozen=True, slots=True)
+class Connection:
+    """The connection of one client, as its server offers it."""
+
+    transport: asyncio.WriteTransport
+    """To be written to once the client is accepted: whole frames."""
+    listen: Callable[[Listener | None], None]
+    """Name who learns how it fares from now on; None: nobody."""
+
+
+def connection_of(scope: Scope) -> Connection:
+    """Return the connection of a client.
 
     Raises:
         LookupError: The server does not offer it.
@@ -28,10 +53,14 @@ def transport_of(scope: Scope) -> asyncio.WriteTransport:
     extensions = scope.get("extensions", {})
     if EXTENSION not in extensions:
         raise LookupError(f"the server has no ASGI extension {EXTENSION!r}")
-    transport: asyncio.WriteTransport = extensions[EXTENSION]["transport"]
-    return transport
+    connection: Connection = extensions[EXTENSION]["connection"]
+    return connection
 
 
 def text_frame(text: str) -> bytes:
     """Return a text as the bytes of one WebSocket frame."""
     return Frame(Opcode.TEXT, text.encode()).serialize(mask=False)
+
+
+PING = Frame(Opcode.PING, b"ping").serialize(mask=False)
+"""The bytes of a ping; the answer holds the same four."""

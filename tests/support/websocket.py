@@ -11,15 +11,16 @@ from urllib.parse import urlencode
 
 from starlette.types import ASGIApp
 
-from api.streaming.prepared import EXTENSION
+from api.streaming.prepared import EXTENSION, PING, Connection, Listener
 
 Message = MutableMapping[str, Any]
 
 
-class WebSocketClient:
+class WebSocketClient(asyncio.WriteTransport):
     """Speaks to one route, and keeps what it is sent until it is read.
 
-    It is its own transport, for frames that are prepared (`api.streaming.prepared`).
+    It is its own transport, for frames that are prepared (`api.streaming.prepared`), and answers
+    pings as long as it reads.
 
     Args:
         app: The application.
@@ -35,11 +36,13 @@ class WebSocketClient:
         headers: Mapping[str, str] | None = None,
         **query: object,
     ) -> None:
+        super().__init__()
         self.closed: int | None = None
         """Code with which the server closed; None: it did not."""
         self.cut_off = False
         """Whether the application cut this client off without a goodbye."""
         self._waiting: list[bytes] = []
+        self._listener: Listener | None = None
         self._app = app
         self._scope = {
             "type": "websocket",
@@ -58,7 +61,7 @@ class WebSocketClient:
             "server": ("127.0.0.1", 8000),
             "subprotocols": [],
             "state": {},
-            "extensions": {EXTENSION: {"transport": self}},
+            "extensions": {EXTENSION: {"connection": Connection(self, self._listen)}},
         }
         self._to_app: asyncio.Queue[Message] = asyncio.Queue()
         self._from_app: asyncio.Queue[Message] = asyncio.Queue()
@@ -143,12 +146,14 @@ class WebSocketClient:
         await asyncio.wait_for(self.running, 5)
         return self.closed
 
-    def write(self, frames: bytes) -> None:
+    def write(self, data: bytes | bytearray | memoryview) -> None:
         """Take whole WebSocket frames, as the transport of this client."""
         if self._reads.is_set():
-            self._read_frames(frames)
-        else:
-            self._waiting.append(frames)
+            self._read_frames(bytes(data))
+            return
+        self._waiting.append(bytes(data))
+        if self._listener is not None:
+            self._listener.clogged()
 
     def get_write_buffer_size(self) -> int:
         """Return the bytes that this client has not read."""
@@ -163,8 +168,15 @@ class WebSocketClient:
         self.cut_off = True
         self._waiting.clear()
         self._to_app.put_nowait({"type": "websocket.disconnect", "code": 1006})
+        if self._listener is not None:
+            self._listener.lost()
+
+    def _listen(self, listener: Listener | None) -> None:
+        self._listener = listener
 
     def _read_frames(self, frames: bytes) -> None:
+        if frames.endswith(PING) and self._listener is not None:
+            self._listener.heard()
         for text in texts_of(frames):
             self._from_app.put_nowait({"type": "websocket.send", "text": text})
 
@@ -179,14 +191,16 @@ class WebSocketClient:
 
 
 def texts_of(frames: bytes) -> Iterator[str]:
-    """Yield the texts of whole WebSocket frames from a server (RFC 6455, 5.2)."""
+    """Yield the texts of whole WebSocket frames from a server (RFC 6455, 5.2), without pings."""
     while frames:
-        assert frames[0] == 0x81, "a final frame of text"
         head, length = 2, frames[1]
         if length == 126:
             head, (length,) = 4, struct.unpack("!H", frames[2:4])
         elif length == 127:
             head, (length,) = 10, struct.unpack("!Q", frames[2:10])
-        assert len(frames) >= head + length
-        yield frames[head : head + length].decode()
-        frames = frames[head + length :]
+        end = head + length
+        assert len(frames) >= end
+        assert frames[0] == 0x81 or frames[:end] == PING, "a final frame of text, or a ping"
+        if frames[0] == 0x81:
+            yield frames[head:end].decode()
+        frames = frames[end:]

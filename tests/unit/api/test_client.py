@@ -259,7 +259,9 @@ def test_an_answer_without_content_is_empty(service: Service) -> None:
     assert service.client().call("DELETE", "/tasks/current") == {}
 
 
-@pytest.mark.parametrize("url", ["robot:8000", "ftp://robot", "http://", "http://[::1", "http://robot:0", "", "/ws"])
+@pytest.mark.parametrize(
+    "url", ["robot:8000", "ftp://robot", "http://", "http://[::1", "http://robot:0", "", "/ws"]
+)
 def test_what_is_no_address_is_refused_before_anything_is_sent(url: str) -> None:
     with pytest.raises(NoAnswerError, match="is no address"), service_at(url):
         pass

@@ -9,11 +9,10 @@ import uvicorn
 from starlette.types import Receive, Scope, Send
 from uvicorn.server import ServerState
 from websockets.client import ClientProtocol
-from websockets.frames import Frame, Opcode
-from websockets.http11 import Response
+from websockets.frames import Frame
 from websockets.uri import parse_uri
 
-from api.streaming.prepared import EXTENSION, text_frame
+from api.streaming.prepared import EXTENSION, PING, Connection, text_frame
 from api.websocket_protocol import WebSocketProtocol
 from tests.support.waiting import until
 
@@ -24,6 +23,7 @@ class Wire(asyncio.Transport):
     def __init__(self, client: ClientProtocol) -> None:
         super().__init__()
         self.aborted = False
+        self.high: int | None = None
         self._client = client
         self._closing = False
 
@@ -32,6 +32,9 @@ class Wire(asyncio.Transport):
 
     def get_write_buffer_size(self) -> int:
         return 0
+
+    def set_write_buffer_limits(self, high: int | None = None, low: int | None = None) -> None:
+        self.high = high
 
     def is_closing(self) -> bool:
         return self._closing
@@ -49,6 +52,22 @@ class Wire(asyncio.Transport):
         pass
 
 
+class Recorder:
+    """Keeps what it learns of a connection."""
+
+    def __init__(self) -> None:
+        self.learned: list[str] = []
+
+    def clogged(self) -> None:
+        self.learned.append("clogged")
+
+    def heard(self) -> None:
+        self.learned.append("heard")
+
+    def lost(self) -> None:
+        self.learned.append("lost")
+
+
 class Link:
     """A client that is connected to an application behind the protocol."""
 
@@ -59,8 +78,7 @@ class Link:
         config = uvicorn.Config(
             self._app,
             ws=WebSocketProtocol,
-            ws_ping_interval=0.001,
-            ws_ping_timeout=0.05,
+            ws_ping_interval=None,
             ws_per_message_deflate=False,
             interface="asgi3",
             log_config=None,
@@ -88,18 +106,15 @@ class Link:
         for at in range(0, len(data), piece or max(1, len(data))):
             self.server.data_received(data[at : at + (piece or len(data))])
 
-    async def ping(self) -> Frame:
-        """Wait for a ping; the client has the answer ready then."""
-        found: list[Frame] = []
+    @property
+    def connection(self) -> Connection:
+        found = self.scope["extensions"][EXTENSION]["connection"]
+        assert isinstance(found, Connection)
+        return found
 
-        def is_there() -> bool:
-            events = self.client.events_received()
-            assert not any(isinstance(event, Response) and event.body for event in events)
-            found.extend(e for e in events if isinstance(e, Frame) and e.opcode is Opcode.PING)
-            return bool(found)
-
-        await until(is_there)
-        return found[-1]
+    def ping(self) -> None:
+        """Ping the client, which has the answer ready then."""
+        self.connection.transport.write(PING)
 
     def _note_parsed(self, handle: Callable[[], None]) -> None:
         self.parsed += 1
@@ -127,53 +142,83 @@ async def link(monkeypatch: pytest.MonkeyPatch) -> AsyncIterator[Link]:
 async def test_an_application_can_write_prepared_frames_to_the_transport(link: Link) -> None:
     link.client.events_received()
 
-    link.scope["extensions"][EXTENSION]["transport"].write(text_frame("state"))
+    link.connection.transport.write(text_frame("state"))
 
-    frames = [e for e in link.client.events_received() if isinstance(e, Frame)]
-    assert [bytes(frame.data) for frame in frames if frame.opcode is Opcode.TEXT] == [b"state"]
+    (frame,) = (event for event in link.client.events_received() if isinstance(event, Frame))
+    assert bytes(frame.data) == b"state"
 
 
-async def test_an_answered_ping_keeps_the_connection_without_the_parser(link: Link) -> None:
+async def test_an_answered_ping_is_heard_without_the_parser(link: Link) -> None:
+    listener = Recorder()
+    link.connection.listen(listener)
     before = link.parsed
-    for _ in range(3):
-        await link.ping()
-        link.flush()
 
-    assert link.parsed == before
-    assert not link.wire.aborted
-
-
-async def test_an_answer_to_another_ping_does_not_count(link: Link) -> None:
-    await link.ping()
-    link.client.data_to_send()
-    link.client.send_pong(b"nope")
+    link.ping()
     link.flush()
 
-    await until(lambda: link.wire.aborted)
+    assert listener.learned == ["heard"]
+    assert link.parsed == before
 
 
-async def test_who_answers_no_ping_is_cut_off_and_the_application_is_told_why(link: Link) -> None:
-    await until(lambda: link.wire.aborted)
-    await until(lambda: link.heard[-1]["type"] == "websocket.disconnect")
+async def test_a_message_is_a_sign_of_life_too(link: Link) -> None:
+    listener = Recorder()
+    link.connection.listen(listener)
 
-    assert link.heard[-1]["code"] == 1011
+    link.client.send_text(b"hello")
+    link.flush()
+
+    assert listener.learned == ["heard"]
+
+
+async def test_what_the_network_does_not_take_is_told_at_once(link: Link) -> None:
+    listener = Recorder()
+    link.connection.listen(listener)
+
+    link.server.pause_writing()
+    link.server.resume_writing()
+
+    assert link.wire.high == 0
+    assert listener.learned == ["clogged"]
+
+
+async def test_whoever_listened_last_learns_nothing_more(link: Link) -> None:
+    listener = Recorder()
+    link.connection.listen(listener)
+    link.connection.listen(None)
+
+    link.server.pause_writing()
+    link.client.send_text(b"hello")
+    link.flush()
+
+    assert listener.learned == []
+
+
+async def test_a_lost_connection_is_told(monkeypatch: pytest.MonkeyPatch) -> None:
+    link = Link(monkeypatch)
+    await link.connect()
+    listener = Recorder()
+    link.connection.listen(listener)
+
+    await link.end()
+
+    assert listener.learned == ["lost"]
+    assert link.heard[-1]["type"] == "websocket.disconnect"
 
 
 @pytest.mark.parametrize("length", [0, 4, 125, 126, 70_000])
 async def test_what_a_client_says_between_pings_is_heard(link: Link, length: int) -> None:
-    await link.ping()
+    link.ping()
     link.flush()
 
     link.client.send_text(b"x" * length)
     link.flush()
     await until(lambda: link.heard[-1]["type"] == "websocket.receive")
-    await link.ping()
     before = link.parsed
+    link.ping()
     link.flush()
 
     assert link.heard[-1]["text"] == "x" * length
     assert link.parsed == before
-    assert not link.wire.aborted
 
 
 async def test_bytes_that_look_like_an_answer_inside_a_message_are_part_of_it(link: Link) -> None:
@@ -190,11 +235,15 @@ async def test_bytes_that_look_like_an_answer_inside_a_message_are_part_of_it(li
     assert len(link.heard[-1]["bytes"]) == 30
 
 
-async def test_an_answer_in_pieces_is_understood(link: Link) -> None:
-    await link.ping()
+async def test_an_answer_in_pieces_does_no_harm(link: Link) -> None:
+    link.ping()
     link.flush(piece=3)
 
-    assert link.server.pending_ping_payload is None
+    link.client.send_text(b"hello")
+    link.flush()
+    await until(lambda: link.heard[-1]["type"] == "websocket.receive")
+
+    assert link.heard[-1]["text"] == "hello"
 
 
 async def test_when_the_application_ends_so_does_the_connection(

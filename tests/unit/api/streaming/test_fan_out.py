@@ -10,6 +10,7 @@ import pytest
 
 from api.streaming.encoder import StreamEncoder
 from api.streaming.fan_out import FanOut
+from api.streaming.prepared import PING, Connection, Listener
 from api.streaming.query import TOPICS, StreamQuery
 from domain.messages import EmergencyStopRequest
 from service.supervisor import Supervisor
@@ -23,20 +24,30 @@ ALL = StreamQuery(frozenset(TOPICS), None, None)
 
 
 class Wire(asyncio.WriteTransport):
-    """Takes what is written while it flows; else keeps it."""
+    """Takes what is written while it flows; else keeps it. Answers pings unless told otherwise."""
 
     def __init__(self) -> None:
         super().__init__()
         self.written: list[bytes] = []
         self.waiting = 0
         self.flows = True
+        self.answers = True
         self.closing = False
+        self.listener: Listener | None = None
+
+    @property
+    def connection(self) -> Connection:
+        return Connection(self, self._listen)
 
     def write(self, data: Any) -> None:  # noqa: ANN401
         assert not self.closing
         self.written.append(data)
         if not self.flows:
             self.waiting += len(data)
+            if self.listener is not None:
+                self.listener.clogged()
+        elif data.endswith(PING) and self.answers and self.listener is not None:
+            self.listener.heard()
 
     def get_write_buffer_size(self) -> int:
         return self.waiting
@@ -46,6 +57,8 @@ class Wire(asyncio.WriteTransport):
 
     def abort(self) -> None:
         self.closing = True
+        if self.listener is not None:
+            self.listener.lost()
 
     def flow(self) -> None:
         self.flows, self.waiting = True, 0
@@ -53,6 +66,9 @@ class Wire(asyncio.WriteTransport):
     @property
     def frames(self) -> list[dict[str, Any]]:
         return [json.loads(text) for text in texts_of(b"".join(self.written))]
+
+    def _listen(self, listener: Listener | None) -> None:
+        self.listener = listener
 
 
 @pytest.fixture
@@ -81,7 +97,10 @@ async def test_clients_in_step_are_written_the_very_same_bytes(
     fan_out: FanOut, clock: ManualClock
 ) -> None:
     first, second = Wire(), Wire()
-    with fan_out.serve(first, STATE, "first"), fan_out.serve(second, STATE, "second"):
+    with (
+        fan_out.serve(first.connection, STATE, "first"),
+        fan_out.serve(second.connection, STATE, "second"),
+    ):
         await clock.advance(1)
 
     assert len(first.written) == 21
@@ -92,7 +111,7 @@ async def test_events_and_the_frame_that_follows_are_one_write(
     fan_out: FanOut, supervisor: Supervisor
 ) -> None:
     wire = Wire()
-    with fan_out.serve(wire, ALL, "page"):
+    with fan_out.serve(wire.connection, ALL, "page"):
         await settle()
         wire.written.clear()
         supervisor.submit(EmergencyStopRequest(True, "test", "operator"))
@@ -107,7 +126,7 @@ async def test_a_clogged_client_is_left_out_and_joins_again_without_a_hole(
     fan_out: FanOut, clock: ManualClock
 ) -> None:
     slow, quick = Wire(), Wire()
-    with fan_out.serve(slow, ALL, "slow"), fan_out.serve(quick, ALL, "quick"):
+    with fan_out.serve(slow.connection, ALL, "slow"), fan_out.serve(quick.connection, ALL, "quick"):
         await clock.advance(0.2)
         slow.flows = False
         await clock.advance(1)
@@ -127,7 +146,7 @@ async def test_a_clogged_client_misses_no_event(
     fan_out: FanOut, supervisor: Supervisor, clock: ManualClock
 ) -> None:
     wire = Wire()
-    with fan_out.serve(wire, EVENTS, "log"):
+    with fan_out.serve(wire.connection, EVENTS, "log"):
         await clock.advance(0.1)
         wire.flows = False
         for _ in range(40):
@@ -147,7 +166,7 @@ async def test_a_long_history_is_written_without_waiting_for_the_next_tick(
     for _ in range(100):
         press_and_release_the_stop(supervisor)
     wire = Wire()
-    with fan_out.serve(wire, EVENTS, "log"):
+    with fan_out.serve(wire.connection, EVENTS, "log"):
         await settle()
 
     assert [frame["id"] for frame in wire.frames] == list(range(1, supervisor.events.newest + 1))
@@ -159,7 +178,7 @@ async def test_a_client_that_takes_a_little_now_and_then_is_kept(
 ) -> None:
     wire = Wire()
     wire.flows = False
-    with fan_out.serve(wire, STATE, "slow"):
+    with fan_out.serve(wire.connection, STATE, "slow"):
         await clock.advance(0.1)
         for _ in range(10):
             wire.waiting -= 1
@@ -174,20 +193,61 @@ async def test_a_client_that_takes_nothing_is_dropped_once(
 ) -> None:
     wire = Wire()
     wire.flows = False
-    with fan_out.serve(wire, STATE, "mute"):
-        await clock.advance(10)
+    with fan_out.serve(wire.connection, STATE, "mute"):
+        await clock.advance(4.4)
+        assert not wire.closing
+        await clock.advance(5.6)
 
     assert wire.closing
     assert fan_out.dropped == 1
 
 
-async def test_nothing_is_written_to_a_connection_that_closes(
+async def test_a_client_that_does_not_read_is_dropped_though_its_system_takes_all(
+    fan_out: FanOut, clock: ManualClock
+) -> None:
+    mute, other = Wire(), Wire()
+    with (
+        fan_out.serve(mute.connection, STATE, "mute"),
+        fan_out.serve(other.connection, STATE, "other"),
+    ):
+        await clock.advance(10)
+        mute.answers = False
+        await clock.advance(2)
+        assert not mute.closing
+        await clock.advance(3)
+
+    assert (mute.closing, other.closing) == (True, False)
+    assert fan_out.dropped == 1
+    assert len(other.frames) == 301
+
+
+async def test_a_slow_client_is_not_asked_for_an_answer_that_waits_behind_a_large_frame(
+    fan_out: FanOut, clock: ManualClock
+) -> None:
+    wire = Wire()
+    with fan_out.serve(wire.connection, STATE, "slow"):
+        await clock.advance(2)
+        wire.flows = False
+        for _ in range(10):
+            await clock.advance(1)
+            wire.waiting -= 1
+        assert not wire.closing
+        wire.flow()
+        await clock.advance(10)
+
+    assert fan_out.dropped == 0
+
+
+async def test_nothing_is_written_to_a_connection_that_is_lost(
     fan_out: FanOut, clock: ManualClock
 ) -> None:
     wire, other = Wire(), Wire()
-    with fan_out.serve(wire, STATE, "gone"), fan_out.serve(other, STATE, "other"):
+    with (
+        fan_out.serve(wire.connection, STATE, "gone"),
+        fan_out.serve(other.connection, STATE, "other"),
+    ):
         await clock.advance(0.5)
-        wire.closing = True
+        wire.abort()
         await clock.advance(0.5)
 
     assert len(other.written) == 2 * len(wire.written) - 1
@@ -197,11 +257,11 @@ async def test_clients_come_and_go_while_others_are_written_to(
     fan_out: FanOut, clock: ManualClock
 ) -> None:
     stays = Wire()
-    with fan_out.serve(stays, STATE, "stays"):
+    with fan_out.serve(stays.connection, STATE, "stays"):
         for _ in range(20):
             with ExitStack() as guests:
                 for number in range(150):
-                    guests.enter_context(fan_out.serve(Wire(), STATE, f"guest {number}"))
+                    guests.enter_context(fan_out.serve(Wire().connection, STATE, f"guest {number}"))
                 await clock.advance(0.05)
 
     assert len(stays.written) == 21
@@ -210,7 +270,7 @@ async def test_clients_come_and_go_while_others_are_written_to(
 async def test_whoever_is_alone_begins_with_everything(fan_out: FanOut, clock: ManualClock) -> None:
     for _ in range(2):
         wire = Wire()
-        with fan_out.serve(wire, ALL, "page"):
+        with fan_out.serve(wire.connection, ALL, "page"):
             await clock.advance(0.1)
 
         first = next(frame for frame in wire.frames if frame["type"] == "state")
@@ -227,11 +287,14 @@ async def test_when_the_fan_out_fails_nobody_is_left_with_a_silent_connection(
     first, second, later = Wire(), Wire(), Wire()
     with monkeypatch.context() as broken:
         broken.setattr(StreamEncoder, "frame", None)
-        with fan_out.serve(first, STATE, "first"), fan_out.serve(second, ALL, "second"):
+        with (
+            fan_out.serve(first.connection, STATE, "first"),
+            fan_out.serve(second.connection, ALL, "second"),
+        ):
             await clock.advance(0.1)
 
     assert (first.closing, second.closing) == (True, True)
     assert "the fan-out failed" in caplog.text
-    with fan_out.serve(later, STATE, "later"):
+    with fan_out.serve(later.connection, STATE, "later"):
         await clock.advance(0.1)
     assert later.frames

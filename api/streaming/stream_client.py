@@ -1,0 +1,116 @@
+"""The clients of the stream: together as long as they are in step, and each by itself else."""
+
+import asyncio
+
+from api.streaming.place import Place
+from domain.timebase import Instant, seconds
+from service.clock import Clock
+
+PATIENCE = seconds(4.5)
+"""A client that has taken nothing of what waits for so long is dropped."""
+
+
+class Group:
+    """The clients that asked for the same topics."""
+
+    def __init__(self, place: Place) -> None:
+        self.place = place
+        """Where all are who are in step."""
+        self.in_step: dict[asyncio.WriteTransport, StreamClient] = {}
+        """Those who have taken everything so far, by what is written to."""
+        self.apart: dict[asyncio.WriteTransport, StreamClient] = {}
+        """Those who have not."""
+
+    @property
+    def clients(self) -> tuple["StreamClient", ...]:
+        """Return all of them."""
+        return (*self.in_step.values(), *self.apart.values())
+
+    @property
+    def is_empty(self) -> bool:
+        """Tell whether there is no client."""
+        return not self.in_step and not self.apart
+
+    def add(self, client: "StreamClient") -> None:
+        """Take a client that has got nothing yet."""
+        self.apart[client.transport] = client
+
+    def remove(self, client: "StreamClient") -> None:
+        """Forget a client; it may be forgotten already."""
+        self.in_step.pop(client.transport, None)
+        self.apart.pop(client.transport, None)
+
+    def part_from(self, client: "StreamClient") -> None:
+        """Let a client that cannot take more go on alone, from where all are now."""
+        if self.in_step.pop(client.transport, None) is not None:
+            client.place = self.place.copy()
+            self.apart[client.transport] = client
+
+    def take_in_if_level(self, client: "StreamClient") -> None:
+        """Let a client that has got and taken everything go on with the others."""
+        has_all = client.place.position == self.place.position
+        has_taken = not client.transport.get_write_buffer_size()
+        # It may have gone just now, while it was written to.
+        if has_all and has_taken and self.apart.pop(client.transport, None) is not None:
+            self.in_step[client.transport] = client
+
+    def take_silent(self) -> tuple["StreamClient", ...]:
+        """Forget and return those who have not answered a ping, and expect an answer of the rest.
+
+        To whom something waits, the ping may not have come yet; see `StreamClient.is_stuck`.
+        """
+        free = [c for c in self.clients if not c.transport.get_write_buffer_size()]
+        silent = tuple(client for client in free if client.owes_answer)
+        for client in silent:
+            self.remove(client)
+        for client in free:
+            client.owes_answer = True
+        return silent
+
+
+class StreamClient:
+    """One client; it learns from its connection how that fares."""
+
+    def __init__(
+        self,
+        group: Group,
+        transport: asyncio.WriteTransport,
+        place: Place,
+        address: str,
+        clock: Clock,
+    ) -> None:
+        self.transport = transport
+        self.place = place
+        """Its own, while it is apart."""
+        self.address = address
+        self.owes_answer = False
+        """Whether nothing was heard of it since the last ping."""
+        self._group = group
+        self._clock = clock
+        self._waiting = 0
+        self._moved_at = clock.now()
+
+    def clogged(self) -> None:
+        """Go on alone: what was written last has to be taken first."""
+        self._moved_at = self._clock.now()
+        self._group.part_from(self)
+
+    def heard(self) -> None:
+        """Learn that the client is there and reads."""
+        self.owes_answer = False
+
+    def lost(self) -> None:
+        """Write no more."""
+        self._group.remove(self)
+
+    def is_ready(self, now: Instant) -> bool:
+        """Tell whether everything written before is on its way, and more can be written."""
+        waiting = self.transport.get_write_buffer_size()
+        if waiting == 0 or waiting < self._waiting:
+            self._moved_at = now
+        self._waiting = waiting
+        return waiting == 0 and not self.transport.is_closing()
+
+    def is_stuck(self, now: Instant) -> bool:
+        """Tell whether it has taken nothing of what waits for too long."""
+        return now - self._moved_at > PATIENCE and not self.transport.is_closing()
