@@ -108,10 +108,11 @@ class TaskPlanner:
         )
         if self._current is not None:
             self._drop_goal(self._current)
-            self._end(TaskPhase.CANCELED, f"replaced by {task.id}", now)
+            self._end(self._current, TaskPhase.CANCELED, f"replaced by {task.id}", now)
         self._current = task
         self._log.add(task)
-        served = self._emit("task.served", waypoints=task.path.count, length_m=task.length_m)
+        count, length_m = task.path.count, task.length_m
+        served = self._emit(task, "task.served", waypoints=count, length_m=length_m)
         if self.holds:
             self._pause(task, served, was_driving=False)
         else:
@@ -123,7 +124,7 @@ class TaskPlanner:
         if self._current is not None:
             self._drop_goal(self._current)
             self._stop()
-            self._end(TaskPhase.CANCELED, "canceled", now)
+            self._end(self._current, TaskPhase.CANCELED, "canceled", now)
 
     # --- holds -----------------------------------------------------------------------------------
 
@@ -170,14 +171,14 @@ class TaskPlanner:
             return
         self._stop()
         phase = TaskPhase.SUCCEEDED if result.succeeded else TaskPhase.ABORTED
-        self._end(phase, result.reason or None, now)
+        self._end(task, phase, result.reason or None, now)
 
     def note_standstill(self) -> None:
         """Learn that the vehicle was seen to stand still."""
         task = self._current
         if task is not None and task.phase is TaskPhase.PAUSING:
             task.phase = TaskPhase.PAUSED
-            self._emit("task.paused", reason=task.reason)
+            self._emit(task, "task.paused", reason=task.reason)
 
     # --- what can be seen ------------------------------------------------------------------------
 
@@ -220,14 +221,14 @@ class TaskPlanner:
         if distance is not None:
             limit_m = self._settings.max_start_distance_m
             reason = FarStartError(distance, limit_m).message
-            self._end(TaskPhase.ABORTED, reason, now, cause)
+            self._end(task, TaskPhase.ABORTED, reason, now, cause)
             return
         self._goals_sent += 1
         task.goal = GoalId(self._goals_sent)
         task.phase, task.reason = TaskPhase.RUNNING, None
         kind = "task.resumed" if task.has_run else "task.started"
         task.has_run = True
-        self._emit(kind, cause, goal=task.goal, target_index=task.target_index)
+        self._emit(task, kind, cause, goal=task.goal, target_index=task.target_index)
         self._outbox.command(
             SendGoal(
                 task.goal,
@@ -246,7 +247,8 @@ class TaskPlanner:
         stands = self._vehicle.stands and not was_driving
         task.phase = TaskPhase.PAUSED if stands else TaskPhase.PAUSING
         task.reason = self.holds.reason
-        self._emit("task.paused" if stands else "task.pausing", cause, reason=task.reason)
+        kind = "task.paused" if stands else "task.pausing"
+        self._emit(task, kind, cause, reason=task.reason)
 
     def _renew_reason(self) -> None:
         task = self._current
@@ -268,21 +270,22 @@ class TaskPlanner:
         self._outbox.command(Drive(command))
 
     def _end(
-        self, phase: TaskPhase, reason: str | None, now: Instant, cause: int | None = None
+        self,
+        task: Task,
+        phase: TaskPhase,
+        reason: str | None,
+        now: Instant,
+        cause: int | None = None,
     ) -> None:
-        task = self._current
-        if task is None:
-            raise RuntimeError("there is no task to end")
         task.end(phase, reason, now)
         kind = f"task.{phase.lower()}"
-        self._emit(kind, cause, reason=reason, progress=task.view().progress)
+        self._emit(task, kind, cause, reason=reason, progress=task.view().progress)
         self._current = None
 
-    def _emit(self, kind: str, cause: int | None = None, **data: object) -> int:
-        """Record what became of the current task."""
+    def _emit(self, task: Task, kind: str, cause: int | None = None, **data: object) -> int:
+        """Record what became of a task."""
         self._outbox.task_changed = True
-        identity = "" if self._current is None else self._current.id
-        return self._outbox.emit(kind, {"task": identity, **data}, cause)
+        return self._outbox.emit(kind, {"task": task.id, **data}, cause)
 
     def _nearest(self, path: Path) -> tuple[int, float] | None:
         """Return the waypoint nearest to the vehicle that a task may begin with, and how far."""

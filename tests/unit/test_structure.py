@@ -11,7 +11,7 @@ PROJECT = Path(__file__).resolve().parents[2]
 PACKAGES = ("api", "domain", "service", "web")
 MAX_FILE_LINES = 400
 MAX_FUNCTION_LINES = 50
-NOT_OURS = {"__pycache__", "build", "dist", "node_modules"}
+NOT_OURS = {"__pycache__", "build", "dist", "mutants", "node_modules"}
 # Escaped, so that this file does not hold the names that it looks for.
 REGISTRY = re.compile(
     r"pypi\.org|pythonhosted\.|npmjs\.|--(?:extra-)?index-url|--find-link[s]|--trusted-hos[t]"

@@ -42,6 +42,17 @@ def test_a_deadline_that_is_set_again_counts_as_set_last() -> None:
     assert [deadlines.pop_due(10) for _ in range(3)] == ["b", "a", None]
 
 
+def test_a_deadline_that_was_cleared_never_comes() -> None:
+    deadlines: Deadlines[str] = Deadlines()
+    deadlines.set("arm", 10)
+    deadlines.set("base", 12)
+    deadlines.clear("arm")
+    deadlines.clear("tail")
+    assert deadlines.next() == 12
+    assert deadlines.pop_due(20) == "base"
+    assert deadlines.pop_due(20) is None
+
+
 class AgainstASortedList(RuleBasedStateMachine):
     """Whatever is set, cleared and popped, it is as if all were sorted anew each time."""
 

@@ -522,3 +522,34 @@ def test_random_histories_reach_systems_of_systems_that_are_active() -> None:
 
     with_history = models().flatmap(lambda m: st.tuples(st.just(m), histories(m)))
     find(with_history, reached, settings=settings(max_examples=500, phases=[Phase.generate]))
+
+
+# --- words ---------------------------------------------------------------------------------------
+
+
+def test_a_report_of_an_unknown_node_names_those_that_there_are() -> None:
+    with pytest.raises(UnknownPartError) as unknown:
+        _inference().report(NodeReport(PartName("tail"), state=S.ACTIVE))
+    assert unknown.value.message == "there is no node 'tail'"
+    assert unknown.value.hint == "known: drive_base, manipulator"
+
+
+def test_a_target_of_an_unknown_part_names_those_that_there_are() -> None:
+    with pytest.raises(UnknownPartError) as unknown:
+        _inference().set_targets({PartName("tail"): active()})
+    assert unknown.value.message == "there is no part 'tail'"
+    assert unknown.value.hint == "known: actuation, drive_base, manipulator"
+
+
+def test_a_mode_on_the_way_is_inferred_and_says_so() -> None:
+    inference = _inference(drive_base="active.SLOW", manipulator="active.WEAK")
+    inference.set_targets({ACTUATION: active("PERFORMANCE")})
+    assert inference.actual(ACTUATION) == Actual(
+        S.ACTIVATING, ModeName("MODERATE"), inferred=True, mode_inferred=True
+    )
+
+
+def test_a_system_of_nothing_that_nothing_was_asked_of_is_unknown_and_decided() -> None:
+    empty = PartName("empty")
+    inference = ModeInference(SmhModel({}, {empty: SystemModel(empty, {})}))
+    assert inference.actual(empty) == Actual(S.UNKNOWN, inferred=True)

@@ -197,3 +197,90 @@ def test_systems_that_always_want_the_same_of_a_shared_part_are_fine() -> None:
         )
         == []
     )
+
+
+# --- words ---
+
+
+def test_what_is_told_of_modes_says_what_follows_from_it() -> None:
+    (alike,) = told(node(default={"a": 1}, X={"a": 1}))
+    (differs,) = told(node(default={"a": 0.5}, X={"a": 1}))
+    (never,) = told(node(default={"a": 0.5}, X={"a": float("nan")}))
+
+    assert alike.message == (
+        "n: X is the same as __DEFAULT__; inference cannot tell which of the two it is in"
+    )
+    assert differs.message == (
+        "n in X: a is integer here and double in __DEFAULT__; a node accepts one of them at most"
+    )
+    assert never.message == (
+        "n in X: a is not a number, which is never found equal; "
+        "the mode is never recognised by its parameters"
+    )
+
+
+def test_what_is_told_of_a_rule_that_undoes_a_request_names_both_sides() -> None:
+    (undone,) = told(
+        system(
+            "s",
+            rule("odd", "active.FAST", "n", "active.FAST", "inactive"),
+            default={"n": "active"},
+            FAST={"n": "active.FAST"},
+        ),
+        node(default={"a": 1}, FAST={"a": 2}),
+    )
+
+    assert undone.message == (
+        "rule odd of s gives up active.FAST when n is active.FAST, "
+        "which is what active.FAST wants of it"
+    )
+
+
+def test_each_of_several_circles_is_told() -> None:
+    findings = told(
+        system(
+            "s",
+            rule("stay", "active", "n", "inactive", "active"),
+            rule("there", "active.A", "n", "finalized", "active.B"),
+            rule("aside", "active.A", "n", "inactive", "inactive"),
+            rule("back", "active.B", "n", "finalized", "active.A"),
+            default={"n": "active"},
+            A={"n": "active.A"},
+            B={"n": "active.B"},
+        ),
+        node(default={"a": 1}, A={"a": 2}, B={"a": 3}),
+    )
+
+    assert brief(findings) == [
+        ("RULE_CIRCLE", ("s", "rules", "stay")),
+        ("RULE_CIRCLE", ("s", "rules", "back")),
+    ]
+
+
+def test_a_way_into_a_circle_is_no_part_of_it() -> None:
+    findings = told(
+        system(
+            "s",
+            rule("into", "active.HIGH", "n", "inactive", "active.LOW"),
+            rule("down", "active.LOW", "n", "inactive", "active"),
+            rule("up", "active", "n", "finalized", "active.LOW"),
+            default={"n": "active"},
+            LOW={"n": "active.LOW"},
+            HIGH={"n": "active.HIGH"},
+        ),
+        node(default={"a": 1}, LOW={"a": 2}, HIGH={"a": 3}),
+    )
+
+    (circle,) = findings
+    assert circle.message == (
+        "rules of s lead in a circle: active.LOW > active.__DEFAULT__ > active.LOW"
+    )
+
+
+def test_a_rule_for_a_target_without_wishes_undoes_nothing() -> None:
+    findings = told(
+        SystemModel(PartName("s"), {}, (rule("r", "active", "n", "active", "inactive"),)),
+        node(default={"a": 1}),
+    )
+
+    assert findings == []

@@ -367,3 +367,73 @@ def test_a_stretch_within_three_metres_was_not_left_out_however_fast_it_went() -
     drive.step(20.5)
 
     assert result_of(drive).succeeded
+
+
+def test_a_goal_sent_before_any_pose_begins_from_rest() -> None:
+    drive = Drive20Hz()
+    drive.navigation.handle(SendGoal(GoalId(1), drive.path, 0, 0, "test", 2.8), drive.now)
+    drive.report()
+    drive.act()
+
+    assert drive.speeds == [0.05]
+
+
+def test_navigation_says_where_it_steers_to_and_what_was_left_out() -> None:
+    drive = Drive20Hz()
+    drive.report(x_m=3.0)
+    goal = SendGoal(GoalId(1), drive.path, 0, 3, "test", 2.8, reached_m=3.0, left_out_m=0.4)
+    drive.navigation.handle(goal, drive.now)
+    _, feedback = drive.act()
+
+    assert isinstance(feedback, GoalFeedback)
+    assert feedback.lookahead == Point(5.0, 0.0)
+    assert feedback.left_out_m == 0.4
+
+
+def test_progress_counts_from_when_the_goal_was_sent() -> None:
+    drive = Drive20Hz()
+    drive.report(x_m=-1.0)
+    drive.send()
+    drive.stay(19.9, -1.0, speed_mps=0.0)
+    assert drive.result is None
+    drive.stay(0.1, -1.0, speed_mps=0.0)
+
+    assert result_of(drive).reason == "no progress for 20 s"
+
+
+def test_a_vehicle_beside_the_path_leaves_out_what_it_passes() -> None:
+    drive = Drive20Hz()
+    drive.report()
+    drive.send()
+    drive.step(0.5, y_m=3.1)
+    (_, feedback) = drive.step(1.0, y_m=3.1)
+
+    assert isinstance(feedback, GoalFeedback)
+    assert feedback.left_out_m == pytest.approx(1.0)
+
+
+@pytest.mark.parametrize(("left_out_m", "arrives"), [(0.4, True), (0.6, False)])
+def test_what_was_left_out_counts_against_what_was_to_be_driven(
+    left_out_m: float, arrives: bool
+) -> None:
+    """95 % of the 10 m from waypoint 10 on, and not of the whole path."""
+    drive = Drive20Hz()
+    drive.report(x_m=20.0)
+    goal = SendGoal(
+        GoalId(1), drive.path, 10, 19, "test", 2.8, reached_m=20.0, left_out_m=left_out_m
+    )
+    drive.navigation.handle(goal, drive.now)
+    drive.act()
+
+    assert result_of(drive).succeeded is arrives
+
+
+@pytest.mark.parametrize(("y_m", "arrives"), [(0.2, True), (-0.2, True), (0.29, False)])
+def test_standing_beside_the_end_is_arriving_only_near_it(y_m: float, arrives: bool) -> None:
+    drive = Drive20Hz()
+    drive.report(x_m=19.8, speed_mps=1.0)
+    drive.send(start_index=20)
+    assert drive.result is None
+    drive.step(19.85, y_m, speed_mps=0.0)
+
+    assert (drive.result is not None) is arrives

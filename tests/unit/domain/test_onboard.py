@@ -5,13 +5,22 @@ import math
 import pytest
 
 from domain.errors import InvalidValueError
-from domain.messages import Drive, TimePassed, VehicleReport
+from domain.messages import (
+    Drive,
+    ModeRequest,
+    Reading,
+    Readings,
+    TaskRequest,
+    TimePassed,
+    VehicleReport,
+)
 from domain.snapshot import TaskPhase
 from domain.system_model import SmhModel
 from domain.timebase import seconds
 from domain.vehicle import Pose, VehicleState
 from tests.support.driver import straight
 from tests.support.good import GOOD
+from tests.support.models import BASE, actuation_model
 from tests.support.virtual_robot import VirtualRobot
 
 
@@ -135,3 +144,88 @@ def test_holds_between_waypoints_far_apart_leave_nothing_of_the_path_out(
     drive(robot, 30)
 
     assert robot.task.status is TaskPhase.SUCCEEDED
+
+
+def test_what_was_due_before_an_input_is_answered_together_with_it() -> None:
+    """Whoever asks learns of all that happened meanwhile, and nothing is lost between."""
+    robot = VirtualRobot(actuation_model())
+    robot.read(**GOOD)
+    robot.serve(straight())
+    later = robot.now + seconds(0.12)
+    request = ModeRequest(BASE, "FAST", actor="alice")
+    outputs = robot.onboard.handle(request, later)
+
+    assert outputs.change == "c1"
+    assert outputs.parts == {BASE}
+    assert (outputs.task_changed, outputs.vehicle_changed) == (True, True)
+    assert (outputs.task, outputs.system_state, outputs.signals) == (None, False, frozenset())
+    kinds = [type(command).__name__ for command in outputs.commands]
+    assert kinds == ["Drive", "Drive", "AskTransition"]
+
+
+def test_a_task_that_is_served_late_is_told_with_its_id_and_the_state_that_follows() -> None:
+    robot = VirtualRobot(actuation_model())
+    robot.read(**GOOD)
+    robot.serve(straight())
+    later = robot.now + seconds(0.12)
+    outputs = robot.onboard.handle(TaskRequest(straight(), 0, "stanley", 2.8), later)
+
+    assert outputs.task == "t2"
+    assert outputs.change is None
+    assert outputs.task_changed
+    assert [event.kind for event in outputs.events if event.kind.startswith("task.")] == [
+        "task.requested",
+        "task.canceled",
+        "task.served",
+        "task.started",
+    ]
+
+
+def test_signals_that_changed_meanwhile_are_told_with_the_state_that_follows(
+    robot: VirtualRobot,
+) -> None:
+    robot.serve(straight())
+    outputs = robot.onboard.handle(Readings((Reading("estop", True),), "pad"), seconds(0.12))
+
+    assert outputs.signals == {"estop"}
+    assert outputs.system_state
+    assert [type(c).__name__ for c in outputs.commands] == ["Drive", "Drive", "Drive"]
+
+
+def test_what_the_core_has_due_comes_before_the_control_step_of_the_same_instant(
+    robot: VirtualRobot,
+) -> None:
+    """A pose that became too old holds the task; a step after it would drive blindly."""
+    robot.serve(straight())
+    outputs = robot.onboard.handle(TimePassed(), robot.now + seconds(1))
+    commands = [c.command.speed_mps for c in outputs.commands if isinstance(c, Drive)]
+    pausing = next(event for event in outputs.events if event.kind == "task.pausing")
+
+    assert pausing.at == robot.now + seconds(0.3) + 1
+    assert commands[:6] == pytest.approx([0.1, 0.15, 0.2, 0.25, 0.3, 0.35])
+    assert commands[6:] == [0.0]
+
+
+def test_a_report_is_checked_before_it_is_taken(robot: VirtualRobot) -> None:
+    before = robot.core.driving.vehicle
+    with pytest.raises(InvalidValueError, match="not finite"):
+        robot.give(VehicleReport(VehicleState(Pose(0.0, 0.0, 0.0), math.inf, 0.0)))
+
+    assert robot.core.driving.vehicle == before
+
+
+def test_an_error_that_is_due_at_the_instant_of_a_control_step_comes_before_it(
+    robot: VirtualRobot,
+) -> None:
+    others = {name: value for name, value in GOOD.items() if name != "gps_accuracy"}
+    for _ in range(149):
+        robot.read(gps_accuracy=250.0, **others)
+        robot.advance(0.1)
+    robot.serve(straight())
+    outputs = robot.onboard.handle(TimePassed(), robot.now + seconds(0.2))
+
+    assert speeds(robot)[-1:] == [0.05]
+    driven = [c.command.speed_mps for c in outputs.commands if isinstance(c, Drive)]
+    assert driven == pytest.approx([0.1, 0.0])
+    raised = next(event for event in outputs.events if event.kind == "error.raised")
+    assert raised.at == seconds(15)

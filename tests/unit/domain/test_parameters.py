@@ -39,8 +39,10 @@ def test_types_are_called_as_in_ros_2() -> None:
 
 @pytest.mark.parametrize("value", [None, b"x", [1.0], (None,), (1, 2.0), ((1,),)])
 def test_what_no_parameter_can_hold_is_refused(value: object) -> None:
-    with pytest.raises(InvalidValueError):
+    with pytest.raises(InvalidValueError) as refused:
         value_type(cast("ParameterValue", value))
+
+    assert refused.value.message == f"{value!r} is no value of a parameter"
 
 
 @pytest.mark.parametrize(
@@ -59,3 +61,7 @@ def test_a_parameter_takes_values_of_its_own_type_and_an_empty_array_fits_all(
     declared: ParameterValue, value: ParameterValue, fits: bool
 ) -> None:
     assert fits_type(declared, value) is fits
+
+
+def test_an_array_of_nothing_is_an_array_of_no_type() -> None:
+    assert value_type(()) == "array"

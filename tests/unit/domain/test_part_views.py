@@ -252,3 +252,21 @@ def test_a_system_deviates_when_a_part_of_it_leaves_on_its_own(robot: Views) -> 
     (told,) = _told(events, "part.deviation_began")
     assert told["part"] == ACTUATION
     assert robot.views.get(ACTUATION).deviation_since == 7
+
+
+def test_a_part_that_stayed_as_it_was_does_not_hide_the_ones_after_it(robot: Views) -> None:
+    robot.report(NodeReport(ARM, state=S.INACTIVE))
+    robot.report(NodeReport(LIDAR, state=S.INACTIVE))
+    robot.outbox.begin(0, "node.reported")
+    robot.inference.report(NodeReport(LIDAR, state=S.ACTIVE))
+    robot.views.note_actuals([ARM, LIDAR])
+    told = _told(robot.outbox.take().events, "part.actual_changed")
+    assert [data["part"] for data in told] == [LIDAR]
+
+
+def test_a_node_that_is_reached_adds_to_what_changed_before(robot: Views) -> None:
+    robot.outbox.begin(0, "node.reported")
+    robot.outbox.parts.add(ARM)
+    robot.inference.report(NodeReport(LIDAR, state=S.INACTIVE))
+    robot.views.note_reachable(LIDAR)
+    assert robot.outbox.take().parts == {ARM, LIDAR, ROBOT}

@@ -22,6 +22,7 @@ from domain.errors import (
     UnknownPartError,
     UnknownSignalError,
 )
+from domain.health.signals import Recovery, default_signals
 from domain.lifecycle import LifecycleState, Transition
 from domain.messages import (
     AcknowledgeRequest,
@@ -34,6 +35,9 @@ from domain.messages import (
     Drive,
     EmergencyStopRequest,
     Event,
+    GoalFeedback,
+    GoalResult,
+    HoldRequest,
     Input,
     ModeRequest,
     NodeAnswer,
@@ -45,13 +49,16 @@ from domain.messages import (
     SignalValue,
     TimePassed,
     TransitionRequest,
+    VehicleReport,
+    WriteRecord,
 )
 from domain.simulation.node_settings import Fault, NodeSettings
 from domain.snapshot import ChangeStatus, SystemState
 from domain.supervision import Supervision, SupervisionSettings
 from domain.system_model import ModeName, PartName
 from domain.timebase import Instant, seconds
-from domain.vehicle import DriveCommand
+from domain.vehicle import DriveCommand, Point, Pose, VehicleState
+from tests.support.driver import Driver
 from tests.support.good import GOOD
 from tests.support.models import ACTUATION, ARM, BASE, actuation_model, nested_model
 from tests.support.virtual_robot import VirtualRobot
@@ -267,8 +274,18 @@ def test_what_a_node_does_on_its_own_has_no_cause(robot: VirtualRobot) -> None:
             {"reason": "smoke"},
         ),
         (DOWN, "backend.unavailable", {"reason": "no DDS"}),
+        (
+            WriteRecord("PUT", "/holds/gate", 200, "10.0.0.7:4711", "alice"),
+            "audit.write",
+            {"method": "PUT", "path": "/holds/gate", "status": 200, "address": "10.0.0.7:4711"},
+        ),
+        (
+            HoldRequest("gate", "closed", "alice"),
+            "hold.requested",
+            {"owner": "gate", "reason": "closed"},
+        ),
     ],
-    ids=["report", "reading", "change", "stop", "backend"],
+    ids=["report", "reading", "change", "stop", "backend", "write", "hold"],
 )
 def test_an_input_that_matters_is_recorded_with_what_it_said(
     robot: VirtualRobot, given_: Input, kind: str, data: Mapping[str, object]
@@ -281,6 +298,21 @@ def test_who_asked_is_told_with_everything_that_follows(robot: VirtualRobot) -> 
     outputs = robot.give(ModeRequest(BASE, "FAST", actor="alice"))
     assert len(outputs.events) > 1
     assert {event.actor for event in outputs.events} == {"alice"}
+
+
+@pytest.mark.parametrize(
+    "given_",
+    [
+        EmergencyStopRequest(True, "smoke", "alice"),
+        HoldRequest("gate", "closed", "alice"),
+        WriteRecord("PUT", "/holds/gate", 200, "10.0.0.7:4711", "alice"),
+        Readings((Reading("battery_level", 0.1),), "test", "alice"),
+        ParametersRequest(BASE, {"max_speed": 0.4}, "alice"),
+    ],
+    ids=["stop", "hold", "write", "reading", "parameters"],
+)
+def test_whoever_did_something_is_told_with_it(robot: VirtualRobot, given_: Input) -> None:
+    assert {event.actor for event in robot.give(given_).events} == {"alice"}
 
 
 def test_who_canceled_a_change_is_told(robot: VirtualRobot) -> None:
@@ -302,8 +334,28 @@ def test_a_request_answers_with_its_change_and_the_commands_that_begin_it(
     assert robot.core.changes()[0].status is ChangeStatus.RUNNING
 
 
+def test_a_change_keeps_what_was_asked(robot: VirtualRobot) -> None:
+    request = ModeRequest(BASE, "FAST", "alice")
+    robot.give(request)
+    assert robot.core.changes()[0].request == request
+
+
 def test_a_report_tells_whose_view_it_changed(robot: VirtualRobot) -> None:
     assert robot.give(NodeReport(BASE, state=S.ACTIVE)).parts == {BASE, ACTUATION}
+
+
+def test_a_refusal_is_recorded_with_what_the_node_said_and_leads_back_to_its_step(
+    robot: VirtualRobot,
+) -> None:
+    begun = robot.core.handle(TransitionRequest(BASE, T.CONFIGURE), 0)
+    step = next(event for event in begun.events if event.kind == "change.step_started")
+    refused = robot.core.handle(NodeAnswer(1, BASE, False, "doors are open"), 0).events[0]
+    assert (refused.kind, refused.cause) == ("node.answered", step.id)
+    assert dict(refused.data) == {
+        "node": "drive_base",
+        "accepted": False,
+        "reason": "doors are open",
+    }
 
 
 def test_an_answer_to_something_else_is_of_no_account(robot: VirtualRobot) -> None:
@@ -321,6 +373,21 @@ def test_the_emergency_stop_puts_the_robot_in_error_at_once(robot: VirtualRobot)
     assert outputs.system_state
     assert robot.core.system_state().errors == ("ESTOP",)
     assert robot.core.emergency_stop().engaged
+
+
+def test_who_engaged_and_who_released_the_stop_can_be_seen_and_is_told(
+    robot: VirtualRobot,
+) -> None:
+    robot.advance(0.1)
+    robot.give(EmergencyStopRequest(True, "smoke", "alice"))
+    stop = robot.core.emergency_stop()
+    assert (stop.by, stop.reason, stop.since) == ("alice", "smoke", seconds(0.1))
+    robot.advance(0.1)
+    (released, *_) = robot.give(EmergencyStopRequest(False, "all clear", "bob")).events
+    assert (released.kind, released.actor) == ("emergency_stop.released", "bob")
+    assert dict(released.data) == {"reason": "all clear"}
+    stop = robot.core.emergency_stop()
+    assert (stop.by, stop.reason, stop.since) == ("bob", "all clear", seconds(0.2))
 
 
 def test_engaging_twice_keeps_who_did_it_first_and_tells_it_once(robot: VirtualRobot) -> None:
@@ -402,6 +469,69 @@ def test_in_error_without_estop_changes_stay_possible(robot: VirtualRobot) -> No
 
 def test_acknowledging_what_is_not_on_changes_nothing(robot: VirtualRobot) -> None:
     assert robot.give(AcknowledgeRequest("ESTOP")) == Outputs()
+
+
+# --- the vehicle and its task --------------------------------------------------------------------
+
+
+def _standing(x_m: float, speed_mps: float) -> VehicleReport:
+    return VehicleReport(VehicleState(Pose(x_m, 2.0, 0.0), speed_mps, 0.0))
+
+
+def test_a_report_of_the_vehicle_is_recorded_with_where_it_is_once_something_follows() -> None:
+    core = _core()
+    outputs = core.handle(_standing(1.0, 0.5), seconds(1))
+    assert [event.kind for event in outputs.events] == ["vehicle.reported", "hold.released"]
+    assert dict(outputs.events[0].data) == {"x_m": 1.0, "y_m": 2.0, "speed_mps": 0.5}
+    assert core.handle(_standing(1.1, 0.5), seconds(1.05)).events == ()
+
+
+def test_that_the_vehicle_stands_after_an_emergency_stop_is_told_once() -> None:
+    core = _core()
+    core.handle(EmergencyStopRequest(True, "smoke", "alice"), 0)
+    assert core.handle(_standing(0.0, 1.0), seconds(0.1)).events[-1].kind == "hold.released"
+    told = core.handle(_standing(0.1, 0.0), seconds(0.2)).events
+    assert [event.kind for event in told] == ["vehicle.reported", "emergency_stop.standstill"]
+    assert core.emergency_stop().standstill_at == seconds(0.2)
+    assert core.handle(_standing(0.1, 0.0), seconds(0.3)).events == ()
+
+
+def test_a_vehicle_that_stands_without_a_stop_tells_nothing_of_one() -> None:
+    core = _core()
+    told = core.handle(_standing(0.0, 0.0), seconds(0.1)).events
+    assert "emergency_stop.standstill" not in [event.kind for event in told]
+    assert core.emergency_stop().standstill_at is None
+
+
+def test_what_navigation_says_is_recorded_when_it_ends_the_task() -> None:
+    robot = Driver()
+    robot.serve()
+    command, ahead = DriveCommand(2.8, 0.0), Point(5.0, 0.0)
+    driven = robot.give(GoalFeedback(robot.goals[0].goal, 3, 2.5, 0.0, ahead, command))
+    assert driven.events == ()
+    assert driven.task_changed
+    ended = robot.give(GoalResult(robot.goals[0].goal, False, "no progress for 20 s"))
+    assert [event.kind for event in ended.events] == [
+        "goal.ended",
+        "task.aborted",
+        "system_state.changed",
+    ]
+    assert dict(ended.events[0].data) == {
+        "goal": 1,
+        "succeeded": False,
+        "reason": "no progress for 20 s",
+    }
+    assert ended.events[1].cause == ended.events[0].id
+
+
+def test_a_task_that_begins_or_ends_changes_the_state_of_the_robot() -> None:
+    robot = Driver()
+    served = robot.serve()
+    assert served.system_state
+    assert served.task == "t1"
+    assert robot.happened("system_state.changed")[-1]["state"] == "RUNNING"
+    robot.cancel()
+    assert robot.happened("system_state.changed")[-1]["state"] == "IDLE"
 
 
 # --- backend -------------------------------------------------------------------------------------
@@ -663,3 +793,36 @@ def test_an_absent_node_is_shown_among_the_blockers_and_refuses_nothing() -> Non
     assert not view.can_enter
     assert {blocker.code for blocker in view.blockers} <= ADVISORY
     assert core.handle(ModeRequest(BASE, view.mode), 0).change is not None
+
+
+def test_what_time_alone_leads_to_is_laid_to_time(robot: VirtualRobot) -> None:
+    outputs = robot.core.handle(TimePassed(), seconds(3))
+    first = outputs.events[0]
+    assert (first.kind, dict(first.data), first.cause) == ("time.passed", {}, None)
+
+
+def test_acknowledging_what_is_on_is_recorded_with_who_did_it() -> None:
+    signals = [
+        replace(item, recovery=Recovery.ACKNOWLEDGE, stale_after=0) for item in default_signals()
+    ]
+    core = Supervision(actuation_model(), SupervisionSettings(signals=tuple(signals)), 0)
+    core.handle(_readings(battery_level=0.1), 0)
+    core.handle(_readings(battery_level=0.9), seconds(1))
+    events = core.handle(AcknowledgeRequest("BATTERY_LOW", "alice"), seconds(2)).events
+    assert [(event.kind, event.actor) for event in events[:2]] == [
+        ("error.acknowledged", "alice"),
+        ("error.cleared", "alice"),
+    ]
+    assert dict(events[0].data) == {"error": "BATTERY_LOW"}
+
+
+def test_a_deviation_counts_from_the_input_that_began_it(robot: VirtualRobot) -> None:
+    robot.core.handle(ModeRequest(BASE, "FAST"), seconds(0.2))
+    assert robot.core.part(BASE).deviation_since == seconds(0.2)
+
+
+def test_the_state_that_follows_an_error_is_laid_to_the_error(robot: VirtualRobot) -> None:
+    events = robot.give(_readings(battery_level=0.1)).events
+    (raised,) = (event for event in events if event.kind == "error.raised")
+    (changed,) = (event for event in events if event.kind == "system_state.changed")
+    assert changed.cause == raised.id

@@ -288,3 +288,61 @@ def test_a_model_has_no_errors_exactly_if_nothing_reaches_itself(
             assert set(above) == {s for s, below in reached.items() if part in below}
             for position, ancestor in enumerate(above):
                 assert not reached[ancestor] & set(above[position + 1 :])
+
+
+# --- words ---
+
+
+def test_what_is_told_of_a_missing_default_names_the_part() -> None:
+    (finding,) = errors(NodeModel(PartName("n"), {FAST: {"a": 1}}))
+
+    assert finding == Finding(
+        "error", "MISSING_DEFAULT_MODE", "n has modes, but no __DEFAULT__", "n", ("n", "modes")
+    )
+
+
+def test_what_is_told_of_a_cycle_leads_to_the_line_that_closes_it() -> None:
+    (finding,) = errors(system("a", "b"), system("b", "a"))
+
+    assert finding == Finding(
+        "error", "CYCLE", "a contains itself: a > b > a", "b", ("b", "modes", "__DEFAULT__", "a")
+    )
+
+
+def test_what_is_told_of_a_rule_says_where_in_it() -> None:
+    rule = Rule("r", active("SPEEDY"), (PartName("tail"), inactive()), active())
+    target, part = errors(system("s", "n", rules=(rule,)), node("n"))
+
+    assert (target.severity, target.part) == ("error", "s")
+    assert target.message == "rule r of s, if_target: s has no mode 'SPEEDY'; it has __DEFAULT__"
+    assert (part.severity, part.part) == ("error", "s")
+    assert part.message == "rule r of s, if_part: there is no part 'tail'"
+
+
+@pytest.mark.parametrize(
+    ("length", "names"),
+    [
+        (11, [*(f"s{i}" for i in range(11)), "s0"]),
+        (12, [*(f"s{i}" for i in range(10)), "...", "s11", "s0"]),
+        (50, [*(f"s{i}" for i in range(10)), "...", "s49", "s0"]),
+    ],
+)
+def test_a_long_cycle_is_told_with_its_begin_and_its_end(length: int, names: list[str]) -> None:
+    (finding,) = errors(*(system(f"s{i}", f"s{(i + 1) % length}") for i in range(length)))
+
+    assert finding.message == f"s0 contains itself: {' > '.join(names)}"
+
+
+def test_what_is_not_there_is_told_by_what_it_would_be() -> None:
+    robot = actuation_model()
+    with pytest.raises(UnknownPartError) as part:
+        robot.modes_of(PartName("tail"))
+    with pytest.raises(UnknownModeError) as mode:
+        robot.require_mode(ARM, "TURBO")
+
+    assert part.value.message == "there is no part 'tail'"
+    assert mode.value.message == "there is no mode of manipulator 'TURBO'"
+
+
+def test_only_slashes_are_taken_from_a_name() -> None:
+    assert part_name("/X/arm") == "X/arm"

@@ -359,3 +359,30 @@ def test_of_many_blockers_what_refuses_comes_first_and_the_rest_is_cut() -> None
 
     assert (len(blockers), blockers[0].code, blockers[0].path[-1]) == (100, "FINALIZED", last)
     assert {blocker.code for blocker in blockers[1:]} == {"UNKNOWN_STATE"}
+
+
+def test_the_way_to_a_node_passes_by_the_systems_that_it_is_not_in() -> None:
+    other = SystemModel(
+        PartName("other"), {ModeName("__DEFAULT__"): {PartName("lidar"): inactive()}}
+    )
+    inner = nested_model()
+    modes = {ModeName("__DEFAULT__"): {other.name: inactive(), ACTUATION: inactive()}}
+    systems = {**inner.systems, other.name: other, ROBOT: SystemModel(ROBOT, modes)}
+    admission = _admission(S.FINALIZED, model=SmhModel(inner.nodes, systems))
+    (blocker,) = admission.blockers(ModeRequest(ROBOT, "__DEFAULT__"), ())
+    assert blocker.path == (ROBOT, ACTUATION, BASE)
+
+
+def test_a_refusal_names_the_part_that_was_asked() -> None:
+    with pytest.raises(BlockedError) as refusal:
+        _admission(S.FINALIZED).admit(PERFORMANCE, ())
+    assert refusal.value.message.startswith("actuation cannot be changed: ")
+
+
+def test_what_refuses_is_told_before_what_is_only_shown_in_the_order_of_the_nodes() -> None:
+    admission = _admission(UNTOLD, S.FINALIZED)
+    assert _codes(admission, PERFORMANCE) == ["FINALIZED", "UNKNOWN_STATE"]
+    admission = _admission(S.FINALIZED, UNTOLD)
+    assert _codes(admission, PERFORMANCE) == ["FINALIZED", "UNKNOWN_STATE"]
+    admission = _admission(S.FINALIZED, S.ERROR_PROCESSING)
+    assert _codes(admission, PERFORMANCE) == ["ERROR_PROCESSING", "FINALIZED"]

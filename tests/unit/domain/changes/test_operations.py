@@ -6,14 +6,40 @@ import pytest
 
 from domain.changes.operations import KEPT_CHANGES
 from domain.errors import InvalidValueError, UnknownChangeError
-from domain.lifecycle import LifecycleState
-from domain.messages import CancelRequest, ChangeId, NodeReport
+from domain.lifecycle import LifecycleState, Transition
+from domain.messages import (
+    AskFacts,
+    AskParameters,
+    AskTransition,
+    CancelRequest,
+    ChangeId,
+    EmergencyStopRequest,
+    ModeRequest,
+    NodeAnswer,
+    NodeReport,
+    ParametersRequest,
+    Reading,
+    Readings,
+    TimePassed,
+    TransitionRequest,
+)
+from domain.parameters import Parameters
 from domain.simulation.node_settings import Fault, NodeSettings
 from domain.snapshot import ChangeStatus, StepStatus
-from domain.system_model import DEFAULT_MODE, NodeModel, SmhModel
+from domain.supervision import Supervision, SupervisionSettings
+from domain.system_model import DEFAULT_MODE, NodeModel, PartName, SmhModel, SystemModel
 from domain.timebase import seconds
 from tests.support.good import GOOD
-from tests.support.models import ACTUATION, ARM, BASE, FAST, SLOW, actuation_model, nested_model
+from tests.support.models import (
+    ACTUATION,
+    ARM,
+    BASE,
+    FAST,
+    SLOW,
+    actuation_model,
+    inactive,
+    nested_model,
+)
 from tests.support.virtual_robot import VirtualRobot
 
 
@@ -224,8 +250,10 @@ def test_canceling_twice_is_harmless_and_an_unknown_change_is_told(robot: Virtua
     change = robot.mode("actuation", "PERFORMANCE")
     robot.give(CancelRequest(change))
     robot.give(CancelRequest(change))
-    with pytest.raises(UnknownChangeError):
+    with pytest.raises(UnknownChangeError) as unknown:
         robot.give(CancelRequest(ChangeId("c99")))
+    assert unknown.value.message == "there is no change 'c99'"
+    assert unknown.value.hint == "the last 1000 changes are kept; see GET /changes"
 
 
 def test_under_an_emergency_stop_a_running_change_activates_nothing_and_fails(
@@ -418,3 +446,342 @@ def test_a_blocker_says_since_when(robot: VirtualRobot) -> None:
     robot.advance(5)
     (blocker,) = robot.core.modes(BASE)[0].blockers
     assert (blocker.code, blocker.since) == ("FINALIZED", seconds(3.2))
+
+
+# --- a node for which the test speaks ------------------------------------------------------------
+
+
+def _core() -> Supervision:
+    core = Supervision(actuation_model(), SupervisionSettings(), 0)
+    core.handle(NodeReport(BASE, state=LifecycleState.UNCONFIGURED), 0)
+    return core
+
+
+def _configure(core: Supervision) -> None:
+    core.handle(TransitionRequest(BASE, Transition.CONFIGURE), 0)
+
+
+def test_a_node_that_answers_nothing_at_all_times_out_after_it_was_asked_for_its_state() -> None:
+    core = _core()
+    _configure(core)
+    assert core.handle(TimePassed(), seconds(10)).commands[-1:] == (AskFacts(2, BASE),)
+    core.handle(TimePassed(), seconds(11) - 1)
+    assert core.change("c1").status is ChangeStatus.RUNNING
+    core.handle(TimePassed(), seconds(11))
+    assert core.change("c1").status is ChangeStatus.TIMED_OUT
+    assert core.change("c1").reason == (
+        "drive_base: configure: not done within 10 s, and asked for its state the node did not"
+        " answer"
+    )
+
+
+@pytest.mark.parametrize(
+    ("reason", "told"), [("", "refused"), ("doors are open", "refused: doors are open")]
+)
+def test_a_refusal_is_told_with_the_reason_of_the_node(reason: str, told: str) -> None:
+    core = _core()
+    _configure(core)
+    core.handle(NodeAnswer(1, BASE, False, reason), seconds(0.1))
+    (step,) = core.change("c1").steps
+    assert (step.status, step.error, step.ended_at) == (StepStatus.FAILED, told, seconds(0.1))
+    assert core.change("c1").reason == f"drive_base: configure: {told}"
+
+
+def test_an_acceptance_is_not_yet_an_end() -> None:
+    core = _core()
+    _configure(core)
+    core.handle(NodeAnswer(1, BASE, True), seconds(0.1))
+    assert core.change("c1").steps[0].status is StepStatus.RUNNING
+
+
+def test_a_change_that_waits_for_a_node_fails_when_there_is_no_way_left() -> None:
+    core = _core()
+    _configure(core)
+    core.handle(ModeRequest(BASE, SLOW), seconds(0.1))
+    core.handle(NodeReport(BASE, state=LifecycleState.FINALIZED), seconds(0.2))
+    change = core.change("c2")
+    assert change.status is ChangeStatus.FAILED
+    assert change.reason == "drive_base is finalized: no way to the goal"
+    assert {step.status for step in change.steps[1:]} == {StepStatus.CANCELED}
+
+
+def test_a_node_that_turns_out_to_have_no_lifecycle_cannot_be_configured() -> None:
+    core = Supervision(actuation_model(), SupervisionSettings(), 0)
+    _configure(core)
+    core.handle(NodeReport(BASE, has_lifecycle=False), seconds(1))
+    assert core.change("c1").reason == "drive_base has no lifecycle: no way to the goal"
+
+
+def test_a_node_that_somebody_else_keeps_moving_is_given_up() -> None:
+    core = _core()
+    core.handle(ModeRequest(BASE, SLOW), 0)
+    values: Parameters = {"max_speed": 0.2, "controller": "PID"}
+    for _ in range(20):
+        if core.change("c1").status is not ChangeStatus.RUNNING:
+            break
+        core.handle(NodeReport(BASE, state=LifecycleState.INACTIVE), 0)
+        core.handle(NodeReport(BASE, state=LifecycleState.UNCONFIGURED, parameters={}), 0)
+        core.handle(NodeReport(BASE, parameters=values), 0)
+        core.handle(NodeReport(BASE, parameters={"max_speed": 0.3}), 0)
+    change = core.change("c1")
+    assert change.status is ChangeStatus.FAILED
+    assert change.reason == "drive_base does not stay where it is put"
+
+
+# --- when, and in which words --------------------------------------------------------------------
+
+
+def test_a_canceled_change_ends_now_and_says_why() -> None:
+    core = _core()
+    core.handle(ModeRequest(BASE, SLOW), 0)
+    core.handle(CancelRequest(ChangeId("c1")), seconds(1))
+    change = core.change("c1")
+    assert (change.reason, change.ended_at) == ("canceled on request", seconds(1))
+    assert [step.ended_at for step in change.steps] == [None, seconds(1), seconds(1)]
+
+
+def test_a_step_that_times_out_ends_when_its_deadline_passes_and_is_told() -> None:
+    core = _core()
+    _configure(core)
+    outputs = core.handle(TimePassed(), seconds(60))
+    (step,) = core.change("c1").steps
+    error = "not done within 10 s, and asked for its state the node did not answer"
+    assert (step.status, step.ended_at, step.error) == (StepStatus.TIMED_OUT, seconds(11), error)
+    assert core.change("c1").ended_at == seconds(11)
+    (told,) = (dict(event.data) for event in outputs.events if event.kind == "change.step_ended")
+    assert told == {
+        "change": "c1",
+        "node": "drive_base",
+        "action": "configure",
+        "status": "timed_out",
+        "error": error,
+    }
+
+
+def test_a_step_of_a_node_that_is_gone_fails_at_its_deadline() -> None:
+    core = _core()
+    _configure(core)
+    core.handle(NodeReport(BASE, reachable=False), seconds(1))
+    core.handle(TimePassed(), seconds(60))
+    (step,) = core.change("c1").steps
+    assert (step.status, step.ended_at) == (StepStatus.FAILED, seconds(10))
+    assert step.error == "the node is unreachable"
+
+
+def test_after_a_step_of_an_older_change_timed_out_the_newer_one_goes_on() -> None:
+    core = _core()
+    _configure(core)
+    core.handle(TransitionRequest(BASE, Transition.SHUTDOWN), seconds(1))
+    outputs = core.handle(TimePassed(), seconds(11))
+    asked = [c for c in outputs.commands if isinstance(c, AskTransition)]
+    assert asked == [AskTransition(3, BASE, Transition.SHUTDOWN)]
+    assert core.change("c2").steps[0].started_at == seconds(11)
+
+
+def test_a_node_that_is_never_heard_of_is_given_up_after_the_time_of_a_transition() -> None:
+    core = Supervision(actuation_model(), SupervisionSettings(), 0)
+    _configure(core)
+    core.handle(TimePassed(), seconds(60))
+    change = core.change("c1")
+    assert (change.status, change.ended_at) == (ChangeStatus.FAILED, seconds(10))
+    assert change.reason == "drive_base has never reported a state"
+
+
+def test_a_node_that_stays_between_two_states_is_asked_once_and_then_given_up() -> None:
+    core = Supervision(actuation_model(), SupervisionSettings(), 0)
+    core.handle(NodeReport(BASE, state=LifecycleState.CONFIGURING), 0)
+    core.handle(TransitionRequest(BASE, Transition.SHUTDOWN), 0)
+    assert core.handle(TimePassed(), seconds(10)).commands[-1:] == (AskFacts(1, BASE),)
+    core.handle(TimePassed(), seconds(60))
+    change = core.change("c1")
+    assert (change.status, change.ended_at) == (ChangeStatus.FAILED, seconds(11))
+    assert change.reason == "drive_base is still configuring; nothing was begun"
+
+
+def test_what_a_newer_change_takes_over_is_superseded_and_has_no_deadline_left() -> None:
+    core = Supervision(actuation_model(), SupervisionSettings(), 0)
+    core.handle(TransitionRequest(BASE, Transition.CONFIGURE), 0)
+    core.handle(TransitionRequest(ACTUATION, Transition.CONFIGURE), seconds(4))
+    older = core.change("c1")
+    assert older.status is ChangeStatus.SUPERSEDED
+    assert [(step.status, step.ended_at) for step in older.steps] == [
+        (StepStatus.SUPERSEDED, seconds(4))
+    ]
+    core.handle(CancelRequest(ChangeId("c2")), seconds(5))
+    assert core.wake_at() is None
+
+
+@pytest.mark.parametrize(
+    ("nodes", "end"), [(20, "n19: configure: refused"), (21, "; and 1 more"), (22, "; and 2 more")]
+)
+def test_of_many_errors_twenty_are_told(nodes: int, end: str) -> None:
+    names = [PartName(f"n{number}") for number in range(nodes)]
+    wanted = {name: inactive() for name in names}
+    all_of_them = SystemModel(PartName("all"), {DEFAULT_MODE: wanted})
+    core = Supervision(
+        SmhModel({name: NodeModel(name) for name in names}, {all_of_them.name: all_of_them}),
+        SupervisionSettings(),
+        0,
+    )
+    for name in names:
+        core.handle(NodeReport(name, state=LifecycleState.UNCONFIGURED), 0)
+    core.handle(TransitionRequest(all_of_them.name, Transition.CONFIGURE), 0)
+    for number, name in enumerate(names):
+        core.handle(NodeAnswer(number + 1, name, False), 0)
+    reason = core.change("c1").reason
+    assert reason is not None
+    assert reason.count("refused") == 20
+    assert reason.endswith(end)
+
+
+def test_the_life_of_a_change_is_told_step_by_step() -> None:
+    robot = VirtualRobot(actuation_model())
+    robot.read(**GOOD)
+    robot.advance(1)
+    change = robot.mode("drive_base", "SLOW")
+    robot.advance(2)
+    told = [
+        (event.at - seconds(1), event.kind, dict(event.data))
+        for event in robot.events
+        if event.kind.startswith("change.")
+    ]
+
+    def step(action: str) -> dict[str, object]:
+        return {"change": change, "node": "drive_base", "action": action}
+
+    def ended(action: str) -> dict[str, object]:
+        return {**step(action), "status": "succeeded", "error": None}
+
+    assert told == [
+        (0, "change.requested", {"part": "drive_base", "mode": "SLOW"}),
+        (0, "change.step_started", step("configure")),
+        (seconds(0.3), "change.step_ended", ended("configure")),
+        (seconds(0.3), "change.step_started", step("set_parameters")),
+        (seconds(0.32), "change.step_ended", ended("set_parameters")),
+        (seconds(0.32), "change.step_started", step("activate")),
+        (seconds(0.52), "change.step_ended", ended("activate")),
+        (
+            seconds(0.52),
+            "change.succeeded",
+            {"change": change, "part": "drive_base", "reason": None},
+        ),
+    ]
+    view = robot.change(change)
+    assert (view.started_at, view.ended_at) == (seconds(1), seconds(1.52))
+    assert [step.ended_at for step in view.steps] == [
+        seconds(1.3),
+        seconds(1.32),
+        seconds(1.52),
+    ]
+
+
+def test_a_change_that_is_met_begins_and_ends_at_once() -> None:
+    core = _core()
+    core.handle(NodeReport(BASE, state=LifecycleState.INACTIVE), 0)
+    core.handle(TransitionRequest(BASE, Transition.CONFIGURE), seconds(3))
+    change = core.change("c1")
+    assert change.status is ChangeStatus.SUCCEEDED
+    assert (change.started_at, change.ended_at) == (seconds(3), seconds(3))
+
+
+def test_a_superseded_change_ends_when_the_newer_one_begins() -> None:
+    core = _core()
+    _configure(core)
+    core.handle(ModeRequest(BASE, SLOW), seconds(4))
+    assert core.change("c1").ended_at == seconds(4)
+
+
+def test_only_a_change_that_loses_a_node_is_superseded(robot: VirtualRobot) -> None:
+    base, arm = robot.mode("drive_base", "SLOW"), robot.mode("manipulator", "WEAK")
+    robot.advance(2)
+    assert robot.change(base).status is ChangeStatus.SUCCEEDED
+    assert robot.change(arm).status is ChangeStatus.SUCCEEDED
+
+
+def test_a_node_is_given_up_when_that_is_found_out() -> None:
+    core = _core()
+    _configure(core)
+    core.handle(ModeRequest(BASE, SLOW), seconds(1))
+    core.handle(NodeReport(BASE, state=LifecycleState.FINALIZED), seconds(2))
+    change = core.change("c2")
+    assert change.ended_at == seconds(2)
+    error = "drive_base is finalized: no way to the goal"
+    assert [(step.status, step.ended_at, step.error) for step in change.steps] == [
+        (StepStatus.FAILED, seconds(2), error),
+        (StepStatus.CANCELED, seconds(2), None),
+        (StepStatus.CANCELED, seconds(2), None),
+    ]
+    assert core.wake_at() is None
+
+
+def test_what_is_not_activated_under_estop_ends_then() -> None:
+    core = _core()
+    core.handle(NodeReport(BASE, state=LifecycleState.INACTIVE), 0)
+    core.handle(EmergencyStopRequest(True, "smoke"), 0)
+    core.handle(EmergencyStopRequest(False, "clear"), 0)
+    core.handle(Readings(tuple(Reading(n, v) for n, v in GOOD.items()), "test"), seconds(1))
+    core.handle(ModeRequest(BASE, SLOW), seconds(1))
+    core.handle(EmergencyStopRequest(True, "smoke"), seconds(2))
+    values: Parameters = {"max_speed": 0.2, "controller": "PID"}
+    core.handle(NodeReport(BASE, parameters=values), seconds(2.5))
+    change = core.change("c1")
+    assert (change.status, change.ended_at) == (ChangeStatus.FAILED, seconds(2.5))
+    assert change.steps[-1].error == "drive_base is not activated under ESTOP"
+
+
+def test_after_a_refusal_the_newer_change_goes_on_at_once() -> None:
+    core = _core()
+    _configure(core)
+    core.handle(TransitionRequest(BASE, Transition.SHUTDOWN), seconds(1))
+    outputs = core.handle(NodeAnswer(1, BASE, False, "no"), seconds(2))
+    assert outputs.commands == (AskTransition(2, BASE, Transition.SHUTDOWN),)
+    assert core.change("c2").steps[0].started_at == seconds(2)
+
+
+def test_a_step_that_ended_leaves_no_deadline() -> None:
+    core = _core()
+    _configure(core)
+    core.handle(NodeReport(BASE, state=LifecycleState.INACTIVE), seconds(1))
+    assert core.wake_at() is None
+
+
+def test_parameters_are_asked_for_under_a_number_of_their_own() -> None:
+    core = _core()
+    outputs = core.handle(ParametersRequest(BASE, {"max_speed": 0.4}), 0)
+    assert outputs.commands == (AskParameters(1, BASE, {"max_speed": 0.4}),)
+
+
+def test_as_many_steps_as_are_allowed_are_taken(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("domain.changes.operations._MAX_STEPS", 3)
+    robot = VirtualRobot(actuation_model())
+    robot.read(**GOOD)
+    change = robot.mode("drive_base", "SLOW")
+    robot.advance(2)
+    assert robot.change(change).status is ChangeStatus.SUCCEEDED
+    assert len(robot.steps(change)) == 3
+
+
+def test_large_changes_are_forgotten_earlier_and_running_ones_never(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    monkeypatch.setattr("domain.changes.operations.KEPT_PURSUITS", 3)
+    core = _core()
+    core.handle(NodeReport(ARM, state=LifecycleState.UNCONFIGURED), 0)
+    core.handle(TransitionRequest(ARM, Transition.CONFIGURE), 0)
+    core.handle(NodeReport(BASE, state=LifecycleState.INACTIVE), 0)
+    for _ in range(2):
+        core.handle(TransitionRequest(BASE, Transition.CONFIGURE), 0)
+    assert [change.id for change in core.changes()] == ["c3", "c2", "c1"]
+    core.handle(TransitionRequest(BASE, Transition.CONFIGURE), 0)
+    assert [change.id for change in core.changes()] == ["c4", "c3", "c1"]
+    core.handle(TransitionRequest(BASE, Transition.CONFIGURE), 0)
+    assert [change.id for change in core.changes()] == ["c5", "c4", "c1"]
+
+
+def test_the_newest_change_is_kept_however_large_it_is(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("domain.changes.operations.KEPT_PURSUITS", 0)
+    core = _core()
+    core.handle(NodeReport(BASE, state=LifecycleState.INACTIVE), 0)
+    for _ in range(3):
+        core.handle(TransitionRequest(BASE, Transition.CONFIGURE), 0)
+    assert [change.id for change in core.changes()] == ["c3"]

@@ -181,3 +181,40 @@ def test_a_request_is_shown_as_it_is_written(
     request_: ChangeRequest, shown: dict[str, object]
 ) -> None:
     assert describe_request(request_) == shown
+
+
+def test_a_parameter_that_there_is_not_is_told_with_those_that_there_are() -> None:
+    with pytest.raises(UnknownParameterError) as unknown:
+        _check(ParametersRequest(BASE, {"speed": 1.0}), {"max_speed": 0.5, "retries": 3})
+    assert unknown.value.message == "there is no parameter of drive_base 'speed'"
+    assert unknown.value.hint == "known: max_speed, retries"
+
+
+@pytest.mark.parametrize(
+    ("request_", "message", "hint"),
+    [
+        (
+            ModeRequest(PartName("tail"), "FAST"),
+            "there is no part 'tail'",
+            "known: actuation, drive_base, manipulator",
+        ),
+        (
+            ParametersRequest(PartName("tail"), {"a": 1}),
+            "there is no node 'tail'",
+            "known: drive_base, manipulator",
+        ),
+    ],
+    ids=["part", "node"],
+)
+def test_a_part_that_there_is_not_is_told_with_those_that_there_are(
+    request_: ChangeRequest, message: str, hint: str
+) -> None:
+    with pytest.raises(UnknownPartError) as unknown:
+        _check(request_)
+    assert (unknown.value.message, unknown.value.hint) == (message, hint)
+
+
+def test_a_request_without_a_parameter_is_refused() -> None:
+    with pytest.raises(InvalidValueError) as refused:
+        _check(ParametersRequest(BASE, {}))
+    assert refused.value.message == "no parameter is named"

@@ -10,6 +10,7 @@ from domain.messages import ChangeId, NodeReport
 from domain.node_facts import NodeFacts
 from domain.parameters import ParameterValue
 from domain.snapshot import StepStatus
+from domain.system_model import ModeName
 from tests.support.models import BASE
 
 S, T = LifecycleState, Transition
@@ -134,3 +135,12 @@ def test_parameters_that_are_not_there_when_asked_at_the_deadline_are_named() ->
 
 def test_parameters_that_are_there_when_asked_at_the_deadline_are_set() -> None:
     assert _judge_set(WANTED, asked=True) == DONE
+
+
+def test_a_mode_that_was_not_taken_over_is_told() -> None:
+    action = SetParameters({"max_speed": 0.9}, ModeName("FAST"))
+    report = NodeReport(BASE, mode=ModeName("SLOW"))
+    facts = NodeFacts(S.ACTIVE, ModeName("SLOW"), parameters={"max_speed": 0.2})
+    verdict = judge_report(_step(action, asked=True), report, facts)
+    words = "not taken over: max_speed, mode SLOW"
+    assert verdict == Verdict(StepStatus.TIMED_OUT, words)

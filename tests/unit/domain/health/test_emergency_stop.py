@@ -41,3 +41,31 @@ def test_releasing_what_is_released_changes_nothing() -> None:
 
     assert not stop.release("bert", "just in case", now=3)
     assert stop.view() == RELEASED
+
+
+def test_the_first_standstill_after_the_stop_is_kept() -> None:
+    stop = EmergencyStop()
+    stop.engage("anna", "child on the track", now=7)
+
+    assert stop.note_standstill(now=9)
+    assert not stop.note_standstill(now=12)
+    assert stop.view() == EmergencyStopView(
+        engaged=True, by="anna", reason="child on the track", since=7, standstill_at=9
+    )
+
+
+def test_a_vehicle_that_stands_without_a_stop_is_no_news() -> None:
+    stop = EmergencyStop()
+
+    assert not stop.note_standstill(now=9)
+    assert stop.view() == RELEASED
+
+
+def test_another_stop_waits_for_a_standstill_of_its_own() -> None:
+    stop = EmergencyStop()
+    stop.engage("anna", "child on the track", now=7)
+    stop.note_standstill(now=9)
+    stop.release("bert", "track is clear", now=20)
+    stop.engage("anna", "another child", now=30)
+
+    assert stop.view().standstill_at is None

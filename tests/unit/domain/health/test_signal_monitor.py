@@ -2,6 +2,7 @@ from dataclasses import replace
 
 import pytest
 
+from domain.findings import Blocker
 from domain.health.signal_monitor import SignalMonitor
 from domain.health.signals import (
     STALE_DATA,
@@ -246,3 +247,105 @@ def test_the_view_is_the_same_object_until_something_changes() -> None:
 
     monitor.receive(Reading("temperature", 20.0), "pad", START + seconds(1))
     assert monitor.view is not before
+
+
+# --- why an error is on --------------------------------------------------------------------------
+
+
+def told(monitor: SignalMonitor) -> list[tuple[str, str]]:
+    return [(reason.code, reason.message) for reason in monitor.reasons()]
+
+
+def test_a_bad_value_is_told_with_its_threshold_and_since_when_it_is_an_error() -> None:
+    battery = Story(DEFAULTS["battery_level"])
+    battery.read(3, 0.42)
+
+    assert list(battery.monitor.reasons()) == [
+        Blocker(
+            code="BATTERY_LOW",
+            message="battery 42 % is below 50 %",
+            path=("battery_level",),
+            value=0.42,
+            threshold=0.5,
+            since=START + seconds(3),
+        )
+    ]
+    assert battery.monitor.errors == battery.monitor.present == {"BATTERY_LOW"}
+
+
+def test_a_good_value_has_no_reason() -> None:
+    battery = Story(DEFAULTS["battery_level"])
+    battery.read(3, 0.9)
+
+    assert told(battery.monitor) == []
+
+
+def test_an_error_that_was_waited_for_is_told_with_how_long_it_took() -> None:
+    gps = Story(DEFAULTS["gps_accuracy"])
+    gps.read(0, 100.0)
+    gps.read(1, 201.0)
+    gps.error(15)
+
+    message = "GPS accuracy 201 mm has been above 200 mm for 15 s"
+    assert told(gps.monitor) == [("GPS_LOST", message)]
+
+
+def test_an_error_kept_after_its_cause_is_told_as_that_until_it_is_acknowledged() -> None:
+    monitor = SignalMonitor(
+        replace(DEFAULTS["temperature"], stale_after=0, recovery=Recovery.ACKNOWLEDGE), START
+    )
+    monitor.receive(Reading("temperature", 60.0), "pad", START)
+    monitor.receive(Reading("temperature", 20.0), "pad", START + seconds(1))
+    (reason,) = monitor.reasons()
+    assert "waits to be acknowledged" in reason.message
+    assert (reason.value, reason.threshold) == (None, None)
+    assert monitor.errors == {"TEMPERATURE_HIGH"}
+    assert monitor.present == set()
+
+    monitor.acknowledge("STALE_DATA", START + seconds(2))
+    assert monitor.errors == {"TEMPERATURE_HIGH"}
+    monitor.acknowledge("TEMPERATURE_HIGH", START + seconds(2))
+    assert monitor.errors == set()
+    assert told(monitor) == []
+
+
+def test_a_stop_is_told_once_for_the_latch_and_once_for_who_presses_it() -> None:
+    stop = Story(DEFAULTS["estop"])
+    stop.monitor.set_engaged(engaged=True, now=START + seconds(1))
+    stop.read(2, True)
+    latch, pressed = stop.monitor.reasons()
+
+    assert (latch.message, latch.value, latch.since) == (
+        "emergency stop is engaged",
+        True,
+        START + seconds(1),
+    )
+    assert (pressed.message, pressed.value, pressed.since) == (
+        "e-stop is pressed (source pad)",
+        True,
+        START + seconds(2),
+    )
+    assert latch.code == pressed.code == "ESTOP"
+
+
+def test_a_signal_never_read_and_one_read_too_long_ago_are_told_apart() -> None:
+    monitor = SignalMonitor(DEFAULTS["temperature"], START)
+    (never,) = monitor.reasons()
+    assert (never.code, never.message) == (STALE_DATA, "no reading of temperature yet")
+    assert (never.value, never.threshold, never.since) == (None, 2.0, START)
+
+    monitor.receive(Reading("temperature", 20.0), "pad", START + seconds(1))
+    monitor.judge(START + seconds(3) + 1)
+    assert told(monitor) == [(STALE_DATA, "no reading of temperature for 2 s")]
+
+
+def test_staleness_that_has_just_ended_stays_on_for_a_moment_and_says_so() -> None:
+    monitor = SignalMonitor(DEFAULTS["temperature"], START)
+    monitor.receive(Reading("temperature", 20.0), "pad", START)
+    monitor.judge(START + seconds(2) + 1)
+    monitor.receive(Reading("temperature", 20.0), "pad", START + seconds(2.1))
+    (reason,) = monitor.reasons()
+
+    assert reason.code == STALE_DATA
+    assert "stays on for at least 0.2 s" in reason.message
+    assert monitor.wake_at() == START + seconds(2.2) + 1

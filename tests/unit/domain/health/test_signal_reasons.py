@@ -123,3 +123,39 @@ def test_an_error_without_a_cause_is_told_with_what_keeps_it_on(
     slot.update(None, 1)
 
     assert kept_reason(DEFAULTS["battery_level"], slot) == words
+
+
+@pytest.mark.parametrize(
+    ("value", "words"),
+    [
+        (0.49999951, "battery 49.999951 % is below 50 %"),
+        (0.49999999995, "battery 49.999999995 % is below 50 %"),
+        (0.49999999999999994, "battery 49.999999999999993 % is below 50 %"),
+    ],
+)
+def test_a_value_has_as_many_digits_as_tell_it_from_its_limit(value: float, words: str) -> None:
+    settings = DEFAULTS["battery_level"]
+
+    assert value_reason(settings, settings.conditions[0], value, 0) == words
+
+
+def test_a_number_without_a_unit_is_told_without_a_space() -> None:
+    condition = Condition("TOO_MANY", Comparison.ABOVE, 3.0)
+    settings = SignalSettings(SignalSpec("people", SignalKind.NUMBER), (condition,))
+
+    assert value_reason(settings, condition, 7.0, 0) == "people 7 is above 3"
+
+
+def test_a_value_beyond_the_threshold_is_told_with_that_and_not_with_the_clear_threshold() -> None:
+    condition = Condition("BATTERY_LOW", Comparison.BELOW, 0.5, clear_threshold=0.55)
+    settings = SignalSettings(DEFAULTS["battery_level"].spec, (condition,))
+
+    assert value_reason(settings, condition, 0.42, 0) == "battery 42 % is below 50 %"
+
+
+def test_all_good_members_are_told() -> None:
+    condition = Condition("GEAR_LOST", Comparison.EQUAL, "N", for_=seconds(3))
+    spec = SignalSpec("gear", SignalKind.ENUMERATION, members=("D", "R", "N"))
+    words = value_reason(SignalSettings(spec, (condition,)), condition, "N", seconds(3))
+
+    assert words == "gear is N, not D or R for 3 s"

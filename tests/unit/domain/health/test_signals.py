@@ -171,6 +171,7 @@ def low(threshold: SignalValue = 20.0, clear: float | None = None, for_: int = 0
 
 
 RELAY = SignalSpec("relay", SignalKind.BOOLEAN)
+KIND = "threshold of {} numbers are compared above or below, everything else is compared equal"
 UNFIT = [
     (VOLTAGE, low(threshold=-1.0), "voltage/threshold"),
     (VOLTAGE, low(threshold=math.nan), "voltage/threshold"),
@@ -196,6 +197,38 @@ def test_a_condition_that_does_not_fit_its_signal_is_refused(
     assert pointer in refusal.value.pointer
 
 
+@pytest.mark.parametrize(
+    ("spec", "condition", "message"),
+    [
+        (VOLTAGE, low(for_=-1), "for_s of voltage must not be negative"),
+        (
+            VOLTAGE,
+            low(clear=19.0),
+            "clear_threshold of voltage must be on the good side of the threshold",
+        ),
+        (
+            VOLTAGE,
+            low(clear=61.0),
+            "clear_threshold of voltage can never be reached: voltage must be at most 60, not 61.0",
+        ),
+        (
+            RELAY,
+            Condition("ODD", Comparison.EQUAL, threshold=True, clear_threshold=0.5),
+            "clear_threshold of relay is only for numbers",
+        ),
+        (VOLTAGE, Condition("ODD", Comparison.EQUAL, 20.0), KIND.format("voltage")),
+        (RELAY, Condition("ODD", Comparison.ABOVE, threshold=True), KIND.format("relay")),
+    ],
+)
+def test_a_condition_that_does_not_fit_is_refused_in_words(
+    spec: SignalSpec, condition: Condition, message: str
+) -> None:
+    with pytest.raises(InvalidValueError) as refusal:
+        declare(condition, spec=spec)
+
+    assert refusal.value.message == message
+
+
 def test_a_clear_threshold_may_be_the_threshold_itself() -> None:
     assert declare(low(clear=20.0)).facts()["clear_threshold"] == 20.0
 
@@ -209,28 +242,45 @@ def test_a_time_is_not_negative(stale_after: int, min_on: int, pointer: str) -> 
         SignalSettings(VOLTAGE, (low(),), stale_after, min_on)
 
     assert refusal.value.pointer == pointer
+    assert refusal.value.message == f"{pointer.partition('/')[2]} of voltage must not be negative"
 
 
 def test_two_conditions_are_told_apart_by_their_keys() -> None:
-    with pytest.raises(InvalidValueError, match="must differ"):
+    with pytest.raises(InvalidValueError) as refusal:
         declare(low(), Condition("HIGH", Comparison.ABOVE, 30.0))
+
+    assert refusal.value.message == "key of voltage tells its conditions apart, and must differ"
+    assert refusal.value.pointer == "voltage/key"
 
 
 @pytest.mark.parametrize(
-    "make",
+    ("make", "message"),
     [
-        lambda: SignalSpec("gear", SignalKind.ENUMERATION),
-        lambda: SignalSpec("gear", SignalKind.ENUMERATION, members=("D", "D")),
-        lambda: SignalSpec("gear", SignalKind.NUMBER, members=("D",)),
-        lambda: SignalSpec("gear", SignalKind.NUMBER, is_stop=True),
+        (
+            lambda: SignalSpec("gear", SignalKind.ENUMERATION),
+            "gear: an enumeration has members, and nothing else has",
+        ),
+        (
+            lambda: SignalSpec("gear", SignalKind.ENUMERATION, members=("D", "D")),
+            "gear: a member is named twice",
+        ),
+        (
+            lambda: SignalSpec("gear", SignalKind.NUMBER, members=("D",)),
+            "gear: an enumeration has members, and nothing else has",
+        ),
+        (
+            lambda: SignalSpec("gear", SignalKind.NUMBER, is_stop=True),
+            "gear: a stop is a boolean",
+        ),
     ],
 )
-def test_a_signal_that_contradicts_itself_is_refused(make: object) -> None:
+def test_a_signal_that_contradicts_itself_is_refused(make: object, message: str) -> None:
     assert callable(make)
     with pytest.raises(InvalidValueError) as refusal:
         make()
 
     assert refusal.value.pointer == "gear"
+    assert refusal.value.message == message
 
 
 @pytest.mark.parametrize(
@@ -250,3 +300,35 @@ def test_what_is_no_number_of_a_signal_strength_is_refused(value: object) -> Non
 
     with pytest.raises(InvalidValueError):
         strength.checked(value)
+
+
+def test_a_pressed_stop_is_worse_than_a_released_one() -> None:
+    stop = DEFAULTS["estop"]
+
+    assert stop.is_worse(True, False)
+    assert not stop.is_worse(False, True)
+    assert not stop.is_worse(True, True)
+
+
+def test_of_named_values_the_later_in_the_list_is_the_worse_one() -> None:
+    strength = DEFAULTS["signal_strength"]
+
+    assert strength.is_worse("NOT_CONNECTED", "LOW_SIGNAL")
+    assert not strength.is_worse("CONNECTED", "LOW_SIGNAL")
+
+
+def test_of_a_number_without_conditions_no_value_is_worse() -> None:
+    assert not SignalSettings(VOLTAGE).is_worse(31.0, 25.0)
+
+
+def test_a_value_equal_to_that_of_the_condition_meets_it() -> None:
+    lost = DEFAULTS["signal_strength"].conditions[0]
+
+    assert lost.is_met_by("NOT_CONNECTED")
+    assert not lost.is_met_by("CONNECTED")
+
+
+def test_a_boolean_without_conditions_is_never_worse() -> None:
+    settings = SignalSettings(RELAY)
+
+    assert not settings.is_worse(True, False)

@@ -213,6 +213,9 @@ def test_an_error_that_does_not_exist_cannot_be_acknowledged(robot: Robot) -> No
         robot.acknowledge(1, "BATTERY_FULL")
 
     assert refusal.value.name == "BATTERY_FULL"
+    assert refusal.value.message == "there is no error 'BATTERY_FULL'"
+    assert refusal.value.hint is not None
+    assert refusal.value.hint.startswith("known: BATTERY_LOW, ESTOP, ")
 
 
 # --- what is told --------------------------------------------------------------------------------
@@ -384,3 +387,23 @@ def test_a_robot_that_is_heard_again_stays_in_error_for_the_least_time() -> None
 
     robot.pass_time(2.21)
     assert not robot.errors
+
+
+def test_a_signal_that_is_not_declared_is_told_with_those_that_are(robot: Robot) -> None:
+    with pytest.raises(UnknownSignalError) as unknown:
+        robot.read(1, wind_speed=3.0)
+
+    assert unknown.value.message == "there is no signal 'wind_speed'"
+    assert unknown.value.hint is not None
+    assert unknown.value.hint.startswith("known: battery_level, estop, ")
+
+
+def test_an_unfit_declaration_points_at_the_signal() -> None:
+    for settings, pointer in (
+        ([*default_signals(), bumper("estop")], "estop"),
+        ([*default_signals(), bumper(error="ESTOP")], "ESTOP"),
+        ([bumper()], "estop"),
+    ):
+        with pytest.raises(InvalidValueError) as refused:
+            StateManager(settings, START)
+        assert refused.value.pointer == pointer

@@ -185,3 +185,55 @@ def test_a_duration_is_never_shorter_than_the_way_at_full_speed(
 
     assert duration >= length_m / min(cruise_mps, VEHICLE.max_speed_mps) * 0.999
     assert math.isfinite(duration)
+
+
+def test_warnings_say_how_much_in_words() -> None:
+    corner = np.array([[0.0, 0.0, 0.0], [8.0, 0.0, 0.0], [8.0, 8.0, 0.0]])
+    found = seen(np.vstack((np.zeros((11, 3)), corner)), pose=Pose(-9.0, 0.0, 3.1))
+    words = [warning.message for warning in found.warnings]
+
+    assert words[0].startswith("a bend of ")
+    assert words[0].endswith(" m radius; the vehicle needs 2.5 m, and will leave the path there")
+    assert words[1:] == [
+        "8.0 m from one waypoint to the next: straight in between",
+        "11 waypoints stand where the one before them does",
+        "it begins 9.0 m from the vehicle",
+        "the vehicle looks away from where the path leads",
+    ]
+
+
+def test_what_is_exactly_at_a_limit_is_no_warning() -> None:
+    waypoints = np.vstack((np.zeros((10, 3)), line(10.0, spacing_m=5.0)))
+
+    assert codes(seen(waypoints, pose=Pose(0.0, 0.0, math.pi / 2))) == []
+
+
+def test_a_start_is_judged_where_it_is_and_not_from_the_origin() -> None:
+    waypoints = line(10.0)
+    waypoints[:, 0] += 3.0
+    waypoints[:, 1] += 7.0
+    found = seen(waypoints, pose=Pose(2.0, 5.0, 0.25))
+
+    assert found.start is not None
+    assert found.start.distance_m == pytest.approx(math.hypot(1.0, 2.0))
+
+
+def test_the_heading_error_is_that_against_where_the_path_begins() -> None:
+    bent = circle(20.0, math.pi / 2)
+    turned = np.column_stack((-bent[:, 1], bent[:, 0], bent[:, 2]))
+    found = seen(turned, pose=Pose(0.0, 0.0, math.pi / 2 + 0.3))
+
+    assert found.start is not None
+    assert found.start.heading_error_rad == pytest.approx(0.3, abs=0.03)
+
+
+def test_a_place_of_few_metres_is_looked_at_finely_enough_to_see_its_bend() -> None:
+    found = seen(np.vstack((line(3.0), np.array([[3.0, 0.5, 0.0], [3.0, 3.0, 0.0]]))))
+
+    assert not found.steerable
+
+
+def test_a_short_way_takes_the_time_to_speed_up_and_brake() -> None:
+    limits = SpeedLimits(acceleration_mps2=0.5, braking_mps2=0.5)
+
+    assert seen(line(10.0), 8.0, limits=limits).duration_s == pytest.approx(9.7, abs=1.0)

@@ -67,3 +67,13 @@ def test_the_first_of_several_faults_is_told() -> None:
         checked_waypoints(points)
 
     assert caught.value.pointer == "/waypoints/4/yaw_rad"
+
+
+def test_what_is_wrong_with_a_waypoint_is_told_with_its_value() -> None:
+    points = line(20)
+    points[3, 1] = 2.5e7
+
+    with pytest.raises(InvalidValueError) as caught:
+        checked_waypoints(points)
+
+    assert caught.value.message == "2.5e+07 is no y_m of a waypoint"

@@ -150,3 +150,20 @@ def test_only_the_five_signals_are_mocked() -> None:
         mock.hold("wind_speed", 3.0, START)
     with pytest.raises(UnknownSignalError, match="wind_speed"):
         mock.set_publishing("wind_speed", False, START)
+
+
+def test_a_signal_that_is_not_mocked_is_told_with_those_that_are() -> None:
+    with pytest.raises(UnknownSignalError) as unknown:
+        MockSignals(START).hold("wind_speed", 3.0, START)
+
+    assert unknown.value.message == "there is no mock signal 'wind_speed'"
+    assert unknown.value.hint == f"known: {', '.join(GOOD_VALUES)}"
+
+
+def test_it_keeps_to_a_grid_that_begins_at_its_start() -> None:
+    mock = MockSignals(seconds(0.03))
+    mock.advance(seconds(0.03))
+    assert mock.wake_at() == seconds(0.13)
+    mock.advance(seconds(1.0))
+
+    assert mock.wake_at() == seconds(1.03)

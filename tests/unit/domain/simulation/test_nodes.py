@@ -575,3 +575,24 @@ def test_ten_thousand_nodes_cost_no_more_each_than_a_hundred() -> None:
 
     # Linear work per step would make this a hundred times as much.
     assert configure_all(10_000) < 10 * few
+
+
+def test_what_a_node_says_of_its_own_accord_is_due_when_it_happens() -> None:
+    """Also when time is told late: each message is as old as what it tells."""
+    for fault, ends in ((None, 0.3), (Fault.FAIL, 0.3), (Fault.ERROR, 0.8)):
+        robot = robot_with(fault)
+        robot.ask(BASE, T.CONFIGURE)
+        said = robot.pass_time(9.0)
+        assert [t for t, _ in said][-1] == pytest.approx(1.0 + ends)
+
+
+def test_a_node_that_is_not_there_is_told_with_those_that_are() -> None:
+    robot = robot_with(None)
+    with pytest.raises(UnknownPartError) as unknown:
+        robot.set_fault(NOWHERE, Fault.DIE)
+    with pytest.raises(UnknownPartError) as undeclared:
+        SimulatedNodes(actuation_model(), {NOWHERE: NodeSettings()}, 0)
+
+    for error in (unknown.value, undeclared.value):
+        assert error.message == "there is no node 'nowhere'"
+        assert error.hint == "known: drive_base, manipulator"

@@ -4,10 +4,13 @@ import pytest
 
 from domain.errors import InvalidValueError, ReservedHoldError, TooManyHoldsError
 from domain.messages import VehicleReport
-from domain.snapshot import TaskPhase
+from domain.snapshot import HoldView, TaskPhase
+from domain.supervision import Supervision, SupervisionSettings
+from domain.system_model import SmhModel
 from domain.tasks.holds import MAX_HOLDS
-from domain.vehicle import Pose, VehicleState
-from tests.support.driver import Driver
+from domain.timebase import seconds
+from domain.vehicle import Pose, VehicleLimits, VehicleState
+from tests.support.driver import Driver, straight
 
 
 def test_a_robot_that_does_not_know_where_it_is_is_held() -> None:
@@ -143,3 +146,98 @@ def test_a_vehicle_that_stands_and_says_so_again_is_no_news() -> None:
 
     assert not robot.give(still).vehicle_changed
     assert robot.give(moved).vehicle_changed
+
+
+def test_of_many_errors_three_are_told_and_the_rest_counted() -> None:
+    robot = Driver(pose=False, good=False)
+    told, _, rest = robot.core.driving.holds["error"].reason.rpartition("; ")
+
+    assert len(told.split("; ")) == 3
+    assert rest == "and 2 more"
+
+
+def test_the_hold_of_an_error_ends_with_the_error() -> None:
+    robot = Driver()
+    robot.read(estop=True)
+    robot.live(0.5)
+
+    assert dict(robot.core.driving.holds) == {}
+    assert robot.happened("hold.released") == [{"owner": "error"}]
+
+
+def test_a_task_ends_as_navigation_says_and_can_be_read_with_its_path() -> None:
+    robot = Driver()
+    path = straight()
+    robot.serve(path)
+    assert robot.core.driving.current_task == robot.task
+    robot.arrive()
+
+    assert robot.core.driving.current_task is None
+    assert robot.core.driving.task("t1").status is TaskPhase.SUCCEEDED
+    assert robot.core.driving.path_of("t1") is path
+
+
+def test_a_task_is_canceled_on_request() -> None:
+    robot = Driver()
+    robot.serve()
+    robot.cancel()
+
+    assert robot.task.status is TaskPhase.CANCELED
+
+
+def test_a_hold_of_an_operator_lasts_until_it_is_released() -> None:
+    robot = Driver()
+    robot.serve()
+    robot.hold("operator", "lunch")
+    assert (robot.task.status, robot.task.reason) == (TaskPhase.PAUSING, "lunch")
+    robot.release("operator")
+
+    assert robot.task.status is TaskPhase.RUNNING
+
+
+def test_the_hold_of_a_lost_vehicle_is_that_of_nobody_and_begins_when_it_was_lost() -> None:
+    robot = Driver()
+    robot.wait(1.0)
+
+    assert robot.core.driving.holds["vehicle"] == HoldView(
+        "vehicle", "no pose of the vehicle for 0.3 s", "", seconds(0.3) + 1
+    )
+
+
+def test_how_a_robot_is_at_the_start_holds_it_from_then_on_and_is_nobodys_doing() -> None:
+    robot = Supervision(SmhModel({}, {}), SupervisionSettings(), seconds(7))
+
+    assert robot.driving.holds["vehicle"] == HoldView(
+        "vehicle", "the vehicle never told where it is", "", seconds(7)
+    )
+    error = robot.driving.holds["error"]
+    assert (error.by, error.since) == ("", seconds(7))
+    assert robot.driving.limits == VehicleLimits()
+
+
+def test_a_hold_says_who_set_it_and_when() -> None:
+    robot = Driver()
+    robot.wait(0.1)
+    robot.hold("gate", "closed")
+
+    assert robot.core.driving.holds["gate"] == HoldView("gate", "closed", "operator", seconds(0.1))
+
+
+def test_the_hold_of_an_error_is_nobodys_doing_and_begins_with_it() -> None:
+    robot = Driver()
+    robot.wait(0.1)
+    robot.read(estop=True)
+
+    hold = robot.core.driving.holds["error"]
+    assert (hold.by, hold.since) == ("", seconds(0.1))
+
+
+def test_what_ended_an_error_is_why_its_hold_goes() -> None:
+    robot = Driver()
+    robot.read(estop=True)
+    robot.live(0.5)
+    by_id = {event.id: event.kind for event in robot.events}
+    (released,) = (event for event in robot.events if event.kind == "hold.released")
+
+    assert released.cause is not None
+    assert by_id[released.cause] == "error.cleared"

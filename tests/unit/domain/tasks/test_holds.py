@@ -1,6 +1,7 @@
 import pytest
 
 from domain.errors import ReservedHoldError, TooManyHoldsError
+from domain.snapshot import HoldView
 from domain.tasks.holds import MAX_HOLDS, Holds
 
 
@@ -47,5 +48,28 @@ def test_one_too_many_is_refused_and_one_that_is_there_is_not() -> None:
         holds.set(f"o{number}", "", "", 0)
     holds.check_room("o0")
 
-    with pytest.raises(TooManyHoldsError):
+    with pytest.raises(TooManyHoldsError, match=f"there are {MAX_HOLDS} holds"):
         holds.check_room("another")
+
+
+def test_a_hold_set_again_takes_the_new_reason_and_keeps_who_set_it_first() -> None:
+    holds = Holds()
+    holds.set("operator", "lunch", "anna", 7)
+    first = holds.views["operator"]
+
+    assert not holds.set("operator", "lunch", "bert", 9)
+    assert holds.views["operator"] is first
+    assert not holds.set("operator", "still lunch", "bert", 9)
+    assert holds.views["operator"] == HoldView("operator", "still lunch", "anna", 7)
+
+
+def test_releasing_the_last_hold_leaves_none() -> None:
+    holds = Holds()
+    holds.set("gate", "closed", "", 1)
+
+    assert holds.release("gate")
+    assert not holds
+
+
+def test_a_name_that_is_not_reserved_may_be_used() -> None:
+    Holds().check("operator")

@@ -1,5 +1,5 @@
 from domain.messages import GoalFeedback, GoalId, TaskId
-from domain.snapshot import TaskPhase
+from domain.snapshot import TaskPhase, TaskView
 from domain.tasks.task import Task
 from domain.vehicle import DriveCommand, Point
 from tests.support.driver import straight
@@ -55,3 +55,42 @@ def test_one_that_was_given_up_keeps_what_it_had_covered() -> None:
     view = driven.view()
 
     assert (view.progress, view.reason) == (0.5, "no progress for 20 s")
+
+
+def test_all_that_is_known_of_it_can_be_seen() -> None:
+    driven = task(start_index=4)
+    driven.advance(feedback(12, 11.0))
+
+    assert driven.view() == TaskView(
+        id=TaskId("t1"),
+        status=TaskPhase.PAUSED,
+        controller="stanley",
+        speed_mps=2.8,
+        waypoint_count=21,
+        length_m=16.0,
+        start_index=4,
+        target_index=12,
+        progress=7.0 / 16.0,
+        distance_m=7.0,
+        cross_track_error_m=-0.1,
+        reason=None,
+        created_at=5,
+        ended_at=None,
+        cause=3,
+    )
+    assert driven.reached_m == 11.0
+
+
+def test_progress_is_never_more_than_the_whole() -> None:
+    driven = task()
+    driven.advance(feedback(20, 20.5))
+
+    assert driven.view().progress == 1.0
+
+
+def test_one_that_ended_has_no_goal() -> None:
+    driven = task()
+    driven.goal = GoalId(7)
+    driven.end(TaskPhase.CANCELED, "canceled", 90)
+
+    assert driven.goal is None

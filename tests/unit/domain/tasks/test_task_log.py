@@ -46,3 +46,25 @@ def test_the_newest_is_kept_however_long_its_path_is(monkeypatch: pytest.MonkeyP
     log.add(task(1))
 
     assert log.get("t1").path.count == 21
+
+
+def test_a_task_that_is_not_there_is_told_with_those_that_are_the_newest_first() -> None:
+    log = TaskLog()
+    log.add(task(1))
+    log.add(task(2))
+    with pytest.raises(UnknownTaskError) as unknown:
+        log.get("t9")
+
+    assert unknown.value.message == "there is no task 't9'"
+    assert unknown.value.hint == "known: t2, t1"
+
+
+def test_no_more_is_forgotten_than_has_to_be(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("domain.tasks.task_log.MAX_KEPT_POINTS", 42)
+    log = TaskLog()
+    for number in range(2):
+        log.add(task(number))
+    assert len(list(log.newest_first())) == 2
+    log.add(task(2, straight(40.0)))
+
+    assert [kept.id for kept in log.newest_first()] == ["t2"]

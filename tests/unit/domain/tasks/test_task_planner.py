@@ -1,3 +1,4 @@
+import numpy as np
 import pytest
 
 from domain.errors import (
@@ -6,8 +7,20 @@ from domain.errors import (
     UnknownControllerError,
     UnknownTaskError,
 )
-from domain.messages import Drive, Outputs, PreemptGoal
+from domain.messages import (
+    Drive,
+    GoalFeedback,
+    GoalId,
+    Outputs,
+    PreemptGoal,
+    SendGoal,
+    VehicleReport,
+)
+from domain.paths.path import Path
 from domain.snapshot import TaskPhase
+from domain.tasks.task_planner import MIN_CRUISE_MPS, check_cruise
+from domain.timebase import seconds
+from domain.vehicle import DriveCommand, Point, Pose, VehicleLimits, VehicleState
 from tests.support.driver import Driver, straight
 
 
@@ -356,3 +369,268 @@ def test_not_one_command_to_drive_follows_a_goal_that_is_taken_back() -> None:
     after = robot.commands[robot.commands.index(PreemptGoal(robot.goals[0].goal)) :]
 
     assert all(c.command.speed_mps == 0 for c in after if isinstance(c, Drive))
+
+
+def test_what_is_left_of_a_path_that_stands_still_is_nothing_to_drive() -> None:
+    robot = Driver()
+    path = Path(np.array([[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [1.0, 0.0, 0.0], [1.0, 0.0, 0.0]]))
+    with pytest.raises(InvalidValueError) as refused:
+        robot.serve(path, start_index=1)
+
+    assert refused.value.message == "nothing of the path is left from there"
+    assert refused.value.pointer == "start_index"
+
+
+@pytest.mark.parametrize("speed_mps", [0.099, 11.3])
+def test_a_speed_that_the_vehicle_does_not_go_is_refused(speed_mps: float) -> None:
+    limits = VehicleLimits()
+    with pytest.raises(InvalidValueError, match="is not within") as refused:
+        check_cruise(speed_mps, limits)
+
+    assert refused.value.pointer == "speed_mps"
+    check_cruise(MIN_CRUISE_MPS, limits)
+    check_cruise(limits.max_speed_mps, limits)
+
+
+def test_a_refused_start_names_the_nearest_waypoint_with_a_path_behind_it() -> None:
+    robot = Driver()
+    robot.report(x_m=19.9)
+    with pytest.raises(FarStartError) as refused:
+        robot.serve(straight())
+    assert refused.value.hint == "waypoint 19 is 0.9 m away: begin there with start_index"
+    robot.report(x_m=40.0)
+    with pytest.raises(FarStartError) as refused:
+        robot.serve(straight())
+
+    assert refused.value.nearest is None
+
+
+# --- what is told --------------------------------------------------------------------------------
+
+
+def told(robot: Driver, *kinds: str) -> list[tuple[str, str, dict[str, object]]]:
+    """Return events of tasks and holds: kind, kind of the cause, and data."""
+    by_id = {event.id: event for event in robot.events}
+    return [
+        (event.kind, by_id[event.cause].kind if event.cause else "", dict(event.data))
+        for event in robot.events
+        if event.kind.startswith(kinds)
+    ]
+
+
+def test_the_life_of_a_task_is_told_with_what_caused_each_turn() -> None:
+    robot = Driver()
+    robot.serve()
+    robot.feedback(7)
+    robot.hold()
+    robot.report()
+    robot.release()
+    robot.arrive()
+
+    assert told(robot, "task.") == [
+        (
+            "task.requested",
+            "",
+            {
+                "waypoints": 21,
+                "length_m": 20.0,
+                "start_index": 0,
+                "controller": "pure_pursuit",
+                "speed_mps": 2.8,
+            },
+        ),
+        ("task.served", "task.requested", {"task": "t1", "waypoints": 21, "length_m": 20.0}),
+        ("task.started", "task.served", {"task": "t1", "goal": 1, "target_index": 0}),
+        ("task.pausing", "hold.set", {"task": "t1", "reason": "lunch"}),
+        ("task.paused", "vehicle.reported", {"task": "t1", "reason": "lunch"}),
+        ("task.resumed", "hold.released", {"task": "t1", "goal": 2, "target_index": 7}),
+        ("task.succeeded", "goal.ended", {"task": "t1", "reason": None, "progress": 1.0}),
+    ]
+
+
+def test_a_hold_is_told_when_it_is_set_and_when_it_goes() -> None:
+    robot = Driver()
+    robot.hold("gate", "closed")
+    robot.hold("gate", "still closed")
+    robot.release("gate")
+    robot.release("gate")
+
+    assert told(robot, "hold.set", "hold.released") == [
+        ("hold.set", "hold.requested", {"owner": "gate", "reason": "closed"}),
+        ("hold.released", "hold.release_requested", {"owner": "gate"}),
+    ]
+
+
+def test_a_task_served_while_held_and_standing_is_told_as_paused_because_of_that() -> None:
+    robot = Driver()
+    robot.hold()
+    robot.serve()
+
+    assert told(robot, "task.")[2:] == [
+        ("task.paused", "task.served", {"task": "t1", "reason": "lunch"})
+    ]
+
+
+def test_a_task_served_while_held_and_still_rolling_is_pausing() -> None:
+    robot = Driver()
+    robot.report(speed_mps=1.0)
+    robot.hold()
+    robot.serve()
+
+    assert robot.task.status is TaskPhase.PAUSING
+
+
+def test_what_ends_a_task_is_told_with_how_far_it_came() -> None:
+    robot = Driver()
+    robot.serve()
+    robot.feedback(10)
+    robot.wait(0.1)
+    robot.serve(straight(y_m=0.5))
+    robot.wait(0.1)
+    robot.cancel()
+
+    assert told(robot, "task.canceled") == [
+        (
+            "task.canceled",
+            "task.requested",
+            {"task": "t1", "reason": "replaced by t2", "progress": 0.475},
+        ),
+        (
+            "task.canceled",
+            "task.cancel_requested",
+            {"task": "t2", "reason": "canceled", "progress": 0.0},
+        ),
+    ]
+    assert robot.core.driving.task("t1").ended_at == seconds(0.1)
+    assert robot.core.driving.task("t2").created_at == seconds(0.1)
+    assert robot.core.driving.task("t2").ended_at == seconds(0.2)
+
+
+def test_a_task_that_begins_too_far_away_once_that_is_known_ends_with_that_cause() -> None:
+    robot = Driver(pose=False)
+    robot.serve(straight(y_m=8.0))
+    robot.wait(0.1)
+    robot.report()
+
+    reason = "the path begins 8.0 m from the vehicle; at most 5 m"
+    assert told(robot, "task.aborted") == [
+        ("task.aborted", "hold.released", {"task": "t1", "reason": reason, "progress": 0.0})
+    ]
+    assert robot.task.ended_at == seconds(0.1)
+
+
+def test_how_navigation_ended_it_and_when_can_be_read_afterwards() -> None:
+    robot = Driver()
+    robot.serve()
+    robot.wait(0.1)
+    robot.arrive(succeeded=False, reason="no progress for 20 s")
+
+    assert (robot.task.ended_at, robot.task.reason) == (seconds(0.1), "no progress for 20 s")
+
+
+def test_a_task_that_just_goes_on_is_told_as_changed_and_one_that_waits_is_not() -> None:
+    robot = Driver()
+    assert robot.serve().task_changed
+    assert robot.feedback(3).task_changed
+    assert robot.hold().task_changed
+    assert robot.hold(reason="still lunch").task_changed
+    assert not robot.hold(reason="still lunch").task_changed
+    assert robot.cancel().task_changed
+    assert not robot.cancel().task_changed
+
+
+def test_a_goal_tells_navigation_everything_about_the_task() -> None:
+    robot = Driver()
+    robot.report(x_m=3.0)
+    path = straight()
+    robot.serve(path, start_index=3, controller="stanley")
+    goal = robot.goals[0].goal
+    ahead, command = Point(9.0, 0.0), DriveCommand(2.8, 0.0)
+    robot.give(GoalFeedback(goal, 8, 7.5, 0.0, ahead, command, left_out_m=0.7))
+    robot.hold()
+    robot.release()
+
+    assert robot.goals == [
+        SendGoal(GoalId(1), path, 3, 3, "stanley", 2.8, 3.0, 0.0),
+        SendGoal(GoalId(2), path, 3, 8, "stanley", 2.8, 7.5, 0.7),
+    ]
+
+
+@pytest.mark.parametrize(
+    ("start_index", "words"), [(-1, "start_index -1 is not within 0 to 19"), (20, "0 to 19")]
+)
+def test_a_refused_start_says_which_ones_there_are(start_index: int, words: str) -> None:
+    robot = Driver()
+    with pytest.raises(InvalidValueError, match=words) as refused:
+        robot.serve(start_index=start_index)
+
+    assert refused.value.pointer == "start_index"
+
+
+def test_a_task_can_be_traced_to_who_asked_for_it() -> None:
+    robot = Driver()
+    robot.serve()
+    asked = next(event for event in robot.events if event.kind == "task.requested")
+
+    assert robot.task.cause == asked.id
+    assert asked.actor == "operator"
+
+
+def test_a_hold_of_a_task_that_has_no_goal_any_more_does_not_make_it_pause_again() -> None:
+    robot = Driver()
+    robot.serve()
+    robot.hold("gate", "closed")
+    robot.report()
+    robot.hold("operator", "lunch")
+
+    assert robot.task.status is TaskPhase.PAUSED
+    assert len(robot.preempted) == 1
+
+
+def test_the_last_waypoint_but_one_is_a_start() -> None:
+    robot = Driver()
+    robot.report(x_m=19.0)
+    robot.serve(start_index=19)
+
+    assert robot.task.length_m == 1
+
+
+def test_an_unknown_controller_is_named() -> None:
+    robot = Driver()
+    with pytest.raises(UnknownControllerError, match="there is no controller 'magic'"):
+        robot.serve(controller="magic")
+
+
+def test_the_nearest_waypoint_is_found_in_both_directions_and_up_to_the_limit() -> None:
+    robot = Driver()
+    diagonal = Path(
+        np.array([[10.0, 9.0, 0.0], [6.0, 5.0, 0.0], [3.0, 4.0, 0.0], [30.0, 0.0, 0.0]])
+    )
+    with pytest.raises(FarStartError) as refused:
+        robot.serve(diagonal)
+
+    assert refused.value.nearest == (2, 5.0)
+
+
+def test_without_a_pose_there_is_no_nearest_waypoint_and_no_refusal() -> None:
+    robot = Driver(pose=False)
+    robot.serve(straight(y_m=50.0))
+
+    assert robot.task.status is TaskPhase.PAUSING
+
+
+def test_a_speed_is_refused_with_what_the_vehicle_can() -> None:
+    with pytest.raises(InvalidValueError) as refused:
+        check_cruise(0.05, VehicleLimits(max_speed_mps=3.0))
+
+    assert refused.value.message == "speed 0.05 m/s is not within 0.1 to 3 m/s"
+
+
+def test_the_nearest_waypoint_is_the_one_near_where_the_vehicle_is() -> None:
+    robot = Driver()
+    robot.give(VehicleReport(VehicleState(Pose(10.0, 4.0, 0.0), 0.0, 0.0)))
+    places = [[0.0, 0.0, 0.0], [10.0, -4.0, 0.0], [10.0, 1.0, 0.0], [30.0, 0.0, 0.0]]
+    with pytest.raises(FarStartError) as refused:
+        robot.serve(Path(np.array(places)))
+
+    assert refused.value.nearest == (2, 3.0)

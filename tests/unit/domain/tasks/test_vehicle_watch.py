@@ -5,6 +5,7 @@ import pytest
 from domain.errors import InvalidValueError
 from domain.messages import VehicleReport
 from domain.outbox import Outbox
+from domain.snapshot import VehicleView
 from domain.tasks.settings import TaskSettings
 from domain.tasks.vehicle_watch import VehicleWatch
 from domain.timebase import seconds
@@ -84,5 +85,31 @@ def test_only_what_differs_is_a_change() -> None:
 def test_no_number_of_a_report_may_be_infinite_or_none(
     watch: VehicleWatch, state: VehicleState
 ) -> None:
-    with pytest.raises(InvalidValueError):
+    with pytest.raises(InvalidValueError) as refused:
         watch.check(VehicleReport(state))
+
+    assert refused.value.message == "the vehicle reports a number that is not finite"
+    assert refused.value.pointer == "pose"
+
+
+def test_a_report_of_finite_numbers_is_taken(watch: VehicleWatch) -> None:
+    watch.check(report(x_m=-3.0, speed_mps=1.0, steering_rad=0.1))
+
+
+def test_distances_are_signed_in_no_direction(watch: VehicleWatch) -> None:
+    state = VehicleState(Pose(-2.0, 3.0, 0.0), 0.0, 0.0)
+    watch.take(VehicleReport(state), 0)
+
+    assert watch.distance_to(Point(1.0, -1.0)) == 5.0
+
+
+def test_a_vehicle_that_is_lost_has_no_place_though_it_once_had_one(watch: VehicleWatch) -> None:
+    watch.take(report(), 0)
+    watch.pass_time(seconds(1))
+
+    assert watch.distance_to(Point(0.0, 0.0)) is None
+    assert not watch.stands
+
+
+def test_before_anything_is_heard_or_told_it_is_seen_to_stand_nowhere(watch: VehicleWatch) -> None:
+    assert watch.view == VehicleView(None, None, DriveCommand(0.0, 0.0), None)

@@ -1,4 +1,4 @@
-from math import atan, hypot, inf, pi
+from math import atan, atan2, hypot, inf, pi
 
 import numpy as np
 import pytest
@@ -90,3 +90,10 @@ def test_a_path_shorter_than_the_look_ahead_is_steered_along() -> None:
 
     assert 0 < said.steering_angle_rad < inf
     assert hypot(said.lookahead.x_m, said.lookahead.y_m) == pytest.approx(2.2)
+
+
+def test_what_lies_behind_is_turned_to_as_hard_as_what_lies_abeam() -> None:
+    state = VehicleState(Pose(5.0, 0.0, pi - 0.1), 11.0, 0.0)
+    said = PurePursuit(LIMITS).control_step(state, LINE, 1)
+
+    assert said.steering_angle_rad == pytest.approx(-atan2(2 * 1.75, 0.75 * 11.0))

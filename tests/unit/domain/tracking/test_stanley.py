@@ -98,3 +98,41 @@ def test_a_path_shorter_than_the_vehicle_is_steered_along() -> None:
 
     assert step(0, 0, 1.0, 0.0, short).steering_angle_rad == pytest.approx(0)
     assert step(0, 0, 0.8, 0.0, short).steering_angle_rad > 0
+
+
+def test_the_correction_is_damped_and_gentler_at_speed() -> None:
+    """The law written out: the front axle is on the path, so that only the heading is wrong."""
+    far = LIMITS.wheelbase_m * sin(0.2)
+    said = step(5, far, -0.2, speed=7.0, steering=0.1)
+
+    damped = 0.2 - 0.2 * 7.0 / 1.75 * 0.1
+    gain = 2.0 * 1.75 / 7.0 / (1 + min(2.0 * far, 0.5 + 0.5 * far))
+    assert said.steering_angle_rad == pytest.approx(gain * damped)
+
+
+def test_at_standstill_the_whole_correction_is_steered() -> None:
+    far = LIMITS.wheelbase_m * sin(0.2)
+    said = step(5, far, -0.2, speed=0.0)
+
+    assert said.steering_angle_rad == pytest.approx(0.2 / (1 + 0.5 + 0.5 * far))
+
+
+@pytest.mark.parametrize("yaw", [pi - 0.05, -pi - 0.05, 3 * pi - 0.05])
+def test_a_heading_is_turned_the_short_way_round(yaw: float) -> None:
+    back = Path(np.array([[0.0, 0.0, 0.0], [-20.0, 0.0, 0.0], [-40.0, 0.0, 0.0]]))
+
+    steering = step(-5, 0, yaw, speed=0.0, path=back).steering_angle_rad
+    assert steering == pytest.approx(0.05 + MAX_APPROACH_RAD)
+
+
+def test_a_bend_is_steered_for_a_little_before_it_begins() -> None:
+    along = np.linspace(0, pi, 400)
+    bend = np.column_stack((20 + 8 * np.sin(along), 8 - 8 * np.cos(along), along))
+    straight = np.column_stack((np.arange(0, 20, 0.5), np.zeros(40), np.zeros(40)))
+    path = Path(np.vstack((straight, bend)))
+
+    slow = step(17.5, 0, 0, speed=2.0, path=path, index=36)
+    fast = step(18.5, 0, 0, speed=11.0, path=path, index=38)
+
+    assert slow.steering_angle_rad == pytest.approx(0, abs=1e-3)
+    assert fast.steering_angle_rad > 0.01
