@@ -105,6 +105,8 @@ class _Client:
         except PilothouseError as error:
             await self._refuse(error, _POLICY_VIOLATION)
             return
+        if self._connection.transport.is_closing():
+            raise _GoneError
         encoder = self._hub.encoder
         self._connection.transport.write(text_frame(encoder.hello(query.topics)))
         complete = self._hub.supervisor.frames.complete()

@@ -91,6 +91,8 @@ class FanOut:
                     await self._prepare(group.place.topics)
                     await self._write_in_step(group, news, ping)
                     await self._write_apart(group, news, ping)
+                # A transport with room lets nobody else run, and a long history is many rounds.
+                await asyncio.sleep(0)
 
     def _ping(self) -> bytes:
         """Return a ping if one is due, before which all go that have not answered the last."""

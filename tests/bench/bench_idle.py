@@ -46,8 +46,8 @@ def test_what_an_idle_service_costs() -> None:
         "At rest",
         f"The share of a core over {SECONDS:g} s, and memory, of `pilothouse serve` with the "
         "example robot, without a client and with one that is sent what the page is; beside a "
-        "FastAPI that does nothing else. RSS is that of the service itself; `of all` includes the "
-        "worker process that reads posted models and paths.",
+        "FastAPI that does nothing else. RSS is that of the service itself; `of all` would include "
+        "a worker process, which there is from the first posted model or path on.",
         rows,
         asked="less than 90 MB RSS and less than 5 % of a core with one page open.",
     )

@@ -1,14 +1,13 @@
 """Frames to all clients by uvicorn as it comes: an ASGI application that sends to one by one."""
 
-import asyncio
+from functools import partial
 
-import uvicorn
 from uvicorn._types import ASGIReceiveCallable, ASGISendCallable, Scope
 
 from tests.support.fan_out.control import serve_frames
+from tests.support.fan_out.uvicorn_start import start
 
 _clients: dict[ASGISendCallable, None] = {}
-_serving: list[asyncio.Task[None]] = []
 
 
 async def _app(scope: Scope, receive: ASGIReceiveCallable, send: ASGISendCallable) -> None:
@@ -20,25 +19,6 @@ async def _app(scope: Scope, receive: ASGIReceiveCallable, send: ASGISendCallabl
     _clients.pop(send, None)
 
 
-async def _start() -> int:
-    server = uvicorn.Server(
-        uvicorn.Config(
-            _app,
-            port=0,
-            ws="websockets-sansio",
-            lifespan="off",
-            log_level="warning",
-            access_log=False,
-        )
-    )
-    _serving.append(asyncio.create_task(server.serve()))
-    # It tells nobody.
-    while not server.started:  # noqa: ASYNC110
-        await asyncio.sleep(0.01)
-    port: int = server.servers[0].sockets[0].getsockname()[1]
-    return port
-
-
 async def _send(text: str) -> None:
     for send in list(_clients):
         try:
@@ -48,4 +28,4 @@ async def _send(text: str) -> None:
 
 
 if __name__ == "__main__":
-    serve_frames(_start, _send)
+    serve_frames(partial(start, _app, "websockets-sansio"), _send)

@@ -233,6 +233,17 @@ async def test_one_client_too_many_is_told_to_come_later(
         assert (await first.frame())["type"] == "hello"
 
 
+async def test_nothing_is_said_to_a_client_that_went_while_it_was_let_in(
+    app: FastAPI, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    client = WebSocketClient(app)
+    monkeypatch.setattr(client, "is_closing", lambda: True)
+    async with client:
+        await client.end()
+
+    assert client.frames() == []
+
+
 async def test_a_client_that_left_leaves_its_place_to_the_next(app: FastAPI) -> None:
     async with WebSocketClient(app) as client:
         await client.frame()

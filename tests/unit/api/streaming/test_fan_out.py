@@ -173,6 +173,21 @@ async def test_a_long_history_is_written_without_waiting_for_the_next_tick(
     assert len(wire.written) > 1
 
 
+async def test_a_long_history_leaves_others_their_turn(
+    fan_out: FanOut, supervisor: Supervisor
+) -> None:
+    for _ in range(500):
+        press_and_release_the_stop(supervisor)
+    turns = 0
+    wire = Wire()
+    with fan_out.serve(wire.connection, EVENTS, "log"):
+        while len(wire.written) < 30:
+            await asyncio.sleep(0)
+            turns += 1
+
+    assert turns >= 30
+
+
 async def test_a_client_that_takes_a_little_now_and_then_is_kept(
     fan_out: FanOut, clock: ManualClock
 ) -> None:
