@@ -13,7 +13,7 @@ import asyncio
 from typing import cast
 
 from uvicorn.protocols.websockets.websockets_sansio_impl import WebSocketsSansIOProtocol
-from websockets.frames import Opcode
+from websockets.frames import Frame, Opcode
 
 from api.streaming.prepared import EXTENSION, Connection, Listener
 
@@ -56,14 +56,21 @@ class WebSocketProtocol(WebSocketsSansIOProtocol):
 
     def data_received(self, data: bytes) -> None:
         """Take what the client sent."""
-        if self._listener is not None:
-            self._listener.heard()
         if self._between_frames and len(data) == _PONG_BYTES and data.startswith(_PONG_HEAD):
+            self._tell_answered()
             return
         # The first is the handshake, and ends where the frames begin.
         first = not self.handshake_initiated
         self._between_frames = first or (self._between_frames and _holds_whole_frames(data))
         super().data_received(data)
+
+    def handle_pong(self, event: Frame) -> None:
+        """Take an answer that came together with something else."""
+        self._tell_answered()
+
+    def _tell_answered(self) -> None:
+        if self._listener is not None:
+            self._listener.answered()
 
     def _listen(self, listener: Listener | None) -> None:
         self._listener = listener

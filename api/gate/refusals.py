@@ -35,7 +35,7 @@ class Refusals:
         """Count a refusal, and log it if none of its kind was logged in the last second.
 
         Args:
-            status: One of `COUNTED`.
+            status: As it was answered; `/metrics` shows those of `COUNTED`.
             address: Of the client; what it tried is not told.
         """
         self.counts[status] += 1

@@ -103,6 +103,7 @@ def _end_with_signals() -> None:
     """Let SIGTERM and SIGHUP end this like Ctrl-C, so that the terminal is left as it was."""
     task = asyncio.current_task()
     for name in ("SIGTERM", "SIGHUP"):
+        # Windows has neither SIGHUP nor loops with signal handlers; Ctrl-C ends this there.
         with suppress(AttributeError, NotImplementedError):
             number = getattr(signal, name)
             asyncio.get_running_loop().add_signal_handler(number, lambda: task and task.cancel())

@@ -25,8 +25,8 @@ class Listener(Protocol):
         """Learn that not all that was written could be sent; it waits in the transport."""
         ...
 
-    def heard(self) -> None:
-        """Learn that the client sent something, be it only the answer to a ping."""
+    def answered(self) -> None:
+        """Learn that the client answered a ping, and so reads."""
         ...
 
     def lost(self) -> None:

@@ -7,7 +7,7 @@ from domain.timebase import Instant, seconds
 from service.clock import Clock
 
 PATIENCE = seconds(4.5)
-"""A client that has taken nothing of what waits for so long is dropped."""
+"""A client for which something waits, and that was not seen to read for so long, is dropped."""
 
 
 class Group:
@@ -84,20 +84,21 @@ class StreamClient:
         """Its own, while it is apart."""
         self.address = address
         self.owes_answer = False
-        """Whether nothing was heard of it since the last ping."""
+        """Whether it has not answered the last ping."""
         self._group = group
         self._clock = clock
         self._waiting = 0
-        self._moved_at = clock.now()
+        self._read_at = clock.now()
+        """When it was last seen to read."""
 
     def clogged(self) -> None:
         """Go on alone: what was written last has to be taken first."""
-        self._moved_at = self._clock.now()
         self._group.part_from(self)
 
-    def heard(self) -> None:
-        """Learn that the client is there and reads."""
+    def answered(self) -> None:
+        """Learn that the client reads."""
         self.owes_answer = False
+        self._read_at = self._clock.now()
 
     def lost(self) -> None:
         """Write no more."""
@@ -107,10 +108,10 @@ class StreamClient:
         """Tell whether everything written before is on its way, and more can be written."""
         waiting = self.transport.get_write_buffer_size()
         if waiting == 0 or waiting < self._waiting:
-            self._moved_at = now
+            self._read_at = now
         self._waiting = waiting
         return waiting == 0 and not self.transport.is_closing()
 
     def is_stuck(self, now: Instant) -> bool:
-        """Tell whether it has taken nothing of what waits for too long."""
-        return now - self._moved_at > PATIENCE and not self.transport.is_closing()
+        """Tell whether it has neither taken anything of what waits nor answered for too long."""
+        return now - self._read_at > PATIENCE and not self.transport.is_closing()

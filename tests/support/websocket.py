@@ -176,7 +176,7 @@ class WebSocketClient(asyncio.WriteTransport):
 
     def _read_frames(self, frames: bytes) -> None:
         if frames.endswith(PING) and self._listener is not None:
-            self._listener.heard()
+            self._listener.answered()
         for text in texts_of(frames):
             self._from_app.put_nowait({"type": "websocket.send", "text": text})
 

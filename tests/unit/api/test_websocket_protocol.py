@@ -61,8 +61,8 @@ class Recorder:
     def clogged(self) -> None:
         self.learned.append("clogged")
 
-    def heard(self) -> None:
-        self.learned.append("heard")
+    def answered(self) -> None:
+        self.learned.append("answered")
 
     def lost(self) -> None:
         self.learned.append("lost")
@@ -148,7 +148,7 @@ async def test_an_application_can_write_prepared_frames_to_the_transport(link: L
     assert bytes(frame.data) == b"state"
 
 
-async def test_an_answered_ping_is_heard_without_the_parser(link: Link) -> None:
+async def test_an_answered_ping_is_told_without_the_parser(link: Link) -> None:
     listener = Recorder()
     link.connection.listen(listener)
     before = link.parsed
@@ -156,18 +156,29 @@ async def test_an_answered_ping_is_heard_without_the_parser(link: Link) -> None:
     link.ping()
     link.flush()
 
-    assert listener.learned == ["heard"]
+    assert listener.learned == ["answered"]
     assert link.parsed == before
 
 
-async def test_a_message_is_a_sign_of_life_too(link: Link) -> None:
+async def test_whoever_only_talks_is_not_taken_to_read(link: Link) -> None:
     listener = Recorder()
     link.connection.listen(listener)
 
     link.client.send_text(b"hello")
     link.flush()
 
-    assert listener.learned == ["heard"]
+    assert listener.learned == []
+
+
+async def test_an_answer_behind_a_message_is_told_too(link: Link) -> None:
+    listener = Recorder()
+    link.connection.listen(listener)
+
+    link.client.send_text(b"hello")
+    link.ping()
+    link.flush()
+
+    assert listener.learned == ["answered"]
 
 
 async def test_what_the_network_does_not_take_is_told_at_once(link: Link) -> None:
@@ -187,7 +198,7 @@ async def test_whoever_listened_last_learns_nothing_more(link: Link) -> None:
     link.connection.listen(None)
 
     link.server.pause_writing()
-    link.client.send_text(b"hello")
+    link.ping()
     link.flush()
 
     assert listener.learned == []
@@ -235,9 +246,12 @@ async def test_bytes_that_look_like_an_answer_inside_a_message_are_part_of_it(li
     assert len(link.heard[-1]["bytes"]) == 30
 
 
-async def test_an_answer_in_pieces_does_no_harm(link: Link) -> None:
+async def test_an_answer_in_pieces_is_told_and_does_no_harm(link: Link) -> None:
+    listener = Recorder()
+    link.connection.listen(listener)
     link.ping()
     link.flush(piece=3)
+    assert listener.learned == ["answered"]
 
     link.client.send_text(b"hello")
     link.flush()

@@ -47,7 +47,7 @@ class Wire(asyncio.WriteTransport):
             if self.listener is not None:
                 self.listener.clogged()
         elif data.endswith(PING) and self.answers and self.listener is not None:
-            self.listener.heard()
+            self.listener.answered()
 
     def get_write_buffer_size(self) -> int:
         return self.waiting
@@ -234,6 +234,21 @@ async def test_a_client_that_does_not_read_is_dropped_though_its_system_takes_al
     assert (mute.closing, other.closing) == (True, False)
     assert fan_out.dropped == 1
     assert len(other.frames) == 301
+
+
+async def test_a_client_that_stopped_to_read_long_before_it_clogs_is_not_given_more_time(
+    fan_out: FanOut, clock: ManualClock
+) -> None:
+    wire = Wire()
+    with fan_out.serve(wire.connection, STATE, "mute"):
+        await clock.advance(10)
+        wire.answers = False
+        await clock.advance(2)
+        wire.flows = False
+        await clock.advance(3)
+
+    assert wire.closing
+    assert fan_out.dropped == 1
 
 
 async def test_a_slow_client_is_not_asked_for_an_answer_that_waits_behind_a_large_frame(

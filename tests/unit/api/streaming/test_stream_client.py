@@ -120,7 +120,7 @@ def test_who_owes_an_answer_when_the_next_is_asked_for_is_silent(
     group: Group, client: StreamClient
 ) -> None:
     assert group.take_silent() == ()
-    client.heard()
+    client.answered()
     assert group.take_silent() == ()
 
     assert group.take_silent() == (client,)
