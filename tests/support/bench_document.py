@@ -1,4 +1,7 @@
-"""Writes docs/benchmarks.md from the stored results: `python -m tests.support.bench_document`."""
+"""Writes docs/benchmarks.md from the stored results: `python -m tests.support.bench_document`.
+
+A section without a result in store stays as it is, so that one bench can be run again by itself.
+"""
 
 import json
 from collections.abc import Iterable, Iterator, Mapping
@@ -11,7 +14,7 @@ DOCUMENT = PROJECT / "docs" / "benchmarks.md"
 _HEAD = """\
 # Benchmarks
 
-Written by `make bench` from the results of its last run; to change a figure, run it again. Where
+Written by `make bench` and `make bench-ros2`; to change a figure, run its bench again. Where
 there is something to compare with, it is measured beside ours in the same run: figures of different
 machines, or of one machine on different days, say little. `p50` is the median, `p99` the 99th
 percentile.
@@ -37,6 +40,25 @@ def document(results: Iterable[Mapping[str, Any]]) -> str:
     for result in ordered:
         sections.append("\n".join(_section(result, several_machines=len(machines) > 1)))
     return "\n".join(sections)
+
+
+def renewed(before: str, after: str) -> str:
+    """Return a document with the sections of a newer one in it, further ones at the end.
+
+    Args:
+        before: The document as it was; empty: there was none.
+        after: One that may have fewer sections.
+    """
+    head, new = _parted(after)
+    _, kept = _parted(before)
+    return "\n## ".join([head, *(f"{title}\n{text}" for title, text in (kept | new).items())])
+
+
+def _parted(text: str) -> tuple[str, dict[str, str]]:
+    """Return what is before the first section, and the sections by title."""
+    head, *sections = text.split("\n## ")
+    parted = (section.partition("\n") for section in sections)
+    return head, {title: rest for title, _, rest in parted}
 
 
 def _section(result: Mapping[str, Any], *, several_machines: bool) -> Iterator[str]:
@@ -89,4 +111,4 @@ def _date(moment: str) -> str:
 
 if __name__ == "__main__":
     stored = [json.loads(file.read_text()) for file in sorted(RESULTS.glob("*.json"))]
-    DOCUMENT.write_text(document(stored))
+    DOCUMENT.write_text(renewed(DOCUMENT.read_text(), document(stored)))

@@ -22,26 +22,30 @@ from tests.support.process import ServiceProcess, connect, service
 
 _RECORDING = """\
 import json, sys, time
-from api import command_line, serving
+from api import command_line
 from domain.messages import Drive
-from service.backends.simulated import SimulatedBackend
+from service.supervisor import Supervisor
 
-path, found = sys.argv.pop(1), {"drives": [], "ticks": []}
+path, found = sys.argv.pop(1), {"asks": [], "drives": [], "ticks": []}
+run = Supervisor.run
 
-class Recording(SimulatedBackend):
-    def send(self, command):
-        super().send(command)
+async def run_recording(supervisor):
+    backend = supervisor._backend
+    send = backend.send
+
+    def send_recording(command):
+        send(command)
+        now = time.perf_counter()
         if isinstance(command, Drive):
-            found["drives"].append((time.perf_counter(), command.command.speed_mps))
+            found["drives"].append((now, command.command.speed_mps))
+        else:
+            found["asks"].append(now)
 
-compose = serving.compose
-
-def compose_recording(*arguments):
-    supervisor = compose(*arguments)
+    backend.send = send_recording
     supervisor.on_tick.append(lambda _: found["ticks"].append(time.perf_counter()))
-    return supervisor
+    await run(supervisor)
 
-serving.SimulatedBackend, serving.compose = Recording, compose_recording
+Supervisor.run = run_recording
 code = command_line.main()
 json.dump(found, open(path, "w"))
 raise SystemExit(code)
@@ -52,6 +56,8 @@ raise SystemExit(code)
 class Record:
     """What the service wrote down."""
 
+    asks: list[float]
+    """When something that a node was asked for was on its way."""
     drives: list[tuple[float, float]]
     """When it told the vehicle a speed, and which, m/s."""
     ticks: list[float]

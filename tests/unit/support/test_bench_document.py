@@ -1,6 +1,6 @@
 from typing import Any
 
-from tests.support.bench_document import document
+from tests.support.bench_document import document, renewed
 
 
 def _result(**other: object) -> dict[str, Any]:
@@ -59,3 +59,19 @@ def test_several_machines_are_named_at_each_result() -> None:
 
 def test_without_a_bound_none_is_named() -> None:
     assert "Asked for" not in document([_result(asked="")])
+
+
+def test_a_bench_that_was_run_by_itself_renews_its_section_and_leaves_the_others() -> None:
+    before = document([_result(), _result(title="Start"), _result(title="Stop")])
+    newer = document([_result(title="Start", how="Twice."), _result(title="Robot")])
+
+    text = renewed(before, newer)
+
+    assert text == document(
+        [
+            _result(),
+            _result(title="Start", how="Twice."),
+            _result(title="Stop"),
+            _result(title="Robot"),
+        ]
+    )
