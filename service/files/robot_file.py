@@ -3,6 +3,7 @@
 The keys are documented by docs/reference/robot-file.schema.json.
 """
 
+from collections.abc import Iterator
 from collections.abc import Mapping as AnyMapping
 from pathlib import Path
 from typing import Any, Literal
@@ -23,6 +24,7 @@ from service.files.driving_block import DrivingBlock, StartTaskBlock
 from service.files.limits_block import LimitsBlock
 from service.files.parameter_file import scalar_value
 from service.files.robot_settings import ChangesBlock, NodeBlock, SettingsBlock, SignalsBlock
+from service.files.ros2_block import Ros2Block
 from service.files.text_file import read_text_file
 from service.files.vehicle_block import VehicleBlock
 from service.files.yaml_tree import Mapping, Node, Scalar, Sequence, finding_at, in_order, read_tree
@@ -44,15 +46,15 @@ class InvalidRobotFileError(PilothouseError):
 class RobotSettings(SettingsBlock):
     """Settings of a robot. What is left out keeps its usual value."""
 
-    backend: Literal["simulated"] = "simulated"
-    """Through what nodes are reached."""
+    backend: Literal["simulated", "ros2"] = "simulated"
+    """Through what nodes are reached. Without effect in simulations."""
     mock: bool | None = None
     """Whether signals are mocked. Left out: as the service is told, which mocks them with simulated
     nodes."""
     signals: SignalsBlock = SignalsBlock()
     """When a signal is an error."""
     nodes: dict[str, NodeBlock] = Field(default_factory=dict)
-    """The simulated nodes that differ from the usual, by name."""
+    """The nodes that differ from the usual, by name."""
     changes: ChangesBlock = ChangesBlock()
     """Deadlines of changes."""
     vehicle: VehicleBlock = VehicleBlock()
@@ -61,6 +63,8 @@ class RobotSettings(SettingsBlock):
     """When a task may begin, how fast it is driven, and when it is given up."""
     limits: LimitsBlock = LimitsBlock()
     """How much clients may ask of the service."""
+    ros2: Ros2Block = Ros2Block()
+    """Topics of a robot in ROS 2. Without effect where the robot is simulated."""
     start_task: StartTaskBlock | None = None
     """A task that is served when the service starts. Not in simulations, which name no files."""
 
@@ -78,8 +82,11 @@ class RobotSettings(SettingsBlock):
         return {PartName(name): node.to_domain() for name, node in self.nodes.items()}
 
     def to_change_settings(self) -> ChangeSettings:
-        """Return the deadlines of changes."""
+        """Return the deadlines of changes, and which nodes are restored."""
         return ChangeSettings(
+            restored_nodes=frozenset(
+                PartName(name) for name, node in self.nodes.items() if node.on_return == "restore"
+            ),
             transition_deadline=seconds(self.changes.transition_deadline_s),
             parameters_deadline=seconds(self.changes.parameters_deadline_s),
         )
@@ -152,6 +159,8 @@ def robot_settings_of(data: AnyMapping[str, object], model: SmhModel) -> RobotSe
     for name in settings.nodes:
         if name not in model.nodes:
             raise InvalidValueError(f"there is no node {name!r}", _pointer("nodes", name))
+    for keys, _, message in _faults_of_topics(settings):
+        raise InvalidValueError(message, _pointer(*keys))
     return settings
 
 
@@ -183,7 +192,15 @@ def _settings(
             message = f"there is no node {name!r}; it is {what}"
             place = _place(root, ("nodes", name))
             findings.append(finding_at(place, "UNKNOWN_NODE", message))
+    for keys, code, message in _faults_of_topics(settings):
+        findings.append(finding_at(_place(root, keys), code, message))
     return settings
+
+
+def _faults_of_topics(settings: RobotSettings) -> Iterator[tuple[tuple[str, ...], str, str]]:
+    kinds = {signal.spec.name: signal.spec.kind for signal in settings.to_signal_settings()}
+    for keys, code, message in settings.ros2.faults(kinds):
+        yield ("ros2", *keys), code, message
 
 
 def _plain(node: Node | None, findings: list[Finding]) -> Any:  # noqa: ANN401  # as in JSON

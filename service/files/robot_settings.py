@@ -205,8 +205,11 @@ class SignalsBlock(SettingsBlock):
 
 
 class NodeBlock(SettingsBlock):
-    """How a simulated node behaves; what is left out is as with a small real one."""
+    """A node. All but `on_return` matters only when it is simulated, as a small one if left out."""
 
+    on_return: Literal["leave", "restore"] = "leave"
+    """What happens when it becomes reachable and is not in what was asked of it: nothing, or a
+    change that brings it there."""
     configure_s: Seconds | None = None
     """How long its callback takes, in seconds."""
     activate_s: Seconds | None = None

@@ -22,6 +22,8 @@ from service.backends.simulated import SimulatedBackend
 from service.ports import BackendMessage, RobotBackend
 from tests.support.manual_clock import ManualClock
 from tests.support.models import actuation_model
+from tests.support.ros_graph import FakeGraph
+from tests.support.ros_vehicle import RosBase, RosVehicleBackend
 
 STANDS_MPS = 0.05
 """Below this a vehicle counts as standing; noise of its speed included."""
@@ -87,7 +89,39 @@ class SimulatedWithInertia(Simulated):
     pose = Pose(120.0, -40.0, 2.5)
 
 
-UNDER_TEST: list[Callable[[], VehicleUnderTest]] = [Simulated, SimulatedWithInertia]
+class RosTopics:
+    """A vehicle behind topics of ROS, in virtual time; its base heeds no time limit of commands."""
+
+    plant = Plant()
+    pose = Pose(0.0, 0.0, 0.0)
+
+    def __init__(self) -> None:
+        self._clock = ManualClock()
+        settings = VehicleSettings(self.pose, self.plant)
+        self.limits = settings.limits
+        graph = FakeGraph(self._clock)
+        base = RosBase(settings, graph, self._clock)
+        self.pass_time = base.pass_time
+        self.lose = base.lose
+        self.backend: RobotBackend = RosVehicleBackend(self.limits, graph, self._clock)
+
+    def now_s(self) -> float:
+        return to_seconds(self._clock.now())
+
+
+class RosTopicsWithInertia(RosTopics):
+    """The same, with all that keeps a real vehicle from following at once."""
+
+    plant = SimulatedWithInertia.plant
+    pose = SimulatedWithInertia.pose
+
+
+UNDER_TEST: list[Callable[[], VehicleUnderTest]] = [
+    Simulated,
+    SimulatedWithInertia,
+    RosTopics,
+    RosTopicsWithInertia,
+]
 
 
 class Vehicle:

@@ -17,6 +17,22 @@ Message: TypeAlias = Any
 """A message as ROS has it: one attribute per field."""
 
 
+class UnknownTypeError(Exception):
+    """A type of message or service that is not installed on this machine."""
+
+    def __init__(self, type_name: str) -> None:
+        package = type_name.partition("/")[0]
+        super().__init__(
+            f"the ROS 2 type {type_name} is not there: install its package ({package}) into the ROS"
+            " distribution, or source the workspace that has it, before Pilothouse is started"
+        )
+        self.type_name = type_name
+
+
+class GraphFailedError(Exception):
+    """What carries messages between us and ROS 2 broke; nothing of it is heard any more."""
+
+
 class Qos(Enum):
     """How messages of a topic are carried; both ends must agree."""
 
@@ -26,6 +42,8 @@ class Qos(Enum):
     """As rclpy and rclcpp publish them."""
     SENSOR = "sensor"
     """The last 5, and lost ones stay lost; a subscription like this hears every publisher."""
+    COMMANDS = "commands"
+    """Reliable, only the last one, nothing for late comers: an older command to drive is void."""
     LATCHED = "latched"
     """Reliable, and the last one is kept for late comers."""
 
@@ -152,6 +170,14 @@ class RosGraph(Protocol):
         """Tell whether a type of message or service is installed."""
         ...
 
+    async def wait_failed(self) -> None:
+        """Wait until the graph fails; whoever runs us awaits this, so that it is not silent.
+
+        Raises:
+            GraphFailedError: It has. This never returns, and is cancelled if all goes well.
+        """
+        ...
+
     async def close(self) -> None:
-        """Leave the graph; nothing is heard afterwards."""
+        """Leave the graph; nothing is heard afterwards, and nothing can be sent."""
         ...

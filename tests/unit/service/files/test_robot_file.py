@@ -48,11 +48,20 @@ def test_a_robot_of_which_nothing_is_said_is_as_usual(text: str) -> None:
     assert settings.to_node_settings() == {}
     assert settings.to_change_settings().transition_deadline == seconds(10)
     assert settings.to_change_settings().parameters_deadline == seconds(2)
+    assert settings.to_change_settings().restored_nodes == set()
     assert settings.to_vehicle_settings() == VehicleSettings()
     assert settings.to_task_settings() == TaskSettings()
     assert settings.to_navigation_settings() == NavigationSettings()
     assert settings.limits == LimitsBlock()
     assert settings.start_task is None
+
+
+def test_the_nodes_that_are_restored_are_those_of_which_that_is_said() -> None:
+    settings = read_robot_file(
+        "nodes: {drive_base: {on_return: restore}, manipulator: {on_return: leave}}", MODEL
+    )
+
+    assert settings.to_change_settings().restored_nodes == {"drive_base"}
 
 
 def test_what_is_said_holds() -> None:
@@ -105,6 +114,7 @@ start_task: {file: tracks/loop.csv, controller: stanley, speed_mps: 2}
     [
         ("gem_e2", PROJECT / "examples" / "models" / "gem_e2.yaml"),
         ("actuation_with_faults", PROJECT / "service" / "example" / "actuation.yaml"),
+        ("ros2_robot", PROJECT / "service" / "example" / "actuation.yaml"),
     ],
 )
 def test_the_robots_among_the_examples_load(robot: str, model: Path) -> None:
@@ -115,7 +125,9 @@ def test_the_robots_among_the_examples_load(robot: str, model: Path) -> None:
 
 
 def test_no_robot_among_the_examples_is_forgotten() -> None:
-    assert sorted(path.stem for path in EXAMPLES.iterdir()) == ["actuation_with_faults", "gem_e2"]
+    robots = sorted(path.stem for path in EXAMPLES.iterdir())
+
+    assert robots == ["actuation_with_faults", "gem_e2", "ros2_robot"]
 
 
 @pytest.mark.parametrize(
@@ -224,7 +236,7 @@ def test_of_a_robot_of_which_nothing_is_sent_all_is_as_usual() -> None:
     ("sent", "pointer", "words"),
     [
         ({"bakend": 1}, "/bakend", "there is no such key"),
-        ({"backend": "ros2"}, "/backend", "'simulated'"),
+        ({"backend": "ros1"}, "/backend", "'simulated'"),
         ({"vehicle": 3}, "/vehicle", "there must be keys below"),
         ({"vehicle": {"pose": {"x_m": "1"}}}, "/vehicle/pose/x_m", "valid number"),
         ({"vehicle": {"plant": {"delay_s": -1}}}, "/vehicle/plant/delay_s", "greater than"),

@@ -190,6 +190,13 @@ def test_every_fault_can_be_there_from_the_start(fault: Fault) -> None:
     assert NodeBlock.model_validate({"fault": str(fault)}).to_domain().fault is fault
 
 
+def test_a_node_that_returns_is_left_unless_it_is_said_that_it_is_restored() -> None:
+    assert NodeBlock().on_return == "leave"
+    assert NodeBlock(on_return="restore").to_domain() == NodeSettings()
+    with pytest.raises(ValidationError):
+        NodeBlock.model_validate({"on_return": "activate"})
+
+
 def test_a_change_has_deadlines_that_can_be_set() -> None:
     assert ChangesBlock() == ChangesBlock(transition_deadline_s=10.0, parameters_deadline_s=2.0)
     with pytest.raises(ValidationError):

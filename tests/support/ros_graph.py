@@ -1,0 +1,309 @@
+"""A ROS 2 graph in memory and in virtual time, with nodes in it that can be made to fail.
+
+Messages and responses have one attribute per field that was given; nothing has a default. What is
+published is heard at once, before `publish` returns; requests and responses take `LATENCY_S` each.
+"""
+
+import asyncio
+import logging
+from collections import defaultdict
+from collections.abc import Awaitable, Callable, Coroutine, Mapping
+from dataclasses import dataclass
+from types import SimpleNamespace
+from typing import Any, TypeAlias
+
+from domain.timebase import seconds, to_seconds
+from service.backends.ros2.graph import (
+    Fields,
+    GraphFailedError,
+    Lane,
+    Message,
+    PickedT,
+    Qos,
+    UnknownTypeError,
+)
+from tests.support.manual_clock import ManualClock
+
+LATENCY_S = 0.001
+DEAD_ARE_KNOWN_S = 20.0
+"""So long after its process died a server is still in the graph."""
+
+Answer: TypeAlias = Callable[[Fields], Awaitable[Fields]]
+
+_log = logging.getLogger(__name__)
+
+
+class FakeMessage(SimpleNamespace):
+    """A message with what was given as attributes."""
+
+    def get_fields_and_field_types(self) -> dict[str, str]:
+        """Return the names of the fields, as a message of ROS does, without their types."""
+        return dict.fromkeys(vars(self), "")
+
+
+def as_message(fields: Any) -> Any:  # noqa: ANN401  # of any shape, as messages are
+    """Return what JSON has as ROS has it: mappings become objects with attributes."""
+    if isinstance(fields, Mapping):
+        return FakeMessage(**{name: as_message(value) for name, value in fields.items()})
+    if isinstance(fields, list | tuple):
+        return [as_message(item) for item in fields]
+    return fields
+
+
+@dataclass(frozen=True)
+class Request:
+    """One request that somebody sent through a client of the graph."""
+
+    at_s: float
+    service: str
+    fields: Fields
+
+
+class FakeGraph:
+    """A `RosGraph` in memory.
+
+    Args:
+        clock: All time that passes is the clock's.
+        missing: Types that are not installed; all others are.
+    """
+
+    def __init__(self, clock: ManualClock, missing: tuple[str, ...] = ()) -> None:
+        self.clock = clock
+        self.missing = frozenset(missing)
+        self.nodes: dict[str, Lane] = {}
+        """Every node of ours, by its full name."""
+        self.requests: list[Request] = []
+        """Every request that was sent by a client, in order."""
+        self.types: dict[str, str] = {}
+        """The type of every topic and service that somebody of us named."""
+        self.qos: dict[str, Qos] = {}
+        """How topics are carried, as the last of us who named one asked for."""
+        self.closed = False
+        self._published: defaultdict[str, list[Fields]] = defaultdict(list)
+        self._latched: dict[str, Fields] = {}
+        self._listeners: defaultdict[str, list[Callable[[Message], None]]] = defaultdict(list)
+        self._liveliness: defaultdict[str, list[Callable[[bool], None]]] = defaultdict(list)
+        self._alive: set[str] = set()
+        self._servers: dict[str, Answer] = {}
+        self._tasks: set[asyncio.Task[None]] = set()
+        self._failed = asyncio.Event()
+
+    # --- the port --------------------------------------------------------------------------------
+
+    def node(self, name: str, lane: Lane) -> "FakeRosNode":
+        """Return a new node of ours."""
+        assert name not in self.nodes, f"there are two nodes {name}"
+        self.nodes[name] = lane
+        return FakeRosNode(self)
+
+    def has_type(self, type_name: str) -> bool:
+        """Tell whether a type is installed."""
+        return type_name not in self.missing
+
+    async def wait_failed(self) -> None:
+        """Wait until the test calls `fail`."""
+        await self._failed.wait()
+        raise GraphFailedError("the graph failed")
+
+    async def close(self) -> None:
+        """Leave the graph, and end what its nodes are at."""
+        self.closed = True
+        tasks = [*self._tasks]
+        for task in tasks:
+            task.cancel()
+        await asyncio.gather(*tasks, return_exceptions=True)
+
+    # --- for tests -------------------------------------------------------------------------------
+
+    def publish(self, topic: str, fields: Fields) -> None:
+        """Let somebody publish a message; all that listen to the topic hear it now."""
+        self._publish(topic, fields, latched=False)
+
+    def published(self, topic: str) -> list[Fields]:
+        """Return what was published on a topic, by whomever."""
+        return self._published[topic]
+
+    def set_alive(self, topic: str, alive: bool) -> None:
+        """Let a topic have a publisher that lives, or none any more; it is heard of at once."""
+        if alive == (topic in self._alive):
+            return
+        (self._alive.add if alive else self._alive.discard)(topic)
+        for take in () if self.closed else self._liveliness[topic]:
+            take(alive)
+
+    @property
+    def services(self) -> tuple[str, ...]:
+        """Return the services that are known in the graph."""
+        return tuple(self._servers)
+
+    def offer(self, service: str, answer: Answer) -> None:
+        """Let somebody offer a service."""
+        self._servers[service] = answer
+
+    def withdraw(self, service: str) -> None:
+        """Let nobody offer a service any more, or nobody that is known."""
+        self._servers.pop(service, None)
+
+    async def call(self, service: str, request: Fields) -> Fields:
+        """Let somebody call a service; what its answer raises is logged, as with ROS.
+
+        Raises:
+            KeyError: There is no such service.
+        """
+        try:
+            return await self._servers[service](request)
+        except Exception:
+            _log.exception("%s failed; the request gets an empty response", service)
+            return {}
+
+    def fail(self) -> None:
+        """Let the link to ROS 2 break."""
+        self._failed.set()
+
+    def run(self, work: Coroutine[Any, Any, None]) -> asyncio.Task[None]:
+        """Run something until it ends, or until the graph is closed."""
+        task = asyncio.create_task(work, name="of a graph in memory")
+        self._tasks.add(task)
+        task.add_done_callback(self._tasks.discard)
+        return task
+
+    async def pass_time(self, by_s: float) -> None:
+        """Wait, in virtual time."""
+        await self.clock.sleep_until(self.clock.now() + seconds(by_s))
+
+    # --- for its nodes ---------------------------------------------------------------------------
+
+    def _note(self, name: str, type_name: str, qos: Qos | None = None) -> None:
+        if type_name in self.missing:
+            raise UnknownTypeError(type_name)
+        self.types[name] = type_name
+        if qos is not None:
+            self.qos[name] = qos
+
+    def _publish(self, topic: str, fields: Fields, latched: bool) -> None:
+        self._published[topic].append(fields)
+        if latched:
+            self._latched[topic] = fields
+        if not self.closed:
+            for hear in self._listeners[topic]:
+                hear(as_message(fields))
+
+    def _listen(self, topic: str, qos: Qos, hear: Callable[[Message], None]) -> None:
+        self._listeners[topic].append(hear)
+        if qos is Qos.LATCHED and topic in self._latched:
+            hear(as_message(self._latched[topic]))
+
+    def _watch(self, topic: str, take: Callable[[bool], None]) -> None:
+        self._liveliness[topic].append(take)
+        if topic in self._alive:
+            take(True)
+
+    async def _ask(self, service: str, request: Fields, within_s: float) -> Message:
+        self.requests.append(Request(to_seconds(self.clock.now()), service, request))
+        response: asyncio.Future[Message] = asyncio.get_running_loop().create_future()
+        self.run(self._carry(service, request, response))
+        deadline = asyncio.create_task(self.pass_time(within_s))
+        try:
+            await asyncio.wait({response, deadline}, return_when=asyncio.FIRST_COMPLETED)
+            if not response.done():
+                raise TimeoutError
+            return response.result()
+        finally:
+            response.cancel()
+            deadline.cancel()
+
+    async def _carry(
+        self, service: str, request: Fields, response: asyncio.Future[Message]
+    ) -> None:
+        await self.pass_time(LATENCY_S)
+        if service not in self._servers:
+            return
+        answer = as_message(await self.call(service, request))
+        await self.pass_time(LATENCY_S)
+        if not response.done():
+            response.set_result(answer)
+
+
+class FakeRosNode:
+    """A node of ours in a `FakeGraph`; a `RosNode`."""
+
+    def __init__(self, graph: FakeGraph) -> None:
+        self._graph = graph
+
+    def client(self, service: str, type_name: str) -> "FakeClient":
+        """Return a client."""
+        self._graph._note(service, type_name)  # noqa: SLF001
+        return FakeClient(self._graph, service)
+
+    def publisher(self, topic: str, type_name: str, qos: Qos) -> "FakePublisher":
+        """Return a publisher."""
+        self._graph._note(topic, type_name, qos)  # noqa: SLF001
+        return FakePublisher(self._graph, topic, qos)
+
+    def subscribe(
+        self,
+        topic: str,
+        type_name: str,
+        qos: Qos,
+        pick: Callable[[Message], PickedT | None],
+        take: Callable[[PickedT], None],
+    ) -> None:
+        """Hear a topic; a message over which `pick` raises is logged and dropped."""
+
+        def hear(message: Message) -> None:
+            try:
+                picked = pick(message)
+            except Exception:
+                _log.exception("%s: a message was dropped", topic)
+                return
+            if picked is not None:
+                take(picked)
+
+        self._graph._note(topic, type_name, qos)  # noqa: SLF001
+        self._graph._listen(topic, qos, hear)  # noqa: SLF001
+
+    def watch_liveliness(
+        self, topic: str, type_name: str, lease_s: float, take: Callable[[bool], None]
+    ) -> None:
+        """Hear whether a topic has a publisher that lives; see `FakeGraph.set_alive`."""
+        assert lease_s > 0
+        self._graph._note(topic, type_name)  # noqa: SLF001
+        self._graph._watch(topic, take)  # noqa: SLF001
+
+    def serve(self, service: str, type_name: str, answer: Answer) -> None:
+        """Offer a service; see `FakeGraph.call`."""
+        self._graph._note(service, type_name)  # noqa: SLF001
+        self._graph.offer(service, answer)
+
+
+class FakeClient:
+    """A client in a `FakeGraph`; a `Client`."""
+
+    def __init__(self, graph: FakeGraph, service: str) -> None:
+        self._graph = graph
+        self._service = service
+
+    def is_ready(self) -> bool:
+        """Tell whether the graph knows a server."""
+        return self._service in self._graph.services
+
+    async def call(self, request: Fields, within_s: float) -> Message:
+        """Ask, and return the response.
+
+        Raises:
+            TimeoutError: There was none in time.
+        """
+        return await self._graph._ask(self._service, request, within_s)  # noqa: SLF001
+
+
+class FakePublisher:
+    """A publisher in a `FakeGraph`; a `Publisher`."""
+
+    def __init__(self, graph: FakeGraph, topic: str, qos: Qos) -> None:
+        self._graph = graph
+        self._topic = topic
+        self._latched = qos is Qos.LATCHED
+
+    def publish(self, message: Fields) -> None:
+        """Send a message."""
+        self._graph._publish(self._topic, message, self._latched)  # noqa: SLF001
