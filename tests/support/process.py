@@ -43,6 +43,11 @@ class ServiceProcess:
         return f"{self.url.replace('http', 'ws', 1)}/ws"
 
     @property
+    def pid(self) -> int:
+        """Number of the process."""
+        return self._process.pid
+
+    @property
     def runs(self) -> bool:
         """Tell whether it has not ended."""
         return self._process.poll() is None
