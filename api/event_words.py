@@ -55,6 +55,8 @@ _WORDS: Mapping[str, Callable[[Data], str]] = {
     "emergency_stop.standstill": lambda _: "the vehicle stands after the emergency stop",
     "node.unreachable": lambda data: f"{data['node']} is not reachable",
     "node.reachable": lambda data: f"{data['node']} is reachable",
+    "node.restoring": lambda data: f"{data['node']} is back, and restored to {data['target']}",
+    "node.not_restored": lambda data: _because(f"{data['node']} is back, not restored", data),
     "change.succeeded": _change("succeeded"),
     "change.failed": _change("failed"),
     "change.timed_out": _change("timed out"),

@@ -13,6 +13,7 @@ from domain.changes.operations import Changes
 from domain.changes.plan import ChangeGoal, next_steps, presumed_steps
 from domain.changes.record import ChangeSettings, Step
 from domain.changes.request_check import check_request, describe_request
+from domain.changes.restoring import Restoring
 from domain.errors import BackendUnavailableError
 from domain.findings import Blocker
 from domain.health.emergency_stop import EmergencyStop
@@ -88,6 +89,9 @@ class Supervision:
         self._inference = ModeInference(model)
         self._admission = ChangeAdmission(model, self._inference.facts)
         self._changes = Changes(self._inference, settings.changes, self._outbox, self._is_stopped)
+        self._restoring = Restoring(
+            self._inference, self._changes, settings.changes, self._outbox, self._admit
+        )
         self._views = PartViews(self._inference, self._changes, self._outbox)
         self._health = StateManager(settings.signals, start)
         self._emergency_stop = EmergencyStop()
@@ -129,6 +133,7 @@ class Supervision:
                 self._take_change_request(given)
             case CancelRequest():
                 self._begin_input("change.cancel_requested", {"change": given.change}, given.actor)
+                self._restoring.cancel(given.change)
                 self._changes.cancel(given.change, self._now)
             case EmergencyStopRequest():
                 self._take_emergency_stop(given)
@@ -147,7 +152,7 @@ class Supervision:
                 self._take_write_record(given)
             case TimePassed():
                 pass
-        self._views.settle(self._now)
+        self._settle()
         return self._outbox.take()
 
     def _let_pass(self, now: Instant) -> None:
@@ -159,8 +164,15 @@ class Supervision:
             self._changes.pass_time(self._now)
             self.driving.pass_time(self._now)
             self._health_events.tell_state(self.driving.status, None)
-            self._views.settle(self._now)
+            self._settle()
         self._now = now
+
+    def _settle(self) -> None:
+        """Conclude an input; what is restored because of it has a cause of its own."""
+        self._views.settle(self._now)
+        while self._restoring.begin_next(self._now):
+            self._views.note_actuals(self._outbox.parts)
+            self._views.settle(self._now)
 
     def _begin_input(
         self,
@@ -191,10 +203,13 @@ class Supervision:
         if report.reachable is not None:
             data["reachable"] = report.reachable
         self._begin_input("node.reported", data, cause=step.event if step else None)
+        returns = self._restoring.is_return(report)
         changed = self._inference.report(report, self._now)
         self._views.note_reachable(report.node)
         self._views.note_actuals(changed)
         self._changes.report(report, self._now)
+        if returns:
+            self._restoring.note_return(report.node, step)
 
     def _take_answer(self, answer: NodeAnswer) -> None:
         step = self._changes.step_in_flight(answer.node)
@@ -216,6 +231,7 @@ class Supervision:
         data = {"part": part, **describe_request(request)}
         self._begin_input("change.requested", data, request.actor)
         self._outbox.change = self._changes.begin(part, request, goal, self._now)
+        self._restoring.forget(goal.targets)
         self._views.note_actuals(self._outbox.parts)
 
     def _admit(self, request: ChangeRequest) -> ChangeGoal:

@@ -67,12 +67,22 @@ KINDS = (
     Kind("hold.requested", "Somebody holds the task.", ("owner", "reason"), is_input=True),
     Kind("hold.set", "A hold began.", ("owner", "reason")),
     Kind("node.answered", "A node answers a step.", ("node", "accepted", "reason"), is_input=True),
+    Kind(
+        "node.not_restored",
+        "A node that returned is left as it is, for a reason.",
+        ("node", "target", "reason"),
+    ),
     Kind("node.reachable", "A node is heard of, for the first time or again.", ("node",)),
     Kind(
         "node.reported",
         "A node says what it is in.",
         ("node", "state?", "mode?", "parameters?", "reachable?"),
         is_input=True,
+    ),
+    Kind(
+        "node.restoring",
+        "A node returned, and a change brings it to its target (`on_return`).",
+        ("node", "target"),
     ),
     Kind("node.unreachable", "Nothing is heard of a node any more.", ("node",)),
     Kind(

@@ -10,6 +10,7 @@ import hypothesis.strategies as st
 from hypothesis import settings
 from hypothesis.stateful import RuleBasedStateMachine, invariant, precondition, rule
 
+from domain.changes.record import ChangeSettings
 from domain.errors import PilothouseError
 from domain.lifecycle import Transition
 from domain.messages import (
@@ -18,11 +19,13 @@ from domain.messages import (
     Event,
     Input,
     ModeRequest,
+    Outputs,
     ParametersRequest,
     TransitionRequest,
 )
 from domain.simulation.node_settings import Fault
 from domain.snapshot import ChangeStatus, StepStatus, SystemState
+from domain.supervision import SupervisionSettings
 from domain.system_model import ModeName, PartName
 from tests.support.good import GOOD
 from tests.support.models import ACTUATION, ARM, BASE, nested_model
@@ -52,37 +55,38 @@ class Sequences(RuleBasedStateMachine):
 
     def __init__(self) -> None:
         super().__init__()
-        self.robot = VirtualRobot(MODEL)
+        changes = ChangeSettings(restored_nodes=frozenset({BASE, ARM}))
+        self.robot = VirtualRobot(MODEL, SupervisionSettings(changes=changes))
         self.robot.read(**GOOD)
         self.checked = 0
 
-    def ask(self, request: Input) -> None:
+    def ask(self, request: Input) -> Outputs:
         """Ask for something that may be refused; a refusal changes nothing."""
         before = self.robot.core.parts()
         changes = self.robot.core.changes()
         try:
-            self.robot.give(request)
+            return self.robot.give(request)
         except PilothouseError:
             assert self.robot.core.parts() == before
             assert self.robot.core.changes() == changes
+            return Outputs()
 
     @rule(part=PARTS, data=st.data())
     def ask_for_a_mode(self, part: PartName, data: st.DataObject) -> None:
         modes = MODEL.modes_of(part)
         mode = data.draw(st.sampled_from([*modes, ModeName("NO_SUCH")]))
         enterable = {view.mode: view for view in self.robot.core.modes(part)}.get(mode)
-        self.ask(ModeRequest(part, mode))
+        begun = self.ask(ModeRequest(part, mode)).change
         if enterable is not None and enterable.can_enter:
-            newest = self.robot.core.changes()[0]
-            assert newest.request == ModeRequest(part, mode), "can_enter, and yet refused"
+            assert begun is not None, "can_enter, and yet refused"
+            assert self.robot.change(begun).request == ModeRequest(part, mode)
 
     @rule(part=PARTS, transition=st.sampled_from(Transition))
     def ask_for_a_transition(self, part: PartName, transition: Transition) -> None:
         available = self.robot.core.available_transitions(part)
-        count = len(self.robot.core.changes())
-        self.ask(TransitionRequest(part, transition))
+        begun = self.ask(TransitionRequest(part, transition)).change
         if transition in available:
-            assert len(self.robot.core.changes()) == count + 1, "available, and yet refused"
+            assert begun is not None, "available, and yet refused"
 
     @rule(speed=st.floats(0, 1), controller=st.sampled_from(["PID", "MPC"]))
     def set_parameters(self, speed: float, controller: str) -> None:
@@ -139,6 +143,16 @@ class Sequences(RuleBasedStateMachine):
             if step.status is StepStatus.RUNNING
         ]
         assert len(running) == len(set(running))
+
+    @invariant()
+    def what_nobody_asked_for_supersedes_nothing(self) -> None:
+        unasked = {e.id for e in self.robot.events if e.kind == "node.restoring"}
+        restoring = {c.id for c in self.robot.core.changes() if c.cause in unasked}
+        for change in self.robot.core.changes():
+            if change.status is ChangeStatus.SUPERSEDED:
+                assert change.reason is not None
+                _, _, _, newer, *_ = change.reason.split()
+                assert newer not in restoring
 
     def teardown(self) -> None:
         """After a minute without a new request everything has ended."""

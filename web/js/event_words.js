@@ -17,6 +17,8 @@ const EVENT_WORDS = {
   "change.step_started": ({ node, action }) => `${node}: ${action}`,
   "change.step_ended": ({ node, action, status, error }) =>
     `${node}: ${action} ${status}${error ? `, ${error}` : ""}`,
+  "node.restoring": ({ node, target }) => `${node} is back, and restored to ${target}`,
+  "node.not_restored": ({ node, reason }) => because(`${node} is back, not restored`, reason),
   "task.requested": ({ waypoints, length_m, controller, speed_mps }) =>
     `${waypoints} waypoints, ${metres(length_m)} by ${controller} at ${speed_mps} m/s`,
   "task.served": ({ task, length_m }) => `${task}, ${metres(length_m)}`,

@@ -62,6 +62,14 @@ def test_what_only_the_program_needs_is_left_out() -> None:
     assert told("part.actual_changed", part="arm", was="inactive", actual="active") is None
 
 
+def test_a_node_that_is_back_is_told_with_what_becomes_of_it() -> None:
+    back = {"node": "drive_base", "target": "active.FAST"}
+
+    assert told("node.restoring", **back) == "drive_base is back, and restored to active.FAST"
+    words = told("node.not_restored", **back, reason="ESTOP is on")
+    assert words == "drive_base is back, not restored: ESTOP is on"
+
+
 def test_the_words_fit_all_that_really_happens() -> None:
     def ask(t_s: float, method: str, path: str, **body: object) -> Step:
         return {"t_s": t_s, "request": {"method": method, "path": path, "body": body}}

@@ -1,0 +1,141 @@
+"""Nodes that return after they were gone, and are brought back to what was asked of them.
+
+Only those that the settings name: a node that moves by itself because its process was started anew
+is a surprise, unless somebody wanted it so. Nothing else begins a change that nobody asked for.
+"""
+
+from collections.abc import Callable, Iterable
+
+from domain.changes.operations import Changes
+from domain.changes.plan import ChangeGoal
+from domain.changes.record import ChangeSettings, Step
+from domain.errors import BackendUnavailableError, RefusedError
+from domain.lifecycle import LifecycleState, Transition, arrival
+from domain.messages import ChangeId, ChangeRequest, ModeRequest, NodeReport, TransitionRequest
+from domain.mode_inference import ModeInference
+from domain.outbox import Outbox
+from domain.system_model import DEFAULT_MODE, PartName, StateAndMode
+from domain.timebase import Instant, seconds, to_seconds
+
+MAX_RESTORES = 3
+"""Of one node within `WINDOW`; one that falls whenever it is activated is left alone then."""
+WINDOW = seconds(60)
+
+_SEEN_ON_ITS_WAY = frozenset(
+    {LifecycleState.UNCONFIGURED, LifecycleState.CLEANING_UP, LifecycleState.ERROR_PROCESSING}
+)
+"""From where a process that goes on comes to be unconfigured."""
+
+
+class Restoring:
+    """Notes which nodes returned, and begins a change of each once no other one holds it."""
+
+    def __init__(
+        self,
+        inference: ModeInference,
+        changes: Changes,
+        settings: ChangeSettings,
+        outbox: Outbox,
+        admit: Callable[[ChangeRequest], ChangeGoal],
+    ) -> None:
+        self._inference = inference
+        self._changes = changes
+        self._restored = settings.restored_nodes
+        self._outbox = outbox
+        self._admit = admit
+        self._returned: dict[PartName, int] = {}
+        """By node, the event of the report by which it was back."""
+        self._begun: dict[PartName, list[Instant]] = {}
+        self._given_up: set[PartName] = set()
+
+    def is_return(self, report: NodeReport) -> bool:
+        """Tell whether a node is back by a report that was not yet taken in.
+
+        Nothing was known of it until now; or a complete report says that it is unconfigured, and it
+        was not seen on the way there: its process was started anew before it was missed.
+        """
+        if report.node not in self._restored:
+            return False
+        known = self._inference.facts[report.node].known_state
+        if known is LifecycleState.UNKNOWN:
+            return report.reachable is not False
+        is_fresh = report.reachable is True and report.state is LifecycleState.UNCONFIGURED
+        return is_fresh and known not in _SEEN_ON_ITS_WAY
+
+    def note_return(self, node: PartName, step: Step | None) -> None:
+        """Note that a node is back, unless a change takes it up by itself.
+
+        Args:
+            node: Of the report that was a return, and was taken in.
+            step: What was in flight before.
+        """
+        if self._inference.facts[node].known_state is LifecycleState.UNKNOWN:
+            return
+        begun = self._changes.step_in_flight(node)
+        # A change that sets parameters brings no node to its target.
+        if begun in (None, step) or node not in self._changes.get(begun.change).targets:
+            self._returned[node] = self._outbox.record_input()
+
+    def forget(self, parts: Iterable[PartName]) -> None:
+        """Leave parts to somebody who asked something of them, and trust them again."""
+        for part in parts:
+            self._returned.pop(part, None)
+            self._begun.pop(part, None)
+            self._given_up.discard(part)
+
+    def cancel(self, change: ChangeId) -> None:
+        """Leave nodes alone that wait for the end of a change that somebody cancels."""
+        for node in [n for n in self._returned if self._changes.change_of(n) == change]:
+            del self._returned[node]
+
+    def begin_next(self, now: Instant) -> bool:
+        """Begin a change of the next node that can be restored; return whether there was one."""
+        for node, cause in list(self._returned.items()):
+            is_gone = not self._inference.facts[node].reachable
+            if not is_gone and self._changes.change_of(node) is not None:
+                continue
+            del self._returned[node]
+            target = self._inference.target(node)
+            if is_gone or target is None or not self._is_missed(node, target):
+                continue
+            if self._begin(node, target, cause, now):
+                return True
+        return False
+
+    def _is_missed(self, node: PartName, target: StateAndMode) -> bool:
+        """Tell whether a node should be elsewhere; who starts a finalized one anew wants it."""
+        return target.state is not LifecycleState.FINALIZED and not self._inference.converged(node)
+
+    def _begin(self, node: PartName, target: StateAndMode, cause: int, now: Instant) -> bool:
+        if node in self._given_up:
+            return False
+        data = {"node": node, "target": target.label}
+        begun = [at for at in self._begun.get(node, ()) if now - at < WINDOW]
+        if len(begun) == MAX_RESTORES:
+            self._given_up.add(node)
+            often = f"it was restored {MAX_RESTORES} times within {to_seconds(WINDOW):g} s"
+            reason = f"{often}, and is left as it is until it is asked for"
+            self._outbox.emit("node.not_restored", {**data, "reason": reason}, cause)
+            return False
+        request = self._request(node, target)
+        try:
+            goal = self._admit(request)
+        except (BackendUnavailableError, RefusedError) as refusal:
+            self._outbox.emit("node.not_restored", {**data, "reason": refusal.message}, cause)
+            return False
+        self._begun[node] = [*begun, now]
+        self._outbox.begin(now, "node.restoring", data, cause=cause)
+        self._changes.begin(node, request, goal, now)
+        return True
+
+    def _request(self, node: PartName, target: StateAndMode) -> ChangeRequest:
+        """Return what somebody would ask to bring a node to its target."""
+        if target.state is LifecycleState.ACTIVE:
+            if self._inference.model.modes_of(node):
+                return ModeRequest(node, target.mode or DEFAULT_MODE)
+            return TransitionRequest(node, Transition.ACTIVATE)
+        if target.state is LifecycleState.UNCONFIGURED:
+            return TransitionRequest(node, Transition.CLEANUP)
+        resting = arrival(self._inference.facts[node].known_state)
+        is_active = resting is LifecycleState.ACTIVE
+        return TransitionRequest(node, Transition.DEACTIVATE if is_active else Transition.CONFIGURE)
