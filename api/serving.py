@@ -1,6 +1,6 @@
-"""`pilothouse serve`: put the parts together, then run robot and web server as equals.
+"""`pilothouse serve`: run robot and web server as equals.
 
-The only place that names concrete adapters, and the owner of SIGINT, SIGTERM and every task.
+The owner of SIGINT, SIGTERM and every task.
 """
 
 import asyncio
@@ -11,8 +11,6 @@ import signal
 import socket
 import sys
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
-from importlib import resources
 from pathlib import Path
 
 from api.access import (
@@ -24,48 +22,26 @@ from api.access import (
     take_token,
 )
 from api.app import create_app, prepare
+from api.composition import EXAMPLE, Composition, MisuseError, ServeOptions, compose
 from api.distribution import installed_version
-from api.limits import ServiceLimits
 from api.metrics import metrics
 from api.model_check import finding_line
 from api.service_manager import ServiceManager, UnknownManagerError
 from api.web_server import ListenError, WebServer, is_loopback, listen, url_of, web_server
 from domain.errors import InvalidModelError
 from domain.findings import Finding
-from domain.system_model import SmhModel
-from service.backends.simulated import SimulatedBackend
-from service.clock import Clock, MonotonicClock
-from service.files.model_file import load_model
-from service.files.robot_file import InvalidRobotFileError, RobotSettings, load_robot_file
+from service.backends.ros2.graph import GraphFailedError, UnknownTypeError
+from service.clock import MonotonicClock
+from service.files.robot_file import InvalidRobotFileError
 from service.files.text_file import UnreadableFileError
-from service.robot_parts import make_onboard, make_simulated_robot
-from service.start_task import StartTaskError, serve_start_task
+from service.ros_gateway import RosGateway
+from service.start_task import StartTaskError
 from service.supervisor import Supervisor, TaskFailedError
 
 log = logging.getLogger(__name__)
 
 SUCCEEDED, FAILED, MISUSED, INTERRUPTED = 0, 1, 2, 130
-
-EXAMPLE = Path(str(resources.files("service") / "example" / "actuation.yaml"))
-
-
-@dataclass(frozen=True, slots=True)
-class ServeOptions:
-    """What `pilothouse serve` was told."""
-
-    model: Path | None = None
-    """None: the example."""
-    robot: Path | None = None
-    host: str = "127.0.0.1"
-    port: int = 8000
-    anonymous: bool = False
-    mock_signals: bool = False
-    allowed_hosts: tuple[str, ...] = ()
-    log_level: str = "info"
-
-
-class MisuseError(Exception):
-    """The command was told what does not go together; the message says what to do."""
+_DOMAIN_VARIABLE = "ROS_DOMAIN_ID"
 
 
 def serve(options: ServeOptions) -> int:
@@ -74,8 +50,7 @@ def serve(options: ServeOptions) -> int:
     try:
         access = access_of(options, take_token())
         manager = ServiceManager.of(os.environ)
-        supervisor = compose(options, MonotonicClock())
-        limits = ServiceLimits.of(_robot_settings(options, supervisor.model).limits)
+        composition = compose(options, MonotonicClock())
         sockets = listen(options.host, options.port)
     except (InvalidTokenError, MisuseError, UnknownManagerError) as error:
         return _complain(str(error), MISUSED)
@@ -83,21 +58,21 @@ def serve(options: ServeOptions) -> int:
         return _complain_of(options.model or EXAMPLE, error.findings)
     except InvalidRobotFileError as error:
         return _complain_of(options.robot, error.findings)
-    except (ListenError, StartTaskError, UnreadableFileError) as error:
+    except (ListenError, StartTaskError, UnknownTypeError, UnreadableFileError) as error:
         return _complain(str(error), FAILED)
-    hosts = (options.host, *options.allowed_hosts)
-    app = create_app(supervisor, allowed_hosts=hosts, access=access, limits=limits)
+    supervisor, hosts = composition.supervisor, (options.host, *options.allowed_hosts)
+    app = create_app(supervisor, allowed_hosts=hosts, access=access, limits=composition.limits)
     app.state.exposed = options.anonymous and not is_loopback(options.host)
     prepare(app)
     metrics(app)
-    greeting = "\n".join(greet(supervisor, options, url_of(sockets, options.host), access))
+    greeting = "\n".join(greet(composition, options, url_of(sockets, options.host), access))
     server = web_server(app, lambda: _say_serving(greeting, manager, supervisor))
     # What was made until now stays: it need not be looked through again by each collection, which
     # would stop the tick for as long.
     gc.collect()
     gc.freeze()
     with asyncio.Runner(loop_factory=_new_event_loop) as runner:
-        return runner.run(run_service(supervisor, server, sockets, manager))
+        return runner.run(run_service(composition, server, sockets, manager))
 
 
 def access_of(options: ServeOptions, token: str | None) -> Access:
@@ -129,36 +104,8 @@ def access_of(options: ServeOptions, token: str | None) -> Access:
     return Access.with_token(token)
 
 
-def compose(options: ServeOptions, clock: Clock) -> Supervisor:
-    """Return the supervisor of the robot that the options describe; nothing runs yet.
-
-    Raises:
-        UnreadableFileError: A file cannot be read.
-        InvalidModelError: The model has faults.
-        InvalidRobotFileError: The robot file has.
-        StartTaskError: The task to begin with cannot be driven.
-    """
-    loaded = load_model(options.model or EXAMPLE)
-    robot = _robot_settings(options, loaded.model)
-    mock = _mocks(options, robot)
-    now = clock.now()
-    simulated = make_simulated_robot(loaded.model, robot, now, mock=mock)
-    backend = SimulatedBackend(simulated, clock)
-    supervisor = Supervisor(
-        loaded,
-        make_onboard(loaded.model, robot, now),
-        clock,
-        backend,
-        backend.mock,
-        simulated=simulated.what,
-    )
-    if options.robot is not None and robot.start_task is not None:
-        serve_start_task(supervisor, robot.start_task, options.robot)
-    return supervisor
-
-
 async def run_service(
-    supervisor: Supervisor,
+    composition: Composition,
     server: WebServer,
     sockets: Sequence[socket.socket],
     manager: ServiceManager,
@@ -166,10 +113,11 @@ async def run_service(
     """Run robot and web server until a signal or a failure, and return the exit code.
 
     A supervisor that died takes the web server with it: a page that looks alive over a robot that
-    nobody watches is the worst of ends. On a signal the vehicle is stopped, nodes are left as they
-    are, and clients are told that the service goes (close code 1012). A second signal ends the
-    process at once.
+    nobody watches is the worst of ends. So does the gateway to ROS 2, if there is one. On a signal
+    the vehicle is stopped, nodes are left as they are, and clients are told that the service goes
+    (close code 1012). A second signal ends the process at once.
     """
+    supervisor, gateway = composition.supervisor, composition.gateway
     stopping = asyncio.Event()
     _on_signals(stopping)
     code = SUCCEEDED
@@ -177,6 +125,7 @@ async def run_service(
         async with asyncio.TaskGroup() as tasks:
             supervising = tasks.create_task(supervisor.run(), name="supervisor")
             serving = tasks.create_task(_serve_until(stopping, server, sockets), name="web server")
+            offering = tasks.create_task(_offer(gateway), name="gateway") if gateway else None
             await stopping.wait()
             manager.say_stopping()
             # The robot first: the rest may take a moment.
@@ -184,16 +133,21 @@ async def run_service(
             supervisor.stop_waiting()
             server.should_exit = True
             await serving
+            if offering is not None:
+                offering.cancel()
             supervising.cancel()
     except* Exception as failures:
         for failure in _leaves(failures):
-            log.critical("%s", failure, exc_info=failure.__cause__ or failure)
+            _tell_failure(failure)
         code = FAILED
     return code
 
 
-def greet(supervisor: Supervisor, options: ServeOptions, url: str, access: Access) -> Iterator[str]:
+def greet(
+    composition: Composition, options: ServeOptions, url: str, access: Access
+) -> Iterator[str]:
     """Say what runs, where, who may use it, and what to try first."""
+    supervisor = composition.supervisor
     model = supervisor.model
     source = f"{options.model}" if options.model else "the built-in example"
     counts = f"{_count(len(model.systems), 'system')}, {_count(len(model.nodes), 'node')}"
@@ -210,8 +164,12 @@ def greet(supervisor: Supervisor, options: ServeOptions, url: str, access: Acces
         if modes:
             body = f'{{"mode": "{modes[-1]}"}}'
             yield f"        {curl} -X POST {url}/{kind}/{part}/mode -d '{body}'"
+    if composition.gateway is not None:
+        domain = os.environ.get(_DOMAIN_VARIABLE) or "0"
+        yield f"ROS 2: domain {domain}. Nodes and vehicle are real: what is asked here moves them."
     if supervisor.simulated:
-        yield f"Simulated: {', '.join(supervisor.simulated)}. Nothing here moves a real robot."
+        harmless = "" if composition.gateway else " Nothing here moves a real robot."
+        yield f"Simulated: {', '.join(supervisor.simulated)}.{harmless}"
     for warning in supervisor.warnings:
         yield finding_line(source, warning)
     yield "Ctrl-C ends it; the vehicle is stopped, nodes are left as they are."
@@ -242,6 +200,23 @@ async def _serve_until(
         raise TaskFailedError("web server")
 
 
+async def _offer(gateway: RosGateway) -> None:
+    """Offer the robot to ROS 2; to end is a failure like that of any task."""
+    gateway.offer()
+    await gateway.run()
+    raise TaskFailedError("gateway")
+
+
+def _tell_failure(failure: BaseException) -> None:
+    """Log why the service ends; what somebody can do something about needs no traceback."""
+    cause = failure.__cause__ or failure
+    causes = [*_leaves(cause)] if isinstance(cause, BaseExceptionGroup) else [cause]
+    if all(isinstance(cause, GraphFailedError | UnknownTypeError) for cause in causes):
+        log.critical("%s", "; ".join(str(cause) for cause in causes))
+    else:
+        log.critical("%s", failure, exc_info=cause)
+
+
 def _leaves(group: BaseExceptionGroup[BaseException]) -> Iterator[BaseException]:
     for failure in group.exceptions:
         if isinstance(failure, BaseExceptionGroup):
@@ -267,18 +242,6 @@ def _log_to_stderr(level: str) -> None:
     # It tells of each connection at this level; what matters is told by our own modules.
     for name in ("uvicorn.error", "uvicorn.access"):
         logging.getLogger(name).setLevel("DEBUG" if level == "debug" else "WARNING")
-
-
-def _robot_settings(options: ServeOptions, model: SmhModel) -> RobotSettings:
-    return load_robot_file(options.robot, model) if options.robot else RobotSettings()
-
-
-def _mocks(options: ServeOptions, robot: RobotSettings) -> bool:
-    """Tell whether the signals are mocked: with simulated nodes they are, unless told otherwise.
-
-    So a model that somebody tries is IDLE, and not in ERROR for want of readings.
-    """
-    return options.mock_signals or robot.mock is not False
 
 
 def _complain(message: str, code: int) -> int:

@@ -22,6 +22,11 @@ def _add_options(parser: argparse.ArgumentParser) -> None:
         "model", nargs="?", type=Path, metavar="MODEL", help="model file; default: the example"
     )
     parser.add_argument("--robot", type=Path, metavar="FILE", help="robot file: settings")
+    parser.add_argument(
+        "--backend",
+        choices=("simulated", "ros2"),
+        help="through what nodes are reached; default: as the robot file says, or simulated",
+    )
     parser.add_argument("--host", default="127.0.0.1", help="address to listen on; %(default)s")
     parser.add_argument(
         "--port", default=8000, type=_port, help="%(default)s; 0 takes a free one and prints it"
@@ -52,12 +57,14 @@ def _port(text: str) -> int:
 
 
 def _run(options: argparse.Namespace) -> int:
-    from api.serving import ServeOptions, serve
+    from api.composition import ServeOptions
+    from api.serving import serve
 
     return serve(
         ServeOptions(
             model=options.model,
             robot=options.robot,
+            backend=options.backend,
             host=options.host,
             port=options.port,
             anonymous=options.anonymous,

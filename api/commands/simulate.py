@@ -49,7 +49,7 @@ def _add_options(parser: argparse.ArgumentParser) -> None:
 
 
 def _run(options: argparse.Namespace) -> int:
-    from api.serving import EXAMPLE
+    from api.composition import EXAMPLE
     from api.simulate_command import simulate
 
     return simulate(options.scenario, options.format, EXAMPLE, options.model, options.robot)

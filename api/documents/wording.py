@@ -67,6 +67,15 @@ STREAM = "\n".join(
     )
 )
 
+ROSBRIDGE = (
+    "The topics and services that Pilothouse offers to ROS, in rosbridge v2 as JSON: `subscribe`,"
+    " `unsubscribe`, `advertise`, `unadvertise`, `publish`, `call_service`, `set_level`, and the"
+    " services `/rosapi/topics`, `/rosapi/services` and a few more. Its clients are roslibpy and"
+    " roslib; neither end needs ROS. Where the service was started with a token, the handshake"
+    " holds `Authorization: Bearer`, or the first message is"
+    ' `{"op": "auth", "token": "..."}`.'
+)
+
 STREAM_QUERY: Mapping[str, Mapping[str, Any]] = MappingProxyType(
     {
         "topics": {

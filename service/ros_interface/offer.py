@@ -10,6 +10,9 @@ from typing import Any, TypeAlias
 
 Fields: TypeAlias = Mapping[str, Any]
 
+OWN_NODE = "pilothouse"
+"""Name of the ROS node that has what belongs to no system."""
+
 
 @dataclass(frozen=True, slots=True)
 class OfferedService:
@@ -20,7 +23,7 @@ class OfferedService:
     type: str
     """As `lifecycle_msgs/srv/ChangeState`."""
     node: str
-    """Name of the ROS node that has it, without the leading slash: the system, or `pilothouse`."""
+    """Name of the ROS node that has it, without the leading slash: the system, or `OWN_NODE`."""
     of_a_node: bool
     """Whether a real ROS 2 node offers it by itself: then it is offered only where the nodes are
     none."""

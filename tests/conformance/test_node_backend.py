@@ -7,20 +7,28 @@ own kind of time.
 
 import asyncio
 from collections.abc import AsyncIterator, Callable
+from importlib import import_module
 from typing import Protocol, TypeAlias
 
 import pytest
 
 from domain.lifecycle import LifecycleState, Transition
 from domain.messages import AskFacts, AskParameters, AskTransition, NodeAnswer, NodeReport
-from domain.parameters import ParameterValue
+from domain.parameters import Parameters, ParameterValue
 from domain.simulation.node_settings import Fault
 from domain.simulation.robot import SimulatedRobot
 from domain.system_model import PartName
+from service.backends.ros2.backend import Ros2Backend
 from service.backends.simulated import SimulatedBackend
+from service.clock import MonotonicClock
+from service.files.robot_file import RobotSettings
 from service.ports import BackendMessage, RobotBackend
+from tests.ros2.support.isolation import isolate
+from tests.ros2.support.nodes_process import NodesProcess
 from tests.support.manual_clock import ManualClock
 from tests.support.models import ARM, BASE, actuation_model
+from tests.support.ros_graph import FakeGraph
+from tests.support.ros_nodes import FakeNode
 
 S = LifecycleState
 NOTICED_WITHIN_S = 5.0
@@ -44,6 +52,9 @@ class BackendUnderTest(Protocol):
     def recover(self, node: PartName) -> None:
         """Let a node speak again, or start it again if its process ended."""
 
+    def end(self) -> None:
+        """End what the nodes run in."""
+
 
 class Simulated:
     """The simulated nodes, in virtual time."""
@@ -66,8 +77,84 @@ class Simulated:
     def recover(self, node: PartName) -> None:
         self._simulated.set_fault(node, None)
 
+    def end(self) -> None:
+        pass
 
-UNDER_TEST: list[Callable[[], BackendUnderTest]] = [Simulated]
+
+class InMemory:
+    """Nodes of ROS 2 in a graph in memory, in virtual time."""
+
+    def __init__(self) -> None:
+        self._clock = ManualClock()
+        graph = FakeGraph(self._clock)
+        base: Parameters = {"max_speed": 0.0, "controller": "none"}
+        arm: Parameters = {"max_torque": 0.0}
+        self._nodes = {BASE: FakeNode(graph, BASE, base), ARM: FakeNode(graph, ARM, arm)}
+        self._stopped: set[PartName] = set()
+        self.backend: RobotBackend = Ros2Backend(
+            actuation_model(), RobotSettings(), graph, self._clock
+        )
+
+    async def pass_time(self, by_s: float) -> None:
+        await self._clock.advance(by_s)
+
+    def silence(self, node: PartName) -> None:
+        self._stopped.add(node)
+        self._nodes[node].stop()
+
+    def kill(self, node: PartName) -> None:
+        self._nodes[node].kill()
+
+    def recover(self, node: PartName) -> None:
+        if node in self._stopped:
+            self._nodes[node].go_on()
+        else:
+            self._nodes[node].start()
+
+    def end(self) -> None:
+        pass
+
+
+class RealNodes:
+    """Nodes of rclpy, each in a process of its own, in real time."""
+
+    def __init__(self) -> None:
+        isolate()
+        base = {"max_speed": 0.0, "controller": "none"}
+        self._processes = {
+            BASE: NodesProcess({"name": BASE, "parameters": base}),
+            ARM: NodesProcess({"name": ARM, "parameters": {"max_torque": 0.0}}),
+        }
+        for process in self._processes.values():
+            process.start()
+        self._stopped: set[PartName] = set()
+        link = import_module("service.backends.ros2.link").RosLink()
+        self.backend: RobotBackend = Ros2Backend(
+            actuation_model(), RobotSettings(), link, MonotonicClock()
+        )
+
+    async def pass_time(self, by_s: float) -> None:
+        await asyncio.sleep(by_s)
+
+    def silence(self, node: PartName) -> None:
+        self._stopped.add(node)
+        self._processes[node].silence()
+
+    def kill(self, node: PartName) -> None:
+        self._processes[node].kill()
+
+    def recover(self, node: PartName) -> None:
+        if node in self._stopped:
+            self._processes[node].go_on()
+        else:
+            self._processes[node].start()
+
+    def end(self) -> None:
+        for process in self._processes.values():
+            process.kill()
+
+
+UNDER_TEST: list[object] = [Simulated, InMemory, pytest.param(RealNodes, marks=pytest.mark.ros2)]
 
 
 class Robot:
@@ -144,17 +231,22 @@ _STEP_S = 0.05
 
 
 @pytest.fixture(params=UNDER_TEST, ids=lambda made: made.__name__.lower())
-async def under_test(request: pytest.FixtureRequest) -> BackendUnderTest:
+async def under_test(request: pytest.FixtureRequest) -> AsyncIterator[BackendUnderTest]:
     made: BackendUnderTest = request.param()
-    return made
+    yield made
+    made.end()
 
 
 @pytest.fixture
 async def robot(under_test: BackendUnderTest) -> AsyncIterator[Robot]:
     robot = Robot(under_test)
-    yield robot
-    robot.running.cancel()
-    await asyncio.wait([robot.running])
+    try:
+        # Real nodes have to be found first.
+        await robot.until(lambda: knows_all(robot, BASE) and knows_all(robot, ARM))
+        yield robot
+    finally:
+        robot.running.cancel()
+        await asyncio.wait([robot.running])
 
 
 Loss: TypeAlias = Callable[[BackendUnderTest, PartName], None]

@@ -12,6 +12,7 @@ from domain.supervision import Supervision, SupervisionSettings
 from domain.system_model import SmhModel
 from domain.timebase import Instant
 from service.backends.simulated import SimulatedBackend
+from service.clock import Clock
 from service.files.model_file import LoadedModel
 from service.supervisor import Supervisor
 from tests.support.manual_clock import ManualClock
@@ -20,7 +21,7 @@ from tests.support.waiting import until
 
 
 def make_supervisor(
-    clock: ManualClock | None = None,
+    clock: Clock | None = None,
     model: SmhModel | None = None,
     warnings: Sequence[Finding] = (),
     *,

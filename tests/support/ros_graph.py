@@ -12,6 +12,7 @@ from dataclasses import dataclass
 from types import SimpleNamespace
 from typing import Any, TypeAlias
 
+from domain.errors import InvalidValueError
 from domain.timebase import seconds, to_seconds
 from service.backends.ros2.graph import (
     Fields,
@@ -48,6 +49,21 @@ def as_message(fields: Any) -> Any:  # noqa: ANN401  # of any shape, as messages
     if isinstance(fields, list | tuple):
         return [as_message(item) for item in fields]
     return fields
+
+
+def _check_numbers(fields: Any) -> None:  # noqa: ANN401  # of any shape, as messages are
+    """Refuse what no message can carry.
+
+    Raises:
+        InvalidValueError: An integer is beyond 64 bits.
+    """
+    if isinstance(fields, Mapping):
+        fields = list(fields.values())
+    if isinstance(fields, list | tuple):
+        for item in fields:
+            _check_numbers(item)
+    elif isinstance(fields, int) and not -(2**63) <= fields < 2**63:
+        raise InvalidValueError(f"{fields} is beyond 64 bits")
 
 
 @dataclass(frozen=True)
@@ -199,6 +215,7 @@ class FakeGraph:
             take(True)
 
     async def _ask(self, service: str, request: Fields, within_s: float) -> Message:
+        _check_numbers(request)
         self.requests.append(Request(to_seconds(self.clock.now()), service, request))
         response: asyncio.Future[Message] = asyncio.get_running_loop().create_future()
         self.run(self._carry(service, request, response))
@@ -292,6 +309,7 @@ class FakeClient:
 
         Raises:
             TimeoutError: There was none in time.
+            InvalidValueError: A number is beyond what ROS carries.
         """
         return await self._graph._ask(self._service, request, within_s)  # noqa: SLF001
 

@@ -140,7 +140,7 @@ class RosLink:
             node.destroy_node()
         for spinner in self._spinners.values():
             spinner.executor.shutdown()
-        rclpy.try_shutdown(context=self.context, uninstall_handlers=False)
+        self.context.try_shutdown()
         self.context.destroy()
 
     def fail(self, reason: str) -> None:
@@ -261,9 +261,7 @@ class _Node:
         """Offer a service for as long as the link is open."""
         kind = _find_type(type_name)
         server = Server(self._crossing, service, kind.Response, answer, self._spinner.do)
-        server.attach(
-            self._node.create_service(kind, service, server.accept, qos_profile=_SERVING)
-        )
+        server.attach(self._node.create_service(kind, service, server.accept, qos_profile=_SERVING))
 
 
 class _Client:

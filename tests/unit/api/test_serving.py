@@ -1,12 +1,14 @@
 import os
-from pathlib import Path
+import sys
+from types import SimpleNamespace
 
 import pytest
 
 from api.access import FILE_VARIABLE, TOKEN_VARIABLE, Access
-from api.serving import MisuseError, ServeOptions, access_of, compose, greet, serve
-from service.files.robot_file import RobotSettings
+from api.composition import MisuseError, ServeOptions, compose
+from api.serving import access_of, greet, serve
 from tests.support.manual_clock import ManualClock
+from tests.support.ros_graph import FakeGraph
 
 URL = "http://127.0.0.1:8000"
 
@@ -15,43 +17,8 @@ TOKEN = "correct-horse-battery"
 
 
 def greeting(options: ServeOptions, access: Access | None = None) -> str:
-    supervisor = compose(options, ManualClock())
-    return "\n".join(greet(supervisor, options, URL, access or Access.open()))
-
-
-@pytest.fixture
-def robot(tmp_path: Path) -> Path:
-    return tmp_path / "robot.yaml"
-
-
-def test_without_arguments_the_example_is_served_with_everything_simulated() -> None:
-    supervisor = compose(ServeOptions(), ManualClock())
-
-    assert "actuation" in supervisor.model.systems
-    assert supervisor.simulated == ("nodes", "signals", "vehicle")
-    assert supervisor.warnings == ()
-
-
-def test_a_robot_file_may_turn_the_mock_off(robot: Path) -> None:
-    robot.write_text("mock: false\n")
-
-    assert compose(ServeOptions(robot=robot), ManualClock()).simulated == ("nodes", "vehicle")
-
-
-def test_the_command_line_may_turn_the_mock_on_again(robot: Path) -> None:
-    robot.write_text("mock: false\n")
-
-    supervisor = compose(ServeOptions(robot=robot, mock_signals=True), ManualClock())
-
-    assert supervisor.mock is not None
-
-
-def test_the_settings_of_a_robot_file_reach_the_core(robot: Path) -> None:
-    robot.write_text("signals:\n  battery_level: {threshold: 0.3}\n")
-
-    supervisor = compose(ServeOptions(robot=robot), ManualClock())
-
-    assert supervisor.core.signal("battery_level").settings["threshold"] == 0.3
+    composition = compose(options, ManualClock())
+    return "\n".join(greet(composition, options, URL, access or Access.open()))
 
 
 def test_the_greeting_says_what_is_served_where_and_what_is_not_real() -> None:
@@ -61,6 +28,31 @@ def test_the_greeting_says_what_is_served_where_and_what_is_not_real() -> None:
     assert f"page  {URL}/" in told
     assert f"curl {URL}/systems/actuation" in told
     assert "Simulated: nodes, signals, vehicle." in told
+
+
+@pytest.mark.parametrize(("variable", "domain"), [("", "0"), ("42", "42")])
+def test_the_greeting_of_a_real_robot_says_so(
+    variable: str, domain: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    link = SimpleNamespace(RosLink=lambda: FakeGraph(ManualClock()))
+    monkeypatch.setitem(sys.modules, "service.backends.ros2.link", link)
+    monkeypatch.setenv("ROS_DOMAIN_ID", variable)
+
+    told = greeting(ServeOptions(backend="ros2", mock_signals=True))
+
+    assert f"ROS 2: domain {domain}. Nodes and vehicle are real" in told
+    assert "Simulated: signals.\n" in told
+    assert "Nothing here moves" not in told
+
+
+def test_without_ros_2_the_service_ends_with_what_to_do_about_it(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.setitem(sys.modules, "service.backends.ros2.link", None)
+
+    assert serve(ServeOptions(backend="ros2", port=0)) == 2
+
+    assert "setup.bash" in capsys.readouterr().err
 
 
 def test_the_greeting_of_a_service_with_a_token_shows_how_to_send_it_and_not_the_token() -> None:
@@ -142,7 +134,3 @@ def test_a_token_that_cannot_be_used_ends_the_service_before_it_begins(
     assert why in told
     assert TOKEN not in told
     assert TOKEN_VARIABLE not in os.environ
-
-
-def test_nothing_set_is_a_robot_file_without_content() -> None:
-    assert RobotSettings().mock is None

@@ -3,7 +3,7 @@ from pathlib import Path
 import pytest
 
 from api.command_line import main
-from api.serving import EXAMPLE
+from api.composition import EXAMPLE
 
 
 def test_simulate_hands_on_what_it_was_told(monkeypatch: pytest.MonkeyPatch) -> None:

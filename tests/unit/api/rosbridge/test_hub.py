@@ -1,0 +1,85 @@
+import asyncio
+
+import pytest
+
+from api.app import create_app
+from api.rosbridge.hub import MAX_CLIENTS, RosbridgeHub, rosbridge_hub
+from api.streaming.hub import stream_hub
+from tests.support.live_robot import make_supervisor
+from tests.support.manual_clock import settle
+from tests.support.rosbridge import Pipe, SmallInterface, make_bridge
+
+
+@pytest.fixture
+def interface() -> SmallInterface:
+    return SmallInterface()
+
+
+@pytest.fixture
+def hub(interface: SmallInterface) -> RosbridgeHub:
+    lobby = stream_hub(create_app(make_supervisor(), allowed_hosts=[]))
+    return RosbridgeHub(make_bridge(interface), lobby)
+
+
+def test_all_who_ask_share_one_hub() -> None:
+    app = create_app(make_supervisor(), allowed_hosts=[])
+
+    assert rosbridge_hub(app) is rosbridge_hub(app)
+    assert rosbridge_hub(app).lobby is stream_hub(app)
+
+
+async def test_messages_are_made_while_there_is_a_client(
+    hub: RosbridgeHub, interface: SmallInterface
+) -> None:
+    with hub.serve(Pipe()):
+        with hub.serve(Pipe()):
+            await settle()
+            assert (hub.clients, interface.running) == (2, 1)
+        await settle()
+        assert (hub.clients, interface.running) == (1, 1)
+    await settle()
+    assert (hub.clients, interface.running) == (0, 0)
+
+
+async def test_a_client_that_comes_right_after_the_last_one_went_is_served(
+    hub: RosbridgeHub, interface: SmallInterface
+) -> None:
+    with hub.serve(Pipe()):
+        await settle()
+    with hub.serve(Pipe()):
+        await settle()
+
+        assert interface.running == 1
+
+
+async def test_one_client_is_one_too_many(hub: RosbridgeHub) -> None:
+    pipes = [Pipe() for _ in range(MAX_CLIENTS)]
+    serving = [hub.serve(pipe) for pipe in pipes]
+    for each in serving:
+        each.__enter__()
+
+    assert hub.is_full
+
+    serving.pop().__exit__(None, None, None)
+    assert not hub.is_full
+    for each in serving:
+        each.__exit__(None, None, None)
+
+
+async def test_when_no_more_messages_can_be_made_all_clients_are_cut_off(
+    hub: RosbridgeHub,
+    interface: SmallInterface,
+    monkeypatch: pytest.MonkeyPatch,
+    caplog: pytest.LogCaptureFixture,
+) -> None:
+    async def fail() -> None:
+        await asyncio.sleep(0)
+        raise ZeroDivisionError
+
+    monkeypatch.setattr(interface, "run", fail)
+    pipe = Pipe()
+    with hub.serve(pipe):
+        await settle()
+
+        assert pipe.aborted
+    assert "rosbridge failed" in caplog.text
