@@ -15,7 +15,7 @@ from api.gate.rate import RateGate
 from api.gate.token import TokenGate
 from api.limits import USUAL_LIMITS, ServiceLimits
 from api.robot_app import create_robot_app
-from api.routes import documents, simulations
+from api.routes import documents, rosbridge, simulations
 from service.supervisor import Supervisor
 from service.worker import Worker
 
@@ -47,6 +47,7 @@ def create_app(
     app.state.simulator = Worker(deadline_s=SIMULATION_DEADLINE_S)
     app.include_router(simulations.router)
     app.include_router(documents.router)
+    app.include_router(rosbridge.router)
     _guard(app, supervisor, allowed_hosts)
     return app
 

@@ -1,4 +1,7 @@
-"""The AsyncAPI document: what goes over `/ws`, from the models of what is sent and taken."""
+"""The AsyncAPI document: what goes over `/ws`, from the models of what is sent and taken.
+
+What goes over `/rosbridge` is named only.
+"""
 
 from collections.abc import Mapping
 from functools import cache
@@ -11,7 +14,7 @@ from pydantic_core import to_json
 
 from api.distribution import installed_version
 from api.documents.examples import Examples, key_of, load_examples
-from api.documents.wording import LICENSE, STREAM, STREAM_QUERY
+from api.documents.wording import LICENSE, ROSBRIDGE, STREAM, STREAM_QUERY
 from api.schemas.stream import (
     AuthMessage,
     EventJson,
@@ -38,6 +41,15 @@ TAKEN: Mapping[str, type[BaseModel]] = MappingProxyType(
 )
 """What a client may send."""
 
+_ROSBRIDGE: Mapping[str, str] = MappingProxyType(
+    {
+        "address": "/rosbridge",
+        "title": "rosbridge",
+        "description": ROSBRIDGE,
+    }
+)
+"""Without messages: those are described where the protocol is."""
+
 _CHANNEL = {"$ref": "#/channels/stream"}
 _PATH = "/ws"
 
@@ -57,7 +69,7 @@ def describe_stream() -> dict[str, Any]:
             },
         },
         "defaultContentType": "application/json",
-        "channels": {"stream": _channel(messages)},
+        "channels": {"stream": _channel(messages), "rosbridge": dict(_ROSBRIDGE)},
         "operations": {
             "sendToClient": _operation("send", SENT, "What a client is sent, in order."),
             "takeFromClient": _operation("receive", TAKEN, "What a client may send."),

@@ -12,8 +12,8 @@ from pathlib import Path
 from typing import Any
 
 from api.app import create_app
+from api.composition import ServeOptions, compose
 from api.documents.asyncapi import describe_stream
-from api.serving import ServeOptions, compose
 from service.clock import MonotonicClock
 
 _FOLDER = Path("docs", "reference")
@@ -21,7 +21,7 @@ _FOLDER = Path("docs", "reference")
 
 def documents() -> Mapping[str, str]:
     """Return the texts of the documents by the names of their files."""
-    app = create_app(compose(ServeOptions(), MonotonicClock()), allowed_hosts=[])
+    app = create_app(compose(ServeOptions(), MonotonicClock()).supervisor, allowed_hosts=[])
     return {"openapi.json": _text(app.openapi()), "asyncapi.json": _text(describe_stream())}
 
 

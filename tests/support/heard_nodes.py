@@ -41,7 +41,7 @@ class HeardNodes:
 
     async def listen(self) -> None:
         """Begin to look for the nodes."""
-        self.nodes.start(lambda message: self.heard.append((self.now_s, message)))
+        await self.nodes.start(lambda message: self.heard.append((self.now_s, message)))
         self._running = asyncio.create_task(self.nodes.run())
         await settle()
 

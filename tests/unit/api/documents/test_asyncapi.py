@@ -6,6 +6,7 @@ from typing import Any
 import pytest
 
 from api.documents.asyncapi import SENT, TAKEN, describe_stream, stream_document
+from api.rosbridge.operations import OPERATIONS
 from api.streaming.query import TOPICS
 from tests.support.document_schemas import asyncapi_faults, leads_somewhere, references
 
@@ -45,6 +46,16 @@ def test_it_names_what_may_be_asked_for_in_the_address(document: dict[str, Any])
     assert channel["address"] == "/ws"
     assert set(query) == {"topics", "after", "epoch"}
     assert all(topic in query["topics"]["description"] for topic in TOPICS)
+
+
+def test_it_names_rosbridge_whose_messages_are_described_where_the_protocol_is(
+    document: dict[str, Any],
+) -> None:
+    channel = document["channels"]["rosbridge"]
+
+    assert channel["address"] == "/rosbridge"
+    assert "messages" not in channel
+    assert all(f"`{op}`" in channel["description"] for op in OPERATIONS if op != "auth")
 
 
 @pytest.mark.parametrize("name", [*SENT, *TAKEN])

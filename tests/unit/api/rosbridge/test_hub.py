@@ -1,4 +1,5 @@
 import asyncio
+from contextlib import AsyncExitStack
 
 import pytest
 
@@ -18,7 +19,7 @@ def interface() -> SmallInterface:
 @pytest.fixture
 def hub(interface: SmallInterface) -> RosbridgeHub:
     lobby = stream_hub(create_app(make_supervisor(), allowed_hosts=[]))
-    return RosbridgeHub(make_bridge(interface), lobby)
+    return RosbridgeHub(lambda: make_bridge(interface), lobby)
 
 
 def test_all_who_ask_share_one_hub() -> None:
@@ -31,10 +32,11 @@ def test_all_who_ask_share_one_hub() -> None:
 async def test_messages_are_made_while_there_is_a_client(
     hub: RosbridgeHub, interface: SmallInterface
 ) -> None:
-    with hub.serve(Pipe()):
-        with hub.serve(Pipe()):
+    async with hub.serve(Pipe()) as first:
+        async with hub.serve(Pipe()) as second:
             await settle()
             assert (hub.clients, interface.running) == (2, 1)
+            assert first is second
         await settle()
         assert (hub.clients, interface.running) == (1, 1)
     await settle()
@@ -44,26 +46,33 @@ async def test_messages_are_made_while_there_is_a_client(
 async def test_a_client_that_comes_right_after_the_last_one_went_is_served(
     hub: RosbridgeHub, interface: SmallInterface
 ) -> None:
-    with hub.serve(Pipe()):
+    async with hub.serve(Pipe()):
         await settle()
-    with hub.serve(Pipe()):
+    async with hub.serve(Pipe()):
         await settle()
 
         assert interface.running == 1
 
 
+async def test_a_client_that_goes_at_once_leaves_what_is_made_to_the_next(
+    hub: RosbridgeHub, interface: SmallInterface
+) -> None:
+    hasty = asyncio.create_task(hub.bridge())
+    await asyncio.sleep(0)
+    hasty.cancel()
+    await asyncio.gather(hasty, return_exceptions=True)
+
+    assert (await hub.bridge()).interface is interface
+
+
 async def test_one_client_is_one_too_many(hub: RosbridgeHub) -> None:
-    pipes = [Pipe() for _ in range(MAX_CLIENTS)]
-    serving = [hub.serve(pipe) for pipe in pipes]
-    for each in serving:
-        each.__enter__()
+    async with AsyncExitStack() as serving:
+        for _ in range(MAX_CLIENTS):
+            assert not hub.is_full
+            await serving.enter_async_context(hub.serve(Pipe()))
 
-    assert hub.is_full
-
-    serving.pop().__exit__(None, None, None)
+        assert hub.is_full
     assert not hub.is_full
-    for each in serving:
-        each.__exit__(None, None, None)
 
 
 async def test_when_no_more_messages_can_be_made_all_clients_are_cut_off(
@@ -78,7 +87,7 @@ async def test_when_no_more_messages_can_be_made_all_clients_are_cut_off(
 
     monkeypatch.setattr(interface, "run", fail)
     pipe = Pipe()
-    with hub.serve(pipe):
+    async with hub.serve(pipe):
         await settle()
 
         assert pipe.aborted

@@ -34,8 +34,11 @@ async def supervisor(clock: ManualClock) -> AsyncIterator[Supervisor]:
 
 
 @pytest.fixture
-def app(supervisor: Supervisor) -> FastAPI:
-    return create_app(supervisor, allowed_hosts=[])
+async def app(supervisor: Supervisor) -> FastAPI:
+    app = create_app(supervisor, allowed_hosts=[])
+    # In a thread, for which virtual time does not wait.
+    await rosbridge_hub(app).bridge()
+    return app
 
 
 @pytest.fixture

@@ -1,0 +1,89 @@
+"""What all clients of rosbridge share of the robot."""
+
+from collections.abc import Callable, Mapping
+from typing import Any, Protocol
+
+from api.rosbridge.replies import PublishedTexts
+from api.rosbridge.rosapi import REQUESTS, RosApi
+from domain.errors import InvalidValueError
+from service.clock import Clock
+from service.frame_feed import FrameFeed
+from service.ros_interface.offer import Fields, HeardTopic, OfferedService, OfferedTopic
+from service.ros_interface.shapes import CHANGE_MODE, CHANGE_STATE, Shape
+
+
+class Interface(Protocol):
+    """What is used of `service.ros_interface.interface.RosInterface`."""
+
+    @property
+    def services(self) -> Mapping[str, OfferedService]:
+        """By full name."""
+        ...
+
+    @property
+    def topics(self) -> Mapping[str, OfferedTopic]:
+        """By full name."""
+        ...
+
+    @property
+    def heard(self) -> Mapping[str, HeardTopic]:
+        """By full name."""
+        ...
+
+    def listen(self, topic: str, take: Callable[[Fields], None]) -> Callable[[], None]:
+        """Hand each message of a topic to `take`, and return what ends that."""
+        ...
+
+    async def run(self) -> None:
+        """Make messages of what happens, until cancelled."""
+        ...
+
+
+class Bridge:
+    """The interface of the robot, with what rosbridge adds to it."""
+
+    def __init__(self, interface: Interface, frames: FrameFeed, clock: Clock) -> None:
+        """Begin.
+
+        Args:
+            interface: What is on offer.
+            frames: Published 20 times a second: what goes by time is looked at then.
+            clock: Of the robot.
+        """
+        self.interface = interface
+        self.frames = frames
+        self.clock = clock
+        self.texts = PublishedTexts()
+        topics: list[HeardTopic | OfferedTopic] = [
+            *interface.heard.values(),
+            *interface.topics.values(),
+        ]
+        self.services = RosApi(interface.services, topics, clock).services
+        """Those of the interface and those of rosapi, by full name."""
+
+
+_REQUESTS: Mapping[str, Shape] = {
+    "lifecycle_msgs/srv/ChangeState": CHANGE_STATE,
+    "system_modes_msgs/srv/ChangeMode": CHANGE_MODE,
+    **{f"rosapi_msgs/srv/{name}": shape for name, shape in REQUESTS.items()},
+}
+"""What requests look like; those of other types are empty."""
+
+
+def request_of(type_name: str, args: Mapping[str, Any] | list[Any] | None) -> Fields:
+    """Return the request of a call with its fields by name.
+
+    Args:
+        type_name: Of the service.
+        args: As `call_service` has them; a list holds values in the order of the definition.
+
+    Raises:
+        InvalidValueError: A list has more values than the request has fields.
+    """
+    if not isinstance(args, list):
+        return args or {}
+    names = (*_REQUESTS.get(type_name, {}),)
+    if len(args) > len(names):
+        there_are = f"takes {', '.join(names)}" if names else "takes nothing"
+        raise InvalidValueError(f"{type_name} {there_are}, and {len(args)} values came", "/args")
+    return dict(zip(names, args, strict=False))

@@ -1,0 +1,188 @@
+"""What clients of rosbridge may ask: operations, one per message, and how a message is read."""
+
+from collections.abc import Mapping
+from types import MappingProxyType
+from typing import Annotated, Any, Literal, TypeAlias
+
+from pydantic import BaseModel, ConfigDict, Field
+
+from api.bodies import check_body, parse_json
+from domain.errors import InvalidValueError
+
+_MAX_CHARACTERS = 256
+
+OperationId: TypeAlias = (
+    Annotated[str, Field(max_length=_MAX_CHARACTERS)] | Annotated[int, Field(ge=-(2**63), lt=2**63)]
+)
+"""Chosen by the client, and returned with what belongs to the operation."""
+Name: TypeAlias = Annotated[str, Field(min_length=1, max_length=_MAX_CHARACTERS)]
+"""Of a topic or service, with or without the leading slash."""
+
+
+class Operation(BaseModel):
+    """One message; members that are not known are passed over, since clients send many."""
+
+    model_config = ConfigDict(extra="ignore", frozen=True, strict=True, allow_inf_nan=False)
+
+    id: OperationId | None = None
+
+
+class Subscribe(Operation):
+    """Ask for the messages of a topic."""
+
+    topic: Name
+    type: str | None = None
+    throttle_rate: Annotated[float, Field(ge=0, le=3_600_000)] = 0
+    """Least time between two messages, ms."""
+    queue_length: Annotated[int, Field(ge=0)] = 0
+    """So many messages wait for their turn, and the oldest goes; 0: what is best for the topic."""
+    compression: str | None = None
+    fragment_size: int | None = None
+
+
+class Unsubscribe(Operation):
+    """End one subscription, or without an id all of the topic."""
+
+    topic: Name
+
+
+class Advertise(Operation):
+    """Say that messages of a topic will be published."""
+
+    topic: Name
+    type: str | None = None
+
+
+class Unadvertise(Operation):
+    """Say that no more will be."""
+
+    topic: Name
+
+
+class Publish(Operation):
+    """Publish a message."""
+
+    topic: Name
+    msg: dict[str, Any]
+
+
+class CallService(Operation):
+    """Call a service."""
+
+    service: Name
+    args: dict[str, Any] | list[Any] | None = None
+    """Fields by name, or all values in the order of the type's definition."""
+    timeout: float | None = None
+    """For the answer, s; None or not above 0: as long as the service takes."""
+
+
+class SetLevel(Operation):
+    """Choose which status messages are sent; for the whole connection, whatever the id is."""
+
+    level: Literal["info", "warning", "error", "none"]
+
+
+class Authenticate(Operation):
+    """Say who the client is."""
+
+    token: str | None = None
+    """None: the message of `rosauth`, which has none."""
+
+
+OPERATIONS: Mapping[str, type[Operation]] = MappingProxyType(
+    {
+        "subscribe": Subscribe,
+        "unsubscribe": Unsubscribe,
+        "advertise": Advertise,
+        "unadvertise": Unadvertise,
+        "publish": Publish,
+        "call_service": CallService,
+        "set_level": SetLevel,
+        "auth": Authenticate,
+    }
+)
+
+_WHOLE = "messages are read whole and as JSON"
+_NO_SERVERS = "clients cannot offer services here"
+_NO_ACTIONS = "there are no actions here"
+_NOT_HERE: Mapping[str, str] = MappingProxyType(
+    {
+        "fragment": _WHOLE,
+        "png": _WHOLE,
+        "cbor": _WHOLE,
+        "cbor-raw": _WHOLE,
+        "advertise_service": _NO_SERVERS,
+        "unadvertise_service": _NO_SERVERS,
+        "service_response": _NO_SERVERS,
+        "advertise_action": _NO_ACTIONS,
+        "unadvertise_action": _NO_ACTIONS,
+        "send_action_goal": _NO_ACTIONS,
+        "cancel_action_goal": _NO_ACTIONS,
+        "action_feedback": _NO_ACTIONS,
+        "action_result": _NO_ACTIONS,
+    }
+)
+"""Operations of the protocol that are not done, and why."""
+
+
+def read_message(message: Mapping[str, Any]) -> Mapping[str, Any]:
+    """Return the JSON object that a client sent.
+
+    Args:
+        message: As ASGI has it, with `text` or `bytes`.
+
+    Raises:
+        PilothouseError: It is none.
+    """
+    text = message.get("text")
+    if text is None:
+        raise InvalidValueError("binary messages (BSON, CBOR) are not read; send JSON as text")
+    said = parse_json(text.encode())
+    if not isinstance(said, dict):
+        raise InvalidValueError("a message is a JSON object with an `op`")
+    return said
+
+
+def id_of(said: Mapping[str, Any]) -> str | int | None:
+    """Return the id of a message, also of one that is wrong; None: it has none that can be."""
+    found = said.get("id")
+    if isinstance(found, str) and len(found) <= _MAX_CHARACTERS:
+        return found
+    return found if isinstance(found, int) and abs(found) < 2**63 else None
+
+
+def read_operation(said: Mapping[str, Any]) -> Operation:
+    """Return what a message asks for.
+
+    Args:
+        said: As of `read_message`.
+
+    Raises:
+        PilothouseError: It is no operation, one that is not done here, or its members are wrong.
+    """
+    op = said.get("op")
+    known = ", ".join(OPERATIONS)
+    if not isinstance(op, str):
+        raise InvalidValueError(f"a message has an `op`, which is one of: {known}", "/op")
+    kind = OPERATIONS.get(op)
+    if kind is None:
+        why = _NOT_HERE.get(op, "there is no such operation")
+        raise InvalidValueError(f"op {op[:40]!r}: {why}; there are: {known}", "/op")
+    return check_body(kind, said)
+
+
+def full_name(name: str) -> str:
+    """Return the name of a topic or service with its leading slash."""
+    return name if name.startswith("/") else f"/{name}"
+
+
+def is_type(given: str | None, type_name: str) -> bool:
+    """Tell whether a type that a client names may be `type_name`.
+
+    Args:
+        given: As ROS 2 writes it (`std_msgs/msg/Bool`) or as ROS 1 (`std_msgs/Bool`); None or
+            empty: any.
+        type_name: As ROS 2 writes it.
+    """
+    package, _, rest = type_name.partition("/")
+    return not given or given in (type_name, f"{package}/{rest.rpartition('/')[2]}")

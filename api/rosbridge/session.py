@@ -1,0 +1,220 @@
+"""What one client of rosbridge asked for, and what it is answered; the network is elsewhere."""
+
+import asyncio
+from collections.abc import Callable, Coroutine, Mapping
+from types import MappingProxyType
+from typing import Any, TypeAlias
+
+from api.rosbridge.bridge import Bridge, request_of
+from api.rosbridge.operations import (
+    Advertise,
+    Authenticate,
+    CallService,
+    Operation,
+    Publish,
+    SetLevel,
+    Subscribe,
+    Unadvertise,
+    Unsubscribe,
+    full_name,
+    id_of,
+    is_type,
+    read_message,
+    read_operation,
+)
+from api.rosbridge.outbox import Outbox
+from api.rosbridge.replies import response_text, sentence, status_text
+from api.rosbridge.subscription import Pace, Subscription
+from domain.errors import InvalidValueError, PilothouseError, UnknownNameError
+from domain.timebase import seconds
+from service.ros_interface.offer import OfferedService
+
+MAX_CALLS = 16
+"""Calls of one client that may be under way."""
+MAX_SUBSCRIPTIONS = 1_000
+MAX_CALL_S = 120.0
+"""For a service to answer; each has a shorter deadline of its own."""
+_MAX_PUBLISHED = 1_000
+
+_LEVELS: Mapping[str, int] = MappingProxyType({"none": 0, "error": 1, "warning": 2, "info": 3})
+
+Spawn: TypeAlias = Callable[[Coroutine[Any, Any, None]], asyncio.Task[None]]
+
+
+class Session:
+    """One client."""
+
+    def __init__(self, bridge: Bridge, outbox: Outbox, caller: str, spawn: Spawn) -> None:
+        """Begin.
+
+        Args:
+            bridge: What all clients share.
+            outbox: Takes what is to be sent.
+            caller: Who the client is, as events record it.
+            spawn: Lets a call run beside the others, and owns it.
+        """
+        self._bridge = bridge
+        self._outbox = outbox
+        self._caller = caller
+        self._spawn = spawn
+        self._level = _LEVELS["warning"]
+        self._subscriptions: dict[str, tuple[Subscription, Callable[[], None]]] = {}
+        """By the name that the client uses, with what ends them."""
+        self._published: set[str] = set()
+        """Topics that the client said it publishes to; also those that nobody hears."""
+        self._calls: set[asyncio.Task[None]] = set()
+
+    def hear(self, message: Mapping[str, Any]) -> None:
+        """Do what a message asks for; what is wrong with it is put into the outbox.
+
+        Args:
+            message: As ASGI has it.
+        """
+        said: Mapping[str, Any] = {}
+        try:
+            said = read_message(message)
+            self._do(read_operation(said))
+        except PilothouseError as error:
+            self._tell("error", sentence(error), id_of(said))
+
+    def end(self) -> None:
+        """Listen to nothing any more, and cancel the calls."""
+        for _, unlisten in self._subscriptions.values():
+            unlisten()
+        self._subscriptions.clear()
+        for call in self._calls:
+            call.cancel()
+
+    def _do(self, operation: Operation) -> None:
+        match operation:
+            case Subscribe():
+                self._subscribe(operation)
+            case Unsubscribe():
+                self._unsubscribe(operation)
+            case Advertise():
+                self._advertise(operation)
+            case Unadvertise():
+                self._unadvertise(operation)
+            case Publish():
+                self._publish(operation)
+            case CallService():
+                self._call(operation)
+            case SetLevel():
+                self._level = _LEVELS[operation.level]
+            case Authenticate():
+                # Whoever is here was let in; a client that has a token sends it anyway.
+                pass
+
+    def _tell(self, level: str, message: str, id_: str | int | None) -> None:
+        if _LEVELS[level] <= self._level:
+            self._outbox.put(status_text(level, message, id_))
+
+    # --- topics ----------------------------------------------------------------------------------
+
+    def _subscribe(self, asked: Subscribe) -> None:
+        name = full_name(asked.topic)
+        topic = self._bridge.interface.topics.get(name)
+        if topic is None:
+            if name in self._bridge.interface.heard:
+                raise InvalidValueError(f"{name} may be published to, and tells nothing", "/topic")
+            raise UnknownNameError("topic", name, (), "/rosapi/topics lists what there is")
+        if not is_type(asked.type, topic.type):
+            raise InvalidValueError(f"{name} is {topic.type}, not {asked.type!r:.100}", "/type")
+        if sum(each.wishes for each, _ in self._subscriptions.values()) >= MAX_SUBSCRIPTIONS:
+            raise InvalidValueError(f"{MAX_SUBSCRIPTIONS} subscriptions are there already")
+        if asked.compression not in (None, "", "none"):
+            message = f"{name} is sent without compression {asked.compression!r:.40}"
+            self._tell("warning", message, asked.id)
+        if asked.fragment_size is not None:
+            self._tell("warning", f"{name} is sent in whole messages", asked.id)
+        pace = Pace(seconds(asked.throttle_rate / 1_000), asked.queue_length)
+        known = self._subscriptions.get(asked.topic)
+        if known is not None:
+            known[0].want(asked.id, pace)
+            return
+        outbox = self._outbox
+        subscription = Subscription(topic, asked.topic, self._bridge.texts, outbox.put, outbox.wake)
+        subscription.want(asked.id, pace)
+        outbox.add(subscription)
+        unlisten = self._bridge.interface.listen(name, subscription.hear)
+        self._subscriptions[asked.topic] = subscription, unlisten
+
+    def _unsubscribe(self, asked: Unsubscribe) -> None:
+        known = self._subscriptions.get(asked.topic)
+        if known is None or not known[0].unwant(asked.id):
+            self._tell("warning", f"{asked.topic} is not subscribed to by this id", asked.id)
+            return
+        subscription, unlisten = known
+        if not subscription.is_wanted:
+            unlisten()
+            self._outbox.remove(subscription)
+            del self._subscriptions[asked.topic]
+
+    def _advertise(self, asked: Advertise) -> None:
+        name = full_name(asked.topic)
+        self._remember_published(name)
+        topic = self._bridge.interface.heard.get(name)
+        if topic is None:
+            raise _unheard(name)
+        if not is_type(asked.type, topic.type):
+            raise InvalidValueError(f"{name} is {topic.type}, not {asked.type!r:.100}", "/type")
+
+    def _unadvertise(self, asked: Unadvertise) -> None:
+        name = full_name(asked.topic)
+        if name not in self._published:
+            self._tell("warning", f"{name} was not advertised", asked.id)
+        self._published.discard(name)
+
+    def _publish(self, asked: Publish) -> None:
+        name = full_name(asked.topic)
+        topic = self._bridge.interface.heard.get(name)
+        if topic is not None:
+            topic.take(asked.msg, self._caller)
+        elif name not in self._published:
+            # Told once: a client may publish many times a second.
+            self._remember_published(name)
+            raise _unheard(name)
+
+    def _remember_published(self, name: str) -> None:
+        if len(self._published) >= _MAX_PUBLISHED:
+            self._published.clear()
+        self._published.add(name)
+
+    # --- services --------------------------------------------------------------------------------
+
+    def _call(self, asked: CallService) -> None:
+        service = self._bridge.services.get(full_name(asked.service))
+        if service is None:
+            self._respond(asked, f"there is no service {full_name(asked.service)}", result=False)
+        elif len(self._calls) >= MAX_CALLS:
+            self._respond(asked, f"{MAX_CALLS} calls are under way already", result=False)
+        else:
+            call = self._spawn(self._finish(asked, service))
+            self._calls.add(call)
+            call.add_done_callback(self._calls.discard)
+
+    async def _finish(self, asked: CallService, service: OfferedService) -> None:
+        """Call a service, and answer with what it says."""
+        limit = asked.timeout if asked.timeout is not None and asked.timeout > 0 else MAX_CALL_S
+        limit = min(limit, MAX_CALL_S)
+        try:
+            request = request_of(service.type, asked.args)
+            async with asyncio.timeout(limit):
+                values = await service.call(request, self._caller)
+        except PilothouseError as error:
+            self._respond(asked, sentence(error), result=False)
+        except TimeoutError:
+            message = f"{service.name} did not answer within {limit:g} s"
+            self._respond(asked, message, result=False)
+        else:
+            self._respond(asked, values, result=True)
+
+    def _respond(
+        self, asked: CallService, values: Mapping[str, Any] | str, *, result: bool
+    ) -> None:
+        self._outbox.put(response_text(asked.service, values, result, asked.id))
+
+
+def _unheard(name: str) -> UnknownNameError:
+    hint = "what is published there goes nowhere; only readings of signals are heard"
+    return UnknownNameError("listener to", name, (), hint)
