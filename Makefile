@@ -9,16 +9,21 @@ INSTALLED_DEV := $(VENV)/installed-dev
 # Only errors: warnings of pip are about the machine, not about this project.
 PIP_INSTALL := $(BIN)/python -m pip install -qq --disable-pip-version-check
 LOWEST := $(VENV)/lowest
+ROS2 := $(VENV)/ros2
+INSTALLED_ROS2 := $(ROS2)/installed
+# What a terminal has in which a ROS distribution was sourced: it must not be mixed with the wheels.
+NOT_OF_ROS := env -u _ROS_WHEELS_BOOTSTRAP_COMPLETE -u AMENT_PREFIX_PATH -u LD_LIBRARY_PATH \
+  -u PYTHONPATH -u RMW_IMPLEMENTATION
 ARGS ?=
 
 .DEFAULT_GOAL := help
 # `make -j` runs one step after the other: tests that measure time do not share the machine, and two
 # installs do not share the environment.
 .NOTPARALLEL:
-.PHONY: help run test test-image lint types imports pytest format docs bench coverage mutation soak lowest lock clean
+.PHONY: help run test test-image test-ros2 lint types imports pytest format docs bench coverage mutation soak lowest lock clean
 
 help: ## list the targets
-	@awk -F ':.*## ' '/^[a-z-]+:.*## / {printf "  make %-10s %s\n", $$1, $$2}' $(firstword $(MAKEFILE_LIST))
+	@awk -F ':.*## ' '/^[a-z0-9-]+:.*## / {printf "  make %-10s %s\n", $$1, $$2}' $(firstword $(MAKEFILE_LIST))
 	@echo "  Variables: PYTHON=$(PYTHON) (interpreter), ARGS (for run: more options, for pytest: what to run)"
 
 run: $(INSTALLED) ## start the example robot; prints the address of its page
@@ -43,6 +48,16 @@ test-image: $(INSTALLED_DEV) ## build the image and talk to it in a container; n
 	@$(BIN)/hadolint docker/Dockerfile docker/Dockerfile.dev
 	@bash docker/build_here.sh
 	@$(BIN)/pytest -rs -m image tests/image $(ARGS)
+
+# The wheels of ROS 2 are for this platform only.
+ifeq ($(shell uname -sm),Linux x86_64)
+test-ros2: $(INSTALLED_ROS2) ## the tests with real ROS 2 nodes, which need no ROS installation
+	@$(NOT_OF_ROS) $(ROS2)/bin/pytest -rs -p no:cacheprovider -m ros2 \
+	  tests/ros2 tests/conformance $(ARGS)
+else
+test-ros2:
+	@echo "No tests with ROS 2 nodes here: its wheels are for Linux on x86_64, and this is $$(uname -sm)."
+endif
 
 format: $(INSTALLED_DEV) ## let ruff format and fix what it can
 	@$(BIN)/ruff check --fix .
@@ -69,7 +84,7 @@ mutation: $(INSTALLED_DEV) ## change the core in some 7,600 ways, and count what
 
 # With ARGS only these tests are meant.
 soak: $(INSTALLED_DEV) $(if $(ARGS),,coverage mutation) ## coverage, mutation, and all tests with many more generated examples
-	@PILOTHOUSE_SOAK=1 $(BIN)/pytest -rs -m "not bench and not browser and not image" --timeout=0 $(ARGS)
+	@PILOTHOUSE_SOAK=1 $(BIN)/pytest -rs -m "not bench and not browser and not image and not ros2" --timeout=0 $(ARGS)
 
 lowest: $(INSTALLED_DEV) ## the tests, with the oldest dependencies that pyproject.toml allows
 	@$(PIP_INSTALL) uv
@@ -110,3 +125,10 @@ $(INSTALLED_DEV): pyproject.toml | $(BIN)/python
 	@echo "Installing Pilothouse and its development tools into $(VENV) (about half a minute) ..."
 	@$(PIP_INSTALL) --editable '.[dev]'
 	@touch $@ $(INSTALLED)
+
+$(INSTALLED_ROS2): pyproject.toml | $(BIN)/python
+	@echo "Installing Pilothouse and the wheels of ROS 2 into $(ROS2) (about half a minute) ..."
+	@$(BIN)/python -m venv $(ROS2)
+	@$(NOT_OF_ROS) $(ROS2)/bin/python -m pip install -qq --disable-pip-version-check \
+	  --editable '.[dev,ros2]'
+	@touch $@

@@ -2,16 +2,13 @@
 
 import asyncio
 import threading
-from collections.abc import AsyncIterator, Callable
-from contextlib import asynccontextmanager
-from importlib import import_module
 from typing import Any
 
 import pytest
 
 from domain.errors import InvalidValueError
 from service.backends.ros2.graph import Client, GraphFailedError, Lane, Qos, UnknownTypeError
-from service.backends.ros2.messages import fields_of, fill, find_type
+from tests.ros2.support.links import POLL_S, WITHIN_S, Link, make_link, ready
 from tests.ros2.support.nodes_process import nodes_process
 from tests.support.waiting import until
 
@@ -21,39 +18,9 @@ GET_STATE = "lifecycle_msgs/srv/GetState"
 CHANGE_STATE = "lifecycle_msgs/srv/ChangeState"
 TRANSITION_EVENT = "lifecycle_msgs/msg/TransitionEvent"
 TRIGGER = "std_srvs/srv/Trigger"
-SET_BOOL = "std_srvs/srv/SetBool"
 EMPTY = "std_msgs/msg/Empty"
 LEASE_S = 0.5
-WITHIN_S = 5.0
 BRIEFLY_S = 0.3
-POLL_S = 0.02
-
-Link = Any
-"""A RosLink: its module can be imported only where ROS 2 is."""
-
-
-def make_link() -> Link:
-    return import_module("service.backends.ros2.link").RosLink()
-
-
-@asynccontextmanager
-async def a_link() -> AsyncIterator[Link]:
-    made = make_link()
-    try:
-        yield made
-    finally:
-        await made.close()
-
-
-@pytest.fixture
-async def link() -> AsyncIterator[Link]:
-    async with a_link() as made:
-        yield made
-
-
-async def ready(client: Client) -> Client:
-    await until(client.is_ready, POLL_S)
-    return client
 
 
 async def configure(client: Client) -> bool:
@@ -95,24 +62,18 @@ async def test_both_events_of_a_transition_are_heard(link: Link) -> None:
         heard.append(label)
 
     node.subscribe("/arm/transition_event", TRANSITION_EVENT, Qos.EVENTS, pick, take)
+    state = node.client("/arm/get_state", GET_STATE)
     change = node.client("/arm/change_state", CHANGE_STATE)
 
     with nodes_process({"name": "arm"}):
-        # Of a publisher just found nothing may be heard yet, and nothing is repeated.
-        await until(lambda: heard_by_all("/arm/transition_event", link), POLL_S)
+        # Nothing is repeated for late comers; a node that has answered a client knows of all that
+        # was made before the client.
+        await (await ready(state)).call({}, WITHIN_S)
         assert await configure(await ready(change))
         await until(lambda: len(heard) == 2, POLL_S)
 
     assert heard == ["configuring", "inactive"]
     assert where == {("pick", False), ("take", True)}
-
-
-def heard_by_all(topic: str, link: Link) -> bool:
-    found = import_module("rclpy").create_node("looker", context=link.context, enable_rosout=False)
-    try:
-        return bool(found.get_publishers_info_by_topic(topic))
-    finally:
-        found.destroy_node()
 
 
 async def test_a_silent_node_costs_no_more_than_the_deadline(link: Link) -> None:
@@ -234,108 +195,6 @@ async def test_a_message_that_cannot_be_read_does_not_end_the_hearing(
     assert "/words: messages are dropped" in caplog.text
 
 
-async def test_a_slow_answer_keeps_nobody_else_waiting(link: Link) -> None:
-    release = asyncio.Event()
-
-    async def answer(request: Any) -> dict[str, object]:  # noqa: ANN401
-        if request["data"]:
-            await release.wait()
-        return {"success": request["data"], "message": "done"}
-
-    link.node("pilothouse", Lane.GATEWAY).serve("/work", SET_BOOL, answer)
-    async with a_link() as other:
-        client = await ready(other.node("asker", Lane.NODES).client("/work", SET_BOOL))
-        slow = asyncio.create_task(client.call({"data": True}, WITHIN_S))
-        quick = await client.call({"data": False}, WITHIN_S)
-        assert not slow.done()
-        release.set()
-        answered = await slow
-
-    assert (quick.success, quick.message) == (False, "done")
-    assert (answered.success, answered.message) == (True, "done")
-
-
-async def test_waiting_for_a_slow_answer_costs_no_processor_time(link: Link) -> None:
-    begun = asyncio.Event()
-
-    async def answer(_request: object) -> dict[str, object]:
-        begun.set()
-        await asyncio.Event().wait()
-        return {}
-
-    link.node("pilothouse", Lane.GATEWAY).serve("/work", TRIGGER, answer)
-    async with a_link() as other:
-        client = await ready(other.node("asker", Lane.NODES).client("/work", TRIGGER))
-        asking = asyncio.create_task(client.call({}, WITHIN_S))
-        await begun.wait()
-        # Counted, not timed: what polls without a pause goes round thousands of times here.
-        rounds = count_rounds(link, Lane.GATEWAY)
-        await asyncio.sleep(BRIEFLY_S)
-        asking.cancel()
-        await asyncio.wait([asking])
-
-    assert len(rounds) < 20
-
-
-def count_rounds(link: Link, lane: Lane) -> list[None]:
-    """Count from now on how often the thread of a lane wakes up."""
-    executor = link._spinners[lane].executor  # noqa: SLF001  # nothing else can tell
-    rounds: list[None] = []
-    spin_once: Callable[[], None] = executor.spin_once
-
-    def counted() -> None:
-        rounds.append(None)
-        spin_once()
-
-    executor.spin_once = counted
-    return rounds
-
-
-async def test_more_requests_than_can_wait_get_an_empty_answer(
-    link: Link, caplog: pytest.LogCaptureFixture
-) -> None:
-    most = import_module("service.backends.ros2.crossing").MAX_UNANSWERED
-    turns = asyncio.Semaphore(0)
-
-    async def answer(_request: object) -> dict[str, object]:
-        await turns.acquire()
-        return {"success": True}
-
-    link.node("pilothouse", Lane.GATEWAY).serve("/work", TRIGGER, answer)
-    async with a_link() as other:
-        client = await ready(other.node("asker", Lane.NODES).client("/work", TRIGGER))
-        waiting = {asyncio.create_task(client.call({}, WITHIN_S)) for _ in range(most + 1)}
-        refused, waiting = await asyncio.wait(waiting, return_when=asyncio.FIRST_COMPLETED)
-        answered = []
-        while waiting:
-            # One by one, since a client of ROS misses responses if more than 10 come at once.
-            turns.release()
-            done, waiting = await asyncio.wait(waiting, return_when=asyncio.FIRST_COMPLETED)
-            answered += [task.result().success for task in done]
-        turns.release()
-        again = await client.call({}, WITHIN_S)
-
-    assert [task.result().success for task in refused] == [False]
-    assert answered == [True] * most
-    assert again.success
-    assert f"/work: {most} requests wait" in caplog.text
-
-
-async def test_a_fault_in_an_answer_is_an_empty_one(
-    link: Link, caplog: pytest.LogCaptureFixture
-) -> None:
-    async def answer(_request: object) -> dict[str, object]:
-        return {"success": "yes"}
-
-    link.node("pilothouse", Lane.GATEWAY).serve("/work", TRIGGER, answer)
-    client = await ready(link.node("asker", Lane.NODES).client("/work", TRIGGER))
-
-    response = await client.call({}, WITHIN_S)
-
-    assert not response.success
-    assert "/work: a request gets an empty response" in caplog.text
-
-
 @pytest.mark.parametrize(
     "name", ["no_such_msgs/msg/Thing", "std_msgs/msg/Thing", "os/msg/path", "Bool", "std_msgs/Bool"]
 )
@@ -404,47 +263,3 @@ async def test_after_it_is_closed_nothing_is_left_and_nothing_heard() -> None:
     publisher.publish({"data": "to nobody"})
     with pytest.raises(TimeoutError, match="closed"):
         await client.call({}, WITHIN_S)
-
-
-@pytest.mark.parametrize(
-    ("type_name", "fields"),
-    [
-        (TRANSITION_EVENT, {"timestamp": 2**63, "goal_state": {"id": 3, "label": "active"}}),
-        (
-            "diagnostic_msgs/msg/DiagnosticArray",
-            {
-                "header": {"stamp": {"sec": 1, "nanosec": 2}},
-                "status": [
-                    {"level": 2, "name": "arm", "values": [{"key": "reason", "value": "späte"}]}
-                ],
-            },
-        ),
-        (
-            "sensor_msgs/msg/NavSatFix",
-            {"latitude": 48, "position_covariance": [0.5] * 9, "status": {"status": -1}},
-        ),
-        ("nav_msgs/msg/Odometry", {"pose": {"pose": {"orientation": {"w": 0.5}}}}),
-        ("rcl_interfaces/msg/ParameterValue", {"byte_array_value": [0, 255], "type": 5}),
-        ("sensor_msgs/msg/Temperature", {"temperature": float("inf")}),
-    ],
-)
-async def test_a_real_message_crosses_the_graph_as_it_was(
-    link: Link, type_name: str, fields: dict[str, Any]
-) -> None:
-    heard: list[dict[str, Any]] = []
-    wanted = find_type(type_name)()
-    fill(wanted, fields)
-    link.node("hearing", Lane.SENSORS).subscribe(
-        "/thing", type_name, Qos.EVENTS, fields_of, heard.append
-    )
-    publisher = link.node("saying", Lane.GATEWAY).publisher("/thing", type_name, Qos.EVENTS)
-
-    async def said_and_heard() -> bool:
-        publisher.publish(fields)
-        return bool(heard)
-
-    await until(said_and_heard, POLL_S)
-
-    assert heard[0] == fields_of(wanted)
-    for name, value in fields.items():
-        assert heard[0][name] == value or isinstance(value, list | dict)
