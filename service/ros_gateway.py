@@ -9,7 +9,7 @@ import re
 from collections.abc import Collection
 from functools import partial
 
-from domain.errors import InvalidValueError, PilothouseError
+from domain.errors import PilothouseError
 from service.backends.ros2.graph import Fields, Lane, Publisher, Qos, RosGraph, RosNode
 from service.backends.ros2.messages import fields_of
 from service.ros_interface.carriers import (
@@ -95,7 +95,7 @@ class RosGateway:
             return
         qos = Qos.LATCHED if topic.latched else Qos.EVENTS
         publisher = self._node(topic.node).publisher(topic.name, carrier.type, qos)
-        self._interface.listen(topic.name, partial(_send, topic.name, publisher, carrier.message))
+        self._interface.listen(topic.name, partial(_send, publisher, carrier.message))
 
     def _hear(self, heard: HeardTopic) -> None:
         take = partial(_take, heard)
@@ -128,12 +128,8 @@ async def _answer_carried(
     return carrier.response(await service.call(carrier.request(request), CALLER))
 
 
-def _send(topic: str, publisher: Publisher, convert: Convert, message: Fields) -> None:
-    """Publish a message; one that ROS cannot hold must not end the others."""
-    try:
-        publisher.publish(convert(message))
-    except InvalidValueError as error:
-        log.warning("not published on %s: %s", topic, error)
+def _send(publisher: Publisher, convert: Convert, message: Fields) -> None:
+    publisher.publish(convert(message))
 
 
 def _take(heard: HeardTopic, message: Fields) -> None:

@@ -240,7 +240,7 @@ async def test_after_it_is_closed_nothing_is_left_and_nothing_heard() -> None:
     link = make_link()
     for lane in Lane:
         link.node(f"ours_{lane.value}", lane)
-    assert threads() == {f"ros2 {lane.value}" for lane in Lane}
+    assert threads() == {"ros2 sender", *(f"ros2 {lane.value}" for lane in Lane)}
     node = link.node("pilothouse", Lane.GATEWAY)
     node.watch_liveliness("/arm/heartbeat", EMPTY, LEASE_S, heard.append)
     node.serve("/work", TRIGGER, answer)

@@ -73,9 +73,9 @@ class Ros2Backend:
         try:
             deliver(BackendStatus(available=True))
             hear = self._heard.put_nowait
-            self._nodes.start(hear)
             self._signals.start(hear)
             self._vehicle.start(hear)
+            await self._nodes.start(hear)
             async with asyncio.TaskGroup() as group:
                 group.create_task(self._graph.wait_failed(), name="link to ROS 2")
                 group.create_task(self._nodes.run(), name="nodes")

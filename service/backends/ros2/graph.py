@@ -81,7 +81,11 @@ class Publisher(Protocol):
     """One topic of ours."""
 
     def publish(self, message: Fields) -> None:
-        """Send a message, and return at once."""
+        """Send a message, and return at once.
+
+        One that the type cannot hold is logged and not sent. The message must not be changed
+        afterwards.
+        """
         ...
 
 

@@ -1,9 +1,9 @@
 """The ROS 2 graph through rclpy; the only module that imports it.
 
 Each lane has an executor of rclpy that spins in a thread of its own. From there to the event loop
-leads one way, a `Crossing`. From the loop to ROS everything is called directly, which rclpy allows;
-only responses are sent by the lane, since the middleware may wait there for a client that is just
-coming or going.
+leads one way, a `Crossing`. From the loop to ROS requests and commands are sent directly, which
+rclpy allows; responses by the lane, since the middleware may wait there for a client that is just
+coming or going; and everything else that is published by a `Sender`.
 """
 
 import asyncio
@@ -42,6 +42,7 @@ from service.backends.ros2.graph import (
     UnknownTypeError,
 )
 from service.backends.ros2.messages import fill, find_type
+from service.backends.ros2.sending import Sender, send_or_tell
 
 _PROFILES = {
     Qos.EVENTS: QoSProfile(depth=100),
@@ -79,6 +80,7 @@ class RosLink:
         rclpy.init(args=[], context=self.context, signal_handler_options=SignalHandlerOptions.NO)
         self.crossing = Crossing()
         """Leads to the event loop; once it is closed, nothing is sent any more either."""
+        self.sender = Sender()
         self._spinners: dict[Lane, _Spinner] = {}
         self._nodes: list[Any] = []
         self._failed = asyncio.Event()
@@ -101,7 +103,7 @@ class RosLink:
         )
         self._nodes.append(node)
         spinner.executor.add_node(node)
-        return _Node(self.crossing, spinner, node)
+        return _Node(self, spinner, node)
 
     def has_type(self, type_name: str) -> bool:
         """Tell whether a type of message or service is installed."""
@@ -128,10 +130,11 @@ class RosLink:
         await asyncio.to_thread(self._leave)
 
     def _leave(self) -> None:
-        for spinner in self._spinners.values():
-            spinner.stop()
+        threads: list[Sender | _Spinner] = [self.sender, *self._spinners.values()]
+        for thread in threads:
+            thread.stop()
         until = time.monotonic() + _JOIN_S
-        ended = [spinner.join(until - time.monotonic()) for spinner in self._spinners.values()]
+        ended = [thread.join(until - time.monotonic()) for thread in threads]
         if not all(ended):
             # What a thread may still use cannot be destroyed; the process ends soon anyway.
             _log.error("ROS 2 is left as it is: a thread of it did not end within %g s", _JOIN_S)
@@ -193,8 +196,9 @@ class _Spinner:
 class _Node:
     """One node of ours; a `RosNode`."""
 
-    def __init__(self, crossing: Crossing, spinner: _Spinner, node: Any) -> None:  # noqa: ANN401
-        self._crossing = crossing
+    def __init__(self, link: RosLink, spinner: _Spinner, node: Any) -> None:  # noqa: ANN401
+        self._crossing = link.crossing
+        self._sender = link.sender
         self._spinner = spinner
         self._node = node
 
@@ -209,7 +213,8 @@ class _Node:
         publisher = self._node.create_publisher(
             kind, topic, _PROFILES[qos], event_callbacks=_NO_PUBLISHER_EVENTS
         )
-        return _Publisher(self._crossing, kind, publisher)
+        sender = None if qos is Qos.COMMANDS else self._sender
+        return _Publisher(self._crossing, kind, publisher, topic, sender)
 
     def subscribe(
         self,
@@ -301,17 +306,37 @@ class _Client:
 class _Publisher:
     """A publisher of a topic; a `Publisher`."""
 
-    def __init__(self, crossing: Crossing, kind: Any, publisher: Any) -> None:  # noqa: ANN401
+    def __init__(
+        self,
+        crossing: Crossing,
+        kind: Any,  # noqa: ANN401
+        publisher: Any,  # noqa: ANN401
+        topic: str,
+        sender: Sender | None,
+    ) -> None:
+        """Prepare.
+
+        Args:
+            crossing: Whether we are still in the graph.
+            kind: Type of the messages.
+            publisher: That of rclpy.
+            topic: Names it in the log.
+            sender: Sends; None: whoever publishes does, at once.
+        """
         self._crossing = crossing
         self._kind = kind
         self._publisher = publisher
+        self._topic = topic
+        self._sender = sender
 
     def publish(self, message: Fields) -> None:
-        """Send a message.
+        """Send a message."""
+        if self._sender is None:
+            send_or_tell(self._topic, self._send, message)
+        else:
+            self._sender.send(self._topic, self._send, message)
 
-        Raises:
-            InvalidValueError: The type has no such fields.
-        """
+    def _send(self, message: Fields) -> None:
         filled = self._kind()
         fill(filled, message)
         if not self._crossing.closed:

@@ -8,8 +8,9 @@ import importlib
 import math
 import re
 from array import array
-from collections.abc import Mapping
-from typing import Any
+from collections.abc import Callable, Mapping
+from functools import cache, partial
+from typing import Any, TypeAlias
 
 import numpy as np
 
@@ -21,6 +22,8 @@ _SEQUENCE = re.compile(r"sequence<(?P<element>.+?)(?:, (?P<most>\d+))?>")
 _ARRAY = re.compile(r"(?P<element>.+)\[(?P<length>\d+)\]")
 _STRING = re.compile(r"w?string(?:<(?P<most>\d+)>)?")
 _INTEGER = re.compile(r"(?P<unsigned>u?)int(?P<bits>8|16|32|64)")
+Check: TypeAlias = Callable[[object, str], Any]
+"""Takes a value and the path to it, and returns what a field holds."""
 _LARGEST = {"float": float(np.finfo(np.float32).max), "double": math.inf}
 
 
@@ -88,57 +91,76 @@ def _values(message: Message, fields: object, path: str) -> dict[str, Any]:
         if name not in types:
             known = ", ".join(types) or "none"
             raise InvalidValueError(f"{where}: no such field; known: {known}", where)
-        values[name] = _value(types[name], value, where)
+        values[name] = _checked(types[name])(value, where)
     return values
 
 
-def _value(kind: str, value: object, path: str) -> Any:  # noqa: ANN401  # whatever a field holds
+@cache
+def _checked(kind: str) -> Check:
+    """Return what checks values of a type; made once of each, since messages come often."""
     if match := _SEQUENCE.fullmatch(kind):
-        items = _items(match["element"], value, path)
-        if match["most"] is not None and len(items) > int(match["most"]):
-            raise _wrong(path, f"a list of at most {match['most']}", value)
-        return items
+        most = None if match["most"] is None else int(match["most"])
+        return partial(_sequence, _checked(match["element"]), most)
     if match := _ARRAY.fullmatch(kind):
-        items = _items(match["element"], value, path)
-        if len(items) != int(match["length"]):
-            raise _wrong(path, f"a list of {match['length']}", value)
-        return items
+        return partial(_array, _checked(match["element"]), int(match["length"]))
     if "/" in kind:
-        nested = find_type(kind.replace("/", "/msg/"))()
-        for name, inner in _values(nested, value, path).items():
-            setattr(nested, name, inner)
-        return nested
-    return _single(kind, value, path)
-
-
-def _items(kind: str, value: object, path: str) -> list[Any]:
-    if not isinstance(value, list | tuple):
-        raise _wrong(path, "a list", value)
-    return [_value(kind, item, f"{path}/{index}") for index, item in enumerate(value)]
-
-
-def _single(kind: str, value: object, path: str) -> bool | int | float | str | bytes:
+        return partial(_nested, find_type(kind.replace("/", "/msg/")))
     if match := _STRING.fullmatch(kind):
-        return _text(value, match["most"], path)
+        return partial(_text, None if match["most"] is None else int(match["most"]))
     if match := _INTEGER.fullmatch(kind):
         bits = int(match["bits"])
         least, beyond = (0, 2**bits) if match["unsigned"] else (-(2 ** (bits - 1)), 2 ** (bits - 1))
-        return _integer(value, least, beyond, path)
-    if kind == "octet":
-        return bytes([_integer(value, 0, 256, path)])
-    if kind == "boolean":
-        if not isinstance(value, bool):
-            raise _wrong(path, "true or false", value)
-        return value
+        return partial(_integer, least, beyond)
     if kind in _LARGEST:
-        return _float(kind, value, path)
+        return partial(_float, kind)
+    return {"octet": _octet, "boolean": _boolean}.get(kind, partial(_unknown, kind))
+
+
+def _sequence(check: Check, most: int | None, value: object, path: str) -> list[Any]:
+    items = _items(check, value, path)
+    if most is not None and len(items) > most:
+        raise _wrong(path, f"a list of at most {most}", value)
+    return items
+
+
+def _array(check: Check, length: int, value: object, path: str) -> list[Any]:
+    items = _items(check, value, path)
+    if len(items) != length:
+        raise _wrong(path, f"a list of {length}", value)
+    return items
+
+
+def _items(check: Check, value: object, path: str) -> list[Any]:
+    if not isinstance(value, list | tuple):
+        raise _wrong(path, "a list", value)
+    return [check(item, f"{path}/{index}") for index, item in enumerate(value)]
+
+
+def _nested(kind: Callable[[], Message], value: object, path: str) -> Message:
+    nested = kind()
+    for name, inner in _values(nested, value, path).items():
+        setattr(nested, name, inner)
+    return nested
+
+
+def _unknown(kind: str, _value: object, path: str) -> Any:  # noqa: ANN401  # it never returns
     raise InvalidValueError(f"{path} is of type {kind}, for which JSON has nothing", path)
 
 
-def _text(value: object, most: str | None, path: str) -> str:
+def _octet(value: object, path: str) -> bytes:
+    return bytes([_integer(0, 256, value, path)])
+
+
+def _boolean(value: object, path: str) -> bool:
+    if not isinstance(value, bool):
+        raise _wrong(path, "true or false", value)
+    return value
+
+
+def _text(most: int | None, value: object, path: str) -> str:
     if not isinstance(value, str) or not _can_be_sent(value):
         raise _wrong(path, "a text", value)
-    if most is not None and len(value) > int(most):
+    if most is not None and len(value) > most:
         raise _wrong(path, f"a text of at most {most} characters", value)
     return value
 
@@ -152,7 +174,7 @@ def _can_be_sent(text: str) -> bool:
     return "\0" not in text
 
 
-def _integer(value: object, least: int, beyond: int, path: str) -> int:
+def _integer(least: int, beyond: int, value: object, path: str) -> int:
     if not isinstance(value, int) or isinstance(value, bool) or not least <= value < beyond:
         raise _wrong(path, f"a whole number from {least} to {beyond - 1}", value)
     return value

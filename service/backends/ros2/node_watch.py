@@ -269,7 +269,7 @@ class NodeWatch:
     # --- what it is told -------------------------------------------------------------------------
 
     def send(self, command: NodeCommand) -> None:
-        """Ask the node for something; one that is silent gives no answer."""
+        """Ask the node for something, while tasks can be started; a silent one does not answer."""
         if isinstance(command, AskFacts):
             self._ask_all()
             return
@@ -281,8 +281,8 @@ class NodeWatch:
             work = partial(self._change_state, command)
         else:
             work = partial(self._set_parameters, command)
-        if self._start(work):
-            self._commands[command.request] = command
+        self._commands[command.request] = command
+        self._start(work)
 
     def _why_not(self, command: AskTransition | AskParameters) -> str:
         """Return why a command does not even go out; empty: it does."""

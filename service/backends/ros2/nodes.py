@@ -42,7 +42,7 @@ class RosNodes:
         self._group: asyncio.TaskGroup | None = None
         self._deliver: Callable[[NodeMessage], None]
 
-    def start(self, deliver: Callable[[NodeMessage], None]) -> None:
+    async def start(self, deliver: Callable[[NodeMessage], None]) -> None:
         """Listen to the nodes; each is delivered as unreachable until it has answered.
 
         Args:
@@ -68,6 +68,8 @@ class RosNodes:
             listening.watch_liveliness(
                 f"/{name}/heartbeat", "std_msgs/msg/Empty", HEARTBEAT_LEASE_S, watch.take_heartbeat
             )
+            # Clients of fifty nodes take most of a second, and the rest of the service runs on.
+            await asyncio.sleep(0)
         ours.subscribe(
             "/parameter_events",
             "rcl_interfaces/msg/ParameterEvent",

@@ -7,8 +7,6 @@ from typing import Any
 
 import pytest
 
-from domain.errors import InvalidValueError
-from domain.messages import EmergencyStopRequest
 from domain.system_model import DEFAULT_MODE, NodeModel, PartName, SmhModel, SystemModel
 from service.backends.ros2.graph import Fields, Lane, Qos
 from service.ros_gateway import RosGateway
@@ -16,7 +14,7 @@ from service.ros_interface.offer import OfferedTopic
 from tests.support.live_robot import running
 from tests.support.manual_clock import settle
 from tests.support.models import inactive
-from tests.support.ros_graph import FakeGraph, FakePublisher
+from tests.support.ros_graph import FakeGraph
 from tests.support.ros_robot import RosRobot
 
 NOT_BUILT = (
@@ -218,26 +216,3 @@ def test_a_topic_that_the_robot_file_maps_is_not_heard_twice() -> None:
 
     assert "/estop" not in types
     assert "/battery_level" in types
-
-
-async def test_a_message_that_ros_cannot_hold_ends_nothing(
-    native: Offered, caplog: pytest.LogCaptureFixture, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    monkeypatch.setattr(
-        "service.ros_interface.robot_topics.diagnostic_array", lambda *_: UNSENDABLE
-    )
-    publish = FakePublisher.publish
-
-    def publish_as_ros_does(publisher: FakePublisher, message: Fields) -> None:
-        if message is UNSENDABLE:
-            raise InvalidValueError("/status must be a list")
-        publish(publisher, message)
-
-    monkeypatch.setattr(FakePublisher, "publish", publish_as_ros_does)
-
-    native.robot.supervisor.submit(EmergencyStopRequest(engaged=True, reason="fire"))
-    await native.clock.advance(0.1)
-
-    assert "not published on /diagnostics: /status must be a list" in caplog.text
-    last: Any = native.graph.published("/system_state")[-1]
-    assert last["state"] == 2

@@ -126,6 +126,38 @@ async def test_a_parameter_that_is_set_while_it_is_asked_for_is_the_new_one(
     assert robot.reports()[-1] == all_facts(S.UNCONFIGURED, {**START_PARAMETERS, "max_speed": 0.7})
 
 
+async def test_a_node_that_moves_while_it_is_asked_is_asked_until_it_rests(
+    robot: HeardNodes,
+) -> None:
+    base = robot.base()
+    await robot.listen()
+    # To be asked for everything takes two requests and two responses.
+    await robot.advance(2 * LATENCY_S)
+    for transition in (T.CONFIGURE, T.ACTIVATE, T.DEACTIVATE):
+        base.move(transition)
+        await robot.advance(4 * LATENCY_S)
+    moving = robot.reports()
+    await robot.advance(1.0)
+
+    assert moving == [GONE]
+    assert robot.reports() == [GONE, all_facts(S.INACTIVE)]
+
+
+async def test_a_parameter_is_heard_of_a_node_that_cannot_be_asked_for_any(
+    robot: HeardNodes,
+) -> None:
+    robot.base()
+    robot.graph.withdraw(f"/{BASE}/get_parameters")
+    await robot.join()
+    robot.set(1, {"max_speed": 0.3})
+    await robot.advance(0.4)
+
+    assert robot.answers() == [NodeAnswer(1, BASE, True)]
+    assert robot.reports() == [NodeReport(BASE, parameters={"max_speed": 0.3})]
+    await robot.advance(0.2)
+    assert robot.states() == [None, S.UNCONFIGURED]
+
+
 async def test_a_parameter_that_is_not_declared_hides_no_other(robot: HeardNodes) -> None:
     base = robot.base()
     del base.parameters["controller"]
@@ -457,6 +489,19 @@ async def test_parameters_are_accepted_and_reported_as_they_are_heard(robot: Hea
 
     assert robot.answers() == [NodeAnswer(1, BASE, True)]
     assert robot.reports() == [NodeReport(BASE, parameters={"max_speed": 0.9})]
+
+
+async def test_parameters_are_not_confused_with_a_transition_of_the_same_moment(
+    robot: HeardNodes,
+) -> None:
+    base = robot.base()
+    await robot.join()
+    robot.set(1, {"max_speed": 1})
+    base.move(T.CONFIGURE)
+    await robot.advance(1.0)
+
+    assert [answer.accepted for answer in robot.answers()] == [False]
+    assert robot.states() == [S.CONFIGURING, S.INACTIVE]
 
 
 async def test_parameters_of_which_nothing_was_heard_are_asked_for(robot: HeardNodes) -> None:

@@ -166,13 +166,13 @@ async def test_it_ends_with_all_that_it_began(robot: HeardNodes) -> None:
     assert asyncio.all_tasks() == {asyncio.current_task()}
 
 
-def test_a_type_that_is_not_installed_is_told_at_the_start() -> None:
+async def test_a_type_that_is_not_installed_is_told_at_the_start() -> None:
     clock = ManualClock()
     graph = FakeGraph(clock, missing=("lifecycle_msgs/msg/TransitionEvent",))
     nodes = RosNodes(actuation_model().nodes, graph, clock)
 
     with pytest.raises(UnknownTypeError):
-        nodes.start(lambda message: None)
+        await nodes.start(lambda message: None)
 
 
 async def test_what_is_heard_after_the_end_begins_nothing() -> None:
@@ -181,7 +181,7 @@ async def test_what_is_heard_after_the_end_begins_nothing() -> None:
     nodes = RosNodes(actuation_model().nodes, graph, clock)
     base = FakeNode(graph, BASE, {"max_speed": 0.0, "controller": "none"})
     heard: list[object] = []
-    nodes.start(heard.append)
+    await nodes.start(heard.append)
     running = asyncio.create_task(nodes.run())
     await clock.advance(0.5)
     running.cancel()

@@ -1,0 +1,102 @@
+"""What is published by a thread of its own."""
+
+import threading
+from collections.abc import Iterator
+
+import pytest
+
+from domain.errors import InvalidValueError
+from service.backends.ros2.graph import Fields
+from service.backends.ros2.sending import MAX_WAITING, Sender
+
+PATIENCE_S = 5.0
+
+
+@pytest.fixture
+def sender() -> Iterator[Sender]:
+    made = Sender()
+    yield made
+    made.stop()
+    assert made.join(PATIENCE_S)
+
+
+class Topic:
+    """Where messages arrive, which may take its time."""
+
+    def __init__(self) -> None:
+        self.sent: list[int] = []
+        self.threads: set[int] = set()
+        self.open = threading.Event()
+        self.last = threading.Event()
+        """Whether message -1 has been sent."""
+
+    def send(self, message: Fields) -> None:
+        assert self.open.wait(PATIENCE_S)
+        if message["data"] is None:
+            raise InvalidValueError("/data must be a whole number")
+        self.sent.append(message["data"])
+        self.threads.add(threading.get_ident())
+        if message["data"] == -1:
+            self.last.set()
+
+
+def test_messages_are_sent_in_their_order_by_another_thread(sender: Sender) -> None:
+    topic = Topic()
+    topic.open.set()
+    for number in (1, 2, 3, -1):
+        sender.send("/topic", topic.send, {"data": number})
+
+    assert topic.last.wait(PATIENCE_S)
+    assert topic.sent == [1, 2, 3, -1]
+    assert threading.get_ident() not in topic.threads
+
+
+def test_who_publishes_does_not_wait_for_the_network(sender: Sender) -> None:
+    topic = Topic()
+
+    sender.send("/topic", topic.send, {"data": -1})
+
+    assert topic.sent == []
+    topic.open.set()
+    assert topic.last.wait(PATIENCE_S)
+
+
+def test_a_message_that_its_type_cannot_hold_is_told_and_ends_nothing(
+    sender: Sender, caplog: pytest.LogCaptureFixture
+) -> None:
+    topic = Topic()
+    topic.open.set()
+
+    sender.send("/topic", topic.send, {"data": None})
+    sender.send("/topic", topic.send, {"data": -1})
+
+    assert topic.last.wait(PATIENCE_S)
+    assert topic.sent == [-1]
+    assert "not published on /topic: /data must be a whole number" in caplog.text
+
+
+def test_what_is_too_much_is_dropped_and_told_once(
+    sender: Sender, caplog: pytest.LogCaptureFixture
+) -> None:
+    topic = Topic()
+    for number in range(MAX_WAITING + 10):
+        sender.send("/topic", topic.send, {"data": number})
+    topic.open.set()
+    while not topic.last.wait(0.01):
+        sender.send("/topic", topic.send, {"data": -1})
+
+    assert len([number for number in topic.sent if number >= 0]) <= MAX_WAITING + 1
+    assert topic.sent[:3] == [0, 1, 2]
+    assert caplog.text.count("messages are dropped") == 1
+
+
+def test_what_waits_when_it_stops_is_not_sent() -> None:
+    sender, topic = Sender(), Topic()
+    for number in range(MAX_WAITING + 1):
+        sender.send("/topic", topic.send, {"data": number})
+
+    sender.stop()
+    topic.open.set()
+
+    assert sender.join(PATIENCE_S)
+    assert topic.sent in ([], [0])
