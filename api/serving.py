@@ -202,7 +202,7 @@ async def _serve_until(
 
 async def _offer(gateway: RosGateway) -> None:
     """Offer the robot to ROS 2; to end is a failure like that of any task."""
-    gateway.offer()
+    await gateway.offer()
     await gateway.run()
     raise TaskFailedError("gateway")
 

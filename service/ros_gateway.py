@@ -4,6 +4,7 @@ Each system is a ROS node of its own name, so that the tools for lifecycle nodes
 has the node `pilothouse`.
 """
 
+import asyncio
 import logging
 import re
 from collections.abc import Collection
@@ -51,8 +52,10 @@ class RosGateway:
         self._missing_types: set[str] = set()
         self._odd_names: set[str] = set()
 
-    def offer(self) -> None:
+    async def offer(self) -> None:
         """Appear in the graph, with all services and topics that can be offered there.
+
+        The event loop gets its turns in between, since a hundred parts take a second.
 
         Where a type is not installed, one that always is stands in (`ros_interface.carriers`). What
         has none, and what has a name that ROS does not allow, is left out and logged.
@@ -60,9 +63,11 @@ class RosGateway:
         for service in self._interface.services.values():
             if not service.of_a_node and self._is_allowed(service.name):
                 self._serve(service)
+                await asyncio.sleep(0)
         for topic in self._interface.topics.values():
             if not topic.of_a_node and self._is_allowed(topic.name):
                 self._publish(topic)
+                await asyncio.sleep(0)
         for heard in self._interface.heard.values():
             if heard.name not in self._mapped_topics and self._graph.has_type(heard.type):
                 self._hear(heard)

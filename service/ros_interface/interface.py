@@ -19,7 +19,7 @@ from service.supervisor import Supervisor
 
 log = logging.getLogger(__name__)
 
-_AT_ONCE = 200
+_AT_ONCE = 10
 """Events that are turned into messages before others get their turn."""
 
 

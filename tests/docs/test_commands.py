@@ -20,6 +20,8 @@ from tests.support.shown_output import disagreement, last_json, missing_lines
 
 PAGES = [PROJECT / "README.md", *sorted((PROJECT / "docs").rglob("*.md"))]
 NOT_RUN = {
+    # What is meant by this is run by tests/ros2/test_example.py.
+    "needs ROS 2",
     "needs a container engine",
     "needs another machine",
     "needs root",

@@ -129,13 +129,14 @@ async def test_the_four_steps_through_ros(robot: RosRobot, operator: Operator) -
     assert await operator.shown("manipulator") == (3, "active", "active.WEAK")
 
 
-async def test_what_a_node_does_not_accept_is_refused_through_ros(
+async def test_what_there_is_not_is_refused_through_ros(
     robot: RosRobot, operator: Operator
 ) -> None:
-    assert not await operator.change_state("actuation", "cleanup")
+    assert not await operator.change_state("actuation", "fly")
     assert not await operator.change_mode("actuation", "FLYING")
 
     assert await operator.shown("actuation") == (1, "unconfigured", "")
+    assert (await robot.get("/changes"))["items"] == []
 
 
 async def test_a_transition_by_somebody_else_is_seen(robot: RosRobot, operator: Operator) -> None:

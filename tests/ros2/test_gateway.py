@@ -66,7 +66,7 @@ async def robot() -> AsyncIterator[Robot]:
     link, others_link = make_link(), make_link()
     supervisor = make_supervisor(MonotonicClock())
     gateway = RosGateway(RosInterface(supervisor), link)
-    gateway.offer()
+    await gateway.offer()
     async with running(supervisor):
         publishing = asyncio.create_task(gateway.run(), name="gateway")
         yield Robot(supervisor, others_link.node("somebody", Lane.NODES))

@@ -1,8 +1,10 @@
-"""Publishing by a thread of its own; knows no ROS.
+"""How much is sent without keeping the event loop from its tick; knows no ROS.
 
-To fill a message of fifty parts takes longer than the event loop may be kept from its tick.
+To fill a message of fifty parts takes too long, and so do fifty requests in a row: messages are
+published by a thread of its own, and requests go out a few at a time.
 """
 
+import asyncio
 import logging
 import queue
 import threading
@@ -18,6 +20,31 @@ MAX_WAITING = 1_000
 _log = logging.getLogger(__name__)
 
 Send: TypeAlias = Callable[[Fields], None]
+
+
+class Turnstile:
+    """Lets a few through in each pass of the event loop; the others follow in the next ones."""
+
+    def __init__(self, at_once: int) -> None:
+        """Begin.
+
+        Args:
+            at_once: So many pass together.
+        """
+        self._at_once = at_once
+        self._passed = 0
+
+    async def wait_for_turn(self) -> None:
+        """Return when it is the caller's turn, in the order in which they came."""
+        # Some tens at most wait, and for some passes: an event for each would cost more.
+        while self._passed == self._at_once:  # noqa: ASYNC110
+            await asyncio.sleep(0)
+        if not self._passed:
+            asyncio.get_running_loop().call_soon(self._begin_next)
+        self._passed += 1
+
+    def _begin_next(self) -> None:
+        self._passed = 0
 
 
 class Sender:

@@ -48,6 +48,8 @@ class Terminal:
     def close(self) -> None:
         """End it and the jobs that it started."""
         assert self._bash.stdin is not None
+        assert self._bash.stdout is not None
         self._bash.stdin.write("kill -KILL $(jobs -p)\n")
         self._bash.stdin.close()
         self._bash.wait(10)
+        self._bash.stdout.close()

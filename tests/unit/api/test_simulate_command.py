@@ -6,8 +6,8 @@ from typing import Any
 
 import pytest
 
-from api.schemas.simulation import SimulationJson
 from api.composition import EXAMPLE
+from api.schemas.simulation import SimulationJson
 from api.simulate_command import FAILED, HELD, INVALID, simulate
 from api.simulation import samples
 from api.simulation.simulation import Simulation

@@ -48,7 +48,9 @@ class Offered:
         self.clock = self.robot.clock
         self.graph = FakeGraph(self.clock, missing)
         self.gateway = RosGateway(self.robot.interface, self.graph, mapped)
-        self.gateway.offer()
+        # It only lets others have their turn in between, and there are none.
+        for _ in self.gateway.offer().__await__():
+            pass
 
     async def call(self, service: str, request: Fields) -> Fields:
         """Call a service as somebody in the graph; what is asked takes a few seconds."""

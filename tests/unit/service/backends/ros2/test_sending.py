@@ -1,5 +1,6 @@
-"""What is published by a thread of its own."""
+"""What is published by a thread of its own, and requests that go out a few at a time."""
 
+import asyncio
 import threading
 from collections.abc import Iterator
 
@@ -7,7 +8,7 @@ import pytest
 
 from domain.errors import InvalidValueError
 from service.backends.ros2.graph import Fields
-from service.backends.ros2.sending import MAX_WAITING, Sender
+from service.backends.ros2.sending import MAX_WAITING, Sender, Turnstile
 
 PATIENCE_S = 5.0
 
@@ -26,11 +27,13 @@ class Topic:
     def __init__(self) -> None:
         self.sent: list[int] = []
         self.threads: set[int] = set()
+        self.entered = threading.Event()
         self.open = threading.Event()
         self.last = threading.Event()
         """Whether message -1 has been sent."""
 
     def send(self, message: Fields) -> None:
+        self.entered.set()
         assert self.open.wait(PATIENCE_S)
         if message["data"] is None:
             raise InvalidValueError("/data must be a whole number")
@@ -79,14 +82,17 @@ def test_what_is_too_much_is_dropped_and_told_once(
     sender: Sender, caplog: pytest.LogCaptureFixture
 ) -> None:
     topic = Topic()
-    for number in range(MAX_WAITING + 10):
+    sender.send("/topic", topic.send, {"data": 0})
+    assert topic.entered.wait(PATIENCE_S)
+    for number in range(1, MAX_WAITING):
         sender.send("/topic", topic.send, {"data": number})
+    sender.send("/topic", topic.send, {"data": -1})
+    for _ in range(10):
+        sender.send("/topic", topic.send, {"data": 7})
     topic.open.set()
-    while not topic.last.wait(0.01):
-        sender.send("/topic", topic.send, {"data": -1})
 
-    assert len([number for number in topic.sent if number >= 0]) <= MAX_WAITING + 1
-    assert topic.sent[:3] == [0, 1, 2]
+    assert topic.last.wait(PATIENCE_S)
+    assert topic.sent == [*range(MAX_WAITING), -1]
     assert caplog.text.count("messages are dropped") == 1
 
 
@@ -100,3 +106,20 @@ def test_what_waits_when_it_stops_is_not_sent() -> None:
 
     assert sender.join(PATIENCE_S)
     assert topic.sent in ([], [0])
+
+
+async def test_many_requests_go_out_a_few_in_each_pass_of_the_loop_and_in_their_order() -> None:
+    turnstile, passes, went = Turnstile(4), 0, list[tuple[int, int]]()
+
+    async def go(number: int) -> None:
+        await turnstile.wait_for_turn()
+        went.append((passes, number))
+
+    going = [asyncio.create_task(go(number)) for number in range(10)]
+    while not all(task.done() for task in going):
+        passes += 1
+        await asyncio.sleep(0)
+
+    assert [number for _, number in went] == list(range(10))
+    per_pass = [sum(at == each for at, _ in went) for each in range(1, passes + 1)]
+    assert [count for count in per_pass if count] == [4, 4, 2]
