@@ -20,7 +20,7 @@ ARGS ?=
 # `make -j` runs one step after the other: tests that measure time do not share the machine, and two
 # installs do not share the environment.
 .NOTPARALLEL:
-.PHONY: help run test test-image test-ros2 lint types imports pytest format docs bench coverage mutation soak lowest lock clean
+.PHONY: help run test test-image test-ros2 lint types imports pytest format docs bench bench-ros2 coverage mutation soak lowest lock clean
 
 help: ## list the targets
 	@awk -F ':.*## ' '/^[a-z0-9-]+:.*## / {printf "  make %-10s %s\n", $$1, $$2}' $(firstword $(MAKEFILE_LIST))
@@ -72,6 +72,10 @@ bench: $(INSTALLED_DEV) ## measure, beside what others do, and write docs/benchm
 	@$(if $(ARGS),,rm -f build/bench/*.json)
 	@$(BIN)/pytest -s -m bench --timeout=0 $(or $(ARGS),tests/bench); code=$$?; \
 	  $(BIN)/python -m tests.support.bench_document && exit $$code
+
+bench-ros2: $(INSTALLED_ROS2) ## measure fifty real ROS 2 nodes, and write docs/benchmarks.md
+	@$(NOT_OF_ROS) $(ROS2)/bin/pytest -s -p no:cacheprovider -m bench --timeout=0 tests/bench/bench_ros2.py $(ARGS); \
+	  code=$$?; $(ROS2)/bin/python -m tests.support.bench_document && exit $$code
 
 coverage: $(INSTALLED_DEV) ## branches of the core that its tests reach, each module by its own test file
 	@$(BIN)/pytest -q tests/unit/domain --cov --cov-context=test --cov-report=

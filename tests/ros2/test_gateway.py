@@ -69,7 +69,7 @@ async def robot() -> AsyncIterator[Robot]:
     await gateway.offer()
     async with running(supervisor):
         publishing = asyncio.create_task(gateway.run(), name="gateway")
-        yield Robot(supervisor, others_link.node("somebody", Lane.NODES))
+        yield Robot(supervisor, others_link.node("somebody", Lane.STATES))
         publishing.cancel()
         await asyncio.gather(publishing, return_exceptions=True)
     await others_link.close()

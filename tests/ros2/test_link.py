@@ -33,7 +33,7 @@ def threads() -> set[str]:
 
 
 async def test_a_node_is_asked_and_told_what_to_do(link: Link) -> None:
-    node = link.node("pilothouse", Lane.NODES)
+    node = link.node("pilothouse", Lane.STATES)
     state = node.client("/left/arm/get_state", GET_STATE)
     change = node.client("/left/arm/change_state", CHANGE_STATE)
     assert not state.is_ready()
@@ -48,7 +48,7 @@ async def test_a_node_is_asked_and_told_what_to_do(link: Link) -> None:
 
 
 async def test_both_events_of_a_transition_are_heard(link: Link) -> None:
-    node = link.node("pilothouse", Lane.NODES)
+    node = link.node("pilothouse", Lane.STATES)
     heard: list[str] = []
     loop_thread = threading.get_ident()
     where: set[tuple[str, bool]] = set()
@@ -77,7 +77,7 @@ async def test_both_events_of_a_transition_are_heard(link: Link) -> None:
 
 
 async def test_a_silent_node_costs_no_more_than_the_deadline(link: Link) -> None:
-    node = link.node("pilothouse", Lane.NODES)
+    node = link.node("pilothouse", Lane.STATES)
     state = node.client("/arm/get_state", GET_STATE)
     with nodes_process({"name": "arm"}) as process:
         await ready(state)
@@ -93,7 +93,7 @@ async def test_a_silent_node_costs_no_more_than_the_deadline(link: Link) -> None
 
 
 async def test_a_call_that_is_cancelled_is_forgotten(link: Link) -> None:
-    node = link.node("pilothouse", Lane.NODES)
+    node = link.node("pilothouse", Lane.STATES)
     state = node.client("/nobody/get_state", GET_STATE)
     asking = asyncio.create_task(state.call({}, WITHIN_S))
     await asyncio.sleep(0)
@@ -105,7 +105,7 @@ async def test_a_call_that_is_cancelled_is_forgotten(link: Link) -> None:
 
 
 async def test_a_wrong_request_is_refused_before_it_is_sent(link: Link) -> None:
-    node = link.node("pilothouse", Lane.NODES)
+    node = link.node("pilothouse", Lane.STATES)
     change = node.client("/arm/change_state", CHANGE_STATE)
 
     with pytest.raises(InvalidValueError) as refused:
@@ -134,7 +134,7 @@ async def test_a_heartbeat_that_cannot_be_heard_is_told(
     watch.watch_liveliness("/arm/heartbeat", EMPTY, LEASE_S, [].append)
 
     # With neither a lease nor automatic liveliness.
-    link.node("arm", Lane.NODES).publisher("/arm/heartbeat", EMPTY, Qos.EVENTS)
+    link.node("arm", Lane.STATES).publisher("/arm/heartbeat", EMPTY, Qos.EVENTS)
 
     await until(lambda: "a publisher is not noticed" in caplog.text, POLL_S)
     assert "/arm/heartbeat" in caplog.text

@@ -27,7 +27,7 @@ async def test_a_slow_answer_keeps_nobody_else_waiting(link: Link) -> None:
 
     link.node("pilothouse", Lane.GATEWAY).serve("/work", SET_BOOL, answer)
     async with a_link() as other:
-        client = await ready(other.node("asker", Lane.NODES).client("/work", SET_BOOL))
+        client = await ready(other.node("asker", Lane.STATES).client("/work", SET_BOOL))
         slow = asyncio.create_task(client.call({"data": True}, WITHIN_S))
         quick = await client.call({"data": False}, WITHIN_S)
         assert not slow.done()
@@ -48,7 +48,7 @@ async def test_waiting_for_a_slow_answer_costs_no_processor_time(link: Link) -> 
 
     link.node("pilothouse", Lane.GATEWAY).serve("/work", TRIGGER, answer)
     async with a_link() as other:
-        client = await ready(other.node("asker", Lane.NODES).client("/work", TRIGGER))
+        client = await ready(other.node("asker", Lane.STATES).client("/work", TRIGGER))
         asking = asyncio.create_task(client.call({}, WITHIN_S))
         await begun.wait()
         # Counted, not timed: what polls without a pause goes round thousands of times here.
@@ -85,7 +85,7 @@ async def test_more_requests_than_can_wait_get_an_empty_answer(
 
     link.node("pilothouse", Lane.GATEWAY).serve("/work", TRIGGER, answer)
     async with a_link() as other:
-        client = await ready(other.node("asker", Lane.NODES).client("/work", TRIGGER))
+        client = await ready(other.node("asker", Lane.STATES).client("/work", TRIGGER))
         waiting = {
             asyncio.create_task(client.call({}, WITHIN_S)) for _ in range(MAX_UNANSWERED + 1)
         }
@@ -112,7 +112,7 @@ async def test_a_fault_in_an_answer_is_an_empty_one(
         return {"success": "yes"}
 
     link.node("pilothouse", Lane.GATEWAY).serve("/work", TRIGGER, answer)
-    client = await ready(link.node("asker", Lane.NODES).client("/work", TRIGGER))
+    client = await ready(link.node("asker", Lane.STATES).client("/work", TRIGGER))
 
     response = await client.call({}, WITHIN_S)
 

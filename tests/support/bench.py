@@ -38,6 +38,7 @@ def report(
     *,
     asked: str = "",
     notes: Sequence[str] = (),
+    command: str | None = None,
 ) -> None:
     """Print a table, and store it for `docs/benchmarks.md` as `build/bench/<name>.json`.
 
@@ -48,13 +49,15 @@ def report(
         rows: Figures by label.
         asked: The bounds that the figures are to keep.
         notes: What a reader has to know of this very run.
+        command: Which measures it again; None: `make bench` of the bench's file.
     """
+    bench = os.environ["PYTEST_CURRENT_TEST"].partition("::")[0]
     result = {
         "title": title,
         "how": how,
         "asked": asked,
         "notes": list(notes),
-        "bench": os.environ["PYTEST_CURRENT_TEST"].partition("::")[0],
+        "command": command or f"make bench ARGS={bench}",
         "measured_at": datetime.now(UTC).isoformat(timespec="minutes"),
         "machine": machine_facts(),
         "rows": rows,

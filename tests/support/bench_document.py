@@ -70,7 +70,7 @@ def _section(result: Mapping[str, Any], *, several_machines: bool) -> Iterator[s
     yield ""
     for note in result["notes"]:
         yield f"{note}\n"
-    yield f"`make bench ARGS={result['bench']}`, {_date(result['measured_at'])}"
+    yield f"`{result['command']}`, {_date(result['measured_at'])}"
     if several_machines:
         yield f"\n{_machine(result)}"
     else:

@@ -51,11 +51,14 @@ class Qos(Enum):
 class Lane(Enum):
     """Who shares a thread: the callbacks of a lane run one after the other.
 
-    With rclpy each message costs as much as the lane has things to wait for, and so what comes
-    often is kept apart from what is numerous.
+    With rclpy each message costs as much as the lane has things to wait for. So the many services
+    of nodes are divided by what is asked of all of them at the same time, and what comes often is
+    kept apart from them.
     """
 
-    NODES = "nodes"
+    STATES = "states"
+    TRANSITIONS = "transitions"
+    PARAMETERS = "parameters"
     LIVELINESS = "liveliness"
     SENSORS = "sensors"
     GATEWAY = "gateway"

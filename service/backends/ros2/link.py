@@ -58,7 +58,7 @@ _NO_EVENTS = SubscriptionEventCallbacks(use_default_callbacks=False)
 _NO_PUBLISHER_EVENTS = PublisherEventCallbacks(use_default_callbacks=False)
 _LIVELINESS_DEPTH = 8
 _JOIN_S = 1.0
-_REQUESTS_AT_ONCE = 4
+_REQUESTS_AT_ONCE = 2
 """In one pass of the event loop; one takes 0.1 to 0.5 ms."""
 
 _log = logging.getLogger(__name__)

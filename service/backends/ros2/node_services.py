@@ -1,6 +1,7 @@
 """The services of one node, asked and answered in our words."""
 
 from collections.abc import Callable, Iterable, Mapping
+from dataclasses import dataclass
 from typing import Any
 
 from domain.lifecycle import TRANSITIONS, LifecycleState, Transition, rule_for
@@ -14,6 +15,15 @@ ANSWER_WITHIN_S = 60.0
 """So long an answer to a command is waited for: longer than those who sent it do."""
 
 
+@dataclass(frozen=True, slots=True)
+class Askers:
+    """The nodes of ours that ask others, by what they ask for."""
+
+    states: RosNode
+    transitions: RosNode
+    parameters: RosNode
+
+
 class NodeServices:
     """What a node can be asked; it need not be there yet.
 
@@ -21,25 +31,28 @@ class NodeServices:
     whether the node took it.
     """
 
-    def __init__(self, name: PartName, node: RosNode) -> None:
+    def __init__(self, name: PartName, ours: Askers) -> None:
         """Prepare.
 
         Args:
             name: Of the node that has the services.
-            node: The one of ours that asks.
+            ours: Those that ask.
 
         Raises:
             UnknownTypeError: A type is not installed.
         """
-        self._get_state = node.client(f"/{name}/get_state", "lifecycle_msgs/srv/GetState")
-        self._change_state = node.client(f"/{name}/change_state", "lifecycle_msgs/srv/ChangeState")
-        self._available = node.client(
+        states, transitions, parameters = ours.states, ours.transitions, ours.parameters
+        self._get_state = states.client(f"/{name}/get_state", "lifecycle_msgs/srv/GetState")
+        self._change_state = transitions.client(
+            f"/{name}/change_state", "lifecycle_msgs/srv/ChangeState"
+        )
+        self._available = transitions.client(
             f"/{name}/get_available_transitions", "lifecycle_msgs/srv/GetAvailableTransitions"
         )
-        self._get_parameters = node.client(
+        self._get_parameters = parameters.client(
             f"/{name}/get_parameters", "rcl_interfaces/srv/GetParameters"
         )
-        self._set_parameters = node.client(
+        self._set_parameters = parameters.client(
             f"/{name}/set_parameters_atomically", "rcl_interfaces/srv/SetParametersAtomically"
         )
 

@@ -12,14 +12,13 @@ from domain.lifecycle import LifecycleState
 from domain.messages import NodeAnswer, NodeCommand
 from domain.parameters import ParameterValue
 from domain.system_model import NodeModel, PartName, part_name
-from service.backends.ros2.graph import Lane, Message, Qos, RosGraph
-from service.backends.ros2.node_services import NodeServices, read_parameters, read_state
+from service.backends.ros2.graph import Lane, Message, Qos, RosGraph, RosNode
+from service.backends.ros2.node_services import Askers, NodeServices, read_parameters, read_state
 from service.backends.ros2.node_watch import LOOK_PERIOD, NodeMessage, NodeWatch, Work
 from service.clock import Clock
 
-NODE = "pilothouse_nodes"
-LIVELINESS_NODE = "pilothouse_liveliness"
-"""Names of our own nodes, which ask and listen."""
+_OURS = "pilothouse_"
+"""Begin of the names of our own nodes, which ask and listen."""
 HEARTBEAT_LEASE_S = 0.5
 """Of the heartbeat topic of a node; so long after its death it is missed."""
 
@@ -52,13 +51,17 @@ class RosNodes:
             UnknownTypeError: A type of message or service is not installed.
         """
         self._deliver = deliver
-        ours = self._graph.node(NODE, Lane.NODES)
-        listening = self._graph.node(LIVELINESS_NODE, Lane.LIVELINESS)
+        ours = Askers(
+            states=self._node(Lane.STATES),
+            transitions=self._node(Lane.TRANSITIONS),
+            parameters=self._node(Lane.PARAMETERS),
+        )
+        listening = self._node(Lane.LIVELINESS)
         for name, node in self._nodes.items():
             services = NodeServices(name, ours)
             watch = NodeWatch(node, services, self._clock, deliver, self._start)
             self._watches[name] = watch
-            ours.subscribe(
+            ours.states.subscribe(
                 f"/{name}/transition_event",
                 "lifecycle_msgs/msg/TransitionEvent",
                 Qos.EVENTS,
@@ -70,7 +73,7 @@ class RosNodes:
             )
             # Clients of fifty nodes take most of a second, and the rest of the service runs on.
             await asyncio.sleep(0)
-        ours.subscribe(
+        ours.parameters.subscribe(
             "/parameter_events",
             "rcl_interfaces/msg/ParameterEvent",
             Qos.PARAMETER_EVENTS,
@@ -97,6 +100,9 @@ class RosNodes:
             self._deliver(NodeAnswer(command.request, command.node, False, "there is no such node"))
         else:
             watch.send(command)
+
+    def _node(self, lane: Lane) -> RosNode:
+        return self._graph.node(f"{_OURS}{lane.value}", lane)
 
     async def _look_forever(self) -> None:
         at = self._clock.now()

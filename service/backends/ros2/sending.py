@@ -8,6 +8,7 @@ import asyncio
 import logging
 import queue
 import threading
+from collections import deque
 from collections.abc import Callable
 from typing import TypeAlias
 
@@ -33,18 +34,30 @@ class Turnstile:
         """
         self._at_once = at_once
         self._passed = 0
+        self._waiting: deque[asyncio.Future[None]] = deque()
 
     async def wait_for_turn(self) -> None:
         """Return when it is the caller's turn, in the order in which they came."""
-        # Some tens at most wait, and for some passes: an event for each would cost more.
-        while self._passed == self._at_once:  # noqa: ASYNC110
-            await asyncio.sleep(0)
+        if self._passed == self._at_once:
+            turn: asyncio.Future[None] = asyncio.get_running_loop().create_future()
+            self._waiting.append(turn)
+            await turn
+        else:
+            self._count()
+
+    def _count(self) -> None:
         if not self._passed:
             asyncio.get_running_loop().call_soon(self._begin_next)
         self._passed += 1
 
     def _begin_next(self) -> None:
         self._passed = 0
+        while self._waiting and self._passed < self._at_once:
+            turn = self._waiting.popleft()
+            # Somebody who went while waiting leaves the turn to the next.
+            if not turn.done():
+                turn.set_result(None)
+                self._count()
 
 
 class Sender:

@@ -9,7 +9,7 @@ def _result(**other: object) -> dict[str, Any]:
         "how": "One report after the other.",
         "asked": "0.1 ms.",
         "notes": ["Without node."],
-        "bench": "tests/bench/bench_inference.py",
+        "command": "make bench ARGS=tests/bench/bench_inference.py",
         "measured_at": "2026-11-24T18:00+00:00",
         "machine": {"CPU": "one", "cores": "2"},
         "rows": {"ours": {"p50_ms": 0.25}, "theirs": {"p50_ms": 3, "lost": 250_000}},

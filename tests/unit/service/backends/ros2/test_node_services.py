@@ -10,6 +10,7 @@ from domain.lifecycle import LifecycleState, Transition
 from domain.parameters import ParameterValue, same_value
 from service.backends.ros2.graph import Lane, UnknownTypeError
 from service.backends.ros2.node_services import (
+    Askers,
     NodeServices,
     read_parameters,
     read_state,
@@ -37,9 +38,14 @@ async def base(graph: FakeGraph) -> FakeNode:
     return FakeNode(graph, BASE, START_PARAMETERS)
 
 
+def services_in(graph: FakeGraph) -> NodeServices:
+    lanes = (Lane.STATES, Lane.TRANSITIONS, Lane.PARAMETERS)
+    return NodeServices(BASE, Askers(*(graph.node(f"ours_{lane.value}", lane) for lane in lanes)))
+
+
 @pytest.fixture
 def services(graph: FakeGraph) -> NodeServices:
-    return NodeServices(BASE, graph.node("pilothouse_nodes", Lane.NODES))
+    return services_in(graph)
 
 
 async def answered(graph: FakeGraph, question: Awaitable[ResultT]) -> ResultT:
@@ -163,7 +169,7 @@ def test_a_type_that_is_not_installed_is_told_at_once() -> None:
     graph = FakeGraph(ManualClock(), missing=("lifecycle_msgs/srv/GetState",))
 
     with pytest.raises(UnknownTypeError, match="lifecycle_msgs"):
-        NodeServices(BASE, graph.node("pilothouse_nodes", Lane.NODES))
+        services_in(graph)
 
 
 # --- values --------------------------------------------------------------------------------------

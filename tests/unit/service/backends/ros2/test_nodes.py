@@ -38,7 +38,9 @@ async def test_it_listens_to_each_node_and_to_all_parameters(robot: HeardNodes) 
     await robot.listen()
 
     assert robot.graph.nodes == {
-        "pilothouse_nodes": Lane.NODES,
+        "pilothouse_states": Lane.STATES,
+        "pilothouse_transitions": Lane.TRANSITIONS,
+        "pilothouse_parameters": Lane.PARAMETERS,
         "pilothouse_liveliness": Lane.LIVELINESS,
     }
     assert robot.graph.qos == {

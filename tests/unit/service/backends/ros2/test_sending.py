@@ -123,3 +123,18 @@ async def test_many_requests_go_out_a_few_in_each_pass_of_the_loop_and_in_their_
     assert [number for _, number in went] == list(range(10))
     per_pass = [sum(at == each for at, _ in went) for each in range(1, passes + 1)]
     assert [count for count in per_pass if count] == [4, 4, 2]
+
+
+async def test_who_goes_while_waiting_leaves_the_turn_to_the_next() -> None:
+    turnstile, went = Turnstile(1), list[int]()
+
+    async def go(number: int) -> None:
+        await turnstile.wait_for_turn()
+        went.append(number)
+
+    going = [asyncio.create_task(go(number)) for number in range(4)]
+    await asyncio.sleep(0)
+    going[1].cancel()
+    await asyncio.wait(going, timeout=PATIENCE_S)
+
+    assert went == [0, 2, 3]
