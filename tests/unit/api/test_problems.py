@@ -33,7 +33,9 @@ def all_errors() -> Iterator[type[PilothouseError]]:
     """Yield every class of the tree that any of our modules defines."""
     for package in (api, domain, service):
         for module in pkgutil.walk_packages(package.__path__, f"{package.__name__}."):
-            importlib.import_module(module.name)
+            # It has no errors of its own, and ROS 2 is not there where these tests run.
+            if module.name != "service.backends.ros2.link":
+                importlib.import_module(module.name)
     waiting: list[type[PilothouseError]] = [PilothouseError]
     while waiting:
         error = waiting.pop()
