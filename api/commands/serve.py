@@ -14,6 +14,10 @@ give it a token by PILOTHOUSE_TOKEN, or by PILOTHOUSE_TOKEN_FILE the name of a
 file that holds it; or say --anonymous if everybody may use it. A page asks
 by the name in its address, so a name that is not this machine's own must be
 told with --allowed-host.
+
+With --backend ros2 the nodes are those of ROS 2 in the domain that
+ROS_DOMAIN_ID names. Source the setup.bash of its distribution first. Who is in
+that domain needs no token.
 """
 
 

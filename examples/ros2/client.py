@@ -9,6 +9,7 @@ Ends with 1 if what is asked is refused or fails.
 
 import argparse
 import importlib
+import os
 import sys
 import time
 from typing import Any
@@ -19,6 +20,7 @@ from rclpy.node import Node
 THERE_WITHIN_S = 10.0
 DONE_WITHIN_S = 70.0
 NATIVE = "system_modes_msgs/srv/"
+REFUSED = "refused, or failed; why is in Pilothouse's log and its events"
 
 
 def ask(node: Node, service: str, wanted: str = "") -> tuple[str, Any]:
@@ -37,7 +39,7 @@ def ask(node: Node, service: str, wanted: str = "") -> tuple[str, Any]:
     service_type = getattr(importlib.import_module(f"{package}.{kind}"), name)
     client = node.create_client(service_type, service)
     if not client.wait_for_service(THERE_WITHIN_S):
-        raise TimeoutError(f"nobody offers {service}")
+        raise TimeoutError(nobody_offers(service))
     request = service_type.Request()
     if hasattr(request, "mode_name"):
         request.mode_name = wanted
@@ -59,7 +61,13 @@ def type_of(node: Node, service: str) -> str:
         if types:
             return types[0]
         time.sleep(0.05)
-    raise TimeoutError(f"nobody offers {service}")
+    raise TimeoutError(nobody_offers(service))
+
+
+def nobody_offers(service: str) -> str:
+    """Say that there is no such service, and where it was looked for."""
+    domain = os.environ.get("ROS_DOMAIN_ID") or "0"
+    return f"nobody offers {service} in domain {domain}; does Pilothouse run there, with ROS 2?"
 
 
 def shown(node: Node, part: str) -> str:
@@ -89,7 +97,7 @@ def main() -> int:
         if asked.action != "get":
             service = "change_state" if asked.action == "set" else "change_mode"
             success = ask(node, f"/{asked.part}/{service}", asked.wanted)[1].success
-        print(f"{asked.part}: {shown(node, asked.part) if success else 'refused, or failed'}")
+        print(f"{asked.part}: {shown(node, asked.part) if success else REFUSED}")
     except TimeoutError as error:
         print(error, file=sys.stderr)
         success = False

@@ -1,4 +1,4 @@
-"""Every relative link in README and docs leads somewhere."""
+"""Every relative link in README, docs and examples leads somewhere."""
 
 import re
 from collections.abc import Iterator
@@ -12,6 +12,7 @@ from tests.support.shared import PROJECT
 PAGES = [
     PROJECT / "README.md",
     *(page for page in sorted((PROJECT / "docs").rglob("*.md")) if page.name != "template.md"),
+    *sorted((PROJECT / "examples").rglob("*.md")),
 ]
 FENCED = re.compile(r"^ *```.*?^ *```$", re.MULTILINE | re.DOTALL)
 CODE = re.compile(r"`[^`\n]*`")
