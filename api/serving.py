@@ -22,7 +22,14 @@ from api.access import (
     take_token,
 )
 from api.app import create_app, prepare
-from api.composition import EXAMPLE, Composition, MisuseError, ServeOptions, compose
+from api.composition import (
+    EXAMPLE,
+    Composition,
+    MisuseError,
+    ServeOptions,
+    compose,
+    domain_of,
+)
 from api.distribution import installed_version
 from api.metrics import metrics
 from api.model_check import finding_line
@@ -41,7 +48,6 @@ from service.supervisor import Supervisor, TaskFailedError
 log = logging.getLogger(__name__)
 
 SUCCEEDED, FAILED, MISUSED, INTERRUPTED = 0, 1, 2, 130
-_DOMAIN_VARIABLE = "ROS_DOMAIN_ID"
 
 
 def serve(options: ServeOptions) -> int:
@@ -165,8 +171,8 @@ def greet(
             body = f'{{"mode": "{modes[-1]}"}}'
             yield f"        {curl} -X POST {url}/{kind}/{part}/mode -d '{body}'"
     if composition.gateway is not None:
-        domain = os.environ.get(_DOMAIN_VARIABLE) or "0"
-        yield f"ROS 2: domain {domain}. Nodes and vehicle are real: what is asked here moves them."
+        domain = domain_of(os.environ)
+        yield f"ROS 2: domain {domain}. Nodes are real: what is asked here moves them."
     if supervisor.simulated:
         harmless = "" if composition.gateway else " Nothing here moves a real robot."
         yield f"Simulated: {', '.join(supervisor.simulated)}.{harmless}"

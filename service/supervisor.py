@@ -39,6 +39,7 @@ from service.frame_feed import Frame, FrameFeed
 from service.mock_source import MockSource
 from service.pacing import Alarm
 from service.ports import RobotBackend
+from service.unasked import log_unasked
 
 log = logging.getLogger(__name__)
 
@@ -143,6 +144,7 @@ class Supervisor:
             work: dict[str, Coroutine[object, object, None]] = {
                 "robot": self._backend.run(self.deliver),
                 "deadlines": self._alarm.run(),
+                "log": log_unasked(self.events),
                 "tick": self._tick_forever(),
             }
             for name, coroutine in work.items():

@@ -40,7 +40,7 @@ def test_the_greeting_of_a_real_robot_says_so(
 
     told = greeting(ServeOptions(backend="ros2", mock_signals=True))
 
-    assert f"ROS 2: domain {domain}. Nodes and vehicle are real" in told
+    assert f"ROS 2: domain {domain}. Nodes are real" in told
     assert "Simulated: signals.\n" in told
     assert "Nothing here moves" not in told
 
