@@ -29,6 +29,9 @@ CALLER = "ros"
 """Who asks or measures, as it is recorded; ROS does not tell who it is."""
 
 _ROS_NAME = re.compile(r"(/[A-Za-z_][A-Za-z0-9_]*)+")
+_LONGEST = 225
+"""Of a name. ROS allows 247, and gives each node services of its own whose names have up to 22
+more characters than that of the node."""
 
 
 class RosGateway:
@@ -49,6 +52,8 @@ class RosGateway:
         self._graph = graph
         self._mapped_topics = mapped_topics
         self._nodes: dict[str, RosNode] = {}
+        self._refusing: set[str] = set()
+        """Topics whose last message was refused."""
         self._missing_types: set[str] = set()
         self._odd_names: set[str] = set()
 
@@ -103,8 +108,22 @@ class RosGateway:
         self._interface.listen(topic.name, partial(_send, publisher, carrier.message))
 
     def _hear(self, heard: HeardTopic) -> None:
-        take = partial(_take, heard)
+        take = partial(self._take, heard)
         self._node(OWN_NODE).subscribe(heard.name, heard.type, Qos.SENSOR, fields_of, take)
+
+    def _take(self, heard: HeardTopic, message: Fields) -> None:
+        """Hand in a message; a refused one must not end the others, nor fill the log with its like.
+
+        So the next one is logged once another was taken.
+        """
+        try:
+            heard.take(message, CALLER)
+        except PilothouseError as error:
+            if heard.name not in self._refusing:
+                log.warning("refused a message on %s: %s", heard.name, error)
+            self._refusing.add(heard.name)
+        else:
+            self._refusing.discard(heard.name)
 
     def _node(self, name: str) -> RosNode:
         if name not in self._nodes:
@@ -113,7 +132,7 @@ class RosGateway:
 
     def _is_allowed(self, name: str) -> bool:
         """Tell whether ROS allows a name; models may have others."""
-        allowed = _ROS_NAME.fullmatch(name) is not None
+        allowed = len(name) <= _LONGEST and _ROS_NAME.fullmatch(name) is not None
         if not allowed:
             self._odd_names.add(name.rpartition("/")[0])
         return allowed
@@ -135,11 +154,3 @@ async def _answer_carried(
 
 def _send(publisher: Publisher, convert: Convert, message: Fields) -> None:
     publisher.publish(convert(message))
-
-
-def _take(heard: HeardTopic, message: Fields) -> None:
-    """Hand in a message; a refused one must not end the others."""
-    try:
-        heard.take(message, CALLER)
-    except PilothouseError as error:
-        log.warning("refused a message on %s: %s", heard.name, error)

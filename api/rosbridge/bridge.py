@@ -1,14 +1,17 @@
 """What all clients of rosbridge share of the robot."""
 
+import asyncio
 from collections.abc import Callable, Mapping
 from typing import Any, Protocol
 
+from api.gate.rate import TokenBuckets
 from api.rosbridge.replies import PublishedTexts
 from api.rosbridge.rosapi import REQUESTS, RosApi
 from domain.errors import InvalidValueError
 from service.clock import Clock
 from service.frame_feed import FrameFeed
 from service.ros_interface.offer import Fields, HeardTopic, OfferedService, OfferedTopic
+from service.ros_interface.robot_services import CANCEL_TASKS
 from service.ros_interface.shapes import CHANGE_MODE, CHANGE_STATE, Shape
 
 
@@ -42,24 +45,43 @@ class Interface(Protocol):
 class Bridge:
     """The interface of the robot, with what rosbridge adds to it."""
 
-    def __init__(self, interface: Interface, frames: FrameFeed, clock: Clock) -> None:
+    def __init__(
+        self, interface: Interface, frames: FrameFeed, clock: Clock, calls_per_s: int
+    ) -> None:
         """Begin.
 
         Args:
             interface: What is on offer.
             frames: Published 20 times a second: what goes by time is looked at then.
             clock: Of the robot.
+            calls_per_s: Calls of services that one client address may make; twice as many may come
+                at once.
         """
         self.interface = interface
         self.frames = frames
         self.clock = clock
         self.texts = PublishedTexts()
+        self.turn = asyncio.Lock()
+        """Held while a message of a client is done: one in each turn of the event loop."""
         topics: list[HeardTopic | OfferedTopic] = [
             *interface.heard.values(),
             *interface.topics.values(),
         ]
         self.services = RosApi(interface.services, topics, clock).services
         """Those of the interface and those of rosapi, by full name."""
+        self.calls_per_s = calls_per_s
+        self._buckets = TokenBuckets(calls_per_s)
+
+    def may_call(self, service: str, caller: str) -> bool:
+        """Count a call, and tell whether it may be made.
+
+        As over HTTP, what makes the robot safe always may.
+
+        Args:
+            service: Full name.
+            caller: With the address of the client.
+        """
+        return service == CANCEL_TASKS or not self._buckets.take(caller, self.clock.now())
 
 
 _REQUESTS: Mapping[str, Shape] = {

@@ -60,9 +60,14 @@ class Client:
             message = await receive()
             if message["type"] == "websocket.disconnect":
                 return
-            session.hear(message)
-            # Messages that came together are all there at once: others get their turn in between.
-            await asyncio.sleep(0)
+            self._wire.heard()
+            if self._connection.transport.is_closing():
+                session.leave()
+            # Of all clients one after the other: together, the largest messages of fifty would take
+            # longer than the tick may wait.
+            async with self._bridge.turn:
+                session.hear(message)
+                await asyncio.sleep(0)
 
     async def _write(self) -> None:
         """Write until cancelled, or until the client has to be cut off.

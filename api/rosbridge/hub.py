@@ -91,13 +91,13 @@ def rosbridge_hub(app: FastAPI) -> RosbridgeHub:
     """Return the hub of an application; the first who asks makes it."""
     hub = getattr(app.state, "rosbridge_hub", None)
     if not isinstance(hub, RosbridgeHub):
-        make = partial(_make_bridge, app.state.supervisor)
+        make = partial(_make_bridge, app.state.supervisor, app.state.limits.requests_per_s)
         hub = app.state.rosbridge_hub = RosbridgeHub(make, stream_hub(app))
     return hub
 
 
-def _make_bridge(supervisor: Supervisor) -> Bridge:
-    return Bridge(RosInterface(supervisor), supervisor.frames, supervisor.clock)
+def _make_bridge(supervisor: Supervisor, calls_per_s: int) -> Bridge:
+    return Bridge(RosInterface(supervisor), supervisor.frames, supervisor.clock, calls_per_s)
 
 
 # A coroutine, since the framework would call a plain function in a thread.

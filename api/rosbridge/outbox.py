@@ -8,7 +8,11 @@ from domain.timebase import Instant
 
 MAX_WAITING = 1_000
 """Events and answers that may wait; a client that lets more pile up has lost its way."""
+MAX_CHARACTERS = 4 * 1024 * 1024
+"""Of these together, beside the last one: of a large robot, a list of all services has some 100,000
+characters and more."""
 _AT_ONCE = 100
+_CHARACTERS_AT_ONCE = 65_536
 
 
 class Outbox:
@@ -20,10 +24,13 @@ class Outbox:
         Args:
             wake: Is told that there may be something to take; returns at once.
         """
-        self.wake = wake
+        self._wake = wake
         self._waiting: deque[str] = deque()
+        self._characters = 0
+        """Of what waits."""
         self._overflowed = False
         self._paced: dict[Subscription, None] = {}
+        """Those in which something waits: a client may have a thousand that are silent."""
 
     @property
     def overflowed(self) -> bool:
@@ -37,15 +44,17 @@ class Outbox:
 
     def put(self, text: str) -> None:
         """Append what must not be lost."""
-        if len(self._waiting) >= MAX_WAITING:
+        if len(self._waiting) >= MAX_WAITING or self._characters >= MAX_CHARACTERS:
             self._overflowed = True
-            return
-        self._waiting.append(text)
-        self.wake()
+        else:
+            self._waiting.append(text)
+            self._characters += len(text)
+        self._wake()
 
-    def add(self, subscription: Subscription) -> None:
-        """Also take what is due of a subscription, from now on."""
+    def expect(self, subscription: Subscription) -> None:
+        """Also take what is due of a subscription in which something waits."""
         self._paced[subscription] = None
+        self._wake()
 
     def remove(self, subscription: Subscription) -> None:
         """Forget a subscription."""
@@ -53,8 +62,15 @@ class Outbox:
 
     def take(self, now: Instant) -> list[str]:
         """Take out what is to be sent next: some texts, in order."""
-        taken = [self._waiting.popleft() for _ in range(min(_AT_ONCE, len(self._waiting)))]
+        taken: list[str] = []
+        room = _CHARACTERS_AT_ONCE
+        while self._waiting and len(taken) < _AT_ONCE and room > 0:
+            taken.append(self._waiting.popleft())
+            room -= len(taken[-1])
+        self._characters -= _CHARACTERS_AT_ONCE - room
         if not self._waiting:
-            for subscription in self._paced:
+            for subscription in (*self._paced,):
                 taken += subscription.take(now)
+                if not subscription.has_waiting:
+                    del self._paced[subscription]
         return taken

@@ -60,9 +60,13 @@ class Session:
         self._level = _LEVELS["warning"]
         self._subscriptions: dict[str, tuple[Subscription, Callable[[], None]]] = {}
         """By the name that the client uses, with what ends them."""
+        self._wishes = 0
+        """Of all subscriptions together."""
         self._published: set[str] = set()
         """Topics that the client said it publishes to; also those that nobody hears."""
         self._calls: set[asyncio.Task[None]] = set()
+        self._calls_left: int | None = None
+        """After the client went; None: it is there."""
 
     def hear(self, message: Mapping[str, Any]) -> None:
         """Do what a message asks for; what is wrong with it is put into the outbox.
@@ -76,6 +80,15 @@ class Session:
             self._do(read_operation(said))
         except PilothouseError as error:
             self._tell("error", sentence(error), id_of(said))
+
+    def leave(self) -> None:
+        """Learn that the client went, although not all that it said before was heard yet.
+
+        Its readings are still taken, but only so many calls are begun as may be under way: those of
+        a flood would keep the robot busy for minutes after its sender was stopped.
+        """
+        if self._calls_left is None:
+            self._calls_left = MAX_CALLS
 
     def end(self) -> None:
         """Listen to nothing any more, and cancel the calls."""
@@ -120,7 +133,7 @@ class Session:
             raise UnknownNameError("topic", name, (), "/rosapi/topics lists what there is")
         if not is_type(asked.type, topic.type):
             raise InvalidValueError(f"{name} is {topic.type}, not {asked.type!r:.100}", "/type")
-        if sum(each.wishes for each, _ in self._subscriptions.values()) >= MAX_SUBSCRIPTIONS:
+        if self._wishes >= MAX_SUBSCRIPTIONS:
             raise InvalidValueError(f"{MAX_SUBSCRIPTIONS} subscriptions are there already")
         if asked.compression not in (None, "", "none"):
             message = f"{name} is sent without compression {asked.compression!r:.40}"
@@ -130,20 +143,22 @@ class Session:
         pace = Pace(seconds(asked.throttle_rate / 1_000), asked.queue_length)
         known = self._subscriptions.get(asked.topic)
         if known is not None:
-            known[0].want(asked.id, pace)
+            self._wishes += known[0].want(asked.id, pace)
             return
         outbox = self._outbox
-        subscription = Subscription(topic, asked.topic, self._bridge.texts, outbox.put, outbox.wake)
-        subscription.want(asked.id, pace)
-        outbox.add(subscription)
+        texts = self._bridge.texts
+        subscription = Subscription(topic, asked.topic, texts, outbox.put, outbox.expect)
+        self._wishes += subscription.want(asked.id, pace)
         unlisten = self._bridge.interface.listen(name, subscription.hear)
         self._subscriptions[asked.topic] = subscription, unlisten
 
     def _unsubscribe(self, asked: Unsubscribe) -> None:
         known = self._subscriptions.get(asked.topic)
-        if known is None or not known[0].unwant(asked.id):
+        ended = known[0].unwant(asked.id) if known else 0
+        if known is None or not ended:
             self._tell("warning", f"{asked.topic} is not subscribed to by this id", asked.id)
             return
+        self._wishes -= ended
         subscription, unlisten = known
         if not subscription.is_wanted:
             unlisten()
@@ -183,11 +198,18 @@ class Session:
     # --- services --------------------------------------------------------------------------------
 
     def _call(self, asked: CallService) -> None:
+        if self._calls_left is not None:
+            self._calls_left -= 1
+            if self._calls_left < 0:
+                return
         service = self._bridge.services.get(full_name(asked.service))
         if service is None:
             self._respond(asked, f"there is no service {full_name(asked.service)}", result=False)
         elif len(self._calls) >= MAX_CALLS:
             self._respond(asked, f"{MAX_CALLS} calls are under way already", result=False)
+        elif not self._bridge.may_call(service.name, self._caller):
+            allowed = f"{self._bridge.calls_per_s} calls a second"
+            self._respond(asked, f"more than {allowed} came from this address", result=False)
         else:
             call = self._spawn(self._finish(asked, service))
             self._calls.add(call)

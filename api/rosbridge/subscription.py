@@ -40,7 +40,7 @@ class Subscription:
         named: str,
         texts: PublishedTexts,
         put: Callable[[str], None],
-        wake: Callable[[], None],
+        expect: Callable[["Subscription"], None],
     ) -> None:
         """Begin without a wish.
 
@@ -49,13 +49,13 @@ class Subscription:
             named: Its name as the client wrote it.
             texts: Makes the text of a message.
             put: Takes a text that must not be lost.
-            wake: Is told that `take` may have something.
+            expect: Is handed this subscription once `take` has something, now or when it is due.
         """
         self._topic = topic
         self._named = named
         self._texts = texts
         self._put = put
-        self._wake = wake
+        self._expect = expect
         self._wishes: dict[str | int | None, Pace] = {}
         self._pace = Pace()
         self._waiting: deque[Fields] = deque(maxlen=1)
@@ -67,24 +67,26 @@ class Subscription:
         return bool(self._wishes)
 
     @property
-    def wishes(self) -> int:
-        """Return how many wishes there are."""
-        return len(self._wishes)
+    def has_waiting(self) -> bool:
+        """Tell whether a message waits for its turn."""
+        return bool(self._waiting)
 
-    def want(self, wish: str | int | None, pace: Pace) -> None:
-        """Add a wish, or replace the one of that id."""
+    def want(self, wish: str | int | None, pace: Pace) -> int:
+        """Add a wish, or replace the one of that id; return how many more there are now: 1 or 0."""
+        before = len(self._wishes)
         self._wishes[wish] = pace
         self._adopt()
+        return len(self._wishes) - before
 
-    def unwant(self, wish: str | int | None) -> bool:
-        """Forget a wish, or with None all; return whether there was one."""
+    def unwant(self, wish: str | int | None) -> int:
+        """Forget a wish, or with None all; return how many there were of it."""
+        before = len(self._wishes)
         if wish is None:
-            found = self.is_wanted
             self._wishes.clear()
         else:
-            found = self._wishes.pop(wish, None) is not None
+            self._wishes.pop(wish, None)
         self._adopt()
-        return found
+        return before - len(self._wishes)
 
     def hear(self, message: Fields) -> None:
         """Take a message of the topic."""
@@ -93,7 +95,7 @@ class Subscription:
             self._put(self._texts.text(self._topic.name, self._named, message))
         else:
             self._waiting.append(message)
-            self._wake()
+            self._expect(self)
 
     def take(self, now: Instant) -> list[str]:
         """Take out the texts of what is due."""

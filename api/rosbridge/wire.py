@@ -37,6 +37,14 @@ class Wire:
         """Learn that the client reads."""
         self._owes_by = None
 
+    def heard(self) -> None:
+        """Learn that the client said something, behind which its answer to a ping may wait.
+
+        To one that takes nothing that does not help: it may talk and not read.
+        """
+        if not self._left:
+            self._owes_by = None
+
     def lost(self) -> None:
         """Learn that the connection is gone; then `is_free` is false."""
 

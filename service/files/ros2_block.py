@@ -15,8 +15,8 @@ NAV_SAT_FIX = "sensor_msgs/msg/NavSatFix"
 _TOPIC = r"^(/[A-Za-z_][A-Za-z0-9_]*)+$"
 _TYPE = r"^[a-z][a-z0-9_]*/msg/[A-Z][A-Za-z0-9]*$"
 _FIELD = r"^[a-z][a-z0-9_]*(\.([a-z][a-z0-9_]*|[0-9]+))*$"
-_LONGEST = 255
-"""What ROS allows for the name of a topic."""
+_LONGEST = 247
+"""What ROS 2 allows for the name of a topic: 255 less 8, which the middleware puts before it."""
 _USUAL_FIELDS = {
     "sensor_msgs/msg/BatteryState": "percentage",
     "sensor_msgs/msg/Temperature": "temperature",

@@ -6,6 +6,7 @@ from collections.abc import Callable, Mapping
 from contextlib import ExitStack
 from itertools import chain
 
+from domain.timebase import seconds
 from service.event_log import EventReader, Gap
 from service.ros_interface.heard import heard_topics
 from service.ros_interface.lifecycle_services import LifecycleServices
@@ -20,7 +21,9 @@ from service.supervisor import Supervisor
 log = logging.getLogger(__name__)
 
 _AT_ONCE = 10
-"""Events that are turned into messages before others get their turn."""
+_TURN = seconds(0.002)
+"""For so long events are turned into messages before others get their turn: a change of a thousand
+nodes makes events faster than some few in each turn."""
 
 
 class RosInterface:
@@ -78,10 +81,17 @@ class RosInterface:
                 changed.clear()
 
     async def _tell_events(self, reader: EventReader) -> None:
+        clock, missed = self._supervisor.clock, False
         while reader.is_behind:
-            for event in reader.take(_AT_ONCE):
-                if isinstance(event, Gap):
-                    log.warning("events %d to %s were missed", event.first, event.last)
-                else:
-                    self._part_topics.take(event)
+            ends_at = clock.now() + _TURN
+            while reader.is_behind and clock.now() < ends_at:
+                for event in reader.take(_AT_ONCE):
+                    if isinstance(event, Gap):
+                        log.warning("events %d to %s were missed", event.first, event.last)
+                        missed = True
+                    else:
+                        self._part_topics.take(event)
+            if missed and not reader.is_behind:
+                self._part_topics.catch_up()
+                missed = False
             await asyncio.sleep(0)

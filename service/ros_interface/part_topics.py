@@ -81,7 +81,8 @@ class PartTopics:
     def recall(self, events: EventLog) -> None:
         """Learn from a log what was asked before, for those who come late, and where parts are.
 
-        From where it was asked is not known any more.
+        From where it was asked is not known any more; nor is when, of what was asked before the
+        oldest event.
         """
         self._targets.clear()
         self._actuals.clear()
@@ -89,8 +90,21 @@ class PartTopics:
             # A newer request, of this part or of one above it, is known already.
             if event.kind == "change.requested" and event.data["part"] not in self._targets:
                 self._tell_request(event)
+        oldest = next(events.oldest_first(), None)
+        self._tell_targets(self._supervisor.clock.now() if oldest is None else oldest.at)
         parts = self._supervisor.core.parts()
         self._actuals = {part: view.actual.state_and_mode for part, view in parts.items()}
+
+    def catch_up(self) -> None:
+        """Tell where parts are and should be by now, as far as that was not told yet.
+
+        For who missed events and has taken those that followed: of several steps it tells one.
+        """
+        now = self._supervisor.clock.now()
+        for part, view in self._supervisor.core.parts().items():
+            was = self._actuals.get(part, _UNKNOWN)
+            self._tell_step(part, was, view.actual.state_and_mode, now)
+        self._tell_targets(now)
 
     def last(self, topic: str) -> Fields | None:
         """Return the last message of a latched topic; None: there was none yet."""
@@ -101,8 +115,11 @@ class PartTopics:
         part = PartName(str(event.data["part"]))
         now = StateAndMode.parse(str(event.data["actual"]))
         was = StateAndMode.parse(str(event.data["was"]))
+        self._tell_step(part, was, now, event.at)
+
+    def _tell_step(self, part: PartName, was: StateAndMode, now: StateAndMode, at: Instant) -> None:
         self._actuals[part] = now
-        timestamp = nanoseconds(self._supervisor.clock, event.at)
+        timestamp = nanoseconds(self._supervisor.clock, at)
         topic = _topic(part, TRANSITION_EVENT)
         if now.state is not was.state and self._listeners.hears(topic):
             step = _step(was.state, now.state)
@@ -113,8 +130,18 @@ class PartTopics:
 
     def _tell_request(self, event: Event) -> None:
         for topic in self._note_request(event):
-            if self._listeners.hears(topic):
-                self._listeners.send(topic, self._message(topic, self._requests[topic]))
+            self._send_request(topic)
+
+    def _tell_targets(self, at: Instant) -> None:
+        """Tell the targets that were not told, as asked for at that time."""
+        for part, view in self._supervisor.core.parts().items():
+            told = self._targets.get(part)
+            if view.target is not None and not (told and view.target.agrees_with(told)):
+                self._send_request(self._note(part, view.target, at))
+
+    def _send_request(self, topic: str) -> None:
+        if self._listeners.hears(topic):
+            self._listeners.send(topic, self._message(topic, self._requests[topic]))
 
     def _note_request(self, event: Event) -> list[str]:
         """Keep what is asked of a part and of all parts below it, and return on which topics."""

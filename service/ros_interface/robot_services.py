@@ -7,11 +7,13 @@ from service.ros_interface.offer import OWN_NODE, Fields, OfferedService
 from service.ros_interface.shapes import EMPTY, checked
 from service.supervisor import Supervisor
 
+CANCEL_TASKS = "/cancel_tasks"
+
 
 def robot_services(supervisor: Supervisor) -> tuple[OfferedService, ...]:
     """Return the services."""
     cancel = OfferedService(
-        name="/cancel_tasks",
+        name=CANCEL_TASKS,
         type="std_srvs/srv/Empty",
         node=OWN_NODE,
         of_a_node=False,

@@ -72,8 +72,19 @@ def _checked_field(kind: "Kind | Shape", value: object, is_given: bool, pointer:
     if not is_given:
         return _DEFAULTS[kind]
     if not _fits(kind, value):
-        raise InvalidValueError(f"{pointer} must be {kind.value}, not {value!r:.40}", pointer)
+        raise InvalidValueError(f"{pointer} must be {kind.value}, not {_shown(value)}", pointer)
     return value
+
+
+def _shown(value: object) -> str:
+    """Return a wrong value as a sentence names it.
+
+    Of one that holds others only what it is: to write it all out may take as long as some ticks,
+    and has no end if it is nested deeply.
+    """
+    if isinstance(value, Mapping):
+        return "fields"
+    return "a list" if isinstance(value, list) else f"{value!r:.40}"
 
 
 def _fits(kind: Kind, value: object) -> bool:

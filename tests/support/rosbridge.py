@@ -112,9 +112,11 @@ class SmallInterface:
         self.readings.append((message, sender))
 
 
-def make_bridge(interface: SmallInterface, clock: ManualClock | None = None) -> Bridge:
+def make_bridge(
+    interface: SmallInterface, clock: ManualClock | None = None, calls_per_s: int = 1_000
+) -> Bridge:
     """Return what clients share, over a small interface."""
-    return Bridge(interface, FrameFeed(), clock or ManualClock())
+    return Bridge(interface, FrameFeed(), clock or ManualClock(), calls_per_s)
 
 
 class Pipe(asyncio.WriteTransport):

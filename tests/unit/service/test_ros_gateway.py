@@ -162,6 +162,16 @@ def test_a_part_with_a_name_that_ros_does_not_allow_is_left_out_and_said_once(
     )
 
 
+def test_a_part_with_a_name_that_is_too_long_for_ros_is_left_out() -> None:
+    node = PartName("a" * 230)
+    system = SystemModel(PartName("b" * 230), {DEFAULT_MODE: {node: inactive()}})
+
+    graph = Offered(model=SmhModel({node: NodeModel(node)}, {system.name: system})).graph
+
+    assert max(map(len, graph.types)) < 225
+    assert set(graph.nodes) == {"pilothouse"}
+
+
 async def test_a_system_is_activated_by_its_service(native: Offered) -> None:
     asked = {"transition": {"id": 3, "label": "activate"}}
 
@@ -211,6 +221,17 @@ async def test_a_reading_is_heard_and_a_refused_one_is_logged(
     assert (view.value, view.source) == (0.25, "ros")
     (record,) = caplog.records
     assert "refused a message on /battery_level" in record.getMessage()
+
+
+async def test_a_sender_whose_messages_are_all_refused_does_not_fill_the_log(
+    native: Offered, caplog: pytest.LogCaptureFixture
+) -> None:
+    for level in (7.0, 8.0, 9.0, 0.5, 7.0):
+        native.graph.publish("/battery_level", {"battery_level": level})
+
+    assert [record.getMessage().split(":")[0] for record in caplog.records] == [
+        "refused a message on /battery_level"
+    ] * 2
 
 
 def test_a_topic_that_the_robot_file_maps_is_not_heard_twice() -> None:

@@ -69,7 +69,7 @@ async def _say(texts: list[str]) -> tuple[list[dict[str, Any]], list[Exception]]
         calls.append(asyncio.ensure_future(call))
         return calls[-1]
 
-    bridge = Bridge(RosInterface(supervisor), supervisor.frames, supervisor.clock)
+    bridge = Bridge(RosInterface(supervisor), supervisor.frames, supervisor.clock, 1_000)
     session = Session(bridge, outbox, "rosbridge:test", spawn)
     for text in texts:
         session.hear({"text": text})

@@ -4,6 +4,7 @@ from api.rosbridge.bridge import request_of
 from domain.errors import InvalidValueError
 from service.ros_interface.interface import RosInterface
 from tests.support.live_robot import make_supervisor
+from tests.support.manual_clock import ManualClock
 from tests.support.rosbridge import SmallInterface, make_bridge
 
 CHANGE_MODE = "system_modes_msgs/srv/ChangeMode"
@@ -13,6 +14,22 @@ def test_the_services_are_those_of_the_robot_and_those_of_rosapi() -> None:
     services = make_bridge(SmallInterface()).services
 
     assert {"/actuation/change_mode", "/rosapi/topics"} <= set(services)
+
+
+async def test_an_address_may_call_so_often_and_another_one_as_well() -> None:
+    clock = ManualClock()
+    bridge = make_bridge(SmallInterface(), clock, calls_per_s=10)
+
+    assert [bridge.may_call("/a", "one") for _ in range(21)] == [True] * 20 + [False]
+    assert bridge.may_call("/a", "another")
+    await clock.advance(0.1)
+    assert [bridge.may_call("/a", "one") for _ in range(2)] == [True, False]
+
+
+def test_who_calls_too_often_may_still_end_the_task() -> None:
+    bridge = make_bridge(SmallInterface(), calls_per_s=1)
+
+    assert [bridge.may_call("/cancel_tasks", "one") for _ in range(9)] == [True] * 9
 
 
 @pytest.mark.parametrize(

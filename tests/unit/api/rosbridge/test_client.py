@@ -3,14 +3,16 @@
 import asyncio
 import json
 from collections.abc import AsyncIterator, Mapping
-from contextlib import asynccontextmanager
+from contextlib import AsyncExitStack, asynccontextmanager
 from itertools import pairwise
 from typing import Any
 
 import pytest
 
+from api.rosbridge.bridge import Bridge
 from api.rosbridge.client import Client
 from api.rosbridge.outbox import MAX_WAITING
+from api.rosbridge.session import MAX_CALLS
 from tests.support.frames import frame
 from tests.support.manual_clock import ManualClock, settle
 from tests.support.rosbridge import MODE_EVENT, SYSTEM_STATE, Pipe, SmallInterface, make_bridge
@@ -20,14 +22,19 @@ from tests.support.websocket import texts_of
 class Robot:
     """An interface, and a client that a test moves through time."""
 
-    def __init__(self) -> None:
+    def __init__(self, bridge: Bridge | None = None) -> None:
+        """Begin; with a bridge, as a further client of it."""
         self.clock = ManualClock()
         self.interface = SmallInterface()
         self.pipe = Pipe()
-        self._bridge = make_bridge(self.interface, self.clock)
+        self._bridge = bridge or make_bridge(self.interface, self.clock)
         self._client = Client(self._bridge, self.pipe.connection, "test")
         self._said: asyncio.Queue[Mapping[str, Any]] = asyncio.Queue()
         self._seq = 0
+
+    def another(self) -> "Robot":
+        """Return a further client of the same interface."""
+        return Robot(self._bridge)
 
     def say(self, op: str, **members: object) -> None:
         text = json.dumps({"op": op, **members})
@@ -154,6 +161,26 @@ async def test_a_client_that_vanished_is_cut_off_although_nothing_waits(robot: R
         assert robot.pipe.aborted
 
 
+async def test_a_client_that_talks_is_not_taken_for_one_that_vanished(robot: Robot) -> None:
+    """Its answers to pings wait behind what it says, and may do so for longer than it has."""
+    async with robot.served():
+        for _ in range(200):
+            robot.say("publish", topic="/estop", msg={"enabled": False})
+            await robot.tick()
+
+        assert not robot.pipe.aborted
+
+
+async def test_a_client_that_talks_and_takes_nothing_is_cut_off(robot: Robot) -> None:
+    async with robot.served():
+        robot.pipe.waiting = 100
+        for _ in range(93):
+            robot.say("publish", topic="/estop", msg={"enabled": False})
+            await robot.tick()
+
+        assert robot.pipe.aborted
+
+
 async def test_a_client_that_lets_its_answers_pile_up_is_cut_off(robot: Robot) -> None:
     async with robot.served():
         robot.pipe.waiting = 100
@@ -179,6 +206,22 @@ async def test_a_client_that_goes_leaves_nothing_behind(robot: Robot) -> None:
         assert robot.interface.asked == [({"mode_name": "FAST"}, "rosbridge:test")]
 
 
+async def test_of_a_client_that_went_readings_are_taken_and_some_last_calls_made(
+    robot: Robot,
+) -> None:
+    robot.interface.answer.set()
+    for _ in range(MAX_CALLS + 1):
+        robot.say("call_service", service="/actuation/change_mode", args=["FAST"])
+    robot.say("publish", topic="/estop", msg={"enabled": True})
+    robot.leave()
+    robot.pipe.abort()
+
+    await robot.serve()
+
+    assert len(robot.interface.asked) == MAX_CALLS
+    assert robot.interface.readings == [({"enabled": True}, "rosbridge:test")]
+
+
 async def test_a_fault_of_ours_ends_the_connection_and_is_not_hidden(robot: Robot) -> None:
     robot.interface.is_broken = True
     robot.say("call_service", service="/actuation/get_mode")
@@ -196,6 +239,25 @@ async def test_a_flood_of_messages_does_not_keep_others_from_their_turn(robot: R
         for _ in range(100):
             robot.say("publish", topic="/estop", msg={"enabled": False})
         for _ in range(200):
+            await asyncio.sleep(0)
+            seen.append(len(done))
+
+    assert seen[-1] == 100
+    assert max(after - before for before, after in pairwise(seen)) == 1
+
+
+async def test_many_clients_together_do_not_keep_others_from_their_turn_either(
+    robot: Robot,
+) -> None:
+    done = robot.interface.readings
+    seen = [0]
+    clients = [robot, *(robot.another() for _ in range(9))]
+    async with AsyncExitStack() as served:
+        for client in clients:
+            await served.enter_async_context(client.served())
+            for _ in range(10):
+                client.say("publish", topic="/estop", msg={"enabled": False})
+        for _ in range(300):
             await asyncio.sleep(0)
             seen.append(len(done))
 

@@ -23,12 +23,15 @@ from tests.support.rosbridge import (
 class Talk:
     """One session, and what it was told."""
 
-    def __init__(self) -> None:
+    def __init__(self, calls_per_s: int = 1_000) -> None:
         self.interface = SmallInterface()
         self.calls: list[asyncio.Task[None]] = []
         self._outbox = Outbox(lambda: None)
         self.session = Session(
-            make_bridge(self.interface), self._outbox, "rosbridge:test", self._spawn
+            make_bridge(self.interface, calls_per_s=calls_per_s),
+            self._outbox,
+            "rosbridge:test",
+            self._spawn,
         )
 
     def say(self, op: str, **members: object) -> None:
@@ -155,6 +158,20 @@ async def test_no_client_has_subscriptions_without_end(
 
     assert "there already" in talk.only()["msg"]
     assert talk.interface.listens(MODE_EVENT) == 0
+
+
+@pytest.mark.parametrize("ended", [{"id": "a"}, {}])
+async def test_a_subscription_that_ended_makes_room_for_another(
+    talk: Talk, monkeypatch: pytest.MonkeyPatch, ended: dict[str, str]
+) -> None:
+    monkeypatch.setattr(session_module, "MAX_SUBSCRIPTIONS", 1)
+    talk.say("subscribe", topic="/system_state", id="a")
+    talk.say("unsubscribe", topic="/system_state", **ended)
+
+    talk.say("subscribe", topic="/actuation/mode_event")
+
+    assert talk.heard() == []
+    assert talk.interface.listens(MODE_EVENT) == 1
 
 
 @pytest.mark.parametrize("asked", [{"topic": "/nothing"}, {"topic": "/system_state", "id": "b"}])
@@ -309,6 +326,19 @@ async def test_one_call_too_many_is_answered_at_once_and_not_made(talk: Talk) ->
     talk.heard()
     talk.say("call_service", service="/actuation/get_mode")
     assert (await talk.answer())["result"] is True
+
+
+async def test_a_call_too_soon_is_answered_at_once_and_not_made() -> None:
+    talk = Talk(calls_per_s=1)
+    talk.interface.answer.set()
+    for _ in range(3):
+        talk.say("call_service", service="/actuation/change_mode", args=["FAST"])
+    await asyncio.gather(*talk.calls)
+
+    responses = talk.heard()
+    assert sorted(response["result"] for response in responses) == [False, True, True]
+    assert responses[0]["values"] == "more than 1 calls a second came from this address"
+    assert len(talk.interface.asked) == 2
 
 
 async def test_when_a_client_goes_nobody_waits_for_its_calls(talk: Talk) -> None:

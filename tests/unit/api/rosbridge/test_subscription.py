@@ -10,19 +10,19 @@ from tests.support.rosbridge import MODE_EVENT, SYSTEM_STATE
 
 
 class Ears:
-    """Hears what a subscription puts at once, and how often it wakes."""
+    """Hears what a subscription puts at once, and how often it says that something waits."""
 
     def __init__(self, topic: OfferedTopic, *paces: Pace) -> None:
         self.put: list[str] = []
-        self.woken = 0
+        self.expected = 0
         self.subscription = Subscription(
-            topic, topic.name, PublishedTexts(), self.put.append, self._wake
+            topic, topic.name, PublishedTexts(), self.put.append, self._expect
         )
         for number, pace in enumerate(paces):
             self.subscription.want(number, pace)
 
-    def _wake(self) -> None:
-        self.woken += 1
+    def _expect(self, _: Subscription) -> None:
+        self.expected += 1
 
     def hear(self, *numbers: int) -> None:
         for number in numbers:
@@ -51,7 +51,7 @@ def test_of_the_state_the_newest_waits_for_who_is_slow() -> None:
     ears.hear(1, 2, 3)
 
     assert ears.put == []
-    assert ears.woken == 3
+    assert ears.expected == 3
     assert ears.taken(0) == [3]
     assert ears.taken(0) == []
 
@@ -140,18 +140,23 @@ def test_a_client_that_wants_more_now_need_not_wait_as_long_as_before() -> None:
     assert ears.taken(1.05) == [2]
 
 
-@pytest.mark.parametrize(("wish", "left"), [(0, 1), (None, 0)])
-def test_one_wish_goes_by_its_id_and_all_without_one(wish: int | None, left: int) -> None:
+@pytest.mark.parametrize(("wish", "gone"), [(0, 1), (None, 2)])
+def test_one_wish_goes_by_its_id_and_all_without_one(wish: int | None, gone: int) -> None:
     ears = Ears(MODE_EVENT, Pace(), Pace())
 
-    assert ears.subscription.unwant(wish)
+    assert ears.subscription.unwant(wish) == gone
 
-    assert ears.subscription.wishes == left
-    assert ears.subscription.is_wanted is bool(left)
+    assert ears.subscription.is_wanted is (gone == 1)
+
+
+def test_a_wish_of_an_id_that_is_there_is_no_further_one() -> None:
+    ears = Ears(MODE_EVENT)
+
+    assert [ears.subscription.want("a", Pace()) for _ in range(2)] == [1, 0]
 
 
 def test_a_wish_that_is_not_there_cannot_go() -> None:
     ears = Ears(MODE_EVENT, Pace())
 
-    assert not ears.subscription.unwant("another")
-    assert ears.subscription.wishes == 1
+    assert ears.subscription.unwant("another") == 0
+    assert ears.subscription.is_wanted

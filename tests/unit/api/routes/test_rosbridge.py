@@ -7,6 +7,7 @@ from fastapi import FastAPI
 
 from api.access import Access
 from api.app import create_app
+from api.limits import ServiceLimits
 from api.rosbridge import hub as hub_module
 from api.rosbridge.hub import rosbridge_hub
 from api.routes import rosbridge
@@ -249,3 +250,15 @@ async def test_strangers_keep_out_other_strangers_only(
         async with RosbridgeClient(closed_app, headers=headers) as known:
             known.ask("call_service", service="/rosapi/nodes")
             assert (await known.next("service_response"))["result"] is True
+
+
+async def test_calls_may_come_as_often_as_requests(supervisor: Supervisor) -> None:
+    limits = ServiceLimits(requests_per_s=1)
+    app = create_app(supervisor, allowed_hosts=[], limits=limits)
+    await rosbridge_hub(app).bridge()
+    async with RosbridgeClient(app) as client:
+        for _ in range(3):
+            client.ask("call_service", service="/actuation/get_mode")
+        results = [(await client.next("service_response"))["result"] for _ in range(3)]
+
+    assert sorted(results) == [False, True, True]

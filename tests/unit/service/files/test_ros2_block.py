@@ -95,7 +95,7 @@ def test_of_another_type_the_field_has_to_be_named(type_name: str) -> None:
         ("topic", "/2nd"),
         ("topic", "~/battery"),
         ("topic", "/battery\n"),
-        ("topic", "/" + "a" * 255),
+        ("topic", "/" + "a" * 247),
         ("type", "Bool"),
         ("type", "std_msgs/Bool"),
         ("type", "std_msgs/srv/Empty"),

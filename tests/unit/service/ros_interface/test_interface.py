@@ -4,6 +4,7 @@ from typing import Any
 import pytest
 
 from domain.messages import ModeRequest
+from domain.system_model import PartName
 from service.event_log import EventLog
 from service.ros_interface.interface import RosInterface
 from tests.support.live_robot import make_supervisor, running
@@ -100,3 +101,20 @@ async def test_events_that_are_forgotten_before_they_are_read_are_a_warning_and_
         (logging.WARNING, f"events {first} to {last} were missed")
     ]
     assert heard[-1]["goal_mode"]["label"] == "SLOW"
+
+
+async def test_who_missed_events_is_told_where_all_are_and_should_be_by_now() -> None:
+    clock = ManualClock()
+    supervisor = make_supervisor(clock)
+    supervisor.events = EventLog(capacity=2)
+    interface = RosInterface(supervisor)
+    asked: list[Any] = []
+    moved: list[Any] = []
+    interface.listen("/actuation/mode_request_info", asked.append)
+    interface.listen("/drive_base/transition_event", moved.append)
+    async with running(supervisor), running_interface(interface):
+        supervisor.submit(ModeRequest(PartName("actuation"), "PERFORMANCE"))
+        await clock.advance(5)
+
+    assert [message["goal_mode"]["label"] for message in asked] == ["PERFORMANCE"]
+    assert moved[-1]["goal_state"]["label"] == "active"

@@ -5,6 +5,7 @@ from typing import Any
 import pytest
 
 from domain.messages import ParametersRequest
+from service.event_log import EventLog
 from service.ros_interface.interface import RosInterface
 from tests.support.models import BASE, nested_model
 from tests.support.ros_robot import RosRobot, running_interface, running_ros_robot
@@ -179,6 +180,20 @@ async def test_who_comes_late_gets_the_last_request_and_no_older_event(robot: Ro
     assert modes(robot.hear("/actuation/mode_request_info")) == [("MODERATE", "PERFORMANCE")]
     assert modes(robot.hear("/drive_base/mode_request_info")) == [("SLOW", "FAST")]
     assert robot.hear("/actuation/mode_event") == []
+
+
+async def test_an_interface_that_begins_late_knows_also_what_no_event_tells_any_more(
+    robot: RosRobot,
+) -> None:
+    robot.supervisor.events = EventLog(capacity=1, before=robot.supervisor.events.newest)
+    await robot.change_mode("actuation", "PERFORMANCE")
+    late = RosInterface(robot.supervisor)
+
+    async with running_interface(late):
+        heard: list[Any] = []
+        late.listen("/drive_base/mode_request_info", heard.append)
+
+    assert modes(heard) == [("", "FAST")]
 
 
 async def test_an_interface_that_begins_late_knows_what_was_asked_before(robot: RosRobot) -> None:

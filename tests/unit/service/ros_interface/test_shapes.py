@@ -1,3 +1,6 @@
+import json
+from contextlib import suppress
+
 import pytest
 
 from domain.errors import InvalidValueError
@@ -55,6 +58,27 @@ def test_a_value_of_another_type_is_refused(kind: Kind, value: object) -> None:
         checked({"value": kind}, {"value": value})
 
     assert raised.value.pointer == "value"
+
+
+@pytest.mark.parametrize(
+    ("opening", "closing", "named"), [("[", "]", "a list"), ('{"a":', "}", "fields")]
+)
+def test_of_a_value_that_holds_others_only_that_is_told(
+    opening: str, closing: str, named: str
+) -> None:
+    """However deep it is: as deep as JSON can be read, which is deeper than it can be shown."""
+    nested = _deepest(opening, closing)
+
+    with pytest.raises(InvalidValueError, match=f"value must be a number, not {named}$"):
+        checked({"value": Kind.NUMBER}, {"value": nested})
+
+
+def _deepest(opening: str, closing: str) -> object:
+    for depth in range(2_000, 0, -1):
+        with suppress(RecursionError):
+            found: object = json.loads(opening * depth + "1" + closing * depth)
+            return found
+    return None
 
 
 @pytest.mark.parametrize("fields", [[], "activate", None])
