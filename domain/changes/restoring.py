@@ -4,7 +4,7 @@ Only those that the settings name: a node that moves by itself because its proce
 is a surprise, unless somebody wanted it so. Nothing else begins a change that nobody asked for.
 """
 
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Mapping
 
 from domain.changes.operations import Changes
 from domain.changes.plan import ChangeGoal
@@ -115,18 +115,25 @@ class Restoring:
             self._given_up.add(node)
             often = f"it was restored {MAX_RESTORES} times within {to_seconds(WINDOW):g} s"
             reason = f"{often}, and is left as it is until it is asked for"
-            self._outbox.emit("node.not_restored", {**data, "reason": reason}, cause)
+            self._tell_not_restored(data, reason, cause, now)
             return False
         request = self._request(node, target)
         try:
             goal = self._admit(request)
         except (BackendUnavailableError, RefusedError) as refusal:
-            self._outbox.emit("node.not_restored", {**data, "reason": refusal.message}, cause)
+            self._tell_not_restored(data, refusal.message, cause, now)
             return False
         self._begun[node] = [*begun, now]
         self._outbox.begin(now, "node.restoring", data, cause=cause)
         self._changes.begin(node, request, goal, now)
         return True
+
+    def _tell_not_restored(
+        self, data: Mapping[str, object], reason: str, cause: int, now: Instant
+    ) -> None:
+        # An input of its own: nobody asked for it, whoever asked for what is being concluded.
+        self._outbox.begin(now, "node.not_restored", {**data, "reason": reason}, cause=cause)
+        self._outbox.record_input()
 
     def _request(self, node: PartName, target: StateAndMode) -> ChangeRequest:
         """Return what somebody would ask to bring a node to its target."""

@@ -9,7 +9,9 @@ from domain.lifecycle import LifecycleState, Transition
 from domain.messages import (
     BackendStatus,
     CancelRequest,
+    EmergencyStopRequest,
     ModeRequest,
+    NodeAnswer,
     NodeReport,
     Outputs,
     ParametersRequest,
@@ -25,7 +27,7 @@ from domain.supervision import Supervision, SupervisionSettings
 from domain.system_model import NodeModel, PartName, SmhModel
 from domain.timebase import seconds
 from tests.support.good import GOOD
-from tests.support.models import ACTUATION, ARM, BASE, FAST, SLOW, actuation_model
+from tests.support.models import ACTUATION, ARM, BASE, FAST, PERFORMANCE, SLOW, actuation_model
 from tests.support.virtual_robot import VirtualRobot
 
 S = LifecycleState
@@ -431,3 +433,20 @@ def test_only_the_last_minute_counts(fourth_at_s: float, kind: str) -> None:
         crashes_when_it_is_activated(core, at_s)
 
     assert kinds(crashes_when_it_is_activated(core, fourth_at_s - 1))[-1] == kind
+
+
+def test_whoever_frees_a_node_is_not_who_left_it_as_it_is() -> None:
+    core = bare()
+    # The base refuses and falls, while the arm, which never came, keeps the change running.
+    starts(core, 1)
+    core.handle(ModeRequest(ACTUATION, PERFORMANCE, "operator"), seconds(2))
+    core.handle(NodeAnswer(1, BASE, accepted=False, reason="not today"), seconds(2))
+    falls(core, 3)
+    starts(core, 4)
+    core.handle(EmergencyStopRequest(engaged=True, reason="", actor="operator"), seconds(5))
+
+    request = TransitionRequest(ARM, Transition.CONFIGURE, "mechanic")
+    outputs = core.handle(request, seconds(6))
+
+    told = [event for event in outputs.events if event.kind == "node.not_restored"]
+    assert [(event.actor, event.data["node"]) for event in told] == [("", BASE)]
