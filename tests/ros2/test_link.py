@@ -47,6 +47,25 @@ async def test_a_node_is_asked_and_told_what_to_do(link: Link) -> None:
     assert after.current_state.label == "inactive"
 
 
+async def test_a_process_that_was_started_anew_is_one_server_more(link: Link) -> None:
+    state = link.node("pilothouse", Lane.STATES).client("/left/arm/get_state", GET_STATE)
+    assert state.servers() == 0
+
+    with nodes_process({"name": "left/arm"}) as process:
+        await until(lambda: state.servers() == 1, POLL_S)
+        process.kill()
+        process.start()
+        await until(lambda: state.servers() == 2, POLL_S)
+
+
+@pytest.mark.parametrize("domain", ["garage", "999", "-5", "4294967296"])
+def test_what_is_no_domain_is_told(domain: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("ROS_DOMAIN_ID", domain)
+
+    with pytest.raises(RuntimeError, match=f"whole number from 0 to 232, not '{domain}'"):
+        make_link()
+
+
 async def test_both_events_of_a_transition_are_heard(link: Link) -> None:
     node = link.node("pilothouse", Lane.STATES)
     heard: list[str] = []
@@ -125,6 +144,20 @@ async def test_a_process_that_dies_is_missed_and_seen_again(link: Link) -> None:
         await until(lambda: alive == [True, False], POLL_S)
         process.start()
         await until(lambda: alive == [True, False, True], POLL_S)
+
+
+async def test_a_process_that_is_started_before_the_old_one_is_missed_is_heard(link: Link) -> None:
+    node = link.node("pilothouse", Lane.LIVELINESS)
+    alive: list[bool] = []
+    node.watch_liveliness("/arm/heartbeat", EMPTY, LEASE_S, alive.append)
+
+    with nodes_process({"name": "arm", "heartbeat": True}) as old:
+        await until(lambda: alive == [True], POLL_S)
+        with nodes_process({"name": "arm", "heartbeat": True}):
+            await until(lambda: alive == [True, True], POLL_S)
+            old.kill()
+            await until(lambda: alive == [True, True, True], POLL_S)
+        await until(lambda: alive == [True, True, True, False], POLL_S)
 
 
 async def test_a_heartbeat_that_cannot_be_heard_is_told(

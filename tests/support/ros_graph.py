@@ -6,7 +6,7 @@ published is heard at once, before `publish` returns; requests and responses tak
 
 import asyncio
 import logging
-from collections import defaultdict
+from collections import Counter, defaultdict
 from collections.abc import Awaitable, Callable, Coroutine, Mapping
 from dataclasses import dataclass
 from types import SimpleNamespace
@@ -94,6 +94,8 @@ class FakeGraph:
         """The type of every topic and service that somebody of us named."""
         self.qos: dict[str, Qos] = {}
         """How topics are carried, as the last of us who named one asked for."""
+        self.servers: Counter[str] = Counter()
+        """How many servers of each service are known."""
         self.closed = False
         self._published: defaultdict[str, list[Fields]] = defaultdict(list)
         self._latched: dict[str, Fields] = {}
@@ -140,8 +142,8 @@ class FakeGraph:
         return self._published[topic]
 
     def set_alive(self, topic: str, alive: bool) -> None:
-        """Let a topic have a publisher that lives, or none any more; it is heard of at once."""
-        if alive == (topic in self._alive):
+        """Let a topic have one more publisher that lives, or none any more; it is heard at once."""
+        if not alive and topic not in self._alive:
             return
         (self._alive.add if alive else self._alive.discard)(topic)
         for take in () if self.closed else self._liveliness[topic]:
@@ -153,12 +155,14 @@ class FakeGraph:
         return tuple(self._servers)
 
     def offer(self, service: str, answer: Answer) -> None:
-        """Let somebody offer a service."""
+        """Let somebody offer a service, in the place of whoever did and is still known."""
         self._servers[service] = answer
+        self.servers[service] += 1
 
     def withdraw(self, service: str) -> None:
         """Let nobody offer a service any more, or nobody that is known."""
         self._servers.pop(service, None)
+        self.servers.pop(service, None)
 
     async def call(self, service: str, request: Fields) -> Fields:
         """Let somebody call a service; what its answer raises is logged, as with ROS.
@@ -303,6 +307,10 @@ class FakeClient:
     def is_ready(self) -> bool:
         """Tell whether the graph knows a server."""
         return self._service in self._graph.services
+
+    def servers(self) -> int:
+        """Tell how many servers the graph knows."""
+        return self._graph.servers[self._service]
 
     async def call(self, request: Fields, within_s: float) -> Message:
         """Ask, and return the response.

@@ -71,6 +71,10 @@ class Client(Protocol):
         """Tell whether the graph knows a server; one that died is known for some 20 s more."""
         ...
 
+    def servers(self) -> int:
+        """Tell how many servers the graph knows, the dead ones included."""
+        ...
+
     async def call(self, request: Fields, within_s: float) -> Message:
         """Ask, and return the response.
 
@@ -134,7 +138,7 @@ class RosNode(Protocol):
     def watch_liveliness(
         self, topic: str, type_name: str, lease_s: float, take: Callable[[bool], None]
     ) -> None:
-        """Hear whether a topic has a publisher that lives.
+        """Hear which publishers of a topic live.
 
         Only publishers with automatic liveliness and a lease as short or shorter are noticed; none
         has to publish anything.
@@ -143,7 +147,8 @@ class RosNode(Protocol):
             topic: Full name.
             type_name: As `std_msgs/msg/Empty`.
             lease_s: So long after its process died, a publisher is missed, in seconds.
-            take: Is handed True once there is one, and False once there is none any more.
+            take: Is handed True whenever one comes or goes and there is one then, and False once
+                there is none any more.
         """
         ...
 

@@ -8,6 +8,7 @@ coming or going; and everything else that is published by a `Sender`.
 
 import asyncio
 import logging
+import os
 import threading
 import time
 from collections.abc import Awaitable, Callable
@@ -57,6 +58,7 @@ _SERVING = QoSProfile(depth=2 * MAX_UNANSWERED)
 _NO_EVENTS = SubscriptionEventCallbacks(use_default_callbacks=False)
 _NO_PUBLISHER_EVENTS = PublisherEventCallbacks(use_default_callbacks=False)
 _LIVELINESS_DEPTH = 8
+_DOMAINS = range(233)
 _JOIN_S = 1.0
 _REQUESTS_AT_ONCE = 2
 """In one pass of the event loop; one takes 0.1 to 0.5 ms."""
@@ -74,8 +76,9 @@ class RosLink:
         """Join the graph; an event loop is needed only for the first node.
 
         Raises:
-            RuntimeError: The middleware does not start, as with a ROS_DOMAIN_ID that is no number.
+            RuntimeError: The middleware does not start, or ROS_DOMAIN_ID is no domain.
         """
+        _check_domain()
         self.context = rclpy.Context()
         # No arguments, since those of the command line are not for ROS; no handlers of signals,
         # since SIGTERM and SIGINT are ours.
@@ -207,7 +210,7 @@ class _Node:
     def client(self, service: str, type_name: str) -> "_Client":
         """Return a client."""
         kind = _find_type(type_name)
-        return _Client(self._link, kind, self._node.create_client(kind, service))
+        return _Client(self._link, self._node, kind, self._node.create_client(kind, service))
 
     def publisher(self, topic: str, type_name: str, qos: Qos) -> "_Publisher":
         """Return a publisher."""
@@ -235,16 +238,16 @@ class _Node:
     def watch_liveliness(
         self, topic: str, type_name: str, lease_s: float, take: Callable[[bool], None]
     ) -> None:
-        """Hear whether a topic has a publisher that lives."""
+        """Hear which publishers of a topic live."""
         kind = _find_type(type_name)
-        alive = False
+        living = 0
 
         def change(status: Message) -> bool | None:
-            nonlocal alive
-            if (status.alive_count > 0) == alive:
+            nonlocal living
+            if status.alive_count == living:
                 return None
-            alive = not alive
-            return alive
+            living = int(status.alive_count)
+            return living > 0
 
         def warn(_status: object) -> None:
             wanted = f"automatic liveliness with a lease of {lease_s:g} s or less"
@@ -274,15 +277,22 @@ class _Node:
 class _Client:
     """A client of a service; a `Client`."""
 
-    def __init__(self, link: RosLink, kind: Any, client: Any) -> None:  # noqa: ANN401
+    def __init__(self, link: RosLink, node: Any, kind: Any, client: Any) -> None:  # noqa: ANN401
         self._crossing = link.crossing
         self._turnstile = link.turnstile
+        self._node = node
         self._kind = kind
         self._client = client
 
     def is_ready(self) -> bool:
         """Tell whether the graph knows a server."""
         return not self._crossing.closed and bool(self._client.service_is_ready())
+
+    def servers(self) -> int:
+        """Tell how many servers the graph knows."""
+        if self._crossing.closed:
+            return 0
+        return int(self._node.count_services(self._client.service_name))
 
     async def call(self, request: Fields, within_s: float) -> Message:
         """Ask, and return the response.
@@ -345,6 +355,20 @@ class _Publisher:
         fill(filled, message)
         if not self._crossing.closed:
             self._publisher.publish(filled)
+
+
+def _check_domain() -> None:
+    """Refuse a domain that ROS takes for another one, or over which it ends the process."""
+    text = os.environ.get("ROS_DOMAIN_ID", "")
+    try:
+        # By the rules of C, as rcl reads it.
+        domain = int(text or "0", base=0)
+    except ValueError:
+        domain = -1
+    if domain not in _DOMAINS:
+        raise RuntimeError(
+            f"ROS_DOMAIN_ID must be a whole number from 0 to {_DOMAINS[-1]}, not {text!r:.40}"
+        )
 
 
 def _find_type(type_name: str) -> Any:  # noqa: ANN401  # a class of ROS

@@ -62,6 +62,11 @@ class NodeServices:
         return self._get_state.is_ready()
 
     @property
+    def processes(self) -> int:
+        """Tell how many processes with the node the graph knows, the dead ones included."""
+        return self._get_state.servers()
+
+    @property
     def has_parameters(self) -> bool:
         """Tell whether the graph knows that the node can be asked for parameters."""
         return self._get_parameters.is_ready()

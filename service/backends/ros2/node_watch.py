@@ -82,6 +82,8 @@ class NodeWatch:
         self._heard_at: Instant = 0
         self._news: dict[str, ParameterValue] = {}
         """Parameters that were heard since they were last asked for."""
+        self._processes = 0
+        """So many of it the graph knew when the node was asked last."""
         self._known_since: Instant | None = None
         """Since when the graph knows one of its services."""
         self._beats = False
@@ -125,9 +127,12 @@ class NodeWatch:
             self._deliver(NodeReport(self._name, parameters=MappingProxyType(dict(values))))
 
     def take_heartbeat(self, beats: bool) -> None:
-        """Take in that the process of the node lives, or does not any more."""
+        """Take in that a process of the node came or went: whether there is one that lives."""
         self._beats = beats
-        if not beats:
+        if beats:
+            # One that was started anew is heard before the old one is missed.
+            self._ask_all()
+        else:
             self._lose()
 
     def _note_word(self) -> None:
@@ -193,9 +198,15 @@ class NodeWatch:
         heard = self._heard
         if self._has_lifecycle:
             # If something was heard meanwhile, the answer may be older than that.
-            return await self._ask_state() is self._state or heard != self._heard
+            is_same = await self._ask_state() is self._state or heard != self._heard
+            return is_same and not self._is_started_anew()
         values = await self._ask_parameters()
         return values is None or _holds_all(self._parameters, values)
+
+    def _is_started_anew(self) -> bool:
+        """Tell whether there is a new process: it may be in the same state as the old one."""
+        known, self._processes = self._processes, self._services.processes
+        return self._processes > known
 
     async def _learn(self) -> None:
         """Ask for everything, and deliver it in one report, unless it was overtaken meanwhile.
@@ -204,6 +215,7 @@ class NodeWatch:
             TimeoutError: The node does not answer.
         """
         self._wants_all, heard = False, self._heard
+        processes = self._services.processes
         has_lifecycle = self._services.has_lifecycle
         if self._is_there:
             has_lifecycle = self._has_lifecycle
@@ -217,7 +229,7 @@ class NodeWatch:
             self._wants_all = True
             return
         self._is_there, self._has_lifecycle = True, has_lifecycle
-        self._state, self._parameters = state, values
+        self._state, self._parameters, self._processes = state, values, processes
         self._heard += 1
         report = NodeReport(
             self._name,

@@ -23,7 +23,7 @@ _PERIOD: Duration = seconds(0.04)
 """Odometry that comes more often than this is left out."""
 _EARLY: Duration = seconds(0.02)
 """So much earlier a message may come after one that was late, so that jitter costs none."""
-_QUIET: Duration = seconds(1)
+_QUIET: Duration = seconds(60)
 """Odometry is complained of no more often than this."""
 _ROLLS_MPS = 0.1
 """Below this speed the steering angle cannot be told from how quickly the vehicle turns."""

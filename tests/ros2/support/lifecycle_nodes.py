@@ -1,21 +1,19 @@
 """Real lifecycle nodes of rclpy, some in one process, to be silenced and killed by tests.
 
 python lifecycle_nodes.py NODES, with NODES as JSON: a list of objects with a `name` and, where
-wanted, `parameters` (values by name), `heartbeat` (true), `lifecycle` (false: a plain node), and
-`takes_s` (seconds by callback, as in {"on_activate": 2}). Prints `ready` once all are there.
+wanted, `parameters` (values by name), `heartbeat` (true) and `lifecycle` (false: a plain node).
+Prints `ready` once all are there.
 """
 
 import json
 import signal
 import sys
-import time
-from functools import partial
 from typing import Any
 
 import rclpy
 from rclpy.duration import Duration
 from rclpy.executors import SingleThreadedExecutor
-from rclpy.lifecycle import LifecycleNode, TransitionCallbackReturn
+from rclpy.lifecycle import LifecycleNode
 from rclpy.node import Node
 from rclpy.qos import LivelinessPolicy, QoSProfile
 from rclpy.signals import SignalHandlerOptions
@@ -35,18 +33,10 @@ def made(spec: dict[str, Any]) -> Any:  # noqa: ANN401  # rclpy's
     node = kind(name, namespace=f"/{namespace}")
     for parameter, value in spec.get("parameters", {}).items():
         node.declare_parameter(parameter, value)
-    for callback, seconds in spec.get("takes_s", {}).items():
-        getattr(node, f"register_{callback}")(partial(take, seconds))
     if spec.get("heartbeat", False):
         # Nothing is published on it: the middleware of this process says that it lives.
         node.create_publisher(Empty, "~/heartbeat", HEARTBEAT)
     return node
-
-
-def take(seconds: float, _state: object) -> Any:  # noqa: ANN401  # rclpy's
-    """Take some time in a callback, and then succeed."""
-    time.sleep(seconds)
-    return TransitionCallbackReturn.SUCCESS
 
 
 def main() -> None:

@@ -297,6 +297,34 @@ async def test_a_restart_that_was_too_quick_to_be_missed_is_noticed(robot: Heard
     assert robot.reports() == [all_facts(S.UNCONFIGURED)]
 
 
+async def test_a_new_heartbeat_tells_at_once_of_a_restart_that_was_too_quick(
+    robot: HeardNodes,
+) -> None:
+    base = robot.base(heartbeat=True)
+    await robot.join()
+    base.move(T.CONFIGURE)
+    await robot.advance(1.0)
+    robot.heard.clear()
+    base.start()
+    await robot.advance(0.1)
+
+    assert robot.reports() == [all_facts(S.UNCONFIGURED)]
+
+
+async def test_parameters_are_not_those_of_before_a_restart_that_was_too_quick(
+    robot: HeardNodes,
+) -> None:
+    base = robot.base()
+    await robot.join()
+    base.set({"max_speed": 0.5})
+    await robot.advance(1.0)
+    robot.heard.clear()
+    base.start()
+    await robot.advance(1.0)
+
+    assert robot.reports() == [all_facts(S.UNCONFIGURED)]
+
+
 async def test_an_event_that_does_not_follow_from_what_is_known_is_not_believed(
     robot: HeardNodes,
 ) -> None:

@@ -203,11 +203,11 @@ def test_odometry_that_is_no_number_is_told_to_nobody_but_the_log(
     assert complaint.startswith("/odom does not say how the vehicle moves")
 
 
-async def test_odometry_is_complained_of_once_a_second(caplog: pytest.LogCaptureFixture) -> None:
+async def test_odometry_is_complained_of_once_a_minute(caplog: pytest.LogCaptureFixture) -> None:
     robot = started()
-    for _ in range(301):
+    for _ in range(181):
         robot.report(x=math.nan)
-        await robot.clock.advance(0.01)
+        await robot.clock.advance(1.0)
 
     assert len(complaints(caplog)) == 4
 
