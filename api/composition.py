@@ -1,8 +1,6 @@
 """What `pilothouse serve` puts together: the only place that names concrete adapters."""
 
 import logging
-import os
-from collections.abc import Mapping
 from dataclasses import dataclass
 from importlib import resources
 from pathlib import Path
@@ -29,9 +27,6 @@ BackendName: TypeAlias = Literal["simulated", "ros2"]
 
 EXAMPLE = Path(str(resources.files("service") / "example" / "actuation.yaml"))
 
-DOMAIN_VARIABLE = "ROS_DOMAIN_ID"
-_MAX_DOMAIN = 232
-"""With a larger one the ports of DDS would be beyond 65535, and the middleware ends the process."""
 _NO_ROS = (
     "source the setup.bash of your ROS 2 distribution before the service is started, and let it run"
     " by the Python of that distribution; or, to try it on Linux on x86_64 without ROS 2,"
@@ -143,28 +138,12 @@ def _require_types(graph: RosGraph, topics: Ros2Block) -> None:
             raise UnknownTypeError(type_name)
 
 
-def domain_of(environ: Mapping[str, str]) -> int:
-    """Return the number of the ROS 2 domain that the environment names.
-
-    Args:
-        environ: As `os.environ`.
-
-    Raises:
-        MisuseError: It is none.
-    """
-    given = environ.get(DOMAIN_VARIABLE) or "0"
-    if not (given.isascii() and given.isdecimal() and int(given) <= _MAX_DOMAIN):
-        raise MisuseError(f"{DOMAIN_VARIABLE} must be a number from 0 to {_MAX_DOMAIN}: {given!r}")
-    return int(given)
-
-
 def _join_graph() -> RosGraph:
     """Join the ROS 2 graph.
 
     Raises:
         MisuseError: There is no rclpy that this Python can use, or the middleware does not start.
     """
-    domain_of(os.environ)
     try:
         # Here, since ROS 2 is there only on some machines.
         from service.backends.ros2.link import RosLink

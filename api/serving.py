@@ -22,14 +22,7 @@ from api.access import (
     take_token,
 )
 from api.app import create_app, prepare
-from api.composition import (
-    EXAMPLE,
-    Composition,
-    MisuseError,
-    ServeOptions,
-    compose,
-    domain_of,
-)
+from api.composition import EXAMPLE, Composition, MisuseError, ServeOptions, compose
 from api.distribution import installed_version
 from api.metrics import metrics
 from api.model_check import finding_line
@@ -171,7 +164,7 @@ def greet(
             body = f'{{"mode": "{modes[-1]}"}}'
             yield f"        {curl} -X POST {url}/{kind}/{part}/mode -d '{body}'"
     if composition.gateway is not None:
-        domain = domain_of(os.environ)
+        domain = os.environ.get("ROS_DOMAIN_ID") or "0"
         yield f"ROS 2: domain {domain}. Nodes are real: what is asked here moves them."
     if supervisor.simulated:
         harmless = "" if composition.gateway else " Nothing here moves a real robot."

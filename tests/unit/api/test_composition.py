@@ -4,7 +4,7 @@ from types import SimpleNamespace
 
 import pytest
 
-from api.composition import DOMAIN_VARIABLE, MisuseError, ServeOptions, compose, domain_of
+from api.composition import MisuseError, ServeOptions, compose
 from service.backends.ros2.graph import UnknownTypeError
 from service.files.robot_file import RobotSettings
 from service.start_task import StartTaskError
@@ -159,14 +159,3 @@ def test_topics_of_a_robot_that_is_simulated_are_said_to_have_no_effect(
     compose(ServeOptions(robot=robot), ManualClock())
 
     assert "`ros2` of the robot file has no effect" in caplog.text
-
-
-@pytest.mark.parametrize(("given", "domain"), [(None, 0), ("", 0), ("7", 7), ("232", 232)])
-def test_the_domain_is_that_of_the_environment(given: str | None, domain: int) -> None:
-    assert domain_of({} if given is None else {DOMAIN_VARIABLE: given}) == domain
-
-
-@pytest.mark.parametrize("given", ["233", "-1", "robot", "1.5", "²"])
-def test_a_domain_that_would_end_the_process_is_refused_before(given: str) -> None:
-    with pytest.raises(MisuseError, match="ROS_DOMAIN_ID must be a number from 0 to 232"):
-        domain_of({DOMAIN_VARIABLE: given})
