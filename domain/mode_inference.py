@@ -102,6 +102,8 @@ class ModeInference:
             name: any(isinstance(v, tuple) for mode in node.modes.values() for v in mode.values())
             for name, node in model.nodes.items()
         }
+        self._plain: set[PartName] = set()
+        """Nodes without a lifecycle."""
         self._actual: dict[PartName, Actual] = {}
         for node in model.nodes:
             self._actual[node] = self._infer_node(node)
@@ -122,7 +124,9 @@ class ModeInference:
         facts = self._facts.get(report.node)
         if facts is None:
             raise UnknownPartError("node", report.node, tuple(self._facts))
-        return self._infer((report.node,)) if facts.take(report, now) else set()
+        is_different = facts.take(report, now)
+        (self._plain.discard if facts.has_lifecycle else self._plain.add)(report.node)
+        return self._infer((report.node,)) if is_different else set()
 
     def set_targets(self, targets: Mapping[PartName, StateAndMode | None]) -> set[PartName]:
         """Record what is pursued for parts; return the parts whose actual is different now.
@@ -275,6 +279,7 @@ class ModeInference:
     def _common_state(self, parts: tuple[PartName, ...]) -> Actual:
         """Without a target: the state that all parts share, never a mode."""
         common: LifecycleState | None = None
+        parts = self._with_lifecycle(parts) or parts
         first = parts[0] if parts else None
         for part in parts:
             state = self._state_of(part)
@@ -288,8 +293,21 @@ class ModeInference:
                 )
         return Actual(common or LifecycleState.UNKNOWN, inferred=True)
 
+    def _with_lifecycle(self, parts: tuple[PartName, ...]) -> tuple[PartName, ...]:
+        """Return the parts that say where a system rests: of plain nodes, those that are unknown.
+
+        A plain node is active and nothing else, and would keep its system from ever being at rest.
+        """
+        if not self._plain:
+            return parts
+        return tuple(
+            part
+            for part in parts
+            if part not in self._plain or self._actual[part].state is LifecycleState.UNKNOWN
+        )
+
     def _towards_inactive(self, parts: tuple[PartName, ...]) -> Actual:
-        for part in parts:
+        for part in self._with_lifecycle(parts):
             state = self._state_of(part)
             if state is LifecycleState.ERROR_PROCESSING:
                 return _ERROR
@@ -300,7 +318,7 @@ class ModeInference:
     def _towards_rest(self, parts: tuple[PartName, ...], goal: LifecycleState) -> Actual:
         """Towards `unconfigured` or `finalized`: there when all parts are."""
         arrived = True
-        for part in parts:
+        for part in self._with_lifecycle(parts):
             state = self._state_of(part)
             if state is LifecycleState.ERROR_PROCESSING:
                 return _ERROR

@@ -60,6 +60,7 @@ def goal_of(
 
     Activating without naming a mode means `__DEFAULT__`. Nodes that a request to a system passes
     by, such as an unconfigured one when the system is deactivated, keep the state they rest in.
+    Of a plain node, a transition of its system asks nothing but parameters.
     """
     if isinstance(request, ParametersRequest):
         return ChangeGoal({}, {request.node: NodeGoal(None, None, dict(request.values))})
@@ -74,7 +75,11 @@ def goal_of(
     _spread(model, request.part, wanted, targets)
     if isinstance(request, TransitionRequest):
         _pass_by(request, facts, targets)
-    nodes = {part: _node_goal(model, part, targets[part]) for part in targets if part in facts}
+    nodes = {
+        part: _node_goal(model, part, targets[part])
+        for part in targets
+        if part in facts and not _is_left_out(request, part, targets[part], facts[part])
+    }
     if isinstance(request, TransitionRequest) and request.transition is Transition.DEACTIVATE:
         nodes = {node: replace(goal, configures=False) for node, goal in nodes.items()}
     return ChangeGoal(targets, nodes)
@@ -116,6 +121,17 @@ def _stays(state: LifecycleState, transition: Transition) -> bool:
     if transition is Transition.DEACTIVATE and state is LifecycleState.UNCONFIGURED:
         return True
     return transition in TOWARDS_REST and state is LifecycleState.FINALIZED
+
+
+def _is_left_out(
+    request: ChangeRequest, part: PartName, target: StateAndMode, facts: NodeFacts
+) -> bool:
+    """Tell whether a plain node is left as it is, since its system is asked for a transition.
+
+    It is active and nothing else, and must not keep the others from going.
+    """
+    is_asked_itself = not isinstance(request, TransitionRequest) or part == request.part
+    return not (is_asked_itself or facts.has_lifecycle or target.state is LifecycleState.ACTIVE)
 
 
 def _node_goal(model: SmhModel, node: PartName, target: StateAndMode) -> NodeGoal:

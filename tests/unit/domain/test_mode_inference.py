@@ -553,3 +553,54 @@ def test_a_system_of_nothing_that_nothing_was_asked_of_is_unknown_and_decided() 
     empty = PartName("empty")
     inference = ModeInference(SmhModel({}, {empty: SystemModel(empty, {})}))
     assert inference.actual(empty) == Actual(S.UNKNOWN, inferred=True)
+
+
+# --- plain nodes ---------------------------------------------------------------------------------
+
+
+def _with_a_plain_base(arm: str, target: str | None) -> ModeInference:
+    inference = _inference(manipulator=arm)
+    _report(inference, BASE, "active.SLOW")
+    inference.report(NodeReport(BASE, has_lifecycle=False))
+    inference.set_targets({ACTUATION: StateAndMode.parse(target) if target else None})
+    return inference
+
+
+@pytest.mark.parametrize(
+    ("arm", "target", "system"),
+    [
+        ("unconfigured", None, "unconfigured"),
+        ("inactive", "inactive", "inactive"),
+        ("active.WEAK", "inactive", "deactivating"),
+        ("unconfigured", "unconfigured", "unconfigured"),
+        ("inactive", "unconfigured", "cleaningup"),
+        ("finalized", "finalized", "finalized"),
+        ("active.WEAK", "active.MODERATE", "active.MODERATE"),
+    ],
+)
+def test_a_plain_node_does_not_keep_its_system_from_being_at_rest(
+    arm: str, target: str | None, system: str
+) -> None:
+    """SEMANTICS 2: it counts as active; system_modes issue #90."""
+    assert _label(_with_a_plain_base(arm, target)) == system
+
+
+def test_a_system_of_plain_nodes_is_active_as_they_are() -> None:
+    inference = _with_a_plain_base("active.WEAK", None)
+    inference.report(NodeReport(ARM, has_lifecycle=False))
+
+    assert _label(inference) == "active"
+
+
+def test_a_plain_node_of_which_nothing_is_heard_leaves_its_system_unknown() -> None:
+    inference = _with_a_plain_base("inactive", "inactive")
+    inference.report(NodeReport(BASE, reachable=False))
+
+    assert inference.actual(ACTUATION).reason == "drive_base is unreachable"
+
+
+def test_a_node_that_turns_out_to_have_a_lifecycle_counts_again() -> None:
+    inference = _with_a_plain_base("inactive", "inactive")
+    inference.report(NodeReport(BASE, has_lifecycle=True))
+
+    assert _label(inference) == "deactivating"

@@ -512,6 +512,24 @@ def test_a_node_that_turns_out_to_have_no_lifecycle_cannot_be_configured() -> No
     assert core.change("c1").reason == "drive_base has no lifecycle: no way to the goal"
 
 
+@pytest.mark.parametrize(
+    ("transition", "state"),
+    [(Transition.CONFIGURE, "inactive"), (Transition.SHUTDOWN, "finalized")],
+)
+def test_a_plain_node_does_not_keep_its_system_from_going(
+    transition: Transition, state: str
+) -> None:
+    robot = VirtualRobot(actuation_model(), nodes={BASE: NodeSettings(plain=True)})
+    robot.advance(0.1)
+    change = robot.give(TransitionRequest(ACTUATION, transition)).change
+    robot.advance(5)
+
+    assert change is not None
+    assert robot.core.change(change).status is ChangeStatus.SUCCEEDED
+    assert {step.node for step in robot.core.change(change).steps} == {ARM}
+    assert (robot.actual("actuation"), robot.actual("drive_base")) == (state, "active")
+
+
 def test_a_node_that_somebody_else_keeps_moving_is_given_up() -> None:
     core = _core()
     core.handle(ModeRequest(BASE, SLOW), 0)

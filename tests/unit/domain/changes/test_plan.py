@@ -166,12 +166,27 @@ def test_a_mode_passes_nothing_by() -> None:
     assert targets["manipulator"] == "inactive"
 
 
-def test_a_plain_node_has_the_target_of_its_system_and_no_way_to_it() -> None:
+@pytest.mark.parametrize("transition", [T.CONFIGURE, T.DEACTIVATE, T.CLEANUP, T.SHUTDOWN])
+def test_a_plain_node_has_the_target_of_its_system_and_nothing_is_asked_of_it(
+    transition: Transition,
+) -> None:
     """system_modes, launch test `two_mixed_nodes`."""
     facts = {ARM: _facts(S.INACTIVE), BASE: _facts(None, has_lifecycle=False)}
-    goal = goal_of(MODEL, TransitionRequest(ACTUATION, T.CONFIGURE), facts)
-    assert goal.targets[BASE] == StateAndMode(S.INACTIVE)
+    goal = goal_of(MODEL, TransitionRequest(ACTUATION, transition), facts)
+    assert goal.targets[BASE] == StateAndMode(transition.goal)
+    assert goal.nodes.keys() == {ARM}
+
+
+def test_a_plain_node_that_is_asked_itself_has_no_way() -> None:
+    facts = {ARM: _facts(S.INACTIVE), BASE: _facts(None, has_lifecycle=False)}
+    goal = goal_of(MODEL, TransitionRequest(BASE, T.DEACTIVATE), facts)
     assert next_steps(facts[BASE], goal.nodes[BASE]) is None
+
+
+def test_a_mode_that_wants_a_plain_node_inactive_is_not_to_be_had() -> None:
+    facts = {ARM: _facts(None, has_lifecycle=False), BASE: _facts(S.INACTIVE)}
+    goal = goal_of(MODEL, ModeRequest(ACTUATION, "__DEFAULT__"), facts)
+    assert next_steps(facts[ARM], goal.nodes[ARM]) is None
 
 
 def test_a_plain_node_gets_the_parameters_of_its_mode_when_its_system_is_activated() -> None:
