@@ -75,6 +75,7 @@ def compose(options: ServeOptions, clock: Clock) -> Composition:
         StartTaskError: The task to begin with cannot be driven.
         MisuseError: There is no ROS 2, and it was asked for.
         UnknownTypeError: ROS 2 has not the type of a topic that the robot file names.
+        UnknownFieldError: That type has not the field that the robot file names.
     """
     loaded = load_model(options.model or EXAMPLE)
     robot = load_robot_file(options.robot, loaded.model) if options.robot else RobotSettings()
@@ -129,6 +130,7 @@ def _require_types(graph: RosGraph, topics: Ros2Block) -> None:
 
     Raises:
         UnknownTypeError: A type is not installed.
+        UnknownFieldError: A type has not the field that is the value of a signal.
     """
     named = [signal.type for signal in topics.signals.values()]
     if topics.command is not None:
@@ -136,6 +138,8 @@ def _require_types(graph: RosGraph, topics: Ros2Block) -> None:
     for type_name in named:
         if not graph.has_type(type_name):
             raise UnknownTypeError(type_name)
+    for signal in topics.signals.values():
+        graph.require_field(signal.type, signal.path or ())
 
 
 def _join_graph() -> RosGraph:

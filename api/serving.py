@@ -30,7 +30,7 @@ from api.service_manager import ServiceManager, UnknownManagerError
 from api.web_server import ListenError, WebServer, is_loopback, listen, url_of, web_server
 from domain.errors import InvalidModelError
 from domain.findings import Finding
-from service.backends.ros2.graph import GraphFailedError, UnknownTypeError
+from service.backends.ros2.graph import GraphFailedError, UnknownFieldError, UnknownTypeError
 from service.clock import MonotonicClock
 from service.files.robot_file import InvalidRobotFileError
 from service.files.text_file import UnreadableFileError
@@ -40,6 +40,7 @@ from service.supervisor import Supervisor, TaskFailedError
 
 log = logging.getLogger(__name__)
 
+_NOT_IN_ROS = (UnknownFieldError, UnknownTypeError)
 SUCCEEDED, FAILED, MISUSED, INTERRUPTED = 0, 1, 2, 130
 
 
@@ -57,7 +58,7 @@ def serve(options: ServeOptions) -> int:
         return _complain_of(options.model or EXAMPLE, error.findings)
     except InvalidRobotFileError as error:
         return _complain_of(options.robot, error.findings)
-    except (ListenError, StartTaskError, UnknownTypeError, UnreadableFileError) as error:
+    except (ListenError, StartTaskError, *_NOT_IN_ROS, UnreadableFileError) as error:
         return _complain(str(error), FAILED)
     supervisor, hosts = composition.supervisor, (options.host, *options.allowed_hosts)
     app = create_app(supervisor, allowed_hosts=hosts, access=access, limits=composition.limits)

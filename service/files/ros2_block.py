@@ -135,8 +135,12 @@ class Ros2Block(SettingsBlock):
         Yields:
             The keys that lead to it, the code of the fault, and what it is.
         """
+        types: dict[str, str] = {}
         for name, block in self.signals.items():
             place = ("signals", name)
+            if types.setdefault(block.topic, block.type) != block.type:
+                message = f"{block.topic} is {types[block.topic]} for another signal"
+                yield (*place, "type"), "INVALID_VALUE", message
             kind = kinds.get(name)
             if kind is None:
                 message = f"there is no signal {name!r}; declare it under signals"

@@ -7,7 +7,7 @@ published is heard at once, before `publish` returns; requests and responses tak
 import asyncio
 import logging
 from collections import Counter, defaultdict
-from collections.abc import Awaitable, Callable, Coroutine, Mapping
+from collections.abc import Awaitable, Callable, Coroutine, Mapping, Sequence
 from dataclasses import dataclass
 from types import SimpleNamespace
 from typing import Any, TypeAlias
@@ -21,6 +21,7 @@ from service.backends.ros2.graph import (
     Message,
     PickedT,
     Qos,
+    UnknownFieldError,
     UnknownTypeError,
 )
 from tests.support.manual_clock import ManualClock
@@ -117,6 +118,11 @@ class FakeGraph:
     def has_type(self, type_name: str) -> bool:
         """Tell whether a type is installed."""
         return type_name not in self.missing
+
+    def require_field(self, type_name: str, path: Sequence[str | int]) -> None:
+        """Know every field but one."""
+        if "no_such_field" in path:
+            raise UnknownFieldError(type_name, "no_such_field", ["data"])
 
     async def wait_failed(self) -> None:
         """Wait until the test calls `fail`."""

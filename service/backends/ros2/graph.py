@@ -4,7 +4,7 @@
 thread, and all that comes back comes there.
 """
 
-from collections.abc import Awaitable, Callable, Mapping
+from collections.abc import Awaitable, Callable, Mapping, Sequence
 from enum import Enum
 from typing import Any, Protocol, TypeAlias, TypeVar
 
@@ -27,6 +27,14 @@ class UnknownTypeError(Exception):
             " distribution, or source the workspace that has it, before Pilothouse is started"
         )
         self.type_name = type_name
+
+
+class UnknownFieldError(Exception):
+    """A field that no message of a type has."""
+
+    def __init__(self, type_name: str, field: str, known: Sequence[str]) -> None:
+        there = f"it has {', '.join(known)}" if known else "it has none"
+        super().__init__(f"the ROS 2 type {type_name} has no field {field}; {there}")
 
 
 class GraphFailedError(Exception):
@@ -180,6 +188,19 @@ class RosGraph(Protocol):
 
     def has_type(self, type_name: str) -> bool:
         """Tell whether a type of message or service is installed."""
+        ...
+
+    def require_field(self, type_name: str, path: Sequence[str | int]) -> None:
+        """See that messages of a type have a field.
+
+        Args:
+            type_name: As `sensor_msgs/msg/BatteryState`.
+            path: Names of fields, and places in lists.
+
+        Raises:
+            UnknownTypeError: There is no such type.
+            UnknownFieldError: It has no such field.
+        """
         ...
 
     async def wait_failed(self) -> None:

@@ -11,7 +11,7 @@ import logging
 import os
 import threading
 import time
-from collections.abc import Awaitable, Callable
+from collections.abc import Awaitable, Callable, Sequence
 from typing import Any
 
 import rclpy
@@ -42,7 +42,7 @@ from service.backends.ros2.graph import (
     Qos,
     UnknownTypeError,
 )
-from service.backends.ros2.messages import fill, find_type
+from service.backends.ros2.messages import fill, find_type, require_field
 from service.backends.ros2.sending import Sender, Turnstile, send_or_tell
 
 _PROFILES = {
@@ -118,6 +118,10 @@ class RosLink:
         except UnknownTypeError:
             return False
         return True
+
+    def require_field(self, type_name: str, path: Sequence[str | int]) -> None:
+        """See that messages of a type have a field."""
+        require_field(type_name, path)
 
     async def wait_failed(self) -> None:
         """Wait until a lane breaks down.

@@ -8,14 +8,14 @@ import importlib
 import math
 import re
 from array import array
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from functools import cache, partial
 from typing import Any, TypeAlias
 
 import numpy as np
 
 from domain.errors import InvalidValueError
-from service.backends.ros2.graph import Fields, Message, UnknownTypeError
+from service.backends.ros2.graph import Fields, Message, UnknownFieldError, UnknownTypeError
 
 _TYPE_NAME = re.compile(r"(?P<folder>[a-z]\w*/(?:msg|srv))/(?P<name>[A-Za-z]\w*)", re.ASCII)
 _SEQUENCE = re.compile(r"sequence<(?P<element>.+?)(?:, (?P<most>\d+))?>")
@@ -44,6 +44,31 @@ def find_type(type_name: str) -> Any:  # noqa: ANN401  # a class of ROS, which h
         return getattr(module, match["name"])
     except (ImportError, AttributeError) as error:
         raise UnknownTypeError(type_name) from error
+
+
+def require_field(type_name: str, path: Sequence[str | int]) -> None:
+    """See that messages of a type have a field; how long a list is, only a message tells.
+
+    Args:
+        type_name: As `sensor_msgs/msg/BatteryState`.
+        path: Names of fields, and places in lists.
+
+    Raises:
+        UnknownTypeError: There is no such type.
+        UnknownFieldError: It has no such field.
+    """
+    kind = type_name.replace("/msg/", "/")
+    for step in path:
+        items = _SEQUENCE.fullmatch(kind) or _ARRAY.fullmatch(kind)
+        if items is not None and isinstance(step, int):
+            kind = items["element"]
+            continue
+        fields: Mapping[str, str] = {}
+        if items is None and "/" in kind:
+            fields = find_type(kind.replace("/", "/msg/")).get_fields_and_field_types()
+        if step not in fields:
+            raise UnknownFieldError(type_name, ".".join(map(str, path)), tuple(fields))
+        kind = fields[str(step)]
 
 
 def fill(message: Message, fields: Fields) -> None:

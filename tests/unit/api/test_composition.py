@@ -5,7 +5,7 @@ from types import SimpleNamespace
 import pytest
 
 from api.composition import MisuseError, ServeOptions, compose
-from service.backends.ros2.graph import UnknownTypeError
+from service.backends.ros2.graph import UnknownFieldError, UnknownTypeError
 from service.files.robot_file import RobotSettings
 from service.start_task import StartTaskError
 from tests.support.manual_clock import ManualClock
@@ -148,6 +148,15 @@ def test_a_type_that_the_robot_file_names_has_to_be_there(
     robot.write_text(f"ros2: {{{topics}}}\n")
 
     with pytest.raises(UnknownTypeError, match="install its package"):
+        compose(ServeOptions(robot=robot, backend="ros2"), ManualClock())
+
+
+@pytest.mark.usefixtures("_ros")
+def test_a_field_that_the_robot_file_names_has_to_be_there(robot: Path) -> None:
+    topic = "{topic: /load, type: std_msgs/msg/Float64, field: no_such_field}"
+    robot.write_text(f"ros2: {{signals: {{temperature: {topic}}}}}\n")
+
+    with pytest.raises(UnknownFieldError, match="has no field no_such_field; it has data"):
         compose(ServeOptions(robot=robot, backend="ros2"), ManualClock())
 
 

@@ -180,6 +180,17 @@ nodes: {wing: {}}
     ]
 
 
+def test_a_topic_has_one_type() -> None:
+    text = """
+ros2:
+  signals:
+    estop: {topic: /a, type: std_msgs/msg/Bool}
+    temperature: {topic: /a, type: std_msgs/msg/Float64}
+"""
+
+    assert faults(text) == [(5, 30, "INVALID_VALUE")]
+
+
 def test_a_fault_in_what_was_sent_is_told_with_a_pointer() -> None:
     sent = {"ros2": {"signals": {"tail": {"topic": "/t", "type": "std_msgs/msg/Bool"}}}}
     with pytest.raises(InvalidValueError, match="there is no signal 'tail'; declare it") as caught:

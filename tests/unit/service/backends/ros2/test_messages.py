@@ -9,8 +9,8 @@ import numpy as np
 import pytest
 
 from domain.errors import InvalidValueError
-from service.backends.ros2.graph import UnknownTypeError
-from service.backends.ros2.messages import fields_of, fill, find_type
+from service.backends.ros2.graph import UnknownFieldError, UnknownTypeError
+from service.backends.ros2.messages import fields_of, fill, find_type, require_field
 
 
 class FakeMessage:
@@ -259,3 +259,33 @@ def test_a_type_that_is_not_there_is_named(name: str) -> None:
         find_type(name)
 
     assert missing.value.type_name == name
+
+
+@pytest.mark.parametrize(
+    "path",
+    [(), ("value",), ("header", "stamp", "sec"), ("ranges", 2), ("stamps", 7, "nanosec")],
+)
+def test_a_field_that_messages_have_is_found(path: tuple[str | int, ...]) -> None:
+    require_field("fake_msgs/msg/Everything", path)
+
+
+@pytest.mark.parametrize(
+    ("path", "told"),
+    [
+        (("percent",), "no field percent; it has header, on"),
+        (("header", "seq"), "no field header.seq; it has stamp, frame_id"),
+        (("ranges", "x"), "no field ranges.x; it has none"),
+        (("value", 0), "no field value.0; it has none"),
+        ((0,), "no field 0; it has header, on"),
+    ],
+)
+def test_a_field_that_no_message_has_is_told_with_those_that_there_are(
+    path: tuple[str | int, ...], told: str
+) -> None:
+    with pytest.raises(UnknownFieldError, match=told):
+        require_field("fake_msgs/msg/Everything", path)
+
+
+def test_a_field_of_a_type_that_is_not_installed_is_told_as_that() -> None:
+    with pytest.raises(UnknownTypeError):
+        require_field("gone_msgs/msg/Gone", ("data",))
