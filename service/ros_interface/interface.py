@@ -21,7 +21,7 @@ from service.supervisor import Supervisor
 log = logging.getLogger(__name__)
 
 _AT_ONCE = 10
-_TURN = seconds(0.002)
+_TURN = seconds(0.001)
 """For so long events are turned into messages before others get their turn: a change of a thousand
 nodes makes events faster than some few in each turn."""
 

@@ -22,6 +22,7 @@ from tests.support.process import ServiceProcess, connect, service
 
 _RECORDING = """\
 import json, sys, time
+from importlib.util import find_spec
 from api import command_line
 from domain.messages import Drive
 from service.supervisor import Supervisor
@@ -35,17 +36,26 @@ async def run_recording(supervisor):
 
     def send_recording(command):
         send(command)
-        now = time.perf_counter()
         if isinstance(command, Drive):
-            found["drives"].append((now, command.command.speed_mps))
-        else:
-            found["asks"].append(now)
+            found["drives"].append((time.perf_counter(), command.command.speed_mps))
 
     backend.send = send_recording
     supervisor.on_tick.append(lambda _: found["ticks"].append(time.perf_counter()))
     await run(supervisor)
 
 Supervisor.run = run_recording
+if find_spec("rclpy") is not None:
+    from rclpy.client import Client
+
+    call = Client.call_async
+
+    def call_recording(client, request):
+        answer = call(client, request)
+        if client.srv_name.rpartition("/")[2] in ("change_state", "set_parameters_atomically"):
+            found["asks"].append(time.perf_counter())
+        return answer
+
+    Client.call_async = call_recording
 code = command_line.main()
 json.dump(found, open(path, "w"))
 raise SystemExit(code)
@@ -57,7 +67,7 @@ class Record:
     """What the service wrote down."""
 
     asks: list[float]
-    """When something that a node was asked for was on its way."""
+    """When ROS 2 had taken over what a node was asked for."""
     drives: list[tuple[float, float]]
     """When it told the vehicle a speed, and which, m/s."""
     ticks: list[float]

@@ -16,7 +16,7 @@ from service.mock_source import MockSource
 from service.pacing import Pacer
 from service.ports import BackendMessage
 
-_AT_ONCE = 10
+_AT_ONCE = 4
 _ROOM = 10_000
 _ROOM_PER_NODE = 200
 """For messages that were not delivered yet; a busy event loop finds no more, since the graph holds

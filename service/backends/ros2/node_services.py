@@ -5,7 +5,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from domain.lifecycle import TRANSITIONS, LifecycleState, Transition, rule_for
-from domain.parameters import Parameters, ParameterValue, value_type
+from domain.parameters import Parameters, ParameterValue, same_value, value_type
 from domain.system_model import PartName
 from service.backends.ros2.graph import Fields, Message, RosNode
 
@@ -168,6 +168,13 @@ def _read_value(message: Message) -> ParameterValue | None:
         tuple(read(item) for item in value) if name.endswith("_array") else read(value)
     )
     return result
+
+
+def holds_all(known: Parameters | None, values: Parameters) -> bool:
+    """Tell whether all of some values are known to be set."""
+    if known is None:
+        return False
+    return all(name in known and same_value(known[name], v) for name, v in values.items())
 
 
 def write_value(value: ParameterValue, known: ParameterValue | None = None) -> Fields:

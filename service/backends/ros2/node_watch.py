@@ -19,10 +19,11 @@ from domain.messages import (
     NodeCommand,
     NodeReport,
 )
-from domain.parameters import Parameters, ParameterValue, same_value
+from domain.parameters import Parameters, ParameterValue
 from domain.system_model import NodeModel
 from domain.timebase import Duration, Instant, seconds
-from service.backends.ros2.node_services import NodeServices
+from service.backends.ros2.insisting import Seen, insist
+from service.backends.ros2.node_services import NodeServices, holds_all
 from service.clock import Clock
 
 LOOK_PERIOD: Duration = seconds(1.0)
@@ -201,7 +202,7 @@ class NodeWatch:
             is_same = await self._ask_state() is self._state or heard != self._heard
             return is_same and not self._is_started_anew()
         values = await self._ask_parameters()
-        return values is None or _holds_all(self._parameters, values)
+        return values is None or holds_all(self._parameters, values)
 
     def _is_started_anew(self) -> bool:
         """Tell whether there is a new process: it may be in the same state as the old one."""
@@ -319,7 +320,13 @@ class NodeWatch:
         """
         heard = self._heard
         try:
-            done = await self._services.change_state(ask.transition, self._state)
+            start = self._state
+            done = await insist(
+                partial(self._services.change_state, ask.transition, start),
+                partial(self._see_transition, ask, start),
+                True,
+                self._clock,
+            )
             self._note_word()
             if ask.request not in self._taken:
                 self._answer(ask, done, "" if done else await self._why_refused(ask))
@@ -333,6 +340,19 @@ class NodeWatch:
         if not self._is_told_to_move() and (heard == self._heard or not rests):
             self._ask_all()
 
+    async def _see_transition(self, ask: AskTransition, start: LifecycleState | None) -> Seen:
+        if ask.request in self._taken:
+            return Seen.UNCLEAR
+        state = await self._ask_state()
+        if state is ask.transition.goal:
+            return Seen.DONE
+        return Seen.LOST if state is start else Seen.UNCLEAR
+
+    async def _see_parameters(self, ask: AskParameters) -> Seen:
+        values = await self._services.parameters(ask.values)
+        self._note_word()
+        return Seen.DONE if holds_all(values, ask.values) else Seen.LOST
+
     async def _why_refused(self, ask: AskTransition) -> str:
         try:
             offered = await self._services.available_transitions()
@@ -345,14 +365,19 @@ class NodeWatch:
     async def _set_parameters(self, ask: AskParameters) -> None:
         """Ask to set parameters, and see to it that they are reported."""
         try:
-            reason = await self._services.set_parameters(ask.values, self._parameters or {})
+            reason = await insist(
+                partial(self._services.set_parameters, ask.values, self._parameters or {}),
+                partial(self._see_parameters, ask),
+                "",
+                self._clock,
+            )
             self._note_word()
             self._answer(ask, not reason, reason)
             if reason:
                 return
             self._names.update(dict.fromkeys(ask.values))
             await self._clock.sleep_until(self._clock.now() + _PARAMETERS_FOLLOW)
-            if not _holds_all(self._parameters, ask.values):
+            if not holds_all(self._parameters, ask.values):
                 self._ask_all()
         except TimeoutError:
             return
@@ -370,9 +395,3 @@ def _begins(
         return False
     rule = rule_for(start, command.transition)
     return rule is not None and rule.via is goal
-
-
-def _holds_all(known: Parameters | None, values: Parameters) -> bool:
-    if known is None:
-        return False
-    return all(name in known and same_value(known[name], v) for name, v in values.items())
