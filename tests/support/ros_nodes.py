@@ -67,6 +67,10 @@ class FakeNode:
         """Whether it takes no transition at all."""
         self.loses_events = False
         """Whether what it publishes gets lost."""
+        self.misses = 0
+        """So many of the requests that come next it never hears."""
+        self.loses_answers = False
+        """Whether what it answers gets lost."""
         self._graph = graph
         self._declared = dict(parameters)
         self._heartbeat = heartbeat
@@ -133,7 +137,12 @@ class FakeNode:
         self, answer: Callable[[Fields], Coroutine[Any, Any, Fields]], request: Fields
     ) -> Fields:
         response: asyncio.Future[Fields] = asyncio.get_running_loop().create_future()
-        self._inbox.put_nowait((partial(answer, request), response))
+        if self.misses:
+            self.misses -= 1
+        else:
+            self._inbox.put_nowait((partial(answer, request), response))
+        if self.loses_answers:
+            await asyncio.Event().wait()
         return await response
 
     async def _spin(self, inbox: asyncio.Queue[_Work]) -> None:

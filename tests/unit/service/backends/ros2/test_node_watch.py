@@ -284,6 +284,47 @@ async def test_a_transition_that_was_not_heard_is_noticed_within_a_second(
     assert robot.reports() == [all_facts(S.INACTIVE)]
 
 
+async def test_parameters_that_the_node_never_heard_of_are_asked_for_again(
+    robot: HeardNodes,
+) -> None:
+    base = robot.base()
+    await robot.join()
+    base.misses = 1
+    robot.set(1, {"max_speed": 0.5})
+    await robot.advance(0.8)
+
+    assert robot.answers() == [NodeAnswer(1, BASE, True)]
+    assert base.parameters["max_speed"] == 0.5
+
+
+async def test_a_transition_that_the_node_never_heard_of_is_asked_for_again(
+    robot: HeardNodes,
+) -> None:
+    base = robot.base()
+    await robot.join()
+    base.misses = 1
+    robot.ask(1, T.CONFIGURE)
+    await robot.advance(0.8)
+
+    assert robot.answers() == [NodeAnswer(1, BASE, True)]
+    assert base.state is S.INACTIVE
+
+
+async def test_a_transition_whose_answer_and_events_got_lost_is_seen_to_be_done(
+    robot: HeardNodes,
+) -> None:
+    base = robot.base()
+    await robot.join()
+    base.loses_answers = base.loses_events = True
+    robot.ask(1, T.CONFIGURE)
+    await robot.advance(0.1)
+    base.loses_answers = base.loses_events = False
+    await robot.advance(0.9)
+
+    assert robot.answers() == [NodeAnswer(1, BASE, True)]
+    assert robot.reports()[-1].state is S.INACTIVE
+
+
 async def test_a_restart_that_was_too_quick_to_be_missed_is_noticed(robot: HeardNodes) -> None:
     base = robot.base()
     await robot.join()
