@@ -51,7 +51,7 @@ if find_spec("rclpy") is not None:
 
     def call_recording(client, request):
         answer = call(client, request)
-        if client.srv_name.rpartition("/")[2] in ("change_state", "set_parameters_atomically"):
+        if client.service_name.rpartition("/")[2] in ("change_state", "set_parameters_atomically"):
             found["asks"].append(time.perf_counter())
         return answer
 
