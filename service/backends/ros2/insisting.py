@@ -16,6 +16,9 @@ MAX_CALLS = 3
 """So often the same is asked at most."""
 PATIENCE: Duration = seconds(0.6)
 """So long an answer may take before the node is looked at."""
+WINDOW: Duration = seconds(1.5)
+"""Later nothing is asked again: whoever asked may have given up by then. The core waits 2 s for
+parameters, and longer for transitions."""
 
 ResultT = TypeVar("ResultT")
 
@@ -26,7 +29,7 @@ class Seen(Enum):
     DONE = "done"
     LOST = "lost"
     UNCLEAR = "unclear"
-    """It is at it, or says nothing at all."""
+    """It is at it, or says nothing at all, or must not be asked again."""
 
 
 async def insist(
@@ -46,16 +49,16 @@ async def insist(
     Raises:
         TimeoutError: As of `ask`.
     """
-    calls = {asyncio.create_task(ask())}
+    calls, ends_at = {asyncio.create_task(ask())}, clock.now() + WINDOW
     try:
-        while len(calls) < MAX_CALLS:
+        while len(calls) < MAX_CALLS and clock.now() < ends_at:
             answered = await _first_of(calls, clock)
             if answered is not None:
                 return answered.result()
             seen = await _look(see)
             if seen is Seen.DONE:
                 return done
-            if seen is Seen.LOST:
+            if seen is Seen.LOST and clock.now() < ends_at:
                 calls.add(asyncio.create_task(ask()))
         ended, _ = await asyncio.wait(calls, return_when=asyncio.FIRST_COMPLETED)
         return ended.pop().result()

@@ -5,6 +5,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from domain.lifecycle import TRANSITIONS, LifecycleState, Transition, rule_for
+from domain.messages import AskTransition, NodeCommand
 from domain.parameters import Parameters, ParameterValue, same_value, value_type
 from domain.system_model import PartName
 from service.backends.ros2.graph import Fields, Message, RosNode
@@ -168,6 +169,14 @@ def _read_value(message: Message) -> ParameterValue | None:
         tuple(read(item) for item in value) if name.endswith("_array") else read(value)
     )
     return result
+
+
+def begins(command: NodeCommand, start: LifecycleState, goal: LifecycleState) -> bool:
+    """Tell whether going from `start` to `goal` is how a command begins to be carried out."""
+    if not isinstance(command, AskTransition):
+        return False
+    rule = rule_for(start, command.transition)
+    return rule is not None and rule.via is goal
 
 
 def holds_all(known: Parameters | None, values: Parameters) -> bool:

@@ -10,7 +10,7 @@ from types import MappingProxyType
 from typing import Any, TypeAlias
 
 from domain.errors import InvalidValueError
-from domain.lifecycle import LifecycleState, rule_for
+from domain.lifecycle import LifecycleState, Transition
 from domain.messages import (
     AskFacts,
     AskParameters,
@@ -23,7 +23,7 @@ from domain.parameters import Parameters, ParameterValue
 from domain.system_model import NodeModel
 from domain.timebase import Duration, Instant, seconds
 from service.backends.ros2.insisting import Seen, insist
-from service.backends.ros2.node_services import NodeServices, holds_all
+from service.backends.ros2.node_services import NodeServices, begins, holds_all
 from service.clock import Clock
 
 LOOK_PERIOD: Duration = seconds(1.0)
@@ -94,6 +94,8 @@ class NodeWatch:
         """Whether it is to be asked for everything, and not only how it is."""
         self._commands: dict[int, AskTransition | AskParameters] = {}
         """What it was told and has not answered yet, or whose effect was not heard of yet."""
+        self._newest: int | None = None
+        """Number of the command that came last: an older one must not be sent again after it."""
         self._taken: set[int] = set()
         """Of those, transitions that it was heard to begin."""
         self._deliver(NodeReport(self._name, reachable=False))
@@ -105,7 +107,7 @@ class NodeWatch:
         self._note_word()
         self._heard += 1
         for request, command in tuple(self._commands.items()):
-            if request not in self._taken and _begins(command, start, goal):
+            if request not in self._taken and begins(command, start, goal):
                 self._taken.add(request)
                 self._answer(command, True)
         if not self._is_there:
@@ -295,6 +297,7 @@ class NodeWatch:
         else:
             work = partial(self._set_parameters, command)
         self._commands[command.request] = command
+        self._newest = command.request
         self._start(work)
 
     def _why_not(self, command: AskTransition | AskParameters) -> str:
@@ -341,17 +344,24 @@ class NodeWatch:
             self._ask_all()
 
     async def _see_transition(self, ask: AskTransition, start: LifecycleState | None) -> Seen:
+        """Tell what became of a transition; to activate is never asked twice.
+
+        An e-stop may have come meanwhile, of which nothing is known here.
+        """
         if ask.request in self._taken:
             return Seen.UNCLEAR
         state = await self._ask_state()
         if state is ask.transition.goal:
             return Seen.DONE
-        return Seen.LOST if state is start else Seen.UNCLEAR
+        may_be_sent = ask.transition is not Transition.ACTIVATE and ask.request == self._newest
+        return Seen.LOST if state is start and may_be_sent else Seen.UNCLEAR
 
     async def _see_parameters(self, ask: AskParameters) -> Seen:
         values = await self._services.parameters(ask.values)
         self._note_word()
-        return Seen.DONE if holds_all(values, ask.values) else Seen.LOST
+        if holds_all(values, ask.values):
+            return Seen.DONE
+        return Seen.LOST if ask.request == self._newest else Seen.UNCLEAR
 
     async def _why_refused(self, ask: AskTransition) -> str:
         try:
@@ -385,13 +395,3 @@ class NodeWatch:
             self._answer(ask, False, error.message)
         finally:
             del self._commands[ask.request]
-
-
-def _begins(
-    command: AskTransition | AskParameters, start: LifecycleState, goal: LifecycleState
-) -> bool:
-    """Tell whether going from `start` to `goal` is how the command begins to be carried out."""
-    if not isinstance(command, AskTransition):
-        return False
-    rule = rule_for(start, command.transition)
-    return rule is not None and rule.via is goal

@@ -81,3 +81,10 @@ async def test_it_is_not_asked_for_ever() -> None:
 
     assert await node.insist(for_s=10) is None
     assert len(node.asked_at) == MAX_CALLS
+
+
+async def test_after_a_while_nothing_is_asked_again_though_it_is_seen_to_be_lost() -> None:
+    node = Node(Seen.UNCLEAR, Seen.UNCLEAR, Seen.LOST, Seen.LOST, answers=lambda number: False)
+
+    assert await node.insist(for_s=10) is None
+    assert node.asked_at == [0.0]

@@ -310,6 +310,34 @@ async def test_a_transition_that_the_node_never_heard_of_is_asked_for_again(
     assert base.state is S.INACTIVE
 
 
+async def test_to_activate_is_never_asked_twice_since_an_estop_may_have_come(
+    robot: HeardNodes,
+) -> None:
+    base = robot.base()
+    await robot.join()
+    base.move(T.CONFIGURE)
+    await robot.advance(0.2)
+    base.misses = 1
+    robot.ask(1, T.ACTIVATE)
+    await robot.advance(10.0)
+
+    assert len(robot.requests("change_state")) == 1
+    assert base.state is S.INACTIVE
+
+
+async def test_older_parameters_are_not_set_again_after_newer_ones(robot: HeardNodes) -> None:
+    base = robot.base()
+    await robot.join()
+    base.misses = 1
+    robot.set(1, {"max_speed": 0.5})
+    await robot.advance(0.3)
+    robot.set(2, {"max_speed": 0.9})
+    await robot.advance(10.0)
+
+    assert len(robot.requests("set_parameters_atomically")) == 2
+    assert base.parameters["max_speed"] == 0.9
+
+
 async def test_a_transition_whose_answer_and_events_got_lost_is_seen_to_be_done(
     robot: HeardNodes,
 ) -> None:
