@@ -3,7 +3,7 @@
 from collections.abc import Callable, Collection, Mapping
 from typing import Any
 
-from domain.messages import Event
+from domain.events import Event
 
 Data = Mapping[str, Any]
 

@@ -11,14 +11,8 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from typing import TypeAlias
 
-from domain.messages import (
-    Drive,
-    GoalFeedback,
-    GoalResult,
-    PreemptGoal,
-    SendGoal,
-    VehicleReport,
-)
+from domain.commands import Drive, PreemptGoal, SendGoal
+from domain.inputs import GoalFeedback, GoalResult, VehicleReport
 from domain.paths.speed_profile import SpeedLimits, SpeedProfile
 from domain.timebase import Duration, Instant, seconds, to_seconds
 from domain.tracking.tracker import ControlStep, PathTracker

@@ -7,17 +7,10 @@ the end of driving are one step.
 from collections.abc import Sequence
 from dataclasses import replace
 
-from domain.messages import (
-    Command,
-    Drive,
-    Input,
-    Outputs,
-    PreemptGoal,
-    SendGoal,
-    TimePassed,
-    VehicleReport,
-)
+from domain.commands import Command, Drive, PreemptGoal, SendGoal
+from domain.inputs import Input, TimePassed, VehicleReport
 from domain.navigation import Navigation
+from domain.outbox import Outputs
 from domain.supervision import Supervision
 from domain.timebase import Instant
 

@@ -1,13 +1,38 @@
 """Gathers what one input leads to: events with their cause, commands, and what looks different."""
 
 from collections.abc import Mapping
+from dataclasses import dataclass
 from types import MappingProxyType
 
-from domain.messages import ChangeId, Command, Event, Outputs, TaskId
-from domain.system_model import PartName
+from domain.commands import Command
+from domain.events import Event
+from domain.identifiers import ChangeId, TaskId
+from domain.state_and_mode import PartName
 from domain.timebase import Instant
 
 NO_DATA: Mapping[str, object] = MappingProxyType({})
+
+
+@dataclass(frozen=True, slots=True)
+class Outputs:
+    """What one input led to."""
+
+    commands: tuple[Command, ...] = ()
+    events: tuple[Event, ...] = ()
+    change: ChangeId | None = None
+    """The change that a request began, or that was already there and is met."""
+    parts: frozenset[PartName] = frozenset()
+    """Parts whose view changed."""
+    signals: frozenset[str] = frozenset()
+    """Signals whose view changed."""
+    system_state: bool = False
+    """Whether the system state changed."""
+    task: TaskId | None = None
+    """The task that a request served."""
+    task_changed: bool = False
+    """Whether the view of the current task changed, or there is another one or none."""
+    vehicle_changed: bool = False
+    """Whether the vehicle moves differently, is told something else, or steers to another point."""
 
 
 class Outbox:

@@ -20,13 +20,12 @@ from domain.health.emergency_stop import EmergencyStop
 from domain.health.health_events import HealthEvents
 from domain.health.signals import SignalSettings, default_signals
 from domain.health.state_manager import HealthChanges, StateManager
-from domain.lifecycle import LifecycleState, Transition
-from domain.messages import (
+from domain.identifiers import ChangeId
+from domain.inputs import (
     AcknowledgeRequest,
     BackendStatus,
     CancelRequest,
     CancelTaskRequest,
-    ChangeId,
     ChangeRequest,
     DriveRequest,
     EmergencyStopRequest,
@@ -37,7 +36,6 @@ from domain.messages import (
     ModeRequest,
     NodeAnswer,
     NodeReport,
-    Outputs,
     ParametersRequest,
     Readings,
     ReleaseRequest,
@@ -47,10 +45,12 @@ from domain.messages import (
     VehicleReport,
     WriteRecord,
 )
-from domain.mode_inference import ModeInference
-from domain.outbox import Outbox
+from domain.lifecycle import LifecycleState, Transition
+from domain.outbox import Outbox, Outputs
 from domain.parameters import value_type
-from domain.part_views import PartViews
+from domain.parts.mode_inference import ModeInference
+from domain.parts.part_views import PartViews
+from domain.parts.system_model import SmhModel
 from domain.snapshot import (
     ChangeView,
     EmergencyStopView,
@@ -61,7 +61,7 @@ from domain.snapshot import (
     StepView,
     SystemStateView,
 )
-from domain.system_model import PartName, SmhModel
+from domain.state_and_mode import PartName
 from domain.tasks.drive_words import describe_drive_request
 from domain.tasks.driving import Driving
 from domain.tasks.settings import TaskSettings

@@ -5,7 +5,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from itertools import islice
 
-from domain.messages import Event
+from domain.events import Event
 from service.watching import Watched
 
 DEFAULT_CAPACITY = 10_000

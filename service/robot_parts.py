@@ -2,9 +2,9 @@
 
 from domain.navigation import Navigation
 from domain.onboard import Onboard
+from domain.parts.system_model import SmhModel
 from domain.simulation.robot import SimulatedRobot
 from domain.supervision import Supervision, SupervisionSettings
-from domain.system_model import SmhModel
 from domain.timebase import Instant
 from service.files.robot_file import RobotSettings
 

@@ -10,35 +10,28 @@ from collections import Counter
 from collections.abc import Callable, Coroutine, Sequence
 from contextlib import suppress
 
+from domain.commands import PreemptGoal, SendGoal
 from domain.errors import PilothouseError
 from domain.findings import Finding
 from domain.health.signals import ESTOP_SIGNAL
-from domain.messages import (
-    ChangeId,
-    HoldRequest,
-    Input,
-    Outputs,
-    PreemptGoal,
-    Reading,
-    Readings,
-    SendGoal,
-    SignalValue,
-    TimePassed,
-)
+from domain.identifiers import ChangeId
+from domain.inputs import HoldRequest, Input, Reading, Readings, SignalValue, TimePassed
 from domain.onboard import Onboard
+from domain.outbox import Outputs
+from domain.parts.system_model import SmhModel
 from domain.paths.speed_profile import SpeedLimits
 from domain.simulation.robot import SimulatedRobot
 from domain.snapshot import ChangeStatus, ChangeView
+from domain.state_and_mode import PartName
 from domain.supervision import Supervision
-from domain.system_model import PartName, SmhModel
 from domain.timebase import Instant, seconds, to_seconds
 from service.clock import Clock
 from service.event_log import EventLog
 from service.files.model_file import LoadedModel
 from service.frame_feed import Frame, FrameFeed
-from service.mock_source import MockSource
 from service.pacing import Alarm
 from service.ports import RobotBackend
+from service.simulation.mock_source import MockSource
 from service.unasked import log_unasked
 
 log = logging.getLogger(__name__)

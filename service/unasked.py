@@ -3,7 +3,7 @@
 import asyncio
 import logging
 
-from domain.messages import Event
+from domain.events import Event
 from service.event_log import EventLog, EventReader
 
 log = logging.getLogger(__name__)

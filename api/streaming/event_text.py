@@ -4,8 +4,8 @@ from collections.abc import Mapping
 
 from pydantic_core import to_json
 
-from api.schemas.base import timestamp
-from domain.messages import Event
+from api.http.schemas.base import timestamp
+from domain.events import Event
 from service.clock import Clock
 
 

@@ -10,22 +10,16 @@ from collections.abc import Callable, Mapping, Sequence
 from domain.changes.plan import ChangeGoal, SetParameters, next_steps, presumed_steps
 from domain.changes.record import Change, ChangeSettings, Pursuit, Step
 from domain.changes.step_judgement import judge_report
+from domain.commands import AskFacts, AskParameters, AskTransition
 from domain.deadlines import Deadlines
 from domain.errors import UnknownChangeError
+from domain.identifiers import ChangeId
+from domain.inputs import ChangeRequest, NodeAnswer, NodeReport
 from domain.lifecycle import LifecycleState, Transition
-from domain.messages import (
-    AskFacts,
-    AskParameters,
-    AskTransition,
-    ChangeId,
-    ChangeRequest,
-    NodeAnswer,
-    NodeReport,
-)
-from domain.mode_inference import ModeInference
 from domain.outbox import Outbox
+from domain.parts.mode_inference import ModeInference
 from domain.snapshot import ChangeStatus, StepStatus
-from domain.system_model import PartName
+from domain.state_and_mode import PartName
 from domain.timebase import Duration, Instant, to_seconds
 
 KEPT_CHANGES = 1_000

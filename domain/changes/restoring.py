@@ -10,11 +10,12 @@ from domain.changes.operations import Changes
 from domain.changes.plan import ChangeGoal
 from domain.changes.record import ChangeSettings, Step
 from domain.errors import BackendUnavailableError, RefusedError
+from domain.identifiers import ChangeId
+from domain.inputs import ChangeRequest, ModeRequest, NodeReport, TransitionRequest
 from domain.lifecycle import LifecycleState, Transition, arrival
-from domain.messages import ChangeId, ChangeRequest, ModeRequest, NodeReport, TransitionRequest
-from domain.mode_inference import ModeInference
 from domain.outbox import Outbox
-from domain.system_model import DEFAULT_MODE, PartName, StateAndMode
+from domain.parts.mode_inference import ModeInference
+from domain.state_and_mode import DEFAULT_MODE, PartName, StateAndMode
 from domain.timebase import Instant, seconds, to_seconds
 
 MAX_RESTORES = 3

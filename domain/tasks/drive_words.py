@@ -2,7 +2,7 @@
 
 from collections.abc import Mapping
 
-from domain.messages import (
+from domain.inputs import (
     CancelTaskRequest,
     DriveRequest,
     HoldRequest,

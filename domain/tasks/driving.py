@@ -3,7 +3,7 @@
 from collections.abc import Iterator, Mapping
 
 from domain.findings import Blocker
-from domain.messages import (
+from domain.inputs import (
     CancelTaskRequest,
     DriveRequest,
     GoalFeedback,

@@ -11,17 +11,10 @@ from collections.abc import Iterator
 
 import numpy as np
 
+from domain.commands import Drive, PreemptGoal, SendGoal
 from domain.errors import FarStartError, InvalidValueError, UnknownControllerError
-from domain.messages import (
-    Drive,
-    GoalFeedback,
-    GoalId,
-    GoalResult,
-    PreemptGoal,
-    SendGoal,
-    TaskId,
-    TaskRequest,
-)
+from domain.identifiers import GoalId, TaskId
+from domain.inputs import GoalFeedback, GoalResult, TaskRequest
 from domain.outbox import Outbox
 from domain.paths.path import Path
 from domain.snapshot import TaskPhase, TaskStatus, TaskView

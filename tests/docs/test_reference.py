@@ -6,9 +6,9 @@ from pathlib import Path
 import pytest
 import yaml
 
-from api.command_line import main
-from api.problems import STATUS_OF
-from api.schemas.simulation import SimulationBody
+from api.cli.command_line import main
+from api.http.problems import STATUS_OF
+from api.http.schemas.simulation import SimulationBody
 from api.simulation.posted import robot_for
 from api.simulation.simulation import Simulation
 from docs.generate.__main__ import main as renew
@@ -16,7 +16,8 @@ from docs.generate.events_page import KINDS
 from docs.generate.pages import FOLDER, PAGES
 from docs.generate.source_scan import UndescribedError, codes_given_to, require_described
 from domain.changes.admission import ADVISORY
-from domain.messages import BackendStatus, Event, Input, WriteRecord
+from domain.events import Event
+from domain.inputs import BackendStatus, Input, WriteRecord
 from domain.supervision import Supervision, SupervisionSettings
 from tests.support.good import GOOD
 from tests.support.http_robot import ACTUATION

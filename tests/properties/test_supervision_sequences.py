@@ -12,21 +12,21 @@ from hypothesis.stateful import RuleBasedStateMachine, invariant, precondition, 
 
 from domain.changes.record import ChangeSettings
 from domain.errors import PilothouseError
-from domain.lifecycle import Transition
-from domain.messages import (
+from domain.events import Event
+from domain.inputs import (
     AcknowledgeRequest,
     CancelRequest,
-    Event,
     Input,
     ModeRequest,
-    Outputs,
     ParametersRequest,
     TransitionRequest,
 )
+from domain.lifecycle import Transition
+from domain.outbox import Outputs
 from domain.simulation.node_settings import Fault
 from domain.snapshot import ChangeStatus, StepStatus, SystemState
+from domain.state_and_mode import ModeName, PartName
 from domain.supervision import SupervisionSettings
-from domain.system_model import ModeName, PartName
 from tests.support.good import GOOD
 from tests.support.models import ACTUATION, ARM, BASE, nested_model
 from tests.support.virtual_robot import VirtualRobot

@@ -3,8 +3,8 @@
 from collections.abc import Sequence
 from types import MappingProxyType
 
+from domain.events import Event
 from domain.lifecycle import LifecycleState
-from domain.messages import Event
 from domain.snapshot import (
     Actual,
     PartView,
@@ -15,7 +15,7 @@ from domain.snapshot import (
     TaskView,
     VehicleView,
 )
-from domain.system_model import ModeName, PartName, StateAndMode
+from domain.state_and_mode import ModeName, PartName, StateAndMode
 from domain.timebase import seconds
 from domain.vehicle import DriveCommand
 from service.frame_feed import Frame

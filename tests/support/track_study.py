@@ -11,7 +11,9 @@ from math import cos, degrees, hypot, pi, radians, sin
 import numpy as np
 from numpy.typing import NDArray
 
-from domain.messages import Drive, GoalFeedback, GoalId, GoalResult, SendGoal
+from domain.commands import Drive, SendGoal
+from domain.identifiers import GoalId
+from domain.inputs import GoalFeedback, GoalResult
 from domain.navigation import Navigation, NavigationSettings
 from domain.paths.path import Path
 from domain.simulation.vehicle import SimulatedVehicle

@@ -3,7 +3,7 @@ from typing import Any
 import pytest
 
 from api.event_words import event_words
-from domain.messages import Event
+from domain.events import Event
 from tests.support.scenarios import ALL_GOOD, NEVER_STALE, STRAIGHT, Step, happened
 
 SYSTEMS = {"actuation"}

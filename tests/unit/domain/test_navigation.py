@@ -5,16 +5,10 @@ from collections.abc import Callable
 
 import pytest
 
+from domain.commands import Drive, PreemptGoal, SendGoal
 from domain.errors import InvalidValueError
-from domain.messages import (
-    Drive,
-    GoalFeedback,
-    GoalId,
-    GoalResult,
-    PreemptGoal,
-    SendGoal,
-    VehicleReport,
-)
+from domain.identifiers import GoalId
+from domain.inputs import GoalFeedback, GoalResult, VehicleReport
 from domain.navigation import Navigation, NavigationMessage, NavigationSettings
 from domain.paths.path import Path
 from domain.timebase import Instant, seconds

@@ -1,8 +1,9 @@
 """What one input leads to, and what caused what."""
 
-from domain.messages import AskFacts, ChangeId, Outputs
-from domain.outbox import Outbox
-from domain.system_model import PartName
+from domain.commands import AskFacts
+from domain.identifiers import ChangeId
+from domain.outbox import Outbox, Outputs
+from domain.state_and_mode import PartName
 
 ARM = PartName("arm")
 

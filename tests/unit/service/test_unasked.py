@@ -4,7 +4,7 @@ from collections.abc import AsyncIterator
 
 import pytest
 
-from domain.messages import Event
+from domain.events import Event
 from service.event_log import EventLog
 from service.unasked import log_unasked
 from tests.support.manual_clock import settle

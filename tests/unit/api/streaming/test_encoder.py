@@ -7,8 +7,8 @@ import pytest
 
 from api.streaming.encoder import StreamEncoder
 from domain.errors import BlockedError
+from domain.events import Event
 from domain.findings import Blocker
-from domain.messages import Event
 from domain.snapshot import PartView
 from domain.timebase import seconds
 from service.event_log import Gap

@@ -3,7 +3,7 @@ import math
 from types import MappingProxyType
 
 from api.streaming.event_text import event_text
-from domain.messages import Event
+from domain.events import Event
 from domain.timebase import seconds
 from tests.support.manual_clock import ManualClock
 

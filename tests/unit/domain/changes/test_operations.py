@@ -5,14 +5,11 @@ from typing import Any
 import pytest
 
 from domain.changes.operations import KEPT_CHANGES
+from domain.commands import AskFacts, AskParameters, AskTransition
 from domain.errors import InvalidValueError, UnknownChangeError
-from domain.lifecycle import LifecycleState, Transition
-from domain.messages import (
-    AskFacts,
-    AskParameters,
-    AskTransition,
+from domain.identifiers import ChangeId
+from domain.inputs import (
     CancelRequest,
-    ChangeId,
     EmergencyStopRequest,
     ModeRequest,
     NodeAnswer,
@@ -23,11 +20,13 @@ from domain.messages import (
     TimePassed,
     TransitionRequest,
 )
+from domain.lifecycle import LifecycleState, Transition
 from domain.parameters import Parameters
+from domain.parts.system_model import NodeModel, SmhModel, SystemModel
 from domain.simulation.node_settings import Fault, NodeSettings
 from domain.snapshot import ChangeStatus, StepStatus
+from domain.state_and_mode import DEFAULT_MODE, PartName
 from domain.supervision import Supervision, SupervisionSettings
-from domain.system_model import DEFAULT_MODE, NodeModel, PartName, SmhModel, SystemModel
 from domain.timebase import seconds
 from tests.support.good import GOOD
 from tests.support.models import (

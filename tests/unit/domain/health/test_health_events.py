@@ -2,11 +2,12 @@
 
 import pytest
 
+from domain.events import Event
 from domain.health.health_events import HealthEvents
 from domain.health.signals import default_signals
 from domain.health.state_manager import HealthChanges, StateManager
-from domain.messages import Event, Outputs, Reading, Readings, SignalValue
-from domain.outbox import Outbox
+from domain.inputs import Reading, Readings, SignalValue
+from domain.outbox import Outbox, Outputs
 from domain.snapshot import TaskStatus
 from domain.timebase import seconds
 from tests.support.good import GOOD

@@ -1,4 +1,4 @@
-from domain.messages import CancelTaskRequest, HoldRequest, ReleaseRequest, TaskRequest
+from domain.inputs import CancelTaskRequest, HoldRequest, ReleaseRequest, TaskRequest
 from domain.tasks.drive_words import describe_drive_request
 from tests.support.driver import straight
 

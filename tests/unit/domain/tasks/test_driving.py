@@ -3,10 +3,10 @@ import math
 import pytest
 
 from domain.errors import InvalidValueError, ReservedHoldError, TooManyHoldsError
-from domain.messages import VehicleReport
+from domain.inputs import VehicleReport
+from domain.parts.system_model import SmhModel
 from domain.snapshot import HoldView, TaskPhase
 from domain.supervision import Supervision, SupervisionSettings
-from domain.system_model import SmhModel
 from domain.tasks.holds import MAX_HOLDS
 from domain.timebase import seconds
 from domain.vehicle import Pose, VehicleLimits, VehicleState
