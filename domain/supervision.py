@@ -13,7 +13,7 @@ from typing import Any
 from domain.audit import Audit
 from domain.changes.changing import Changing
 from domain.changes.record import ChangeSettings
-from domain.concern import Concern, NotSettledError
+from domain.concern import Concern, settle
 from domain.events import TimeWasDue
 from domain.health.emergency_stop import EmergencyStop
 from domain.health.health import Health
@@ -116,7 +116,7 @@ class Supervision:
         self._let_pass(max(now, self._now))
         for take in self._takers[type(given)]:
             take(given, self._now)
-        self._settle()
+        settle(self._settling, self._now, self._max_rounds)
         return self._outbox.take()
 
     def _let_pass(self, now: Instant) -> None:
@@ -126,19 +126,8 @@ class Supervision:
             self._outbox.begin(self._now, TimeWasDue())
             for concern in self._clocked:
                 concern.pass_time(self._now)
-            self._settle()
+            settle(self._settling, self._now, self._max_rounds)
         self._now = now
-
-    def _settle(self) -> None:
-        """Let concerns follow each other until nothing moves any more."""
-        for _ in range(self._max_rounds):
-            moving: Concern | None = None
-            for concern in self._settling:
-                if concern.settle(self._now):
-                    moving = concern
-            if moving is None:
-                return
-        raise NotSettledError(type(moving).__name__, self._max_rounds)
 
     # --- what can be seen ------------------------------------------------------------------------
 
