@@ -1,7 +1,8 @@
 """Events: every kind with what it means and what it carries."""
 
 from docs.generate.markdown import code, page, table
-from domain.events import EVENTS, Event
+from domain.events.event import Event
+from domain.events.kinds import EVENTS
 
 _INTRODUCTION = """\
 `GET /events?after=&limit=&kind=` reads them, `WS /ws` sends them as they happen. `kind=task` stands
