@@ -5,17 +5,19 @@ from contextlib import asynccontextmanager
 
 from fastapi import FastAPI
 
-from api import posted_models, posted_tasks
-from api.access import Access
+from api.documents import route as documents
 from api.documents.asyncapi import stream_document
-from api.gate.audit import Audit
-from api.gate.headers import SecurityHeaders
-from api.gate.origin import OriginGate
-from api.gate.rate import RateGate
-from api.gate.token import TokenGate
-from api.limits import USUAL_LIMITS, ServiceLimits
+from api.http import posted_models, posted_tasks
+from api.http.access import Access
+from api.http.gate.audit import Audit
+from api.http.gate.headers import SecurityHeaders
+from api.http.gate.origin import OriginGate
+from api.http.gate.rate import RateGate
+from api.http.gate.token import TokenGate
+from api.http.limits import USUAL_LIMITS, ServiceLimits
 from api.robot_app import create_robot_app
-from api.routes import documents, rosbridge, simulations
+from api.rosbridge import route as rosbridge
+from api.simulation import route as simulations
 from service.supervisor import Supervisor
 from service.worker import Worker
 

@@ -8,17 +8,16 @@ from typing import TypeAlias
 from fastapi import FastAPI
 from starlette.middleware import Middleware
 
-from api.access import Access
 from api.distribution import installed_version
 from api.documents.openapi import describe
-from api.gate.faults import UnexpectedErrors
-from api.gate.refusals import Refusals
-from api.limits import USUAL_LIMITS, ServiceLimits
-from api.problem_handlers import add_problem_handlers
-from api.routes import (
+from api.http.access import Access
+from api.http.gate.faults import UnexpectedErrors
+from api.http.gate.refusals import Refusals
+from api.http.limits import USUAL_LIMITS, ServiceLimits
+from api.http.problem_handlers import add_problem_handlers
+from api.http.routes import (
     changes,
     emergency_stop,
-    events,
     example_tracks,
     holds,
     inference,
@@ -28,12 +27,13 @@ from api.routes import (
     parts,
     service_health,
     signals,
-    stream,
     system_state,
     tasks,
     vehicle,
 )
-from api.static_page import page_routes
+from api.http.static_page import page_routes
+from api.streaming import events_route as events
+from api.streaming import route as stream
 from service.jobs import Jobs
 from service.supervisor import Supervisor
 

@@ -1,4 +1,4 @@
-"""What can go wrong, as one tree; `api/problems.py` maps each class to an HTTP status.
+"""What can go wrong, as one tree; `api/http/problems.py` maps each class to an HTTP status.
 
     PilothouseError
     +-- UnknownNameError              a part, mode, signal, error or change that does not exist
@@ -23,7 +23,7 @@
 
 Below the same root, `service` and `api` add what only they can meet: files that cannot be read
 (`service/files/`), a worker that is busy (`service/worker.py`), bodies that are malformed
-(`api/bodies.py`). A refused input changes nothing.
+(`api/http/bodies.py`). A refused input changes nothing.
 """
 
 from collections.abc import Sequence

@@ -9,10 +9,11 @@ from enum import StrEnum
 from typing import Literal
 
 from domain.findings import Blocker, Fact
+from domain.identifiers import ChangeId, TaskId
+from domain.inputs import ChangeRequest, SignalValue
 from domain.lifecycle import LifecycleState, Transition
-from domain.messages import ChangeId, ChangeRequest, SignalValue, TaskId
 from domain.parameters import ParameterValue
-from domain.system_model import ModeName, PartName, StateAndMode
+from domain.state_and_mode import ModeName, PartName, StateAndMode
 from domain.timebase import Duration, Instant
 from domain.vehicle import DriveCommand, Point, VehicleState
 

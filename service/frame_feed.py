@@ -4,7 +4,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, replace
 
 from domain.snapshot import PartView, SignalView, SystemStateView, TaskView, VehicleView
-from domain.system_model import PartName
+from domain.state_and_mode import PartName
 from domain.timebase import Instant
 from service.watching import Watched
 

@@ -7,15 +7,8 @@ matter of the adapter: it ends `run`.
 from collections.abc import Callable
 from typing import Protocol, TypeAlias
 
-from domain.messages import (
-    BackendStatus,
-    Drive,
-    NodeAnswer,
-    NodeCommand,
-    NodeReport,
-    Readings,
-    VehicleReport,
-)
+from domain.commands import Drive, NodeCommand
+from domain.inputs import BackendStatus, NodeAnswer, NodeReport, Readings, VehicleReport
 from domain.simulation.robot import SimulatedRobot
 
 BackendMessage: TypeAlias = NodeReport | NodeAnswer | BackendStatus | Readings | VehicleReport

@@ -2,9 +2,9 @@
 
 from domain.navigation import Navigation
 from domain.onboard import Onboard
+from domain.parts.system_model import SmhModel
 from domain.simulation.robot import SimulatedRobot
 from domain.supervision import Supervision, SupervisionSettings
-from domain.system_model import SmhModel
 from domain.timebase import Instant
 from service.files.robot_file import RobotSettings
 
@@ -18,8 +18,9 @@ def make_onboard(model: SmhModel, robot: RobotSettings, start: Instant) -> Onboa
         robot.to_task_settings(),
         limits,
     )
-    navigation = Navigation(limits, robot.to_navigation_settings())
-    return Onboard(Supervision(model, settings, start), navigation)
+    core = Supervision(model, settings, start)
+    navigation = Navigation(limits, robot.to_navigation_settings(), core.driving.watch)
+    return Onboard(core, navigation)
 
 
 def make_simulated_robot(

@@ -3,7 +3,7 @@
 from pathlib import Path as FilePath
 
 from domain.errors import PilothouseError
-from domain.messages import TaskRequest
+from domain.inputs import TaskRequest
 from domain.paths.path import Path
 from service.files.driving_block import StartTaskBlock
 from service.files.text_file import read_text_file

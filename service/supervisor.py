@@ -10,35 +10,29 @@ from collections import Counter
 from collections.abc import Callable, Coroutine, Sequence
 from contextlib import suppress
 
+from domain.commands import PreemptGoal, SendGoal
 from domain.errors import PilothouseError
+from domain.events import ChangeEnded
 from domain.findings import Finding
 from domain.health.signals import ESTOP_SIGNAL
-from domain.messages import (
-    ChangeId,
-    HoldRequest,
-    Input,
-    Outputs,
-    PreemptGoal,
-    Reading,
-    Readings,
-    SendGoal,
-    SignalValue,
-    TimePassed,
-)
+from domain.identifiers import ChangeId
+from domain.inputs import HoldRequest, Input, Reading, Readings, SignalValue, TimePassed
 from domain.onboard import Onboard
+from domain.outbox import Outputs
+from domain.parts.system_model import SmhModel
 from domain.paths.speed_profile import SpeedLimits
 from domain.simulation.robot import SimulatedRobot
 from domain.snapshot import ChangeStatus, ChangeView
+from domain.state_and_mode import PartName
 from domain.supervision import Supervision
-from domain.system_model import PartName, SmhModel
 from domain.timebase import Instant, seconds, to_seconds
 from service.clock import Clock
 from service.event_log import EventLog
 from service.files.model_file import LoadedModel
 from service.frame_feed import Frame, FrameFeed
-from service.mock_source import MockSource
 from service.pacing import Alarm
 from service.ports import RobotBackend
+from service.simulation.mock_source import MockSource
 from service.unasked import log_unasked
 
 log = logging.getLogger(__name__)
@@ -268,14 +262,14 @@ class Supervisor:
         self._vehicle_changed |= outputs.vehicle_changed
         for event in outputs.events:
             self.events.append(event)
-            if event.kind in _ENDS:
-                self.ended_changes[event.kind.removeprefix("change.")] += 1
-                self._wake_waiting(event.data["change"])
+            if isinstance(event.event, ChangeEnded):
+                self.ended_changes[event.event.status] += 1
+                self._wake_waiting(event.event.change)
         if outputs.system_state and self._seq:
             self._publish()
 
-    def _wake_waiting(self, change: object) -> None:
-        for ended in self._waiting.pop(ChangeId(str(change)), ()):
+    def _wake_waiting(self, change: ChangeId) -> None:
+        for ended in self._waiting.pop(change, ()):
             if not ended.done():
                 ended.set_result(None)
 
@@ -329,9 +323,6 @@ class Supervisor:
         self.last_tick_at = now
         self._publish(full=self._ticks % _TICKS_PER_FULL == 0)
         self._ticks += 1
-
-
-_ENDS = frozenset(f"change.{status}" for status in ChangeStatus if status != ChangeStatus.RUNNING)
 
 
 async def _forever(name: str, work: Coroutine[object, object, None]) -> None:

@@ -15,7 +15,7 @@ from pydantic_core import to_json
 from api.distribution import installed_version
 from api.documents.examples import Examples, key_of, load_examples
 from api.documents.wording import LICENSE, ROSBRIDGE, STREAM, STREAM_QUERY
-from api.schemas.stream import (
+from api.http.schemas.stream import (
     AuthMessage,
     EventJson,
     GapJson,

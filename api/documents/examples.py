@@ -7,7 +7,7 @@ import re
 from importlib import resources
 from typing import Any
 
-from api.schemas.base import Json
+from api.http.schemas.base import Json
 
 
 class Exchange(Json):

@@ -10,10 +10,10 @@ from fastapi.openapi.utils import get_openapi
 
 from api.documents.examples import Exchange, key_of, load_examples
 from api.documents.wording import DESCRIPTION, LICENSE, TAGS, TOKEN
-from api.problems import MEDIA_TYPE, Problem
-from api.schemas.inference import InferenceBody
-from api.schemas.simulation import SimulationBody
-from api.schemas.tasks import TaskBody
+from api.http.problems import MEDIA_TYPE, Problem
+from api.http.schemas.inference import InferenceBody
+from api.http.schemas.simulation import SimulationBody
+from api.http.schemas.tasks import TaskBody
 
 _REFERENCE = "#/components/schemas/{model}"
 _PROBLEM = {"$ref": _REFERENCE.format(model=Problem.__name__)}

@@ -12,8 +12,8 @@ from pathlib import Path
 from typing import Any
 
 from api.app import create_app
-from api.composition import ServeOptions, compose
 from api.documents.asyncapi import describe_stream
+from api.serving.composition import ServeOptions, compose
 from service.clock import MonotonicClock
 
 _FOLDER = Path("docs", "reference")

@@ -4,19 +4,19 @@ import asyncio
 from collections.abc import Callable, Mapping
 from typing import Any, Protocol
 
-from api.gate.rate import TokenBuckets
+from api.http.gate.rate import TokenBuckets
 from api.rosbridge.replies import PublishedTexts
 from api.rosbridge.rosapi import REQUESTS, RosApi
 from domain.errors import InvalidValueError
 from service.clock import Clock
 from service.frame_feed import FrameFeed
-from service.ros_interface.offer import Fields, HeardTopic, OfferedService, OfferedTopic
-from service.ros_interface.robot_services import CANCEL_TASKS
-from service.ros_interface.shapes import CHANGE_MODE, CHANGE_STATE, Shape
+from service.ros.interface.offer import Fields, HeardTopic, OfferedService, OfferedTopic
+from service.ros.interface.robot_services import CANCEL_TASKS
+from service.ros.interface.shapes import CHANGE_MODE, CHANGE_STATE, Shape
 
 
 class Interface(Protocol):
-    """What is used of `service.ros_interface.interface.RosInterface`."""
+    """What is used of `service.ros.interface.interface.RosInterface`."""
 
     @property
     def services(self) -> Mapping[str, OfferedService]:

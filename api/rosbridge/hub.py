@@ -12,7 +12,7 @@ from fastapi.requests import HTTPConnection
 
 from api.rosbridge.bridge import Bridge
 from api.streaming.hub import StreamHub, stream_hub
-from service.ros_interface.interface import RosInterface
+from service.ros.interface.interface import RosInterface
 from service.supervisor import Supervisor
 
 log = logging.getLogger(__name__)

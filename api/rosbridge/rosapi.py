@@ -10,13 +10,13 @@ from typing import TypeAlias
 from api.rosbridge.operations import full_name, is_type
 from domain.timebase import NANOSECONDS_PER_SECOND
 from service.clock import Clock, since_epoch
-from service.ros_interface.offer import (
+from service.ros.interface.offer import (
     Fields,
     HeardTopic,
     OfferedService,
     OfferedTopic,
 )
-from service.ros_interface.shapes import EMPTY, Kind, Shape, checked
+from service.ros.interface.shapes import EMPTY, Kind, Shape, checked
 
 NODE = "rosapi"
 

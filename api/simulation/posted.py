@@ -11,8 +11,8 @@ from typing import Any
 
 from pydantic import ValidationError
 
-from api.bodies import InvalidBodyError, faults_of, parse_json
-from api.schemas.simulation import SimulationBody, place_in_body
+from api.http.bodies import InvalidBodyError, faults_of, parse_json
+from api.http.schemas.simulation import SimulationBody, place_in_body
 from api.simulation.simulation import Simulation
 from domain.errors import InvalidValueError
 from domain.onboard import Onboard
@@ -22,8 +22,8 @@ from service.event_log import EventLog
 from service.files.model_file import LoadedModel, read_model
 from service.files.robot_file import RobotSettings, robot_settings_of
 from service.robot_parts import make_onboard, make_simulated_robot
-from service.virtual_clock import VirtualClock
-from service.virtual_robot import VirtualRobot
+from service.simulation.virtual_clock import VirtualClock
+from service.simulation.virtual_robot import VirtualRobot
 
 EPOCH = "simulation"
 BEGIN = datetime(2000, 1, 1, tzinfo=UTC)

@@ -6,9 +6,9 @@ from http import HTTPStatus
 
 import httpx
 
-from api.problems import MEDIA_TYPE, Problem, make_problem
+from api.http.problems import MEDIA_TYPE, Problem, make_problem
+from api.http.schemas.simulation import AskedRequest
 from api.robot_app import create_robot_app
-from api.schemas.simulation import AskedRequest
 from service.jobs import InlineJobs
 from service.supervisor import Supervisor
 

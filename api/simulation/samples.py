@@ -3,12 +3,12 @@
 from collections import Counter
 from collections.abc import Iterator
 
-from api.schemas.health import SystemStateJson
-from api.schemas.parts import PartJson
-from api.schemas.tasks import TaskJson, VehicleJson
+from api.http.schemas.health import SystemStateJson
+from api.http.schemas.parts import PartJson
+from api.http.schemas.tasks import TaskJson, VehicleJson
 from api.streaming.event_text import event_text
 from api.streaming.members import Members
-from domain.messages import Event
+from domain.events import RecordedEvent
 from domain.snapshot import PartView, TaskView
 from service.event_log import EventReader, Gap
 from service.supervisor import Supervisor
@@ -28,7 +28,7 @@ class Sampler:
         self._parts = Members[PartView](lambda view: PartJson.of(view, clock).model_dump_json())
         self._reader = EventReader(supervisor.events, supervisor.events.newest)
         self._left = MAX_CHARACTERS
-        self.events: list[Event] = []
+        self.events: list[RecordedEvent] = []
         """All that happened since the begin."""
 
     def kept_sample(self, t_s: float, number: int) -> str:

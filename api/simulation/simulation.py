@@ -8,7 +8,7 @@ from typing import Any
 
 from pydantic_core import from_json
 
-from api.schemas.simulation import (
+from api.http.schemas.simulation import (
     ActingStep,
     AnyStep,
     DifferenceJson,
@@ -21,9 +21,9 @@ from api.schemas.simulation import (
 from api.simulation.expectations import differences
 from api.simulation.samples import Sampler
 from api.simulation.steps import Actors
-from domain.messages import Event
+from domain.events import RecordedEvent
 from domain.timebase import NANOSECONDS_PER_SECOND, Duration, seconds, to_seconds
-from service.virtual_robot import VirtualRobot
+from service.simulation.virtual_robot import VirtualRobot
 
 MAX_REFUSALS = 1_000
 """More of them, that were not expected, are not told."""
@@ -53,11 +53,11 @@ class Simulation:
         self._progress: Callable[[float], None] = lambda _: None
 
     @property
-    def events(self) -> Sequence[Event]:
+    def events(self) -> Sequence[RecordedEvent]:
         """Return all that happened so far."""
         return self._sampler.events
 
-    def seconds_to(self, event: Event) -> float:
+    def seconds_to(self, event: RecordedEvent) -> float:
         """Return when an event was, in seconds since the begin."""
         return to_seconds(event.at - self._begin)
 

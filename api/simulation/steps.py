@@ -2,10 +2,10 @@
 
 import asyncio
 
-from api.posted_tasks import task_of
-from api.problems import Problem, problem_of
-from api.routes.tasks import serve
-from api.schemas.simulation import (
+from api.http.posted_tasks import task_of
+from api.http.problems import Problem, problem_of
+from api.http.routes.tasks import serve
+from api.http.schemas.simulation import (
     AnyStep,
     ChangeStep,
     NodeStep,
@@ -16,16 +16,16 @@ from api.schemas.simulation import (
 )
 from api.simulation.requests import Requests
 from domain.errors import PilothouseError
-from domain.lifecycle import Transition
-from domain.messages import (
+from domain.inputs import (
     CancelTaskRequest,
     ModeRequest,
     Reading,
     TransitionRequest,
 )
-from domain.system_model import part_name
+from domain.lifecycle import Transition
+from domain.state_and_mode import part_name
 from domain.timebase import seconds
-from service.virtual_robot import VirtualRobot
+from service.simulation.virtual_robot import VirtualRobot
 
 _ACTOR = "simulation"
 

@@ -3,17 +3,17 @@
 import asyncio
 
 from api.distribution import installed_version
-from api.problems import problem_of
-from api.schemas.base import timestamp
-from api.schemas.health import StreamedSignalJson, SystemStateJson
-from api.schemas.parts import PartJson
-from api.schemas.stream import GapJson, HelloJson
-from api.schemas.tasks import TaskJson, VehicleJson
+from api.http.problems import problem_of
+from api.http.schemas.base import timestamp
+from api.http.schemas.health import StreamedSignalJson, SystemStateJson
+from api.http.schemas.parts import PartJson
+from api.http.schemas.stream import GapJson, HelloJson
+from api.http.schemas.tasks import TaskJson, VehicleJson
 from api.streaming.event_text import event_text
 from api.streaming.members import Members
 from api.streaming.query import TOPICS
 from domain.errors import PilothouseError
-from domain.messages import Event
+from domain.events import RecordedEvent
 from domain.snapshot import PartView, SignalView
 from domain.timebase import to_seconds
 from service.event_log import Gap
@@ -67,7 +67,7 @@ class StreamEncoder:
             self._texts[_shape(frame, topics)] = (frame, known)
         return known.after(skipped)
 
-    def event(self, event: Event) -> str:
+    def event(self, event: RecordedEvent) -> str:
         """Return an `event` frame."""
         text = self._events.get(event.id)
         if text is None:

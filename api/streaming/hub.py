@@ -7,8 +7,8 @@ from typing import Annotated
 from fastapi import Depends, FastAPI
 from fastapi.requests import HTTPConnection
 
-from api.access import Access
-from api.gate.refusals import Refusals
+from api.http.access import Access
+from api.http.gate.refusals import Refusals
 from api.streaming.encoder import StreamEncoder
 from api.streaming.fan_out import FanOut
 from service.supervisor import Supervisor

@@ -3,8 +3,8 @@
 from collections.abc import Mapping
 from typing import Any
 
-from api.bodies import check_body, parse_json
-from api.schemas.stream import AuthMessage, ReadingMessage
+from api.http.bodies import check_body, parse_json
+from api.http.schemas.stream import AuthMessage, ReadingMessage
 from domain.errors import InvalidValueError
 
 

@@ -4,9 +4,9 @@ from typing import TypeAlias
 
 from prometheus_client.metrics_core import Metric
 
-from api.metrics import metrics
+from api.http.metrics import metrics
+from api.http.schemas.simulation import SimulationBody
 from api.robot_app import create_robot_app
-from api.schemas.simulation import SimulationBody
 from api.simulation.posted import robot_for
 from api.simulation.simulation import Simulation
 from docs.generate.markdown import code, page, table

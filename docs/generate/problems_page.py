@@ -2,7 +2,7 @@
 
 from collections.abc import Iterator
 
-from api.problems import STATUS_OF
+from api.http.problems import STATUS_OF
 from docs.generate.markdown import code, joined, page, table
 from docs.generate.source_scan import codes_given_to, require_described
 

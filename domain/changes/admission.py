@@ -9,10 +9,11 @@ from dataclasses import replace
 from domain.changes.plan import TOWARDS_REST, ChangeGoal, NodeGoal, goal_of, next_steps
 from domain.errors import BlockedError, IllegalTransitionError
 from domain.findings import Blocker
+from domain.inputs import ChangeRequest, ModeRequest, TransitionRequest
 from domain.lifecycle import LifecycleState, Transition, arrival, is_legal_request
-from domain.messages import ChangeRequest, ModeRequest, TransitionRequest
-from domain.node_facts import NodeFacts
-from domain.system_model import PartName, SmhModel
+from domain.parts.node_facts import NodeFacts
+from domain.parts.system_model import SmhModel
+from domain.state_and_mode import PartName
 
 ADVISORY = frozenset({"UNREACHABLE", "UNKNOWN_STATE"})
 """Shown, but not refused: an absent node may come back before the deadline."""

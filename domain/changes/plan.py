@@ -10,11 +10,12 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from typing import TypeAlias
 
+from domain.inputs import ChangeRequest, ModeRequest, ParametersRequest, TransitionRequest
 from domain.lifecycle import LifecycleState, Transition, arrival, path
-from domain.messages import ChangeRequest, ModeRequest, ParametersRequest, TransitionRequest
-from domain.node_facts import NodeFacts
 from domain.parameters import Parameters, same_value
-from domain.system_model import DEFAULT_MODE, ModeName, PartName, SmhModel, StateAndMode
+from domain.parts.node_facts import NodeFacts
+from domain.parts.system_model import SmhModel
+from domain.state_and_mode import DEFAULT_MODE, ModeName, PartName, StateAndMode
 
 TOWARDS_REST = (Transition.DEACTIVATE, Transition.CLEANUP, Transition.SHUTDOWN)
 """What is done to those parts of a system that can go; the others are passed by."""

@@ -3,10 +3,11 @@
 from dataclasses import dataclass, field
 
 from domain.changes.plan import Action, NodeGoal, SetParameters
+from domain.identifiers import ChangeId
+from domain.inputs import ChangeRequest
 from domain.lifecycle import LifecycleState
-from domain.messages import ChangeId, ChangeRequest
 from domain.snapshot import ChangeStatus, ChangeView, StepStatus, StepView
-from domain.system_model import PartName, StateAndMode
+from domain.state_and_mode import PartName, StateAndMode
 from domain.timebase import Duration, Instant, seconds
 
 

@@ -4,10 +4,11 @@ import math
 from collections.abc import Mapping
 
 from domain.errors import InvalidValueError, UnknownParameterError, UnknownPartError
-from domain.messages import ChangeRequest, ModeRequest, ParametersRequest, TransitionRequest
-from domain.node_facts import NodeFacts
+from domain.inputs import ChangeRequest, ModeRequest, ParametersRequest, TransitionRequest
 from domain.parameters import ParameterValue, fits_type, value_type
-from domain.system_model import PartName, SmhModel
+from domain.parts.node_facts import NodeFacts
+from domain.parts.system_model import SmhModel
+from domain.state_and_mode import PartName
 
 
 def check_request(

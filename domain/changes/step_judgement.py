@@ -4,10 +4,10 @@ from dataclasses import dataclass
 
 from domain.changes.plan import SetParameters
 from domain.changes.record import Step
+from domain.inputs import NodeReport
 from domain.lifecycle import LifecycleState, Transition, rule_for
-from domain.messages import NodeReport
-from domain.node_facts import NodeFacts
 from domain.parameters import same_value
+from domain.parts.node_facts import NodeFacts
 from domain.snapshot import StepStatus
 
 

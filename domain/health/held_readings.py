@@ -6,7 +6,7 @@ Age is judged by when a reading arrived. A sender's stamp only tells the order o
 from dataclasses import dataclass
 
 from domain.health.signals import SignalSettings
-from domain.messages import Reading, SignalValue
+from domain.inputs import Reading, SignalValue
 from domain.timebase import Duration, Instant, seconds
 
 MAX_SKEW = seconds(1.0)

@@ -8,7 +8,7 @@ from domain.health.error_slot import ErrorSlot
 from domain.health.held_readings import HeldReadings
 from domain.health.signal_reasons import kept_reason, pressed_reason, stale_reason, value_reason
 from domain.health.signals import STALE_DATA, Condition, Recovery, SignalSettings
-from domain.messages import Reading
+from domain.inputs import Reading
 from domain.snapshot import SignalView
 from domain.timebase import Duration, Instant, to_seconds
 

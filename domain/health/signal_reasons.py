@@ -9,7 +9,7 @@ from domain.health.signals import (
     SignalSettings,
     SignalSpec,
 )
-from domain.messages import SignalValue
+from domain.inputs import SignalValue
 from domain.timebase import Duration, to_seconds
 
 _NAMED_SOURCES = 3

@@ -10,7 +10,7 @@ from enum import StrEnum
 
 from domain.errors import InvalidValueError
 from domain.findings import Fact
-from domain.messages import SignalValue
+from domain.inputs import SignalValue
 from domain.timebase import Duration, seconds, to_seconds
 
 ESTOP_SIGNAL = "estop"

@@ -19,7 +19,7 @@ from domain.findings import Blocker
 from domain.health.held_readings import HeldReadings
 from domain.health.signal_monitor import SignalMonitor
 from domain.health.signals import ESTOP, ESTOP_SIGNAL, STALE_DATA, STALE_DATA_BIT, SignalSettings
-from domain.messages import Reading, Readings
+from domain.inputs import Reading, Readings
 from domain.snapshot import SignalView, SystemState, SystemStateView, TaskStatus
 from domain.timebase import Instant, to_seconds
 

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 from types import MappingProxyType
 
 from domain.errors import UnknownSignalError
-from domain.messages import Reading, Readings, SignalValue
+from domain.inputs import Reading, Readings, SignalValue
 from domain.timebase import Duration, Instant, seconds
 
 MOCK_SOURCE = "mock"

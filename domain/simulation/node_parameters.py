@@ -4,7 +4,7 @@ from collections.abc import Mapping
 
 from domain.errors import InvalidValueError, PilothouseError, UnknownParameterError
 from domain.parameters import Parameters, ParameterValue, fits_type, value_type
-from domain.system_model import NodeModel
+from domain.parts.system_model import NodeModel
 
 
 def declared_parameters(node: NodeModel) -> dict[str, ParameterValue]:

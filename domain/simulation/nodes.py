@@ -11,20 +11,15 @@ from dataclasses import dataclass, field
 from types import MappingProxyType
 from typing import TypeAlias
 
+from domain.commands import AskFacts, AskParameters, AskTransition, NodeCommand
 from domain.errors import RefusedError, UnknownPartError
+from domain.inputs import NodeAnswer, NodeReport
 from domain.lifecycle import ERROR_PROCESSED, LifecycleState, Transition, TransitionRule, rule_for
-from domain.messages import (
-    AskFacts,
-    AskParameters,
-    AskTransition,
-    NodeAnswer,
-    NodeCommand,
-    NodeReport,
-)
 from domain.parameters import Parameters, ParameterValue
+from domain.parts.system_model import SmhModel
 from domain.simulation.node_parameters import declared_parameters, find_refusal, start_parameters
 from domain.simulation.node_settings import NOTICED_AFTER, SLOWDOWN, Fault, NodeSettings
-from domain.system_model import PartName, SmhModel
+from domain.state_and_mode import PartName
 from domain.timebase import Duration, Instant
 
 NodeMessage: TypeAlias = NodeReport | NodeAnswer

@@ -7,13 +7,15 @@ simulation: nodes, signals, vehicle.
 from collections.abc import Mapping
 from typing import TypeAlias
 
-from domain.messages import Drive, NodeCommand, Readings, VehicleReport
+from domain.commands import Drive, NodeCommand
+from domain.inputs import Readings, VehicleReport
+from domain.parts.system_model import SmhModel
 from domain.simulation.mock_signals import MockSignals
 from domain.simulation.node_settings import NodeSettings
 from domain.simulation.nodes import NodeMessage, SimulatedNodes
 from domain.simulation.vehicle import SimulatedVehicle
 from domain.simulation.vehicle_settings import VehicleSettings
-from domain.system_model import PartName, SmhModel
+from domain.state_and_mode import PartName
 from domain.timebase import Instant
 
 RobotMessage: TypeAlias = NodeMessage | Readings | VehicleReport

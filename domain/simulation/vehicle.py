@@ -12,7 +12,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from domain.messages import VehicleReport
+from domain.inputs import VehicleReport
 from domain.simulation.vehicle_settings import Noise, Plant, VehicleSettings
 from domain.timebase import Duration, Instant, seconds, to_seconds
 from domain.vehicle import DriveCommand, Pose, VehicleState

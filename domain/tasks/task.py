@@ -2,7 +2,8 @@
 
 from dataclasses import dataclass
 
-from domain.messages import GoalFeedback, GoalId, TaskId
+from domain.identifiers import GoalId, TaskId
+from domain.inputs import GoalFeedback
 from domain.paths.path import Path
 from domain.snapshot import TaskPhase, TaskView
 from domain.timebase import Instant

@@ -14,8 +14,8 @@ from pathlib import Path
 
 from domain.errors import InvalidModelError
 from domain.findings import Finding
-from domain.model_lint import lint
-from domain.system_model import SmhModel, find_errors
+from domain.parts.model_lint import lint
+from domain.parts.system_model import SmhModel, find_errors
 from service.files.parameter_file import PARAMETERS_KEY, NodeParameters, read_parameter_file
 from service.files.smh_reader import SmhParts, read_parts
 from service.files.text_file import read_text_file

@@ -15,9 +15,10 @@ from domain.errors import InvalidValueError, PilothouseError
 from domain.findings import Finding
 from domain.health.signals import SignalSettings
 from domain.navigation import NavigationSettings
+from domain.parts.system_model import SmhModel
 from domain.simulation.node_settings import NodeSettings
 from domain.simulation.vehicle_settings import VehicleSettings
-from domain.system_model import PartName, SmhModel
+from domain.state_and_mode import PartName
 from domain.tasks.settings import TaskSettings
 from domain.timebase import seconds
 from service.files.driving_block import DrivingBlock, StartTaskBlock

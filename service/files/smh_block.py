@@ -3,7 +3,7 @@
 from collections import defaultdict
 
 from domain.findings import Finding
-from domain.system_model import ModeName, PartName
+from domain.state_and_mode import ModeName, PartName
 from service.files.parameter_file import PARAMETERS_KEY, NodeParameters, Parameter
 from service.files.yaml_tree import Node, finding_at
 

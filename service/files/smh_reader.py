@@ -11,15 +11,8 @@ from dataclasses import dataclass, field
 
 from domain.findings import Finding
 from domain.parameters import ParameterValue
-from domain.system_model import (
-    DEFAULT_MODE,
-    ModeName,
-    NodeModel,
-    PartName,
-    StateAndMode,
-    SystemModel,
-    part_name,
-)
+from domain.parts.system_model import NodeModel, SystemModel
+from domain.state_and_mode import DEFAULT_MODE, ModeName, PartName, StateAndMode, part_name
 from service.files.parameter_file import PARAMETERS_KEY, NodeParameters, Parameter
 from service.files.smh_block import SmhBlock
 from service.files.smh_values import fitted, read_part_name, read_rule, read_want

@@ -9,7 +9,8 @@ from collections.abc import Collection
 
 from domain.lifecycle import LifecycleState
 from domain.parameters import ParameterValue
-from domain.system_model import DEFAULT_MODE, ModeName, PartName, Rule, StateAndMode
+from domain.parts.system_model import Rule
+from domain.state_and_mode import DEFAULT_MODE, ModeName, PartName, StateAndMode
 from service.files.parameter_file import Parameter
 from service.files.smh_block import SmhBlock
 from service.files.yaml_tree import Node

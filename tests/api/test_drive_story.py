@@ -6,7 +6,7 @@ from typing import Any
 
 import pytest
 
-from domain.messages import Drive
+from domain.commands import Drive
 from domain.simulation.vehicle_settings import Plant, VehicleSettings
 from service.example_tracks import track_text
 from tests.support.http_robot import HttpRobot, http_robot

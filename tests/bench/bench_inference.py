@@ -9,10 +9,11 @@ from statistics import median
 
 import pytest
 
+from domain.inputs import NodeReport
 from domain.lifecycle import LifecycleState
-from domain.messages import NodeReport
-from domain.mode_inference import ModeInference
-from domain.system_model import DEFAULT_MODE, ModeName, PartName, SmhModel, StateAndMode
+from domain.parts.mode_inference import ModeInference
+from domain.parts.system_model import SmhModel
+from domain.state_and_mode import DEFAULT_MODE, ModeName, PartName, StateAndMode
 from tests.support.bench import report
 from tests.support.big_model import FAST, PARAMETERS, SLOW, big_model
 

@@ -16,7 +16,7 @@ from pathlib import Path
 import httpx
 import pytest
 
-from domain.system_model import DEFAULT_MODE
+from domain.state_and_mode import DEFAULT_MODE
 from tests.ros2.support.isolation import isolate
 from tests.support.bench import PROJECT, Row, report
 from tests.support.big_model import FAST, PARAMETERS, SLOW, big_model, big_model_text

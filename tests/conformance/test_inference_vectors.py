@@ -8,10 +8,11 @@ from typing import Any
 import pytest
 
 from domain.errors import InvalidModelError, UnknownPartError
+from domain.inputs import NodeReport
 from domain.lifecycle import LifecycleState
-from domain.messages import NodeReport
-from domain.mode_inference import ModeInference
-from domain.system_model import ModeName, PartName, SmhModel, StateAndMode, part_name
+from domain.parts.mode_inference import ModeInference
+from domain.parts.system_model import SmhModel
+from domain.state_and_mode import ModeName, PartName, StateAndMode, part_name
 from service.files.model_file import load_model, read_model
 from service.files.text_file import UnreadableFileError
 from tests.support.inference_vectors import OVERRULED, OVERRULED_FACTS, Case, Parts, run_case

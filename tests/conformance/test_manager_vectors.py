@@ -6,22 +6,14 @@ from typing import Any
 
 import pytest
 
+from domain.commands import AskFacts, AskParameters, AskTransition, NodeCommand
 from domain.errors import PilothouseError
+from domain.inputs import Input, ModeRequest, NodeAnswer, NodeReport, TransitionRequest
 from domain.lifecycle import Transition
-from domain.messages import (
-    AskFacts,
-    AskParameters,
-    AskTransition,
-    Input,
-    ModeRequest,
-    NodeAnswer,
-    NodeCommand,
-    NodeReport,
-    TransitionRequest,
-)
+from domain.parts.system_model import SmhModel
 from domain.simulation.node_settings import Fault, NodeSettings
 from domain.simulation.nodes import NodeMessage, SimulatedNodes
-from domain.system_model import PartName, SmhModel, StateAndMode
+from domain.state_and_mode import PartName, StateAndMode
 from domain.timebase import Instant, seconds
 from service.files.model_file import read_model
 from tests.support.manager_vectors import LATER, OVERRULED, Case, Pair, run_case

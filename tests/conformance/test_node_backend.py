@@ -12,17 +12,18 @@ from typing import Protocol, TypeAlias
 
 import pytest
 
+from domain.commands import AskFacts, AskParameters, AskTransition
+from domain.inputs import NodeAnswer, NodeReport
 from domain.lifecycle import LifecycleState, Transition
-from domain.messages import AskFacts, AskParameters, AskTransition, NodeAnswer, NodeReport
 from domain.parameters import Parameters, ParameterValue
 from domain.simulation.node_settings import Fault
 from domain.simulation.robot import SimulatedRobot
-from domain.system_model import PartName
-from service.backends.ros2.backend import Ros2Backend
-from service.backends.simulated import SimulatedBackend
+from domain.state_and_mode import PartName
 from service.clock import MonotonicClock
 from service.files.robot_file import RobotSettings
 from service.ports import BackendMessage, RobotBackend
+from service.ros.backend.backend import Ros2Backend
+from service.simulation.simulated import SimulatedBackend
 from tests.ros2.support.isolation import isolate
 from tests.ros2.support.nodes_process import NodesProcess
 from tests.support.manual_clock import ManualClock
@@ -128,7 +129,7 @@ class RealNodes:
         for process in self._processes.values():
             process.start()
         self._stopped: set[PartName] = set()
-        link = import_module("service.backends.ros2.link").RosLink()
+        link = import_module("service.ros.graph.link").RosLink()
         self.backend: RobotBackend = Ros2Backend(
             actuation_model(), RobotSettings(), link, MonotonicClock()
         )

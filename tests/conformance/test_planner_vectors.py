@@ -12,10 +12,10 @@ from typing import Any
 import pytest
 
 from domain.errors import PilothouseError
-from domain.messages import TaskId
+from domain.identifiers import TaskId
+from domain.parts.system_model import SmhModel
 from domain.paths.path import Path
 from domain.supervision import SupervisionSettings
-from domain.system_model import SmhModel
 from domain.timebase import seconds
 from service.files.robot_settings import SignalsBlock
 from service.files.waypoint_file import read_waypoints_csv

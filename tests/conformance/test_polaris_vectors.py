@@ -13,10 +13,10 @@ import pytest
 from domain.errors import PilothouseError
 from domain.health.signals import default_signals
 from domain.health.state_manager import StateManager
-from domain.messages import Reading, Readings, TimePassed
+from domain.inputs import Reading, Readings, TimePassed
+from domain.parts.system_model import SmhModel
 from domain.snapshot import TaskStatus
 from domain.supervision import Supervision, SupervisionSettings
-from domain.system_model import SmhModel
 from domain.timebase import NANOSECONDS_PER_SECOND, seconds
 from tests.support.polaris import Observation, Send, Vector, play, timeline
 from tests.support.shared import json_cases

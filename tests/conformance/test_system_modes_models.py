@@ -13,15 +13,8 @@ import pytest
 
 from domain.errors import InvalidModelError
 from domain.lifecycle import LifecycleState
-from domain.system_model import (
-    DEFAULT_MODE,
-    ModeName,
-    PartName,
-    Rule,
-    SmhModel,
-    StateAndMode,
-    SystemModel,
-)
+from domain.parts.system_model import Rule, SmhModel, SystemModel
+from domain.state_and_mode import DEFAULT_MODE, ModeName, PartName, StateAndMode
 from service.files.model_file import load_model, read_model
 from service.files.text_file import UnreadableFileError
 from tests.support.shared import json_cases, shared_folder

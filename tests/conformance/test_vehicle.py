@@ -13,13 +13,14 @@ from typing import Protocol
 
 import pytest
 
-from domain.messages import Drive, VehicleReport
+from domain.commands import Drive
+from domain.inputs import VehicleReport
 from domain.simulation.robot import SimulatedRobot
 from domain.simulation.vehicle_settings import Noise, Plant, VehicleSettings
 from domain.timebase import seconds, to_seconds
 from domain.vehicle import DriveCommand, Pose, VehicleLimits, VehicleState
-from service.backends.simulated import SimulatedBackend
 from service.ports import BackendMessage, RobotBackend
+from service.simulation.simulated import SimulatedBackend
 from tests.support.manual_clock import ManualClock
 from tests.support.models import actuation_model
 from tests.support.ros_graph import FakeGraph

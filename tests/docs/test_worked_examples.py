@@ -4,9 +4,9 @@ from pathlib import Path
 
 import pytest
 
-from domain.messages import NodeReport
-from domain.mode_inference import ModeInference
-from domain.system_model import PartName, StateAndMode
+from domain.inputs import NodeReport
+from domain.parts.mode_inference import ModeInference
+from domain.state_and_mode import PartName, StateAndMode
 from service.files.model_file import load_model
 from tests.support.shared import PROJECT
 

@@ -19,11 +19,11 @@ from types import SimpleNamespace
 sys.path.insert(0, {project!r})
 from api import command_line
 from service.clock import MonotonicClock
-from service.ros_gateway import RosGateway
+from service.ros.gateway import RosGateway
 from tests.support.ros_graph import FakeGraph
 
 graph = FakeGraph(MonotonicClock(), missing={missing!r})
-sys.modules["service.backends.ros2.link"] = SimpleNamespace(RosLink=lambda: graph)
+sys.modules["service.ros.graph.link"] = SimpleNamespace(RosLink=lambda: graph)
 {more}
 raise SystemExit(command_line.main())
 """
@@ -115,10 +115,10 @@ def test_a_link_that_breaks_ends_the_service_and_is_told_in_one_line(tmp_path: P
     """
     with service("--backend", "ros2", command=harness(tmp_path, more)) as running:
         code, _, errors = running.ended()
-    ours = [line for line in errors.splitlines() if "api.serving" in line]
+    ours = [line for line in errors.splitlines() if "api.serving.serving" in line]
 
     assert code == 1
-    assert [line.partition("api.serving: ")[2] for line in ours] == ["the graph failed"]
+    assert [line.partition("api.serving.serving: ")[2] for line in ours] == ["the graph failed"]
     assert "GraphFailedError" not in errors
 
 

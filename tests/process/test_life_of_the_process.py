@@ -134,7 +134,7 @@ def test_a_task_that_fails_ends_the_process_and_is_named(tmp_path: Path) -> None
         textwrap.dedent("""
         import asyncio
         from api import command_line
-        from service.backends.simulated import SimulatedBackend
+        from service.simulation.simulated import SimulatedBackend
 
         async def fail(self, deliver):
             await asyncio.sleep(0.3)

@@ -16,7 +16,7 @@ from typing import Any
 
 import pytest
 
-from api.access import TOKEN_VARIABLE
+from api.http.access import TOKEN_VARIABLE
 from tests.support.process import service
 
 TOKEN = "correct-horse-battery"

@@ -13,15 +13,14 @@ from typing import Any
 import hypothesis.strategies as st
 from hypothesis import given, settings
 
-from api.posted_tasks import task_of
-from api.routes.tasks import serve
-from api.schemas.simulation import SimulationBody
-from api.schemas.tasks import TaskBody
+from api.http.posted_tasks import task_of
+from api.http.routes.tasks import serve
+from api.http.schemas.simulation import SimulationBody
+from api.http.schemas.tasks import TaskBody
 from api.simulation.posted import robot_for
 from api.simulation.simulation import Simulation
 from domain.errors import PilothouseError
-from domain.lifecycle import Transition
-from domain.messages import (
+from domain.inputs import (
     CancelTaskRequest,
     EmergencyStopRequest,
     HoldRequest,
@@ -30,9 +29,10 @@ from domain.messages import (
     ReleaseRequest,
     TransitionRequest,
 )
+from domain.lifecycle import Transition
 from domain.simulation.node_settings import Fault
+from domain.state_and_mode import PartName
 from domain.supervision import SupervisionSettings
-from domain.system_model import PartName
 from domain.timebase import seconds, to_seconds
 from service.files.robot_settings import SignalsBlock
 from tests.support.http_robot import ACTUATION, HttpRobot

@@ -14,12 +14,12 @@ import pytest
 from hypothesis import event, given, settings
 from numpy.typing import NDArray
 
-from domain.messages import Drive
+from domain.commands import Drive
+from domain.parts.system_model import SmhModel
 from domain.paths.path import Path
 from domain.simulation.vehicle_settings import Noise, Plant, VehicleSettings
 from domain.snapshot import TaskPhase
 from domain.supervision import SupervisionSettings
-from domain.system_model import SmhModel
 from domain.timebase import seconds, to_seconds
 from domain.tracking.trackers import TRACKERS
 from domain.vehicle import Pose, VehicleLimits

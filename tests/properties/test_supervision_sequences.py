@@ -12,21 +12,21 @@ from hypothesis.stateful import RuleBasedStateMachine, invariant, precondition, 
 
 from domain.changes.record import ChangeSettings
 from domain.errors import PilothouseError
-from domain.lifecycle import Transition
-from domain.messages import (
+from domain.events import RecordedEvent
+from domain.inputs import (
     AcknowledgeRequest,
     CancelRequest,
-    Event,
     Input,
     ModeRequest,
-    Outputs,
     ParametersRequest,
     TransitionRequest,
 )
+from domain.lifecycle import Transition
+from domain.outbox import Outputs
 from domain.simulation.node_settings import Fault
 from domain.snapshot import ChangeStatus, StepStatus, SystemState
+from domain.state_and_mode import ModeName, PartName
 from domain.supervision import SupervisionSettings
-from domain.system_model import ModeName, PartName
 from tests.support.good import GOOD
 from tests.support.models import ACTUATION, ARM, BASE, nested_model
 from tests.support.virtual_robot import VirtualRobot
@@ -168,8 +168,8 @@ class Sequences(RuleBasedStateMachine):
         assert ARM in self.robot.core.parts()
 
 
-def _deviating(events: list[Event]) -> dict[PartName, Event]:
-    told: dict[PartName, Event] = {}
+def _deviating(events: list[RecordedEvent]) -> dict[PartName, RecordedEvent]:
+    told: dict[PartName, RecordedEvent] = {}
     for event in events:
         part = PartName(str(event.data.get("part")))
         if event.kind == "part.deviation_began":
@@ -179,7 +179,7 @@ def _deviating(events: list[Event]) -> dict[PartName, Event]:
     return told
 
 
-def _root(event: Event, by_id: Mapping[int, Event]) -> Event:
+def _root(event: RecordedEvent, by_id: Mapping[int, RecordedEvent]) -> RecordedEvent:
     while event.cause is not None:
         assert event.cause < event.id
         event = by_id[event.cause]

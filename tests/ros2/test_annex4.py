@@ -6,7 +6,7 @@ from typing import Any
 
 import pytest
 
-from service.backends.ros2.graph import Client, Lane, RosNode
+from service.ros.graph.graph import Client, Lane, RosNode
 from tests.ros2.support.service import POLL_S, RosRobot, node, ros_robot
 from tests.support.waiting import until
 
@@ -63,7 +63,7 @@ class Operator:
 
 @pytest.fixture
 async def operator() -> AsyncIterator[Operator]:
-    from service.backends.ros2.link import RosLink
+    from service.ros.graph.link import RosLink
 
     link = RosLink()
     yield Operator(link.node("operator", Lane.GATEWAY))

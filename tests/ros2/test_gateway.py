@@ -13,13 +13,13 @@ from typing import Any
 
 import pytest
 
-from domain.messages import Reading
+from domain.inputs import Reading
 from domain.simulation.node_settings import Fault
-from service.backends.ros2.graph import Fields, Lane, Qos, RosNode
-from service.backends.ros2.messages import fields_of
 from service.clock import MonotonicClock
-from service.ros_gateway import RosGateway
-from service.ros_interface.interface import RosInterface
+from service.ros.gateway import RosGateway
+from service.ros.graph.graph import Fields, Lane, Qos, RosNode
+from service.ros.graph.messages import fields_of
+from service.ros.interface.interface import RosInterface
 from service.supervisor import Supervisor
 from tests.support.live_robot import make_supervisor, running
 from tests.support.models import ARM
@@ -62,7 +62,7 @@ class Robot:
 
 @pytest.fixture
 async def robot() -> AsyncIterator[Robot]:
-    make_link = import_module("service.backends.ros2.link").RosLink
+    make_link = import_module("service.ros.graph.link").RosLink
     link, others_link = make_link(), make_link()
     supervisor = make_supervisor(MonotonicClock())
     gateway = RosGateway(RosInterface(supervisor), link)

@@ -7,7 +7,7 @@ from typing import Any
 import pytest
 
 from domain.errors import InvalidValueError
-from service.backends.ros2.graph import Client, GraphFailedError, Lane, Qos, UnknownTypeError
+from service.ros.graph.graph import Client, GraphFailedError, Lane, Qos, UnknownTypeError
 from tests.ros2.support.links import POLL_S, WITHIN_S, Link, make_link, ready
 from tests.ros2.support.nodes_process import nodes_process
 from tests.support.waiting import until

@@ -6,8 +6,8 @@ from typing import Any
 
 import pytest
 
-from service.backends.ros2.crossing import MAX_UNANSWERED
-from service.backends.ros2.graph import Lane
+from service.ros.graph.crossing import MAX_UNANSWERED
+from service.ros.graph.graph import Lane
 from tests.ros2.support.links import WITHIN_S, Link, a_link, ready
 
 pytestmark = pytest.mark.ros2

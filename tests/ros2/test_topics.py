@@ -6,19 +6,20 @@ from typing import TYPE_CHECKING, Any
 
 import pytest
 
-from domain.messages import Drive, Readings, SignalValue, VehicleReport
+from domain.commands import Drive
+from domain.inputs import Readings, SignalValue, VehicleReport
 from domain.vehicle import DriveCommand, VehicleLimits
-from service.backends.ros2.graph import Fields, Lane, Message, Qos, RosNode, UnknownTypeError
-from service.backends.ros2.signals import SignalTopics
-from service.backends.ros2.vehicle import RosVehicle
 from service.clock import MonotonicClock
 from service.files.robot_file import robot_settings_of
 from service.files.ros2_block import Ros2Block
+from service.ros.backend.signals import SignalTopics
+from service.ros.backend.vehicle import RosVehicle
+from service.ros.graph.graph import Fields, Lane, Message, Qos, RosNode, UnknownTypeError
 from tests.support.models import actuation_model
 from tests.support.waiting import until
 
 if TYPE_CHECKING:
-    from service.backends.ros2.link import RosLink
+    from service.ros.graph.link import RosLink
 
 pytestmark = pytest.mark.ros2
 
@@ -32,7 +33,7 @@ NAN = float("nan")
 
 @pytest.fixture
 async def link() -> "AsyncIterator[RosLink]":
-    from service.backends.ros2.link import RosLink
+    from service.ros.graph.link import RosLink
 
     link = RosLink()
     yield link
@@ -42,7 +43,7 @@ async def link() -> "AsyncIterator[RosLink]":
 @pytest.fixture
 async def somebody() -> AsyncIterator[RosNode]:
     """Return a node of somebody else."""
-    from service.backends.ros2.link import RosLink
+    from service.ros.graph.link import RosLink
 
     link = RosLink()
     yield link.node("somebody", Lane.SENSORS)

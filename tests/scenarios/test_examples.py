@@ -4,7 +4,7 @@ from pathlib import Path
 
 import pytest
 
-from api.command_line import main
+from api.cli.command_line import main
 from tests.support.shared import PROJECT
 
 EXAMPLES = sorted((PROJECT / "examples" / "scenarios").glob("*.yaml"))

@@ -7,15 +7,8 @@ from collections.abc import Mapping
 
 from domain.lifecycle import LifecycleState
 from domain.parameters import Parameters
-from domain.system_model import (
-    DEFAULT_MODE,
-    ModeName,
-    NodeModel,
-    PartName,
-    SmhModel,
-    StateAndMode,
-    SystemModel,
-)
+from domain.parts.system_model import NodeModel, SmhModel, SystemModel
+from domain.state_and_mode import DEFAULT_MODE, ModeName, PartName, StateAndMode
 
 FAN_OUT = 10
 FAST, SLOW = ModeName("FAST"), ModeName("SLOW")

@@ -13,7 +13,7 @@ from typing import Any
 import httpx
 
 from api.documents.examples import Examples, Exchange, StreamExample
-from api.problems import MEDIA_TYPE
+from api.http.problems import MEDIA_TYPE
 from tests.support.document_story import CSV, JSON, STORY, Asked
 from tests.support.good import GOOD
 from tests.support.http_robot import HttpRobot, http_robot

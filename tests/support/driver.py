@@ -5,30 +5,27 @@ from typing import Any, TypeVar
 
 import numpy as np
 
-from domain.messages import (
+from domain.commands import Command, Drive, PreemptGoal, SendGoal
+from domain.events import RecordedEvent
+from domain.inputs import (
     CancelTaskRequest,
-    Command,
-    Drive,
-    Event,
     GoalFeedback,
     GoalResult,
     HoldRequest,
     Input,
-    Outputs,
-    PreemptGoal,
     Reading,
     Readings,
     ReleaseRequest,
-    SendGoal,
     SignalValue,
     TaskRequest,
     TimePassed,
     VehicleReport,
 )
+from domain.outbox import Outputs
+from domain.parts.system_model import SmhModel
 from domain.paths.path import Path
 from domain.snapshot import TaskView
 from domain.supervision import Supervision, SupervisionSettings
-from domain.system_model import SmhModel
 from domain.timebase import Instant, seconds
 from domain.vehicle import DriveCommand, Point, Pose, VehicleState
 from tests.support.good import GOOD
@@ -54,7 +51,7 @@ class Driver:
     ) -> None:
         self.now: Instant = 0
         self.core = Supervision(SmhModel({}, {}), settings or SupervisionSettings(), 0)
-        self.events: list[Event] = []
+        self.events: list[RecordedEvent] = []
         self.commands: list[Command] = []
         if good:
             self.read(**GOOD)

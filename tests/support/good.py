@@ -2,7 +2,7 @@
 
 from collections.abc import Mapping
 
-from domain.messages import SignalValue
+from domain.inputs import SignalValue
 
 GOOD: Mapping[str, SignalValue] = {
     "battery_level": 1.0,

@@ -8,7 +8,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 
 from domain.health.signals import STALE_DATA, Comparison, Condition, Recovery, SignalSettings
-from domain.messages import Reading, Readings
+from domain.inputs import Reading, Readings
 from domain.timebase import Instant
 
 SECOND = 1_000_000_000

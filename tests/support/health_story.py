@@ -5,7 +5,7 @@ from dataclasses import replace
 
 from domain.health.signals import SignalSettings, default_signals
 from domain.health.state_manager import HealthChanges, StateManager
-from domain.messages import Reading, Readings, SignalValue
+from domain.inputs import Reading, Readings, SignalValue
 from domain.snapshot import TaskStatus
 from domain.timebase import seconds
 

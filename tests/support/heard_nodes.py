@@ -4,13 +4,15 @@ import asyncio
 from collections.abc import AsyncIterator, Sequence
 from contextlib import asynccontextmanager
 
+from domain.commands import AskFacts, AskParameters, AskTransition
+from domain.inputs import NodeAnswer, NodeReport
 from domain.lifecycle import LifecycleState, Transition
-from domain.messages import AskFacts, AskParameters, AskTransition, NodeAnswer, NodeReport
 from domain.parameters import Parameters
-from domain.system_model import NodeModel, PartName
+from domain.parts.system_model import NodeModel
+from domain.state_and_mode import PartName
 from domain.timebase import to_seconds
-from service.backends.ros2.node_watch import NodeMessage
-from service.backends.ros2.nodes import RosNodes
+from service.ros.backend.node_watch import NodeMessage
+from service.ros.backend.nodes import RosNodes
 from tests.support.manual_clock import ManualClock, settle
 from tests.support.models import BASE, actuation_model
 from tests.support.ros_graph import FakeGraph

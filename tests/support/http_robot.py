@@ -7,18 +7,18 @@ from typing import Any, TypeVar
 
 import httpx
 
-from api.access import Access
 from api.app import close_workers, create_app
-from api.limits import USUAL_LIMITS, ServiceLimits
+from api.http.access import Access
+from api.http.limits import USUAL_LIMITS, ServiceLimits
+from domain.commands import Drive, NodeCommand
 from domain.findings import Finding
-from domain.messages import Drive, NodeCommand
 from domain.simulation.node_settings import Fault, NodeSettings
 from domain.simulation.robot import SimulatedRobot
 from domain.simulation.vehicle_settings import VehicleSettings
+from domain.state_and_mode import PartName
 from domain.supervision import SupervisionSettings
-from domain.system_model import PartName
-from service.backends.simulated import SimulatedBackend
 from service.files.model_file import LoadedModel, read_model
+from service.simulation.simulated import SimulatedBackend
 from service.supervisor import Supervisor
 from tests.support.live_robot import make_onboard, running
 from tests.support.manual_clock import ManualClock, settle

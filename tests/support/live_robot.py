@@ -7,13 +7,13 @@ from contextlib import asynccontextmanager
 from domain.findings import Finding
 from domain.navigation import Navigation, NavigationSettings
 from domain.onboard import Onboard
+from domain.parts.system_model import SmhModel
 from domain.simulation.robot import SimulatedRobot
 from domain.supervision import Supervision, SupervisionSettings
-from domain.system_model import SmhModel
 from domain.timebase import Instant
-from service.backends.simulated import SimulatedBackend
 from service.clock import Clock
 from service.files.model_file import LoadedModel
+from service.simulation.simulated import SimulatedBackend
 from service.supervisor import Supervisor
 from tests.support.manual_clock import ManualClock
 from tests.support.models import actuation_model
@@ -48,8 +48,8 @@ def make_onboard(
 ) -> Onboard:
     """Return supervision and navigation with what is usual."""
     settings = settings or SupervisionSettings()
-    navigation = Navigation(settings.vehicle, NavigationSettings())
-    return Onboard(Supervision(model, settings, start), navigation)
+    core = Supervision(model, settings, start)
+    return Onboard(core, Navigation(settings.vehicle, NavigationSettings(), core.driving.watch))
 
 
 @asynccontextmanager

@@ -1,15 +1,8 @@
 """Models that tests talk about; the robot of D4.8, Annex 4, and a nested one."""
 
 from domain.lifecycle import LifecycleState
-from domain.system_model import (
-    DEFAULT_MODE,
-    ModeName,
-    NodeModel,
-    PartName,
-    SmhModel,
-    StateAndMode,
-    SystemModel,
-)
+from domain.parts.system_model import NodeModel, SmhModel, SystemModel
+from domain.state_and_mode import DEFAULT_MODE, ModeName, PartName, StateAndMode
 
 ACTUATION, BASE, ARM = PartName("actuation"), PartName("drive_base"), PartName("manipulator")
 SLOW, FAST = ModeName("SLOW"), ModeName("FAST")

@@ -5,8 +5,8 @@ from typing import Any
 
 from rich.console import Console
 
-from api.monitor.store import Json, Robot, fold
-from api.monitor.view import Contact, Level, View, seconds_of
+from api.cli.monitor.store import Json, Robot, fold
+from api.cli.monitor.view import Contact, Level, View, seconds_of
 
 AT = "2026-05-04T12:00:00.000Z"
 URL = "http://robot:8000"

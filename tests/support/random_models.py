@@ -6,18 +6,11 @@ from typing import TypeAlias
 
 import hypothesis.strategies as st
 
+from domain.inputs import NodeReport
 from domain.lifecycle import LifecycleState
-from domain.messages import NodeReport
 from domain.parameters import Parameters, ParameterValue
-from domain.system_model import (
-    DEFAULT_MODE,
-    ModeName,
-    NodeModel,
-    PartName,
-    SmhModel,
-    StateAndMode,
-    SystemModel,
-)
+from domain.parts.system_model import NodeModel, SmhModel, SystemModel
+from domain.state_and_mode import DEFAULT_MODE, ModeName, PartName, StateAndMode
 
 
 @dataclass(frozen=True)

@@ -14,7 +14,7 @@ from typing import Any, TypeAlias
 
 from domain.errors import InvalidValueError
 from domain.timebase import seconds, to_seconds
-from service.backends.ros2.graph import (
+from service.ros.graph.graph import (
     Fields,
     GraphFailedError,
     Lane,

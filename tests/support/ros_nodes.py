@@ -19,7 +19,7 @@ from domain.lifecycle import (
 )
 from domain.parameters import ParameterValue, value_type
 from domain.simulation.node_parameters import find_refusal
-from service.backends.ros2.graph import Fields
+from service.ros.graph.graph import Fields
 from tests.support.ros_graph import DEAD_ARE_KNOWN_S, LATENCY_S, FakeGraph
 
 LEASE_S = 0.5

@@ -5,10 +5,11 @@ from collections.abc import AsyncIterator
 from contextlib import asynccontextmanager
 from typing import Any
 
+from domain.parts.system_model import SmhModel
 from domain.simulation.node_settings import Fault
-from domain.system_model import PartName, SmhModel
-from service.ros_interface.interface import RosInterface
-from service.ros_interface.offer import Fields
+from domain.state_and_mode import PartName
+from service.ros.interface.interface import RosInterface
+from service.ros.interface.offer import Fields
 from tests.support.live_robot import make_supervisor, running
 from tests.support.manual_clock import ManualClock, settle
 

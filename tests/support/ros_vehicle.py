@@ -3,15 +3,15 @@
 import math
 from collections.abc import Callable
 
-from domain.messages import Drive, NodeCommand
+from domain.commands import Drive, NodeCommand
 from domain.simulation.vehicle import SimulatedVehicle
 from domain.simulation.vehicle_settings import VehicleSettings
 from domain.timebase import seconds
 from domain.vehicle import DriveCommand, VehicleLimits, VehicleState
-from service.backends.ros2.graph import Fields, Lane, Message, Qos
-from service.backends.ros2.vehicle import RosVehicle
 from service.files.ros2_block import Ros2Block
 from service.ports import BackendMessage
+from service.ros.backend.vehicle import RosVehicle
+from service.ros.graph.graph import Fields, Lane, Message, Qos
 from tests.support.manual_clock import ManualClock
 from tests.support.ros_graph import FakeGraph
 

@@ -11,7 +11,7 @@ from api.rosbridge.bridge import Bridge
 from api.streaming.prepared import Connection
 from domain.errors import InvalidValueError
 from service.frame_feed import FrameFeed
-from service.ros_interface.offer import Fields, HeardTopic, OfferedService, OfferedTopic
+from service.ros.interface.offer import Fields, HeardTopic, OfferedService, OfferedTopic
 from tests.support.manual_clock import ManualClock
 from tests.support.websocket import WebSocketClient
 

@@ -4,10 +4,10 @@ from typing import Any
 
 from pydantic_core import from_json
 
-from api.schemas.simulation import SimulationBody
+from api.http.schemas.simulation import SimulationBody
 from api.simulation.posted import robot_for
 from api.simulation.simulation import Simulation
-from service.virtual_robot import VirtualRobot
+from service.simulation.virtual_robot import VirtualRobot
 from tests.support.good import GOOD
 from tests.support.http_robot import ACTUATION
 

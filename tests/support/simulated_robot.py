@@ -3,12 +3,14 @@
 from collections.abc import Mapping
 from itertools import count
 
+from domain.commands import AskFacts, AskParameters, AskTransition
+from domain.inputs import NodeAnswer, NodeReport
 from domain.lifecycle import LifecycleState, Transition
-from domain.messages import AskFacts, AskParameters, AskTransition, NodeAnswer, NodeReport
 from domain.parameters import Parameters
+from domain.parts.system_model import SmhModel
 from domain.simulation.node_settings import Fault, NodeSettings
 from domain.simulation.nodes import NodeMessage, SimulatedNodes
-from domain.system_model import PartName, SmhModel
+from domain.state_and_mode import PartName
 from domain.timebase import Instant, seconds, to_seconds
 from tests.support.models import actuation_model
 

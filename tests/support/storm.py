@@ -8,7 +8,7 @@ from typing import Any
 import httpx
 import requests
 
-from api.limits import USUAL_LIMITS
+from api.http.limits import USUAL_LIMITS
 from tests.support.http_robot import HttpRobot, http_robot
 from tests.support.manual_clock import settle
 

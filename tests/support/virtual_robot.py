@@ -3,34 +3,33 @@
 from collections.abc import Mapping
 from typing import Any
 
-from domain.lifecycle import Transition
-from domain.messages import (
+from domain.commands import Command, PreemptGoal, SendGoal
+from domain.events import RecordedEvent
+from domain.identifiers import ChangeId
+from domain.inputs import (
     CancelTaskRequest,
-    ChangeId,
-    Command,
     EmergencyStopRequest,
-    Event,
     HoldRequest,
     Input,
     ModeRequest,
-    Outputs,
-    PreemptGoal,
     Reading,
     Readings,
     ReleaseRequest,
-    SendGoal,
     SignalValue,
     TaskRequest,
     TimePassed,
     TransitionRequest,
 )
+from domain.lifecycle import Transition
+from domain.outbox import Outputs
+from domain.parts.system_model import SmhModel
 from domain.paths.path import Path
 from domain.simulation.node_settings import Fault, NodeSettings
 from domain.simulation.robot import SimulatedRobot
 from domain.simulation.vehicle_settings import VehicleSettings
 from domain.snapshot import ChangeView, TaskView
+from domain.state_and_mode import PartName
 from domain.supervision import SupervisionSettings
-from domain.system_model import PartName, SmhModel
 from domain.timebase import Instant, seconds
 from tests.support.live_robot import make_onboard
 
@@ -53,7 +52,7 @@ class VirtualRobot:
         by_name = {PartName(name): setting for name, setting in (nodes or {}).items()}
         self.robot = SimulatedRobot(model, start, by_name, vehicle)
         self.nodes = self.robot.nodes
-        self.events: list[Event] = []
+        self.events: list[RecordedEvent] = []
         self.commands: list[Command] = []
         """What was sent to nodes and vehicle."""
         self.advance(0)

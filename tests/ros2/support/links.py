@@ -5,7 +5,7 @@ from contextlib import asynccontextmanager
 from importlib import import_module
 from typing import Any, TypeAlias
 
-from service.backends.ros2.graph import Client
+from service.ros.graph.graph import Client
 from tests.support.waiting import until
 
 WITHIN_S = 5.0
@@ -17,7 +17,7 @@ Link: TypeAlias = Any
 
 def make_link() -> Link:
     """Return a link that the test closes."""
-    return import_module("service.backends.ros2.link").RosLink()
+    return import_module("service.ros.graph.link").RosLink()
 
 
 @asynccontextmanager

@@ -5,8 +5,8 @@ from functools import partial
 
 from uvicorn._types import ASGIReceiveCallable, ASGISendCallable, Scope
 
+from api.serving.websocket_protocol import WebSocketProtocol
 from api.streaming.prepared import connection_of, text_frame
-from api.websocket_protocol import WebSocketProtocol
 from tests.support.fan_out.control import serve_frames
 from tests.support.fan_out.uvicorn_start import start
 

@@ -11,8 +11,8 @@ from fastapi import APIRouter, FastAPI
 from fastapi.dependencies.models import Dependant
 from fastapi.routing import APIRoute, APIWebSocketRoute
 
-from api import routes
 from api.app import create_app
+from api.http import routes
 from tests.support.http_robot import HttpRobot
 from tests.support.live_robot import make_supervisor
 
@@ -76,7 +76,7 @@ def test_everything_that_the_contract_names_is_there_and_nothing_else(app: FastA
 @pytest.mark.parametrize("module", [found.name for found in pkgutil.iter_modules(routes.__path__)])
 def test_no_handler_runs_in_a_thread(module: str) -> None:
     # The framework calls plain functions in a thread, where nothing of the robot may be touched.
-    router: APIRouter = importlib.import_module(f"api.routes.{module}").router
+    router: APIRouter = importlib.import_module(f"api.http.routes.{module}").router
     called = [
         call
         for route in router.routes

@@ -4,18 +4,11 @@ import math
 
 import pytest
 
+from domain.commands import Drive
 from domain.errors import InvalidValueError
-from domain.messages import (
-    Drive,
-    ModeRequest,
-    Reading,
-    Readings,
-    TaskRequest,
-    TimePassed,
-    VehicleReport,
-)
+from domain.inputs import ModeRequest, Reading, Readings, TaskRequest, TimePassed, VehicleReport
+from domain.parts.system_model import SmhModel
 from domain.snapshot import TaskPhase
-from domain.system_model import SmhModel
 from domain.timebase import seconds
 from domain.vehicle import Pose, VehicleState
 from tests.support.driver import straight

@@ -2,7 +2,7 @@
 
 from domain.lifecycle import LifecycleState
 from domain.snapshot import Actual
-from domain.system_model import ModeName, StateAndMode
+from domain.state_and_mode import ModeName, StateAndMode
 
 
 def test_state_and_mode_of_an_actual_leave_out_how_they_are_known() -> None:

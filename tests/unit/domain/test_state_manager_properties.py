@@ -11,7 +11,7 @@ from domain.errors import OutdatedReadingError
 from domain.findings import Blocker
 from domain.health.signals import STALE_DATA, Recovery, SignalSettings, default_signals
 from domain.health.state_manager import HealthChanges, StateManager
-from domain.messages import Reading, Readings, SignalValue
+from domain.inputs import Reading, Readings, SignalValue
 from domain.snapshot import SignalView, SystemState, TaskStatus
 from tests.support.health_reference import SECOND, HealthReference, Moment
 

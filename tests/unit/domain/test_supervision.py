@@ -8,6 +8,7 @@ import pytest
 from hypothesis import given, settings
 
 from domain.changes.admission import ADVISORY
+from domain.commands import AskFacts, AskTransition, Command, Drive
 from domain.errors import (
     BackendUnavailableError,
     BlockedError,
@@ -22,19 +23,14 @@ from domain.errors import (
     UnknownPartError,
     UnknownSignalError,
 )
+from domain.events import RecordedEvent
 from domain.health.signals import Recovery, default_signals
-from domain.lifecycle import LifecycleState, Transition
-from domain.messages import (
+from domain.identifiers import ChangeId
+from domain.inputs import (
     AcknowledgeRequest,
-    AskFacts,
-    AskTransition,
     BackendStatus,
     CancelRequest,
-    ChangeId,
-    Command,
-    Drive,
     EmergencyStopRequest,
-    Event,
     GoalFeedback,
     GoalResult,
     HoldRequest,
@@ -42,7 +38,6 @@ from domain.messages import (
     ModeRequest,
     NodeAnswer,
     NodeReport,
-    Outputs,
     ParametersRequest,
     Reading,
     Readings,
@@ -52,10 +47,12 @@ from domain.messages import (
     VehicleReport,
     WriteRecord,
 )
+from domain.lifecycle import LifecycleState, Transition
+from domain.outbox import Outputs
 from domain.simulation.node_settings import Fault, NodeSettings
 from domain.snapshot import ChangeStatus, SystemState
+from domain.state_and_mode import ModeName, PartName
 from domain.supervision import Supervision, SupervisionSettings
-from domain.system_model import ModeName, PartName
 from domain.timebase import Instant, seconds
 from domain.vehicle import DriveCommand, Point, Pose, VehicleState
 from tests.support.driver import Driver
@@ -207,14 +204,14 @@ def test_an_input_in_the_past_counts_as_now(robot: VirtualRobot) -> None:
 # --- inputs and their causes ---------------------------------------------------------------------
 
 
-def _root(events: Iterable[Event], event: Event) -> Event:
+def _root(events: Iterable[RecordedEvent], event: RecordedEvent) -> RecordedEvent:
     by_id = {other.id: other for other in events}
     while event.cause is not None:
         event = by_id[event.cause]
     return event
 
 
-def _last(robot: VirtualRobot, kind: str) -> Event:
+def _last(robot: VirtualRobot, kind: str) -> RecordedEvent:
     return [event for event in robot.events if event.kind == kind][-1]
 
 
@@ -644,7 +641,7 @@ class Run:
     """All that came out of one core."""
 
     core: Supervision
-    events: tuple[Event, ...] = ()
+    events: tuple[RecordedEvent, ...] = ()
     commands: tuple[Command, ...] = ()
     refusals: tuple[str, ...] = ()
 

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from pydantic_core import from_json
 
-from api.schemas.simulation import SimulationBody
+from api.http.schemas.simulation import SimulationBody
 from api.simulation.posted import robot_for
 from api.simulation.simulation import Simulation
 from domain.paths.path import Path

@@ -2,7 +2,7 @@ import numpy as np
 import pytest
 
 from domain.errors import InvalidValueError, UnknownPartError
-from domain.messages import NodeReport, Reading, Readings, TaskRequest, VehicleReport
+from domain.inputs import NodeReport, Reading, Readings, TaskRequest, VehicleReport
 from domain.paths.path import Path
 from domain.simulation.robot import SimulatedRobot
 from domain.timebase import seconds

@@ -6,22 +6,21 @@ from collections.abc import AsyncIterator, Callable
 
 import pytest
 
+from domain.commands import Drive, NodeCommand
 from domain.errors import InvalidValueError, UnknownChangeError, UnknownPartError
-from domain.messages import (
+from domain.identifiers import ChangeId
+from domain.inputs import (
     BackendStatus,
-    ChangeId,
-    Drive,
     EmergencyStopRequest,
     HoldRequest,
     ModeRequest,
-    NodeCommand,
     NodeReport,
     Reading,
     TaskRequest,
 )
 from domain.simulation.robot import SimulatedRobot
 from domain.snapshot import ChangeStatus, SystemState
-from domain.system_model import PartName
+from domain.state_and_mode import PartName
 from domain.tasks.holds import MAX_HOLDS
 from service.files.model_file import LoadedModel
 from service.frame_feed import Frame

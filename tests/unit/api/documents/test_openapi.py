@@ -8,7 +8,7 @@ from fastapi import FastAPI
 
 from api.app import create_app
 from api.documents.openapi import describe, operations_of
-from api.problems import MEDIA_TYPE
+from api.http.problems import MEDIA_TYPE
 from tests.support.document_schemas import leads_somewhere, openapi_faults, references
 from tests.support.live_robot import make_supervisor
 

@@ -12,7 +12,7 @@ from api.rosbridge.bridge import Bridge
 from api.rosbridge.operations import OPERATIONS
 from api.rosbridge.outbox import Outbox
 from api.rosbridge.session import Session
-from service.ros_interface.interface import RosInterface
+from service.ros.interface.interface import RosInterface
 from tests.support.live_robot import make_supervisor
 from tests.support.manual_clock import settle
 

@@ -2,7 +2,7 @@ import pytest
 
 from api.rosbridge.bridge import request_of
 from domain.errors import InvalidValueError
-from service.ros_interface.interface import RosInterface
+from service.ros.interface.interface import RosInterface
 from tests.support.live_robot import make_supervisor
 from tests.support.manual_clock import ManualClock
 from tests.support.rosbridge import SmallInterface, make_bridge

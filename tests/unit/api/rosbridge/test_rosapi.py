@@ -2,7 +2,7 @@ import pytest
 
 from api.rosbridge.rosapi import RosApi
 from domain.errors import InvalidValueError
-from service.ros_interface.offer import Fields, HeardTopic, OfferedTopic
+from service.ros.interface.offer import Fields, HeardTopic, OfferedTopic
 from tests.support.manual_clock import ManualClock
 from tests.support.rosbridge import SmallInterface
 

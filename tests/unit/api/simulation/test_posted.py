@@ -5,12 +5,12 @@ from typing import Any
 
 import pytest
 
-from api.bodies import InvalidBodyError, MalformedBodyError
+from api.http.bodies import InvalidBodyError, MalformedBodyError
 from api.simulation.posted import LiveCopy, copy_of, robot_for, simulate_posted
 from domain.errors import InvalidModelError
-from domain.messages import HoldRequest
+from domain.inputs import HoldRequest
 from domain.timebase import seconds
-from service.virtual_robot import VirtualRobot
+from service.simulation.virtual_robot import VirtualRobot
 from tests.support.http_robot import ACTUATION
 from tests.support.scenarios import ALL_GOOD, STRAIGHT, scenario, virtual_robot
 

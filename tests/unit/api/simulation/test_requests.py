@@ -6,12 +6,12 @@ import pytest
 from starlette.responses import JSONResponse
 from starlette.types import Receive, Scope, Send
 
-from api.problems import Problem
-from api.schemas.simulation import AskedRequest
+from api.http.problems import Problem
+from api.http.schemas.simulation import AskedRequest
 from api.simulation.requests import Requests
-from domain.system_model import PartName
+from domain.state_and_mode import PartName
 from domain.timebase import seconds
-from service.virtual_robot import VirtualRobot
+from service.simulation.virtual_robot import VirtualRobot
 from tests.support.scenarios import STRAIGHT, scenario, virtual_robot
 
 Ask = Callable[..., Problem | None]

@@ -1,13 +1,13 @@
 import pytest
 from pydantic_core import from_json, to_json
 
-from api.schemas.simulation import SampleJson
-from api.schemas.tasks import TaskJson, VehicleJson
+from api.http.schemas.simulation import SampleJson
+from api.http.schemas.tasks import TaskJson, VehicleJson
 from api.simulation import samples
 from api.simulation.samples import Sampler
-from domain.messages import CancelTaskRequest, HoldRequest, ReleaseRequest
+from domain.inputs import CancelTaskRequest, HoldRequest, ReleaseRequest
 from domain.timebase import seconds
-from service.virtual_robot import VirtualRobot
+from service.simulation.virtual_robot import VirtualRobot
 from service.worker import TooComplexError
 from tests.support.scenarios import ALL_GOOD, STRAIGHT, answer, happened, scenario, virtual_robot
 

@@ -2,7 +2,7 @@ from typing import Any
 
 import pytest
 
-from api.schemas.simulation import SimulationJson
+from api.http.schemas.simulation import SimulationJson
 from api.simulation import simulation as module
 from api.simulation.simulation import Simulation
 from tests.support.scenarios import (

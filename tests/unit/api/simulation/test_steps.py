@@ -5,12 +5,12 @@ from typing import Any
 import pytest
 from pydantic import TypeAdapter
 
-from api.problems import Problem
-from api.schemas.simulation import Step as AnyKindOfStep
+from api.http.problems import Problem
+from api.http.schemas.simulation import Step as AnyKindOfStep
 from api.simulation.steps import Actors
-from domain.system_model import PartName
+from domain.state_and_mode import PartName
 from domain.timebase import seconds
-from service.virtual_robot import VirtualRobot
+from service.simulation.virtual_robot import VirtualRobot
 from tests.support.scenarios import ALL_GOOD, STRAIGHT, Step, scenario, virtual_robot
 
 STEPS: TypeAdapter[Any] = TypeAdapter(AnyKindOfStep)

@@ -12,7 +12,7 @@ from api.streaming.encoder import StreamEncoder
 from api.streaming.fan_out import FanOut
 from api.streaming.prepared import PING, Connection, Listener
 from api.streaming.query import TOPICS, StreamQuery
-from domain.messages import EmergencyStopRequest
+from domain.inputs import EmergencyStopRequest
 from service.supervisor import Supervisor
 from tests.support.live_robot import make_supervisor, running
 from tests.support.manual_clock import ManualClock, settle

@@ -1,9 +1,9 @@
 import pytest
 
-from api.access import Access
 from api.app import create_app
-from api.gate.refusals import Refusals
-from api.limits import ServiceLimits
+from api.http.access import Access
+from api.http.gate.refusals import Refusals
+from api.http.limits import ServiceLimits
 from api.streaming.hub import StreamHub, stream_hub
 from tests.support.live_robot import make_supervisor
 

@@ -1,6 +1,6 @@
 import pytest
 
-from api.schemas.stream import AuthMessage, ReadingMessage
+from api.http.schemas.stream import AuthMessage, ReadingMessage
 from api.streaming.messages import read_client_message
 from domain.errors import InvalidValueError, PilothouseError
 

@@ -5,11 +5,12 @@ import pytest
 from domain.changes.admission import ChangeAdmission
 from domain.errors import BlockedError, IllegalTransitionError
 from domain.findings import Blocker
+from domain.inputs import ChangeRequest, ModeRequest, ParametersRequest, TransitionRequest
 from domain.lifecycle import LifecycleState, Transition
-from domain.messages import ChangeRequest, ModeRequest, ParametersRequest, TransitionRequest
-from domain.node_facts import NodeFacts
 from domain.parameters import Parameters
-from domain.system_model import ModeName, PartName, SmhModel, SystemModel
+from domain.parts.node_facts import NodeFacts
+from domain.parts.system_model import SmhModel, SystemModel
+from domain.state_and_mode import ModeName, PartName
 from tests.support.big_model import big_model
 from tests.support.models import ACTUATION, ARM, BASE, actuation_model, inactive, nested_model
 

@@ -5,14 +5,11 @@ from typing import Any
 import pytest
 
 from domain.changes.operations import KEPT_CHANGES
+from domain.commands import AskFacts, AskParameters, AskTransition
 from domain.errors import InvalidValueError, UnknownChangeError
-from domain.lifecycle import LifecycleState, Transition
-from domain.messages import (
-    AskFacts,
-    AskParameters,
-    AskTransition,
+from domain.identifiers import ChangeId
+from domain.inputs import (
     CancelRequest,
-    ChangeId,
     EmergencyStopRequest,
     ModeRequest,
     NodeAnswer,
@@ -23,11 +20,13 @@ from domain.messages import (
     TimePassed,
     TransitionRequest,
 )
+from domain.lifecycle import LifecycleState, Transition
 from domain.parameters import Parameters
+from domain.parts.system_model import NodeModel, SmhModel, SystemModel
 from domain.simulation.node_settings import Fault, NodeSettings
 from domain.snapshot import ChangeStatus, StepStatus
+from domain.state_and_mode import DEFAULT_MODE, PartName
 from domain.supervision import Supervision, SupervisionSettings
-from domain.system_model import DEFAULT_MODE, NodeModel, PartName, SmhModel, SystemModel
 from domain.timebase import seconds
 from tests.support.good import GOOD
 from tests.support.models import (
@@ -543,7 +542,7 @@ def test_a_node_that_somebody_else_keeps_moving_is_given_up() -> None:
         core.handle(NodeReport(BASE, parameters={"max_speed": 0.3}), 0)
     change = core.change("c1")
     assert change.status is ChangeStatus.FAILED
-    assert change.reason == "drive_base does not stay where it is put"
+    assert change.reason == "drive_base keeps leaving the requested state"
 
 
 # --- when, and in which words --------------------------------------------------------------------

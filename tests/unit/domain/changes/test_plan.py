@@ -5,19 +5,12 @@ import pytest
 from hypothesis import given
 
 from domain.changes.plan import Action, NodeGoal, SetParameters, goal_of, next_steps, presumed_steps
+from domain.inputs import ChangeRequest, ModeRequest, ParametersRequest, TransitionRequest
 from domain.lifecycle import LifecycleState, Transition, arrival, rule_for
-from domain.messages import ChangeRequest, ModeRequest, ParametersRequest, TransitionRequest
-from domain.node_facts import NodeFacts
 from domain.parameters import Parameters
-from domain.system_model import (
-    DEFAULT_MODE,
-    ModeName,
-    NodeModel,
-    PartName,
-    SmhModel,
-    StateAndMode,
-    SystemModel,
-)
+from domain.parts.node_facts import NodeFacts
+from domain.parts.system_model import NodeModel, SmhModel, SystemModel
+from domain.state_and_mode import DEFAULT_MODE, ModeName, PartName, StateAndMode
 from tests.support.models import ACTUATION, ARM, BASE, actuation_model, nested_model
 
 S, T = LifecycleState, Transition

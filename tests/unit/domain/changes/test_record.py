@@ -4,8 +4,9 @@ import pytest
 
 from domain.changes.plan import Action, NodeGoal, SetParameters
 from domain.changes.record import Change, ChangeSettings, Pursuit, Step
+from domain.identifiers import ChangeId
+from domain.inputs import ModeRequest
 from domain.lifecycle import LifecycleState, Transition
-from domain.messages import ChangeId, ModeRequest
 from domain.snapshot import ChangeStatus, ChangeView, StepStatus, StepView
 from domain.timebase import seconds
 from tests.support.models import ACTUATION, ARM, BASE

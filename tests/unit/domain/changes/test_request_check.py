@@ -12,11 +12,11 @@ from domain.errors import (
     UnknownParameterError,
     UnknownPartError,
 )
+from domain.inputs import ChangeRequest, ModeRequest, ParametersRequest, TransitionRequest
 from domain.lifecycle import Transition
-from domain.messages import ChangeRequest, ModeRequest, ParametersRequest, TransitionRequest
-from domain.node_facts import NodeFacts
 from domain.parameters import ParameterValue
-from domain.system_model import PartName
+from domain.parts.node_facts import NodeFacts
+from domain.state_and_mode import PartName
 from tests.support.models import ACTUATION, ARM, BASE, actuation_model
 
 MODEL = actuation_model()

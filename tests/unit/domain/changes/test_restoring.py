@@ -5,26 +5,27 @@ from collections.abc import Iterable, Mapping
 import pytest
 
 from domain.changes.record import ChangeSettings
-from domain.lifecycle import LifecycleState, Transition
-from domain.messages import (
+from domain.inputs import (
     BackendStatus,
     CancelRequest,
     EmergencyStopRequest,
     ModeRequest,
     NodeAnswer,
     NodeReport,
-    Outputs,
     ParametersRequest,
     Reading,
     Readings,
     TimePassed,
     TransitionRequest,
 )
+from domain.lifecycle import LifecycleState, Transition
+from domain.outbox import Outputs
 from domain.parameters import Parameters
+from domain.parts.system_model import NodeModel, SmhModel
 from domain.simulation.node_settings import Fault, NodeSettings
 from domain.snapshot import ChangeStatus
+from domain.state_and_mode import PartName
 from domain.supervision import Supervision, SupervisionSettings
-from domain.system_model import NodeModel, PartName, SmhModel
 from domain.timebase import seconds
 from tests.support.good import GOOD
 from tests.support.models import ACTUATION, ARM, BASE, FAST, PERFORMANCE, SLOW, actuation_model

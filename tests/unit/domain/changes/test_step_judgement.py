@@ -5,12 +5,13 @@ import pytest
 from domain.changes.plan import Action, SetParameters
 from domain.changes.record import Step
 from domain.changes.step_judgement import Verdict, judge_report
+from domain.identifiers import ChangeId
+from domain.inputs import NodeReport
 from domain.lifecycle import TRANSITIONS, LifecycleState, Transition, TransitionRule
-from domain.messages import ChangeId, NodeReport
-from domain.node_facts import NodeFacts
 from domain.parameters import ParameterValue
+from domain.parts.node_facts import NodeFacts
 from domain.snapshot import StepStatus
-from domain.system_model import ModeName
+from domain.state_and_mode import ModeName
 from tests.support.models import BASE
 
 S, T = LifecycleState, Transition

@@ -2,7 +2,7 @@ import pytest
 
 from domain.health.held_readings import MAX_PRESSING_SOURCES, MAX_QUIET_SOURCES, HeldReadings
 from domain.health.signals import SignalSettings, default_signals
-from domain.messages import Reading, SignalValue
+from domain.inputs import Reading, SignalValue
 from domain.timebase import seconds
 
 SETTINGS = {item.spec.name: item for item in default_signals()}

@@ -14,7 +14,7 @@ from domain.health.signals import (
     SignalSpec,
     default_signals,
 )
-from domain.messages import Reading, SignalValue
+from domain.inputs import Reading, SignalValue
 from domain.timebase import seconds
 
 START = seconds(500)

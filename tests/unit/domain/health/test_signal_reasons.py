@@ -12,7 +12,7 @@ from domain.health.signals import (
     SignalSpec,
     default_signals,
 )
-from domain.messages import Reading, SignalValue
+from domain.inputs import Reading, SignalValue
 from domain.timebase import seconds
 
 DEFAULTS = {item.spec.name: item for item in default_signals()}

@@ -13,7 +13,7 @@ from domain.health.signals import (
     SignalSpec,
     default_signals,
 )
-from domain.messages import SignalValue
+from domain.inputs import SignalValue
 from domain.timebase import seconds
 
 DEFAULTS = {item.spec.name: item for item in default_signals()}

@@ -21,7 +21,7 @@ from domain.health.signals import (
     default_signals,
 )
 from domain.health.state_manager import HealthChanges, StateManager
-from domain.messages import Reading
+from domain.inputs import Reading
 from domain.snapshot import SystemState, TaskStatus
 from domain.timebase import seconds
 from tests.support.health_story import START, Robot, never_stale

@@ -1,7 +1,7 @@
 import pytest
 
 from domain.errors import UnknownSignalError
-from domain.messages import Reading, SignalValue
+from domain.inputs import Reading, SignalValue
 from domain.simulation.mock_signals import GOOD_VALUES, MockSignals
 from domain.timebase import Instant, seconds, to_seconds
 

@@ -2,8 +2,9 @@ import pytest
 
 from domain.errors import InvalidValueError, UnknownParameterError
 from domain.parameters import ParameterValue
+from domain.parts.system_model import NodeModel
 from domain.simulation.node_parameters import declared_parameters, find_refusal, start_parameters
-from domain.system_model import DEFAULT_MODE, ModeName, NodeModel, PartName
+from domain.state_and_mode import DEFAULT_MODE, ModeName, PartName
 
 
 def test_a_node_declares_what_any_of_its_modes_sets_and_the_first_mode_decides_the_type() -> None:

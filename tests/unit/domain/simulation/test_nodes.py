@@ -2,18 +2,20 @@ import time
 
 import pytest
 
+from domain.commands import AskTransition
 from domain.errors import (
     InvalidValueError,
     RefusedError,
     UnknownParameterError,
     UnknownPartError,
 )
+from domain.inputs import NodeAnswer, NodeReport
 from domain.lifecycle import TRANSITIONS, LifecycleState, Transition, TransitionRule, rule_for
-from domain.messages import AskTransition, NodeAnswer, NodeReport
 from domain.parameters import Parameters, ParameterValue
+from domain.parts.system_model import NodeModel, SmhModel
 from domain.simulation.node_settings import Fault, NodeSettings
 from domain.simulation.nodes import NodeMessage, SimulatedNodes
-from domain.system_model import DEFAULT_MODE, ModeName, NodeModel, PartName, SmhModel
+from domain.state_and_mode import DEFAULT_MODE, ModeName, PartName
 from domain.timebase import seconds
 from tests.support.models import ARM, BASE, actuation_model
 from tests.support.simulated_robot import SimulatedRobot, answers, states

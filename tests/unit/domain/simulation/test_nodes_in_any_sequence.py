@@ -8,13 +8,14 @@ from typing import TypeAlias
 from hypothesis import given
 from hypothesis import strategies as st
 
+from domain.commands import AskFacts, AskParameters, AskTransition
 from domain.errors import PilothouseError
+from domain.inputs import NodeAnswer, NodeReport
 from domain.lifecycle import ERROR_PROCESSED, TRANSITIONS, LifecycleState, Transition
-from domain.messages import AskFacts, AskParameters, AskTransition, NodeAnswer, NodeReport
 from domain.parameters import Parameters
 from domain.simulation.node_settings import Fault, NodeSettings
 from domain.simulation.nodes import NodeMessage, SimulatedNodes
-from domain.system_model import PartName
+from domain.state_and_mode import PartName
 from domain.timebase import Duration, Instant, seconds
 from tests.support.models import ARM, BASE, actuation_model
 

@@ -6,21 +6,15 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from api.simulation import posted
+from domain.commands import AskTransition, Drive, NodeCommand
 from domain.errors import UnknownPartError
+from domain.inputs import NodeAnswer, NodeReport, Readings, VehicleReport
 from domain.lifecycle import LifecycleState, Transition
-from domain.messages import (
-    AskTransition,
-    Drive,
-    NodeAnswer,
-    NodeCommand,
-    NodeReport,
-    Readings,
-    VehicleReport,
-)
+from domain.parts.system_model import SmhModel
 from domain.simulation.node_settings import Fault, NodeSettings
 from domain.simulation.robot import RobotMessage, SimulatedRobot
 from domain.simulation.vehicle_settings import Noise, Plant, VehicleSettings
-from domain.system_model import PartName, SmhModel
+from domain.state_and_mode import PartName
 from domain.timebase import Instant, seconds, to_seconds
 from domain.vehicle import DriveCommand, Pose
 from tests.support.live_robot import make_onboard

@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from domain.messages import VehicleReport
+from domain.inputs import VehicleReport
 from domain.simulation.vehicle import COMMAND_VALID_FOR, SimulatedVehicle
 from domain.simulation.vehicle_settings import Noise, Plant, VehicleSettings
 from domain.timebase import Instant, seconds, to_seconds

@@ -9,7 +9,7 @@ from typing import TypeAlias
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from domain.messages import VehicleReport
+from domain.inputs import VehicleReport
 from domain.simulation.vehicle import REPORT_PERIOD, SimulatedVehicle
 from domain.simulation.vehicle_settings import Noise, Plant, VehicleSettings
 from domain.timebase import Instant, seconds, to_seconds

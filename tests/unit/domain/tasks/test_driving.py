@@ -3,10 +3,10 @@ import math
 import pytest
 
 from domain.errors import InvalidValueError, ReservedHoldError, TooManyHoldsError
-from domain.messages import VehicleReport
+from domain.inputs import VehicleReport
+from domain.parts.system_model import SmhModel
 from domain.snapshot import HoldView, TaskPhase
 from domain.supervision import Supervision, SupervisionSettings
-from domain.system_model import SmhModel
 from domain.tasks.holds import MAX_HOLDS
 from domain.timebase import seconds
 from domain.vehicle import Pose, VehicleLimits, VehicleState
@@ -67,7 +67,7 @@ def test_a_vehicle_that_is_lost_is_not_known_to_stand() -> None:
     robot.serve()
     robot.wait(1.0)
 
-    assert not robot.core.driving.stands
+    assert not robot.core.driving.watch.stands
     assert robot.task.status is TaskPhase.PAUSING
 
 

@@ -1,4 +1,5 @@
-from domain.messages import GoalFeedback, GoalId, TaskId
+from domain.identifiers import GoalId, TaskId
+from domain.inputs import GoalFeedback
 from domain.snapshot import TaskPhase, TaskView
 from domain.tasks.task import Task
 from domain.vehicle import DriveCommand, Point

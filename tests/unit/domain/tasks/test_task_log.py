@@ -1,7 +1,7 @@
 import pytest
 
 from domain.errors import UnknownTaskError
-from domain.messages import TaskId
+from domain.identifiers import TaskId
 from domain.paths.path import Path
 from domain.tasks.task import Task
 from domain.tasks.task_log import MAX_KEPT, TaskLog

@@ -1,21 +1,16 @@
 import numpy as np
 import pytest
 
+from domain.commands import Drive, PreemptGoal, SendGoal
 from domain.errors import (
     FarStartError,
     InvalidValueError,
     UnknownControllerError,
     UnknownTaskError,
 )
-from domain.messages import (
-    Drive,
-    GoalFeedback,
-    GoalId,
-    Outputs,
-    PreemptGoal,
-    SendGoal,
-    VehicleReport,
-)
+from domain.identifiers import GoalId
+from domain.inputs import GoalFeedback, VehicleReport
+from domain.outbox import Outputs
 from domain.paths.path import Path
 from domain.snapshot import TaskPhase
 from domain.tasks.task_planner import MIN_CRUISE_MPS, check_cruise

@@ -3,7 +3,7 @@ import math
 import pytest
 
 from domain.errors import InvalidValueError
-from domain.messages import VehicleReport
+from domain.inputs import VehicleReport
 from domain.outbox import Outbox
 from domain.snapshot import VehicleView
 from domain.tasks.settings import TaskSettings

@@ -9,9 +9,10 @@ from domain.errors import InvalidValueError
 from domain.findings import Finding
 from domain.health.signals import default_signals
 from domain.navigation import NavigationSettings
+from domain.parts.system_model import NodeModel, SmhModel
 from domain.simulation.node_settings import Fault
 from domain.simulation.vehicle_settings import Plant, VehicleSettings
-from domain.system_model import NodeModel, PartName, SmhModel
+from domain.state_and_mode import PartName
 from domain.tasks.settings import TaskSettings
 from domain.timebase import seconds
 from domain.vehicle import Pose, VehicleLimits

@@ -2,7 +2,7 @@ import pytest
 
 from domain.findings import Finding
 from domain.lifecycle import LifecycleState
-from domain.system_model import DEFAULT_MODE, PartName, StateAndMode
+from domain.state_and_mode import DEFAULT_MODE, PartName, StateAndMode
 from service.files.parameter_file import read_parameter_file
 from service.files.smh_reader import SmhParts, read_parts
 from service.files.yaml_tree import read_tree

@@ -1,7 +1,8 @@
 import pytest
 
 from domain.lifecycle import LifecycleState
-from domain.system_model import PartName, Rule, StateAndMode
+from domain.parts.system_model import Rule
+from domain.state_and_mode import PartName, StateAndMode
 from service.files.parameter_file import read_parameter_file
 from service.files.smh_block import SmhBlock
 from service.files.smh_values import fitted, read_part_name, read_rule, read_want

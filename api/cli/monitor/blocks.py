@@ -1,0 +1,204 @@
+"""The pieces of the picture: each a list of lines for a width and for some number of lines."""
+
+from collections.abc import Sequence
+
+from rich.console import Console
+from rich.text import Text
+
+from api.cli.monitor import words
+from api.cli.monitor.rows import (
+    CALM,
+    CHANGES,
+    UNREACHABLE,
+    WRONG,
+    Chosen,
+    PartRow,
+    RowType,
+    SignalRow,
+    choose,
+)
+from api.cli.monitor.sentence import Sentence, contact_sentence, state_sentence, stop_sentence
+from api.cli.monitor.table import Column, printable, table
+from api.cli.monitor.view import Level, View, seconds_of
+
+LEGEND = "(*) inferred   ! not as it should be   > changing or coming   x unreachable"
+
+_MARK_STYLES = {UNREACHABLE: "bold red", WRONG: "bold yellow", CHANGES: "cyan", CALM: ""}
+_WORD_STYLES = {"IDLE": "bold", "RUNNING": "bold green", "CONNECTING": "bold"}
+_ALARM = "bold red"
+_TITLES = "underline"
+_LEAST_LINES = 2
+"""Of a table: the titles, and how many rows there would be."""
+
+_PART_COLUMNS = (
+    Column("  part", least=10),
+    Column("target", least=8, usual=19, needs_width=50),
+    Column("state", least=8, usual=16),
+    Column("mode", least=6, usual=13),
+    Column("", least=4, needs_width=64),
+)
+_SIGNAL_COLUMNS = (
+    Column("  signal", least=10, usual=20),
+    Column("value", least=6, usual=14),
+    Column("age", least=4, usual=11),
+    Column("", least=6),
+)
+
+
+def head(view: View, width: int) -> list[Text]:
+    """Return the line that says where this is from, and of when."""
+    at = view.robot.at
+    of = "" if at is None else words.time_of_day(seconds_of(at))
+    if of and view.contact.level is not Level.LIVE:
+        of = f"old, of {of}"
+    state = view.robot.system_state
+    unreal = ", ".join(state["simulated"]) if state else ""
+    line = Text(printable(f"Pilothouse  {view.url}"), style="bold")
+    if unreal:
+        line.append(printable(f"  simulated: {unreal}"), style="not bold")
+    room = max(0, width - len(of) - 2)
+    line.truncate(room, overflow="ellipsis", pad=True)
+    return [line.append(f"  {of}", style="not bold")] if of else [line]
+
+
+def sentences(view: View, console: Console) -> list[Text]:
+    """Return how the robot is and why, and how the contact is where it is not good."""
+    told = (contact_sentence(view), stop_sentence(view), state_sentence(view))
+    return [line for said in told if said for line in _sentence_lines(said, console)]
+
+
+def _sentence_lines(said: Sentence, console: Console) -> list[Text]:
+    lines = _wrapped(f"{said.word}  {said.text}".rstrip(), console, indent=2)
+    lines[0].stylize(_WORD_STYLES.get(said.word, _ALARM), 0, len(said.word))
+    for text in said.more:
+        lines.extend(_wrapped(f"  {text}", console, indent=4))
+    return lines
+
+
+def _wrapped(text: str, console: Console, indent: int) -> list[Text]:
+    """Return a text as lines of which all but the first are indented."""
+    plain = printable(text)
+    first = Text(plain).wrap(console, console.width)[0]
+    first.rstrip()
+    behind = plain[len(first) :].lstrip()
+    if not behind:
+        return [first]
+    more = Text(behind).wrap(console, max(1, console.width - indent))
+    return [first, *(Text(" " * indent).append(line.plain.rstrip()) for line in more)]
+
+
+def parts(view: View, every: Sequence[PartRow], width: int, room: int | None) -> list[Text]:
+    """Return the tree of systems and nodes.
+
+    Args:
+        view: What is drawn.
+        every: A row for each part.
+        width: In cells.
+        room: Most lines; None: as many as needed.
+    """
+    if room is not None and room < _LEAST_LINES:
+        return []
+    chosen = choose(every, _rows_in(room))
+    rows = [(_part_cells(view, row), _MARK_STYLES[row.mark]) for row in chosen.rows]
+    return [*table(_PART_COLUMNS, rows, width, _TITLES), *_counted(chosen, "parts")]
+
+
+def _part_cells(view: View, row: PartRow) -> tuple[str, ...]:
+    part = row.part
+    actual, target = part["actual"], part["effective_target"] or part["target"]
+    is_known = actual["state"] != "unknown"
+    return (
+        f"{row.mark} {'  ' * row.depth}{row.name}",
+        words.label(target),
+        words.starred(actual["state"], inferred=actual["inferred"]) if is_known else words.UNKNOWN,
+        words.starred(actual["mode"] or "", inferred=actual["mode_inferred"]),
+        _part_note(view, row),
+    )
+
+
+def _part_note(view: View, row: PartRow) -> str:
+    part, since = row.part, row.part["deviation_since_at"]
+    if row.mark == UNREACHABLE:
+        return "unreachable"
+    for_time = "" if since is None else f" {words.duration(view.age_s(since))}"
+    if row.mark == CHANGES:
+        return f"changing{for_time}"
+    reason = part["actual"]["reason"]
+    if reason:
+        return str(reason)
+    return f"deviates{for_time}" if row.mark == WRONG else ""
+
+
+def signals(view: View, every: Sequence[SignalRow], width: int, room: int | None) -> list[Text]:
+    """Return the signals, with values, ages, and what is judged of them.
+
+    Args:
+        view: What is drawn.
+        every: A row for each signal.
+        width: In cells.
+        room: Most lines; None: as many as needed.
+    """
+    if room is not None and room < _LEAST_LINES:
+        return []
+    chosen = choose(every, _rows_in(room))
+    rows = [(_signal_cells(view, row), _MARK_STYLES[row.mark]) for row in chosen.rows]
+    return [*table(_SIGNAL_COLUMNS, rows, width, _TITLES), *_counted(chosen, "signals")]
+
+
+def _signal_cells(view: View, row: SignalRow) -> tuple[str, ...]:
+    signal, pending = row.signal, row.signal["pending"]
+    pending_s = None if pending is None else view.age_s(pending["since_at"])
+    verdict = words.verdict_words(signal, pending_s)
+    return (f"{row.mark} {row.name}", words.value_words(signal), _age(view, row), verdict)
+
+
+def _age(view: View, row: SignalRow) -> str:
+    received_at = row.signal["received_at"]
+    if received_at is None:
+        return "never"
+    age_s = view.age_s(received_at)
+    return "now" if age_s < 1 else words.duration(age_s)
+
+
+def task(view: View, console: Console) -> list[Text]:
+    """Return the task and what holds it."""
+    robot = view.robot
+    if robot.task is None:
+        lines = [Text("no task")]
+    else:
+        now = robot.task
+        way = f"{words.metres(now['distance_m'])} of {words.metres(now['length_m'])}"
+        far = f"{words.percent(now['progress'])}, {way}, {words.waypoint_words(now)}"
+        lines = _wrapped(f"task {now['id']}  {now['status']}  {far}", console, indent=2)
+        lines += _wrapped(f"  {words.drive_words(now, robot.vehicle)}", console, indent=4)
+        # The holds say the same at more length, where there are any.
+        if now["reason"] and not robot.holds:
+            lines += _wrapped(f"  {now['reason']}", console, indent=4)
+    for hold in robot.holds or ():
+        why = f": {hold['reason']}" if hold["reason"] else ""
+        by = f", by {hold['by']}" if hold["by"] not in ("", hold["owner"]) else ""
+        since = words.duration(view.age_s(hold["since_at"]))
+        lines += _wrapped(f"  held by {hold['owner']}{why}, for {since}{by}", console, indent=4)
+    return lines
+
+
+def notes(view: View, room: int) -> list[Text]:
+    """Return the newest of what happened, the newest last."""
+    told = view.robot.notes[-room:] if room > 0 else ()
+    return [Text(printable(f"{_when(note.at)}  {note.words}"), style="dim") for note in told]
+
+
+def _when(at: str) -> str:
+    return words.time_of_day(seconds_of(at)) if at else " " * 8
+
+
+def _rows_in(room: int | None) -> int | None:
+    """Return how many lines there are below the titles."""
+    return None if room is None else room - 1
+
+
+def _counted(chosen: Chosen[RowType], what: str) -> list[Text]:
+    if chosen.left_out == 0:
+        return []
+    marked = f", {chosen.marked} of them marked" if chosen.marked else ""
+    return [Text(f"  ... and {chosen.left_out} more {what}{marked}")]

@@ -1,0 +1,109 @@
+"""`pilothouse monitor`: watch a robot on a terminal, or write down what becomes of it."""
+
+import asyncio
+import io
+import os
+import signal
+import sys
+from contextlib import suppress
+
+from rich.console import Console
+
+from api.cli.monitor.address import Address
+from api.cli.monitor.link import Link
+from api.cli.monitor.output import ChangeLog, Form, write_picture
+from api.cli.monitor.picture import picture
+from api.cli.monitor.screen import Screen, alternate_screen
+from api.cli.monitor.together import together
+from api.cli.monitor.watch import Watch
+from api.client.service_client import NoAnswerError, Outcome
+from api.http.access import InvalidTokenError, read_token
+
+REDRAW_S = 0.25
+_PATIENCE_S = 10.0
+
+
+def monitor(url: str, form: Form, *, once: bool) -> int:
+    """Show a robot until Ctrl-C, or once; return the exit code.
+
+    Args:
+        url: Where the service runs.
+        form: `text` for people, `json` for programs.
+        once: Write one picture only.
+
+    Raises:
+        NoAnswerError: `url` is no address, the token in the environment cannot be used, or nobody
+            answers who is asked once.
+        ServiceProblemError: The service refuses us.
+    """
+    try:
+        address = Address.of(url, read_token(os.environ))
+    except InvalidTokenError as error:
+        raise NoAnswerError(str(error)) from error
+    console = _console()
+    if once:
+        asyncio.run(_once(address, form, console))
+        return Outcome.SUCCEEDED
+    is_drawn = form == "text" and sys.stdout.isatty() and not console.is_dumb_terminal
+    # Ctrl-C, and a terminal that goes away, are how this ends.
+    with suppress(KeyboardInterrupt, asyncio.CancelledError):
+        asyncio.run(_draw(address, console) if is_drawn else _log(address, form, console))
+    return Outcome.SUCCEEDED
+
+
+def _console() -> Console:
+    """Return what writes to the standard output, with colours only on a terminal."""
+    if isinstance(sys.stdout, io.TextIOWrapper):
+        # A terminal that has no ellipsis gets a question mark.
+        sys.stdout.reconfigure(errors="replace")
+    return Console(force_terminal=sys.stdout.isatty(), highlight=False, markup=False, emoji=False)
+
+
+async def _once(address: Address, form: Form, console: Console) -> None:
+    whole = asyncio.Event()
+    watch = Watch(address.url, lambda: whole.set() if watch.robot.is_whole else None)
+
+    async def wait() -> None:
+        await whole.wait()
+
+    try:
+        async with asyncio.timeout(_PATIENCE_S):
+            await together(Link(address, watch).serve(), wait())
+    except TimeoutError as error:
+        message = f"no whole picture from {address.url} within {_PATIENCE_S:g} s"
+        raise NoAnswerError(message) from error
+    write_picture(watch.view(), form, console)
+
+
+async def _log(address: Address, form: Form, console: Console) -> None:
+    _end_with_signals()
+    log = ChangeLog(form, console)
+    watch = Watch(address.url, lambda: log.look(watch.view()))
+    await Link(address, watch).run()
+
+
+async def _draw(address: Address, console: Console) -> None:
+    _end_with_signals()
+    watch = Watch(address.url)
+    with alternate_screen(console) as screen:
+        if hasattr(signal, "SIGCONT"):
+            # After Ctrl-Z and `fg` the terminal shows something else.
+            asyncio.get_running_loop().add_signal_handler(signal.SIGCONT, screen.forget)
+        await together(Link(address, watch).run(), _redraw(screen, watch, console))
+
+
+async def _redraw(screen: Screen, watch: Watch, console: Console) -> None:
+    """Look a few times a second, which is what a slow line can carry."""
+    while True:
+        screen.draw(picture(watch.view(), console, console.height))
+        await asyncio.sleep(REDRAW_S)
+
+
+def _end_with_signals() -> None:
+    """Let SIGTERM and SIGHUP end this like Ctrl-C, so that the terminal is left as it was."""
+    task = asyncio.current_task()
+    for name in ("SIGTERM", "SIGHUP"):
+        # Windows has neither SIGHUP nor loops with signal handlers; Ctrl-C ends this there.
+        with suppress(AttributeError, NotImplementedError):
+            number = getattr(signal, name)
+            asyncio.get_running_loop().add_signal_handler(number, lambda: task and task.cancel())

@@ -1,0 +1,64 @@
+"""Pictures one below the other, as text or JSON: where there is no terminal, or only one."""
+
+import json
+import sys
+from typing import Literal, TextIO
+
+from rich.console import Console
+
+from api.cli.monitor.changes import standing
+from api.cli.monitor.picture import picture
+from api.cli.monitor.view import Level, View
+
+Form = Literal["text", "json"]
+
+
+def write_picture(view: View, form: Form, console: Console) -> None:
+    """Write all that is known.
+
+    Args:
+        view: What is drawn.
+        form: `text` for people, `json` for programs: one object in one line.
+        console: Where to write.
+    """
+    if form == "json":
+        console.file.write(f"{json.dumps(view.robot.as_json(), allow_nan=False)}\n")
+    else:
+        for line in picture(view, console):
+            console.print(line, no_wrap=True, overflow="crop")
+    console.file.flush()
+
+
+class ChangeLog:
+    """Writes a picture whenever something happened, and says when there is no contact."""
+
+    def __init__(self, form: Form, console: Console, complaints: TextIO | None = None) -> None:
+        """Write nothing yet.
+
+        Args:
+            form: `text` for people, `json` for programs.
+            console: Where to write.
+            complaints: Where to say that there is no contact; None: the standard error.
+        """
+        self._form = form
+        self._console = console
+        self._complaints = complaints or sys.stderr
+        self._told: object = None
+        self._why = ""
+
+    def look(self, view: View) -> None:
+        """Write what there is to be told."""
+        contact = view.contact
+        if contact.why != self._why:
+            self._why = contact.why
+            if contact.why:
+                print(f"pilothouse: {contact.why}; trying again", file=self._complaints, flush=True)
+        if not view.robot.is_whole or (self._form == "json" and contact.level is not Level.LIVE):
+            return
+        now = (contact.level, standing(view.robot))
+        if now == self._told:
+            return
+        if self._told is not None and self._form == "text":
+            self._console.print()
+        self._told = now
+        write_picture(view, self._form, self._console)

@@ -1,0 +1,81 @@
+"""The sentence that says how the robot is."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any
+
+from api.cli.monitor import words
+from api.cli.monitor.view import Level, View, seconds_of
+
+Json = Mapping[str, Any]
+
+_TASKS = {
+    "NO_TASK": "no task",
+    "PAUSED_TASK": "the task is paused",
+    "RUNNING_TASK": "the task is running",
+}
+
+
+@dataclass(frozen=True, slots=True)
+class Sentence:
+    """How the robot is, the most important reason first."""
+
+    word: str
+    """IDLE, RUNNING, ERROR, WAS ERROR, or how the contact is."""
+    text: str
+    more: tuple[str, ...] = ()
+    """Further reasons."""
+
+
+def contact_sentence(view: View) -> Sentence | None:
+    """Return how the contact is; None while there is nothing to be said of it."""
+    contact, at = view.contact, view.robot.at
+    if contact.level is Level.LIVE and view.robot.system_state is not None:
+        return None
+    if contact.level is not Level.LOST:
+        return Sentence("CONNECTING", contact.why or "waiting for the first values")
+    began = words.time_of_day(view.now_s - contact.silence_s)
+    since = f"since {began} ({words.duration(contact.silence_s)}), trying again"
+    old = "" if at is None else f"what is shown is of {words.time_of_day(seconds_of(at))}"
+    more = tuple(text for text in (contact.why, old) if text)
+    return Sentence("NO CONTACT", since, more)
+
+
+def state_sentence(view: View) -> Sentence | None:
+    """Return how the robot is, or was when it was heard of last; None: it never was."""
+    state, task = view.robot.system_state, view.robot.task
+    if state is None:
+        return None
+    word = state["state"] if view.contact.level is Level.LIVE else f"WAS {state['state']}"
+    if state["state"] != "ERROR":
+        text = _TASKS.get(state["task_status"], "") if task is None else _task_words(task)
+        return Sentence(word, text)
+    first, *more = [reason["message"] for reason in state["reasons"]] or [
+        ", ".join(state["errors"])
+    ]
+    paused = "" if task is None else f"; task {task['id']} is {_STANDS[task['status']]}"
+    return Sentence(word, first + paused, tuple(more))
+
+
+def stop_sentence(view: View) -> Sentence | None:
+    """Return that the emergency stop is engaged; None while it is not."""
+    stop = view.robot.emergency_stop
+    if stop is None or not stop["engaged"]:
+        return None
+    by = f", by {stop['by']}" if stop["by"] else ""
+    why = f": {stop['reason']}" if stop["reason"] else ""
+    since = f"for {words.duration(view.age_s(stop['since_at']))}"
+    stands = "the vehicle stands" if stop["standstill_at"] else "no standstill seen yet"
+    return Sentence("EMERGENCY STOP", f"engaged{why}, {since}{by}, {stands}")
+
+
+def _task_words(task: Json) -> str:
+    name, why = f"task {task['id']}", f": {task['reason']}" if task["reason"] else ""
+    if task["status"] == "PAUSING":
+        return f"{name} is stopping{why}"
+    if task["status"] == "PAUSED":
+        return f"{name} at {words.percent(task['progress'])} is paused{why}"
+    return f"{name} {words.percent(task['progress'])}, {words.waypoint_words(task)}"
+
+
+_STANDS = {"RUNNING": "running", "PAUSING": "stopping", "PAUSED": "paused"}

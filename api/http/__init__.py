@@ -1,0 +1,1 @@
+"""HTTP: routes, messages, problems, and the gates before them."""

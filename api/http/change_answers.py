@@ -1,0 +1,107 @@
+"""How a request for a change is answered: with its plan, at once, or when it has ended."""
+
+import asyncio
+from dataclasses import dataclass
+from http import HTTPStatus
+from typing import Annotated, Any
+
+from fastapi import Depends, Query, Request, Response
+from pydantic import BaseModel
+
+from api.http.schemas.changes import ChangeJson, PlanJson, StepJson, shown_request
+from domain.changes.admission import part_of
+from domain.identifiers import ChangeId
+from domain.inputs import ChangeRequest
+from domain.snapshot import ChangeStatus, ChangeView
+from service.supervisor import Supervisor
+
+MAX_WAIT_S = 60.0
+
+_STATUS_OF_END = {
+    ChangeStatus.RUNNING: HTTPStatus.ACCEPTED,
+    ChangeStatus.SUCCEEDED: HTTPStatus.OK,
+    ChangeStatus.FAILED: HTTPStatus.CONFLICT,
+    ChangeStatus.SUPERSEDED: HTTPStatus.CONFLICT,
+    ChangeStatus.CANCELED: HTTPStatus.CONFLICT,
+    ChangeStatus.TIMED_OUT: HTTPStatus.GATEWAY_TIMEOUT,
+}
+
+CHANGE_RESPONSES: dict[int | str, dict[str, Any]] = {
+    200: {"model": ChangeJson | PlanJson, "description": "With `wait`: succeeded. The plan."},
+    202: {"model": ChangeJson, "description": "The change has begun; see `Location`"},
+    409: {"model": ChangeJson, "description": "Refused (a problem), or with `wait`: not succeeded"},
+    504: {"model": ChangeJson, "description": "With `wait`: timed out, the outcome is unknown"},
+}
+"""For the description of routes that begin a change."""
+
+
+@dataclass(frozen=True, slots=True)
+class ChangeOptions:
+    """How the client wants to be answered."""
+
+    wait_s: float | None
+    """None: at once."""
+    dry_run: bool
+
+
+async def _options(
+    wait: Annotated[
+        float | None,
+        Query(ge=0, le=MAX_WAIT_S, allow_inf_nan=False, description="Seconds to wait for the end"),
+    ] = None,
+    dry_run: Annotated[bool, Query(description="Return the plan and change nothing")] = False,
+) -> ChangeOptions:
+    return ChangeOptions(wait, dry_run)
+
+
+ChangeOptionsDep = Annotated[ChangeOptions, Depends(_options)]
+
+
+async def answer_change(
+    supervisor: Supervisor, asked: ChangeRequest, options: ChangeOptions, request: Request
+) -> Response:
+    """Begin a change, or plan it, and answer as the client wants it.
+
+    Raises:
+        PilothouseError: It is refused; nothing was changed.
+    """
+    clock = supervisor.clock
+    if options.dry_run:
+        steps = [StepJson.of(step, clock) for step in supervisor.core.plan(asked)]
+        plan = PlanJson(part=part_of(asked), request=shown_request(asked), steps=steps)
+        return _answer(HTTPStatus.OK, plan)
+    change = supervisor.submit(asked).change
+    if change is None:
+        raise RuntimeError(f"{asked} was taken and is no change")
+    view = supervisor.core.change(change)
+    status = HTTPStatus.ACCEPTED
+    if options.wait_s is not None:
+        view = await _ended(supervisor, view.id, options.wait_s, request)
+        status = _STATUS_OF_END[view.status]
+    return _answer(status, ChangeJson.of(view, clock), {"Location": f"/changes/{view.id}"})
+
+
+async def _ended(
+    supervisor: Supervisor, change: ChangeId, wait_s: float, request: Request
+) -> ChangeView:
+    """Return a change when it has ended, the time is up, or nobody waits for it any more."""
+    ended = asyncio.create_task(supervisor.change_ended(change, wait_s), name="change ended")
+    gone = asyncio.create_task(_disconnected(request), name="client gone")
+    try:
+        await asyncio.wait({ended, gone}, return_when=asyncio.FIRST_COMPLETED)
+    finally:
+        ended.cancel()
+        gone.cancel()
+        await asyncio.gather(ended, gone, return_exceptions=True)
+    return supervisor.core.change(change)
+
+
+async def _disconnected(request: Request) -> None:
+    while (await request.receive())["type"] != "http.disconnect":
+        pass
+
+
+def _answer(
+    status: HTTPStatus, content: BaseModel, headers: dict[str, str] | None = None
+) -> Response:
+    return Response(content.model_dump_json(), status, headers, "application/json")

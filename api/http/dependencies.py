@@ -1,0 +1,81 @@
+"""What routes may ask for.
+
+All are coroutines: the framework would call plain functions in a thread.
+"""
+
+from typing import Annotated
+
+from fastapi import Depends, Path, Request
+from fastapi.requests import HTTPConnection
+
+from domain.errors import UnknownPartError
+from domain.parts.system_model import SmhModel
+from domain.state_and_mode import PartName
+from service.jobs import Jobs
+from service.supervisor import Supervisor
+
+
+async def _supervisor(connection: HTTPConnection) -> Supervisor:
+    found: Supervisor = connection.app.state.supervisor
+    return found
+
+
+async def _worker(connection: HTTPConnection) -> Jobs:
+    found: Jobs = connection.app.state.worker
+    return found
+
+
+async def _simulator(connection: HTTPConnection) -> Jobs:
+    found: Jobs = connection.app.state.simulator
+    return found
+
+
+SupervisorDep = Annotated[Supervisor, Depends(_supervisor)]
+WorkerDep = Annotated[Jobs, Depends(_worker)]
+SimulatorDep = Annotated[Jobs, Depends(_simulator)]
+"""Runs simulations, beside the worker."""
+
+
+async def _actor(request: Request) -> str:
+    return f"http:{request.client.host}" if request.client else "http:unknown"
+
+
+ActorDep = Annotated[str, Depends(_actor)]
+"""Who asks, as events record it."""
+
+
+async def _part(
+    part: Annotated[str, Path(description="Its name as in the model file; it may hold slashes")],
+    request: Request,
+    supervisor: SupervisorDep,
+) -> PartName:
+    """Return the part that the path names.
+
+    Raises:
+        UnknownPartError: There is none of that name and kind, with a hint.
+    """
+    kind = "system" if request.url.path.startswith("/systems/") else "node"
+    known = supervisor.model.systems if kind == "system" else supervisor.model.nodes
+    if part not in known:
+        hint = _hint(supervisor.model, kind, part, request.url.path)
+        raise UnknownPartError(kind, part, tuple(known), hint)
+    return PartName(part)
+
+
+PartDep = Annotated[PartName, Depends(_part)]
+
+
+def _hint(model: SmhModel, kind: str, part: str, path: str) -> str | None:
+    """Say where the part is, or what the longest known part at the begin of the name has."""
+    if part in model:
+        other = "node" if kind == "system" else "system"
+        if other == "system" and path.endswith("/parameters"):
+            return f"{part} is a system, which has no parameters of its own: see /systems/{part}"
+        return f"{part} is a {other}: see {path.replace(f'/{kind}s/', f'/{other}s/', 1)}"
+    name = part
+    while "/" in name:
+        name = name.rpartition("/")[0]
+        if name in model:
+            more = " and parameters" if name in model.nodes else ""
+            return f"{name} is there; it has state, states, mode, modes{more}"
+    return None

@@ -1,0 +1,40 @@
+"""What nobody foresaw."""
+
+import logging
+from http import HTTPStatus
+
+from starlette.types import ASGIApp, Message, Receive, Scope, Send
+
+from api.http.problems import make_problem, problem_response
+
+log = logging.getLogger(__name__)
+
+
+class UnexpectedErrors:
+    """The edge of the service: what nobody foresaw is logged, and answered without its inside."""
+
+    def __init__(self, app: ASGIApp) -> None:
+        self._app = app
+
+    async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
+        """Answer 500 where the application raises."""
+        if scope["type"] != "http":
+            await self._app(scope, receive, send)
+            return
+        has_begun = False
+
+        async def send_and_note(message: Message) -> None:
+            nonlocal has_begun
+            has_begun = True
+            await send(message)
+
+        try:
+            await self._app(scope, receive, send_and_note)
+        except Exception:
+            log.exception("%s %s failed", scope["method"], scope["path"])
+            if has_begun:
+                raise
+            status = HTTPStatus.INTERNAL_SERVER_ERROR
+            detail = "this is a fault in Pilothouse; its log tells more"
+            problem = make_problem(status, "INTERNAL", detail, scope["path"])
+            await problem_response(problem)(scope, receive, send)

@@ -1,0 +1,62 @@
+"""The token: demanded of every request but for what says nothing about the robot."""
+
+import re
+from http import HTTPStatus
+
+from starlette.datastructures import Headers
+from starlette.types import ASGIApp, Receive, Scope, Send
+
+from api.http.access import Access, bearer_of
+from api.http.gate.refusals import Refusals, address_of, refuse
+from api.http.problems import Problem, make_problem
+
+_CHALLENGE = 'Bearer realm="pilothouse"'
+_HINT = "send the header `Authorization: Bearer TOKEN` with the token that the service was given"
+
+_OPEN = re.compile(r"/|/web/.*|/docs(/.*)?|/openapi\.json|/asyncapi\.json|/livez|/readyz")
+"""The page and the documents, which are the same for every robot, and what a container asks."""
+
+
+class TokenGate:
+    """Let through who has the token.
+
+    A WebSocket passes: a browser cannot give its handshake a header, so the stream asks for the
+    token itself.
+    """
+
+    def __init__(self, app: ASGIApp, access: Access, refusals: Refusals) -> None:
+        """Guard `app`.
+
+        Args:
+            app: What is behind the gate.
+            access: Whom the service lets in.
+            refusals: Counts who was not.
+        """
+        self._app = app
+        self._access = access
+        self._refusals = refusals
+
+    async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
+        """Pass the request on, or answer 401."""
+        if scope["type"] != "http" or not self._access.required or _is_open(scope):
+            await self._app(scope, receive, send)
+            return
+        headers = Headers(scope=scope)
+        if self._access.accepts_header(headers):
+            await self._app(scope, receive, send)
+            return
+        self._refusals.note(HTTPStatus.UNAUTHORIZED, address_of(scope))
+        is_given = bearer_of(headers) is not None
+        challenge = f'{_CHALLENGE}, error="invalid_token"' if is_given else _CHALLENGE
+        problem = _problem(scope["path"], is_given=is_given)
+        await refuse(problem, scope, receive, send, {"WWW-Authenticate": challenge})
+
+
+def _is_open(scope: Scope) -> bool:
+    return scope["method"] in ("GET", "HEAD") and _OPEN.fullmatch(scope["path"]) is not None
+
+
+def _problem(path: str, *, is_given: bool) -> Problem:
+    detail = "this is not the token of the service" if is_given else "this needs a token"
+    status = HTTPStatus.UNAUTHORIZED
+    return make_problem(status, status.name, detail, path, more={"hint": _HINT})

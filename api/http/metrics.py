@@ -1,0 +1,171 @@
+"""What Prometheus reads: made from the supervisor when it is asked for, and kept up by nobody."""
+
+from collections.abc import Iterable, Iterator
+from itertools import islice
+
+from fastapi import FastAPI
+from prometheus_client import CollectorRegistry, Histogram
+from prometheus_client.core import CounterMetricFamily, GaugeMetricFamily
+from prometheus_client.metrics_core import Metric
+from prometheus_client.registry import Collector
+
+from api.http.gate.refusals import COUNTED, Refusals
+from api.streaming.hub import StreamHub, stream_hub
+from domain.snapshot import ChangeStatus, SystemState
+from domain.timebase import to_seconds
+from service.supervisor import Supervisor
+
+_MAX_PARTS = 1_000
+"""More would make each scrape larger than what anybody looks at."""
+
+_ENDS = tuple(str(status) for status in ChangeStatus if status != ChangeStatus.RUNNING)
+
+_PERIODS_S = (0.025, 0.045, 0.049, 0.05, 0.051, 0.055, 0.075, 0.1, 0.2, 1.0)
+"""Close together about the 50 ms of the tick."""
+
+
+class Metrics:
+    """The metrics of one service, in a registry of their own."""
+
+    def __init__(self, hub: StreamHub, refusals: Refusals) -> None:
+        self.registry = CollectorRegistry(auto_describe=False)
+        period = Histogram(
+            "pilothouse_publish_period_seconds",
+            "Time from one tick to the next",
+            buckets=_PERIODS_S,
+            registry=self.registry,
+        )
+        hub.supervisor.on_tick.append(period.observe)
+        self.registry.register(_RobotCollector(hub.supervisor))
+        self.registry.register(_ServiceCollector(hub))
+        self.registry.register(_GateCollector(refusals))
+
+
+def metrics(app: FastAPI) -> Metrics:
+    """Return the metrics of an application; the first who asks makes them."""
+    known = getattr(app.state, "metrics", None)
+    if not isinstance(known, Metrics):
+        known = app.state.metrics = Metrics(stream_hub(app), app.state.refusals)
+    return known
+
+
+class _RobotCollector(Collector):
+    """What the robot is in."""
+
+    def __init__(self, supervisor: Supervisor) -> None:
+        self._supervisor = supervisor
+
+    def collect(self) -> Iterator[Metric]:
+        core = self._supervisor.core
+        view = core.system_state()
+        yield _gauge(
+            "pilothouse_system_state",
+            "1 for the state that the robot is in",
+            "state",
+            ((str(state), float(state is view.state)) for state in SystemState),
+        )
+        yield _gauge(
+            "pilothouse_error_active",
+            "1 for each error that is on",
+            "error",
+            ((error, 1.0) for error in view.errors),
+        )
+        deviating = (name for name, part in core.parts().items() if not part.converged)
+        yield _gauge(
+            "pilothouse_part_deviates",
+            f"1 for each part that is not as it should be; at most {_MAX_PARTS}",
+            "part",
+            ((str(name), 1.0) for name in islice(deviating, _MAX_PARTS)),
+        )
+        yield from self._driving()
+        now = self._supervisor.clock.now()
+        yield _gauge(
+            "pilothouse_signal_age_seconds",
+            "Time since the last reading of a signal; none for a signal never seen",
+            "signal",
+            (
+                (name, to_seconds(now - signal.received_at))
+                for name, signal in core.signals().items()
+                if signal.received_at is not None
+            ),
+        )
+
+    def _driving(self) -> Iterator[Metric]:
+        driving = self._supervisor.core.driving
+        yield _gauge(
+            "pilothouse_hold_active",
+            "1 for each hold that keeps the task from running",
+            "owner",
+            ((owner, 1.0) for owner in driving.holds),
+        )
+        task = driving.current_task
+        if task is None:
+            return
+        yield GaugeMetricFamily(
+            "pilothouse_task_progress_ratio",
+            "Covered share of the current task's path",
+            value=task.progress,
+        )
+        if task.cross_track_error_m is not None:
+            yield GaugeMetricFamily(
+                "pilothouse_cross_track_error_meters",
+                "Distance from the path; positive: left of it",
+                value=task.cross_track_error_m,
+            )
+
+
+class _ServiceCollector(Collector):
+    """How the service fares."""
+
+    def __init__(self, hub: StreamHub) -> None:
+        self._hub = hub
+
+    def collect(self) -> Iterator[Metric]:
+        supervisor = self._hub.supervisor
+        yield CounterMetricFamily(
+            "pilothouse_ticks_late", "Ticks that were skipped", value=supervisor.late_ticks
+        )
+        yield GaugeMetricFamily(
+            "pilothouse_ws_clients", "Clients of the stream", value=self._hub.clients
+        )
+        yield CounterMetricFamily(
+            "pilothouse_ws_dropped",
+            "Clients cut off because they read too slowly",
+            value=self._hub.fan_out.dropped,
+        )
+        yield CounterMetricFamily(
+            "pilothouse_ws_frames_skipped",
+            "Frames that clients were too slow for",
+            value=self._hub.fan_out.skipped,
+        )
+        changes = CounterMetricFamily("pilothouse_changes", "Changes that ended", labels=["status"])
+        for status in _ENDS:
+            changes.add_metric([status], supervisor.ended_changes[status])
+        yield changes
+
+
+class _GateCollector(Collector):
+    """Who was turned away."""
+
+    def __init__(self, refusals: Refusals) -> None:
+        self._refusals = refusals
+
+    def collect(self) -> Iterator[Metric]:
+        refused = CounterMetricFamily(
+            "pilothouse_requests_refused",
+            "Requests and handshakes turned away before a route saw them, by status: 401 without "
+            "the token, 403 by a foreign page or name, 429 too many from one address",
+            labels=["status"],
+        )
+        for status in COUNTED:
+            refused.add_metric([str(status.value)], self._refusals.counts[status])
+        yield refused
+
+
+def _gauge(
+    name: str, about: str, label: str, values: Iterable[tuple[str, float]]
+) -> GaugeMetricFamily:
+    family = GaugeMetricFamily(name, about, labels=[label])
+    for value_label, value in values:
+        family.add_metric([value_label], value)
+    return family

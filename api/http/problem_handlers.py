@@ -1,0 +1,82 @@
+"""Answer with a problem document whatever goes wrong on the way to a route or in it."""
+
+from http import HTTPStatus
+
+from fastapi import FastAPI, Request
+from fastapi.exceptions import RequestValidationError
+from fastapi.responses import Response
+from starlette.exceptions import HTTPException as StarletteHTTPException
+from starlette.routing import Match
+
+from api.http.bodies import BodyTooLargeError, InvalidBodyError, faults_of
+from api.http.problems import HttpError, make_problem, problem_of, problem_response
+from domain.errors import PilothouseError
+from service.clock import Clock
+from service.worker import WorkerBusyError
+
+_BAD_QUERY = "INVALID_QUERY"
+_METHODS = ("DELETE", "GET", "PATCH", "POST", "PUT")
+_OUTSIDE = frozenset({"body", "query", "path", "header"})
+
+
+def add_problem_handlers(app: FastAPI, clock: Clock) -> None:
+    """Let `app` answer every error with its problem document."""
+
+    async def on_our_error(request: Request, error: Exception) -> Response:
+        if not isinstance(error, PilothouseError):
+            raise error
+        headers = {}
+        if isinstance(error, WorkerBusyError):
+            headers["Retry-After"] = str(error.retry_after_s)
+        if isinstance(error, BodyTooLargeError):
+            # The rest of the body is not read; without this it would be taken for a next request.
+            headers["Connection"] = "close"
+        return problem_response(problem_of(error, clock, request.url.path), headers)
+
+    async def on_invalid_request(request: Request, error: Exception) -> Response:
+        if not isinstance(error, RequestValidationError):
+            raise error
+        faults = faults_of(error.errors(), _OUTSIDE)
+        code = None if any(found["loc"][0] == "body" for found in error.errors()) else _BAD_QUERY
+        return await on_our_error(request, InvalidBodyError(faults, code))
+
+    app.add_exception_handler(PilothouseError, on_our_error)
+    app.add_exception_handler(RequestValidationError, on_invalid_request)
+    app.add_exception_handler(StarletteHTTPException, _on_http_error)
+
+
+async def _on_http_error(request: Request, error: Exception) -> Response:
+    """Answer what the framework refuses: unknown paths, other methods."""
+    if not isinstance(error, StarletteHTTPException):
+        raise error
+    status = HTTPStatus(error.status_code)
+    headers = dict(error.headers or {})
+    code, detail, more = status.name, str(error.detail), {}
+    if isinstance(error, HttpError):
+        code = error.code
+        more = {"hint": error.hint} if error.hint else {}
+    elif status is HTTPStatus.NOT_FOUND:
+        code, detail = "UNKNOWN_PATH", f"there is nothing at {request.url.path}"
+        more = {"hint": "see /openapi.json"}
+    elif status is HTTPStatus.METHOD_NOT_ALLOWED:
+        methods = allowed_methods(request.app, request)
+        detail = f"{request.method} is not done here; these are: {', '.join(methods)}"
+        headers["Allow"] = ", ".join(methods)
+    problem = make_problem(status, code, detail, request.url.path, more=more)
+    return problem_response(problem, headers)
+
+
+def allowed_methods(app: FastAPI, request: Request) -> list[str]:
+    """Return the methods of all routes for a path; the framework names those of the first.
+
+    A path that is there by its own name, as /tasks/preview, is not taken for one of /tasks/{task}.
+    """
+    named = app.openapi()["paths"].get(request.url.path)
+    if named is not None:
+        return [method for method in _METHODS if method.lower() in named]
+    scope = request.scope
+    return [
+        method
+        for method in _METHODS
+        if any(route.matches({**scope, "method": method})[0] is Match.FULL for route in app.routes)
+    ]

@@ -1,0 +1,184 @@
+"""What is answered when something is refused or fails: RFC 9457, from one table.
+
+A class of error becomes a status by `STATUS_OF`; what only HTTP can get wrong is an `HttpError`.
+"""
+
+from collections.abc import Mapping
+from http import HTTPStatus
+
+from fastapi import HTTPException
+from fastapi.responses import Response
+from pydantic import Field
+
+from api.http.access import UnauthorizedError
+from api.http.bodies import (
+    BodyFault,
+    BodyTooLargeError,
+    InvalidBodyError,
+    MalformedBodyError,
+    as_pointer,
+)
+from api.http.schemas.base import BlockerJson, FindingJson, Json
+from domain.errors import (
+    BackendUnavailableError,
+    BlockedError,
+    FarStartError,
+    IllegalTransitionError,
+    InvalidModelError,
+    InvalidValueError,
+    OutdatedReadingError,
+    PilothouseError,
+    RefusedError,
+    ReservedHoldError,
+    TooManyHoldsError,
+    UnknownChangeError,
+    UnknownControllerError,
+    UnknownErrorNameError,
+    UnknownModeError,
+    UnknownNameError,
+    UnknownParameterError,
+    UnknownPartError,
+    UnknownSignalError,
+    UnknownTaskError,
+)
+from service.clock import Clock
+from service.files.robot_file import InvalidRobotFileError
+from service.files.text_file import UnreadableFileError
+from service.files.waypoint_file import InvalidWaypointsError
+from service.start_task import StartTaskError
+from service.worker import TooComplexError, WorkerBusyError, WorkerClosedError
+
+STATUS_OF: Mapping[type[PilothouseError], HTTPStatus] = {
+    PilothouseError: HTTPStatus.INTERNAL_SERVER_ERROR,
+    MalformedBodyError: HTTPStatus.BAD_REQUEST,
+    UnauthorizedError: HTTPStatus.UNAUTHORIZED,
+    BodyTooLargeError: HTTPStatus.REQUEST_ENTITY_TOO_LARGE,
+    UnknownNameError: HTTPStatus.NOT_FOUND,
+    UnknownPartError: HTTPStatus.NOT_FOUND,
+    UnknownSignalError: HTTPStatus.NOT_FOUND,
+    UnknownErrorNameError: HTTPStatus.NOT_FOUND,
+    UnknownChangeError: HTTPStatus.NOT_FOUND,
+    UnknownTaskError: HTTPStatus.NOT_FOUND,
+    # Modes and parameters are named in bodies, not in paths.
+    UnknownModeError: HTTPStatus.UNPROCESSABLE_ENTITY,
+    UnknownParameterError: HTTPStatus.UNPROCESSABLE_ENTITY,
+    UnknownControllerError: HTTPStatus.UNPROCESSABLE_ENTITY,
+    InvalidValueError: HTTPStatus.UNPROCESSABLE_ENTITY,
+    FarStartError: HTTPStatus.UNPROCESSABLE_ENTITY,
+    InvalidWaypointsError: HTTPStatus.UNPROCESSABLE_ENTITY,
+    InvalidBodyError: HTTPStatus.UNPROCESSABLE_ENTITY,
+    InvalidModelError: HTTPStatus.UNPROCESSABLE_ENTITY,
+    TooComplexError: HTTPStatus.UNPROCESSABLE_ENTITY,
+    RefusedError: HTTPStatus.CONFLICT,
+    IllegalTransitionError: HTTPStatus.CONFLICT,
+    BlockedError: HTTPStatus.CONFLICT,
+    OutdatedReadingError: HTTPStatus.CONFLICT,
+    ReservedHoldError: HTTPStatus.CONFLICT,
+    TooManyHoldsError: HTTPStatus.CONFLICT,
+    WorkerBusyError: HTTPStatus.TOO_MANY_REQUESTS,
+    WorkerClosedError: HTTPStatus.SERVICE_UNAVAILABLE,
+    BackendUnavailableError: HTTPStatus.SERVICE_UNAVAILABLE,
+    # Files are read before anybody is served.
+    InvalidRobotFileError: HTTPStatus.INTERNAL_SERVER_ERROR,
+    UnreadableFileError: HTTPStatus.INTERNAL_SERVER_ERROR,
+    StartTaskError: HTTPStatus.INTERNAL_SERVER_ERROR,
+}
+
+MEDIA_TYPE = "application/problem+json"
+
+
+class Problem(Json):
+    """What was refused or went wrong, and why (RFC 9457)."""
+
+    type: str
+    title: str
+    status: int
+    detail: str
+    instance: str
+    code: str = Field(description="Stable")
+    hint: str | None = None
+    blockers: list[BlockerJson] | None = None
+    available: list[str] | None = Field(default=None, description="What could be asked for instead")
+    findings: list[FindingJson] | None = None
+    errors: list[BodyFault] | None = None
+
+    def as_json(self) -> str:
+        """Return the document; members that do not apply are left out."""
+        return self.model_dump_json(exclude_unset=True)
+
+
+class HttpError(HTTPException):
+    """A problem that only HTTP has, with a code of its own."""
+
+    def __init__(self, status: HTTPStatus, code: str, detail: str, hint: str | None = None) -> None:
+        super().__init__(status, detail)
+        self.code = code
+        self.hint = hint
+
+
+def problem_of(error: PilothouseError, clock: Clock, instance: str = "") -> Problem:
+    """Return the document for an error of the core or the service.
+
+    Args:
+        error: What was raised.
+        clock: Tells since when blockers have been there.
+        instance: Path of the request.
+    """
+    more: dict[str, object] = {}
+    if error.hint:
+        more["hint"] = error.hint
+    if isinstance(error, BlockedError):
+        more["blockers"] = [BlockerJson.of(blocker, clock) for blocker in error.blockers]
+    if isinstance(error, FarStartError) and error.nearest is not None:
+        more["available"] = [str(error.nearest[0])]
+    if isinstance(error, IllegalTransitionError):
+        more["available"] = [str(transition) for transition in error.available]
+    if isinstance(error, InvalidModelError | InvalidWaypointsError):
+        more["findings"] = [FindingJson.of(finding) for finding in error.findings]
+    if isinstance(error, InvalidBodyError):
+        more["errors"] = error.faults
+    if isinstance(error, InvalidValueError):
+        pointer = as_pointer(error.pointer)
+        more["errors"] = [BodyFault(pointer=pointer, code=error.code, message=error.message)]
+    title = (type(error).__doc__ or "").partition("\n")[0].partition(";")[0].rstrip(".")
+    return make_problem(status_of(error), error.code, error.message, instance, title, more)
+
+
+def status_of(error: PilothouseError) -> HTTPStatus:
+    """Return the status of an error: that of its class, or of the nearest one above it."""
+    return next(STATUS_OF[kind] for kind in type(error).__mro__ if kind in STATUS_OF)
+
+
+def make_problem(
+    status: HTTPStatus,
+    code: str,
+    detail: str,
+    instance: str,
+    title: str = "",
+    more: Mapping[str, object] | None = None,
+) -> Problem:
+    """Return a document.
+
+    Args:
+        status: Its status.
+        code: Stable, UPPER_SNAKE.
+        detail: What happened here.
+        instance: Path of the request.
+        title: What happened in general; empty: the phrase of the status.
+        more: Members that apply to this one.
+    """
+    members: dict[str, object] = {
+        "type": f"urn:pilothouse:problem:{code.lower().replace('_', '-')}",
+        "title": title or status.phrase,
+        "status": status.value,
+        "detail": detail,
+        "instance": instance,
+        "code": code,
+        **(more or {}),
+    }
+    return Problem.model_validate(members)
+
+
+def problem_response(problem: Problem, headers: Mapping[str, str] | None = None) -> Response:
+    """Return the answer that carries a document."""
+    return Response(problem.as_json(), problem.status, headers, MEDIA_TYPE)

@@ -1,0 +1,58 @@
+"""Changes: what became of what was asked."""
+
+from collections.abc import Iterator
+from typing import Annotated
+
+from fastapi import APIRouter, Path, Query, Response
+
+from api.http.dependencies import ActorDep, SupervisorDep
+from api.http.long_lists import json_list
+from api.http.schemas.changes import ChangeJson, ChangesJson
+from domain.errors import UnknownPartError
+from domain.identifiers import ChangeId
+from domain.inputs import CancelRequest
+from domain.state_and_mode import PartName
+
+router = APIRouter(prefix="/changes", tags=["changes"])
+
+MAX_CHANGES = 1_000
+_DEFAULT_CHANGES = 100
+
+ChangePath = Annotated[str, Path(description="Its id, as in `Location` of the request")]
+
+
+@router.get("", response_model=ChangesJson)
+async def list_changes(
+    supervisor: SupervisorDep,
+    limit: Annotated[
+        int, Query(ge=1, le=MAX_CHANGES, description="At most so many")
+    ] = _DEFAULT_CHANGES,
+    part: Annotated[
+        str | None, Query(description="Only changes that were asked of this system or node")
+    ] = None,
+) -> Response:
+    """List changes, the newest first."""
+    if part is not None and part not in supervisor.model:
+        raise UnknownPartError("part", part, supervisor.model.parts)
+    clock = supervisor.clock
+    views = supervisor.core.changes(limit, None if part is None else PartName(part))
+    texts: Iterator[str] = (ChangeJson.of(view, clock).model_dump_json() for view in views)
+    return await json_list(texts)
+
+
+@router.get("/{change}")
+async def get_change(change: ChangePath, supervisor: SupervisorDep) -> ChangeJson:
+    """Show one change with its steps."""
+    return ChangeJson.of(supervisor.core.change(change), supervisor.clock)
+
+
+@router.delete("/{change}")
+async def cancel_change(
+    change: ChangePath, supervisor: SupervisorDep, actor: ActorDep
+) -> ChangeJson:
+    """Cancel a change: no further step is begun; one in flight is not recalled.
+
+    A change that has ended stays as it ended.
+    """
+    supervisor.submit(CancelRequest(ChangeId(change), actor))
+    return ChangeJson.of(supervisor.core.change(change), supervisor.clock)

@@ -1,0 +1,29 @@
+"""The emergency stop: a latch that no reading releases, only a person."""
+
+from fastapi import APIRouter
+
+from api.http.dependencies import ActorDep, SupervisorDep
+from api.http.json_route import JsonRoute
+from api.http.schemas.health import EmergencyStopBody, EmergencyStopJson
+from domain.inputs import EmergencyStopRequest
+
+router = APIRouter(prefix="/emergency_stop", tags=["health"], route_class=JsonRoute)
+
+
+@router.get("")
+async def get_emergency_stop(supervisor: SupervisorDep) -> EmergencyStopJson:
+    """Show whether the emergency stop is engaged, by whom and why."""
+    return EmergencyStopJson.of(supervisor.core.emergency_stop(), supervisor.clock)
+
+
+@router.put("")
+async def set_emergency_stop(
+    body: EmergencyStopBody, supervisor: SupervisorDep, actor: ActorDep
+) -> EmergencyStopJson:
+    """Engage or release the emergency stop; to do so twice changes nothing.
+
+    This is a software stop. It is not safety-rated, and replaces no hardware stop. In this version
+    a restart of the service releases it, since it is not stored.
+    """
+    supervisor.submit(EmergencyStopRequest(body.engaged, body.reason or "", actor))
+    return EmergencyStopJson.of(supervisor.core.emergency_stop(), supervisor.clock)

@@ -1,0 +1,50 @@
+"""Holds: who keeps the vehicle from driving its task, and why."""
+
+from http import HTTPStatus
+from typing import Annotated
+
+from fastapi import APIRouter, Path, Response
+
+from api.http.dependencies import ActorDep, SupervisorDep
+from api.http.json_route import JsonRoute
+from api.http.schemas.tasks import HoldBody, HoldJson, HoldsJson
+from domain.inputs import HoldRequest, ReleaseRequest
+
+router = APIRouter(prefix="/holds", tags=["drive"], route_class=JsonRoute)
+
+OwnerPath = Annotated[
+    str,
+    Path(
+        pattern=r"^[a-zA-Z0-9][a-zA-Z0-9_.-]{0,63}$",
+        description="Any name but `error` and `vehicle`, which are Pilothouse's own",
+    ),
+]
+
+
+@router.get("")
+async def list_holds(supervisor: SupervisorDep) -> HoldsJson:
+    """List the holds, the oldest first; a task runs only without any."""
+    clock = supervisor.clock
+    holds = supervisor.core.driving.holds.values()
+    return HoldsJson(items=[HoldJson.of(hold, clock) for hold in holds])
+
+
+@router.put("/{owner}")
+async def set_hold(
+    owner: OwnerPath,
+    supervisor: SupervisorDep,
+    actor: ActorDep,
+    body: HoldBody | None = None,
+) -> HoldJson:
+    """Hold the task: speed 0 is commanded at once. To repeat it renews the reason only.
+
+    A hold lasts until its owner lets go, whatever task is served in between.
+    """
+    supervisor.submit(HoldRequest(owner, body.reason if body else "", actor))
+    return HoldJson.of(supervisor.core.driving.holds[owner], supervisor.clock)
+
+
+@router.delete("/{owner}", status_code=HTTPStatus.NO_CONTENT, response_class=Response)
+async def release_hold(owner: OwnerPath, supervisor: SupervisorDep, actor: ActorDep) -> None:
+    """Release a hold; with the last one the task goes on. Without such a hold nothing happens."""
+    supervisor.submit(ReleaseRequest(owner, actor))

@@ -1,0 +1,45 @@
+"""Inference over facts that are handed in: what would the robot be in, if ..."""
+
+from fastapi import APIRouter, Request, Response
+
+from api.http.bodies import parse_body
+from api.http.dependencies import SupervisorDep, WorkerDep
+from api.http.posted_models import infer, infer_posted
+from api.http.request_bodies import limits_of, read_body
+from api.http.schemas.inference import InferenceBody, InferenceJson
+
+router = APIRouter(tags=["inference"])
+
+_MAX_BYTES_HERE = 16_384
+_MAX_PARTS_HERE = 100
+"""Up to these the work takes less than 5 ms, and is not worth a way to the worker and back."""
+
+
+@router.post(
+    "/inference",
+    response_model=InferenceJson,
+    openapi_extra={
+        "requestBody": {
+            "required": True,
+            "content": {
+                "application/json": {"schema": {"$ref": "#/components/schemas/InferenceBody"}}
+            },
+        }
+    },
+)
+async def infer_from_facts(
+    request: Request, supervisor: SupervisorDep, worker: WorkerDep
+) -> Response:
+    """Infer states and modes from targets and reported facts; nothing live is read or changed.
+
+    Without a `model`, the loaded one is meant. A node left out, or without a `state`, never
+    reported. A `mode` is what the node reported; without one it is inferred from the parameters.
+    """
+    raw = await read_body(request, limits_of(request).model_bytes)
+    if len(raw) <= _MAX_BYTES_HERE and len(supervisor.model.parts) <= _MAX_PARTS_HERE:
+        body = parse_body(InferenceBody, raw)
+        if body.model is None:
+            content = infer(supervisor.model, body).model_dump_json().encode()
+            return Response(content, media_type="application/json")
+    content = await worker.call(infer_posted, raw, supervisor.model_text)
+    return Response(content, media_type="application/json")

@@ -1,0 +1,60 @@
+"""The mock: signals of a robot that is not there. 404 where it does not run."""
+
+from http import HTTPStatus
+from typing import Annotated
+
+from fastapi import APIRouter, Path
+
+from api.http.bodies import InvalidBodyError
+from api.http.dependencies import ActorDep, SupervisorDep
+from api.http.json_route import JsonRoute
+from api.http.problems import HttpError
+from api.http.schemas.health import MockBody, MockJson, MockSignalJson
+from domain.errors import InvalidValueError, UnknownSignalError
+from service.simulation.mock_source import MockSource
+from service.supervisor import Supervisor
+
+router = APIRouter(prefix="/mock", tags=["health"], route_class=JsonRoute)
+
+
+@router.get("")
+async def get_mock(supervisor: SupervisorDep) -> MockJson:
+    """Show what the mock holds and publishes."""
+    return MockJson(items=_signals(_mock_of(supervisor)))
+
+
+@router.patch("/{signal}")
+async def change_mock(
+    signal: Annotated[str, Path(description="One of those in `GET /mock`")],
+    body: MockBody,
+    supervisor: SupervisorDep,
+    actor: ActorDep,
+) -> MockSignalJson:
+    """Hold another value of a signal, or stop or resume its publishing; both, or none, are done."""
+    mock = _mock_of(supervisor)
+    if not mock.holds(signal):
+        known = [item.signal for item in mock.view()]
+        raise UnknownSignalError("signal of the mock", signal, known)
+    try:
+        if body.value is not None:
+            supervisor.hold_mock(signal, body.value, actor)
+    except InvalidValueError as error:
+        raise InvalidBodyError.at("value", error) from error
+    if body.publishing is not None:
+        mock.set_publishing(signal, body.publishing)
+    return next(item for item in _signals(mock) if item.signal == signal)
+
+
+def _mock_of(supervisor: Supervisor) -> MockSource:
+    if supervisor.mock is None:
+        detail = "the mock does not run: signals come from outside"
+        hint = "start the service with --mock-signals, or with `mock: true` in the robot file"
+        raise HttpError(HTTPStatus.NOT_FOUND, "NO_MOCK", detail, hint)
+    return supervisor.mock
+
+
+def _signals(mock: MockSource) -> list[MockSignalJson]:
+    return [
+        MockSignalJson(signal=item.signal, value=item.value, publishing=item.publishing)
+        for item in mock.view()
+    ]

@@ -1,0 +1,106 @@
+"""Systems and nodes: what they are in, what they should be in, and requests to change that.
+
+The same routes are there for both kinds, below `/systems` and `/nodes`. A name may hold slashes.
+"""
+
+from fastapi import APIRouter, Request, Response
+
+from api.http.bodies import InvalidBodyError
+from api.http.change_answers import CHANGE_RESPONSES, ChangeOptionsDep, answer_change
+from api.http.dependencies import ActorDep, PartDep, SupervisorDep
+from api.http.json_route import JsonRoute
+from api.http.long_lists import json_list
+from api.http.schemas.parts import (
+    EnterableModeJson,
+    ModeBody,
+    ModeJson,
+    ModesJson,
+    PartJson,
+    PartsJson,
+    StateJson,
+    StatesJson,
+    TransitionBody,
+)
+from domain.errors import UnknownModeError
+from domain.inputs import ModeRequest, TransitionRequest
+from domain.lifecycle import PRIMARY_STATES, LifecycleState, Transition
+
+router = APIRouter(route_class=JsonRoute)
+
+
+@router.get("", response_model=PartsJson)
+async def list_parts(request: Request, supervisor: SupervisorDep) -> Response:
+    """List all systems, or all nodes, in the order of the model file."""
+    kind = "system" if request.url.path == "/systems" else "node"
+    views = (view for view in supervisor.core.parts().values() if view.kind == kind)
+    clock = supervisor.clock
+    return await json_list(PartJson.of(view, clock).model_dump_json() for view in views)
+
+
+@router.get("/{part:path}/state")
+async def get_state(part: PartDep, supervisor: SupervisorDep) -> StateJson:
+    """Show the lifecycle state, and which transitions would be accepted now."""
+    core = supervisor.core
+    return StateJson.of(core.part(part), core.available_transitions(part))
+
+
+@router.post("/{part:path}/state", status_code=202, responses=CHANGE_RESPONSES)
+async def change_state(
+    part: PartDep,
+    body: TransitionBody,
+    options: ChangeOptionsDep,
+    supervisor: SupervisorDep,
+    actor: ActorDep,
+    request: Request,
+) -> Response:
+    """Bring the part through a lifecycle transition.
+
+    What lies between is done on the way: activate configures first, cleanup deactivates first.
+    Activating a system means its mode `__DEFAULT__`.
+    """
+    asked = TransitionRequest(part, Transition(body.transition), actor)
+    return await answer_change(supervisor, asked, options, request)
+
+
+@router.get("/{part:path}/states")
+async def list_states(part: PartDep) -> StatesJson:
+    """List the states that the part can rest in."""
+    return StatesJson(items=[state for state in LifecycleState if state in PRIMARY_STATES])
+
+
+@router.get("/{part:path}/mode")
+async def get_mode(part: PartDep, supervisor: SupervisorDep) -> ModeJson:
+    """Show the mode; a part has one only while it is active or being activated."""
+    return ModeJson.of(supervisor.core.part(part))
+
+
+@router.post("/{part:path}/mode", status_code=202, responses=CHANGE_RESPONSES)
+async def change_mode(
+    part: PartDep,
+    body: ModeBody,
+    options: ChangeOptionsDep,
+    supervisor: SupervisorDep,
+    actor: ActorDep,
+    request: Request,
+) -> Response:
+    """Bring the part into a mode; it is configured and activated on the way if it must be."""
+    try:
+        asked = ModeRequest(part, body.mode, actor)
+        return await answer_change(supervisor, asked, options, request)
+    except UnknownModeError as error:
+        raise InvalidBodyError.at("mode", error) from error
+
+
+@router.get("/{part:path}/modes")
+async def list_modes(part: PartDep, supervisor: SupervisorDep) -> ModesJson:
+    """List the modes, and for each what stands against entering it now."""
+    clock = supervisor.clock
+    modes = supervisor.core.modes(part)
+    return ModesJson(items=[EnterableModeJson.of(mode, clock) for mode in modes])
+
+
+# Last, since its path matches those of all others.
+@router.get("/{part:path}")
+async def get_part(part: PartDep, supervisor: SupervisorDep) -> PartJson:
+    """Show one part: what was asked of it, what is pursued, and what it is in."""
+    return PartJson.of(supervisor.core.part(part), supervisor.clock)

@@ -1,0 +1,133 @@
+"""How the service fares. The robot is not meant: one in ERROR is watched by a healthy service."""
+
+from collections.abc import Iterator
+from http import HTTPStatus
+from typing import Annotated, Literal
+
+from fastapi import APIRouter, Depends, Request, Response
+from prometheus_client import CONTENT_TYPE_LATEST, generate_latest
+
+from api.http.metrics import Metrics, metrics
+from api.http.problems import make_problem, problem_response
+from api.http.schemas.base import Json
+from api.streaming.hub import StreamHubDep
+from domain.tasks.holds import VEHICLE_HOLD
+from domain.timebase import Duration, seconds, to_seconds
+from service.supervisor import Supervisor
+
+router = APIRouter(tags=["service"])
+
+MAX_TICK_AGE: Duration = seconds(1.0)
+
+
+class LiveJson(Json):
+    """The event loop turns."""
+
+    status: Literal["alive"] = "alive"
+
+
+class CheckJson(Json):
+    """One thing without which the service is of no use."""
+
+    name: str
+    ok: bool
+    message: str
+
+
+class WarningJson(Json):
+    """Something that works, and should be looked at."""
+
+    code: str
+    message: str
+
+
+class ReadyJson(Json):
+    """The service does its work."""
+
+    status: Literal["ready"] = "ready"
+    checks: list[CheckJson]
+
+
+class HealthJson(Json):
+    """What is well with the service, and what should be looked at."""
+
+    status: Literal["ok", "failing"]
+    checks: list[CheckJson]
+    warnings: list[WarningJson]
+
+
+@router.get("/livez")
+async def get_livez() -> LiveJson:
+    """Tell that the event loop turns."""
+    return LiveJson()
+
+
+@router.get("/readyz", response_model=ReadyJson, responses={503: {"description": "It does not"}})
+async def get_readyz(hub: StreamHubDep, request: Request) -> ReadyJson | Response:
+    """Tell whether the model is loaded and the core ticks; 503 if not."""
+    checks = _checks(hub.supervisor)
+    failing = [f"{check.name}: {check.message}" for check in checks if not check.ok]
+    if failing:
+        status = HTTPStatus.SERVICE_UNAVAILABLE
+        return problem_response(
+            make_problem(status, "NOT_READY", "; ".join(failing), request.url.path)
+        )
+    return ReadyJson(checks=checks)
+
+
+@router.get("/healthz")
+async def get_healthz(hub: StreamHubDep, request: Request) -> HealthJson:
+    """Tell how the service fares, and what should be looked at; always 200."""
+    supervisor = hub.supervisor
+    checks = _checks(supervisor)
+    exposed = bool(getattr(request.app.state, "exposed", False))
+    return HealthJson(
+        status="ok" if all(check.ok for check in checks) else "failing",
+        checks=checks,
+        warnings=list(_warnings(supervisor, exposed=exposed)),
+    )
+
+
+async def _metrics(request: Request) -> Metrics:
+    return metrics(request.app)
+
+
+@router.get(
+    "/metrics",
+    response_class=Response,
+    responses={200: {"content": {"text/plain": {"schema": {"type": "string"}}}}},
+)
+async def get_metrics(known: Annotated[Metrics, Depends(_metrics)]) -> Response:
+    """Return the metrics in the text format of Prometheus."""
+    return Response(generate_latest(known.registry), media_type=CONTENT_TYPE_LATEST)
+
+
+def _checks(supervisor: Supervisor) -> list[CheckJson]:
+    model = supervisor.model
+    loaded = f"{len(model.systems)} systems, {len(model.nodes)} nodes"
+    last = supervisor.last_tick_at
+    if last is None:
+        ticking = CheckJson(name="core", ok=False, message="has not ticked yet")
+    else:
+        age = supervisor.clock.now() - last
+        message = f"last tick {to_seconds(age):.2f} s ago"
+        ticking = CheckJson(name="core", ok=age < MAX_TICK_AGE, message=message)
+    return [CheckJson(name="model", ok=True, message=loaded), ticking]
+
+
+def _warnings(supervisor: Supervisor, *, exposed: bool) -> Iterator[WarningJson]:
+    for finding in supervisor.warnings:
+        yield WarningJson(code=finding.code, message=finding.message)
+    for name, signal in supervisor.core.signals().items():
+        if signal.skewed:
+            message = f"the clock of who sends {name} differs from ours by more than 1 s"
+            yield WarningJson(code="CLOCK_SKEW", message=message)
+    lost = supervisor.core.driving.holds.get(VEHICLE_HOLD)
+    if lost is not None:
+        yield WarningJson(code="NO_POSE", message=lost.reason)
+    if supervisor.late_ticks:
+        message = f"{supervisor.late_ticks} ticks were skipped since the start: the machine is slow"
+        yield WarningJson(code="LATE_TICKS", message=message)
+    if exposed:
+        message = "anybody on the network can control the robot: there is no authentication"
+        yield WarningJson(code="NO_AUTHENTICATION", message=message)

@@ -1,0 +1,86 @@
+"""Signals and their readings."""
+
+from typing import Annotated
+
+from fastapi import APIRouter, Body, Path
+
+from api.http.bodies import InvalidBodyError
+from api.http.dependencies import ActorDep, SupervisorDep
+from api.http.json_route import JsonRoute
+from api.http.routes.system_state import current_system_state
+from api.http.schemas.health import (
+    MAX_SOURCE,
+    ReadingBody,
+    SignalJson,
+    SignalsJson,
+    SystemStateJson,
+)
+from api.http.values import SentSignalValue
+from domain.errors import InvalidValueError, UnknownSignalError
+from domain.inputs import Reading
+
+router = APIRouter(prefix="/signals", tags=["health"], route_class=JsonRoute)
+
+SignalPath = Annotated[str, Path(description="One of those in `GET /signals`")]
+
+
+@router.get("")
+async def list_signals(supervisor: SupervisorDep) -> SignalsJson:
+    """List all signals: the values held, and what is judged of them."""
+    clock, now = supervisor.clock, supervisor.clock.now()
+    views = supervisor.core.signals().values()
+    return SignalsJson(items=[SignalJson.at(view, clock, now) for view in views])
+
+
+@router.get("/{signal}")
+async def get_signal(signal: SignalPath, supervisor: SupervisorDep) -> SignalJson:
+    """Show one signal: the value held, and what is judged of it."""
+    clock = supervisor.clock
+    return SignalJson.at(supervisor.core.signal(signal), clock, clock.now())
+
+
+@router.post("")
+async def post_readings(
+    body: Annotated[
+        dict[str, SentSignalValue],
+        Body(min_length=1, description="Values by the names of their signals"),
+    ],
+    supervisor: SupervisorDep,
+    actor: ActorDep,
+) -> SystemStateJson:
+    """Hand in one reading of each of several signals; all are taken, or none is.
+
+    They are decided on arrival; the answer is the system state that follows. A text by the name
+    `source` tells who measured, unless there is a signal of that name. A sender without a name is
+    `api`, or the mock where the mock runs.
+    """
+    values, source = dict(body), None
+    if "source" not in supervisor.core.signals() and isinstance(values.get("source"), str):
+        source = str(values.pop("source"))
+        if not 0 < len(source) <= MAX_SOURCE:
+            error = InvalidValueError(f"a source has 1 to {MAX_SOURCE} characters")
+            raise InvalidBodyError.at("source", error)
+    readings = [Reading(signal, value) for signal, value in values.items()]
+    try:
+        supervisor.submit_readings(readings, source, actor)
+    except UnknownSignalError as error:
+        raise InvalidBodyError.at(error.name, error) from error
+    return current_system_state(supervisor)
+
+
+@router.post("/{signal}")
+async def post_reading(
+    signal: SignalPath, body: ReadingBody, supervisor: SupervisorDep, actor: ActorDep
+) -> SystemStateJson:
+    """Hand in a reading; it is decided on arrival, and the system state that follows is returned.
+
+    `stamp` is shown and never makes a reading younger or older; a reading older than the one that
+    is held is refused, unless it is worse. A sender without a `source` is `api`, or the mock where
+    the mock runs.
+    """
+    reading = body.reading(signal, supervisor.clock)
+    try:
+        supervisor.submit_readings([reading], body.source, actor)
+    except InvalidValueError as error:
+        raise InvalidBodyError.at("value", error) from error
+    return current_system_state(supervisor)

@@ -1,0 +1,38 @@
+"""The state of the robot as a whole, and its errors."""
+
+from typing import Annotated
+
+from fastapi import APIRouter, Path
+
+from api.http.dependencies import ActorDep, SupervisorDep
+from api.http.schemas.health import SystemStateJson
+from domain.inputs import AcknowledgeRequest
+from service.supervisor import Supervisor
+
+router = APIRouter(tags=["health"])
+
+
+def current_system_state(supervisor: Supervisor) -> SystemStateJson:
+    """Return the system state of this moment."""
+    clock = supervisor.clock
+    view = supervisor.core.system_state()
+    return SystemStateJson.of(
+        view, supervisor.snapshot_seq, clock.now(), supervisor.simulated, clock
+    )
+
+
+@router.get("/system_state")
+async def get_system_state(supervisor: SupervisorDep) -> SystemStateJson:
+    """Show whether the robot is IDLE, RUNNING or in ERROR, and why."""
+    return current_system_state(supervisor)
+
+
+@router.post("/errors/{error}/acknowledge")
+async def acknowledge_error(
+    error: Annotated[str, Path(description="One of `errors` in `GET /system_state`")],
+    supervisor: SupervisorDep,
+    actor: ActorDep,
+) -> SystemStateJson:
+    """Acknowledge an error whose recovery needs that; it ends once its cause is gone as well."""
+    supervisor.submit(AcknowledgeRequest(error, actor))
+    return current_system_state(supervisor)

@@ -1,0 +1,203 @@
+"""Waypoint tasks: what the vehicle drives."""
+
+from http import HTTPStatus
+from typing import Annotated
+
+from fastapi import APIRouter, Depends, Path, Query, Request, Response
+
+from api.http.bodies import InvalidBodyError
+from api.http.dependencies import ActorDep, SupervisorDep, WorkerDep
+from api.http.posted_tasks import (
+    PostedTask,
+    TaskOptions,
+    encode_waypoints,
+    preview_posted,
+    read_posted_task,
+)
+from api.http.request_bodies import limits_of, read_body
+from api.http.schemas.path_preview import PathPreviewJson
+from api.http.schemas.tasks import (
+    DEFAULT_CONTROLLER,
+    DEFAULT_SPEED_MPS,
+    Controller,
+    TaskJson,
+    TasksJson,
+    WaypointsJson,
+)
+from domain.errors import FarStartError, InvalidValueError, UnknownControllerError, UnknownTaskError
+from domain.inputs import CancelTaskRequest, TaskRequest
+from domain.tracking.trackers import TRACKERS
+from service.files.waypoint_file import Heading
+from service.jobs import Jobs
+from service.supervisor import Supervisor
+
+router = APIRouter(prefix="/tasks", tags=["drive"])
+
+_MAX_BYTES_HERE = 8_192
+_MAX_POINTS_HERE = 500
+"""Up to these the work takes less than 5 ms, and is not worth a way to the worker and back."""
+
+_BODY = {
+    "requestBody": {
+        "required": True,
+        "content": {
+            "application/json": {"schema": {"$ref": "#/components/schemas/TaskBody"}},
+            "text/csv": {"schema": {"type": "string"}},
+        },
+    }
+}
+
+
+async def _csv_options(
+    request: Request,
+    controller: Annotated[
+        Controller | None,
+        Query(description=f"Of a CSV: the path tracker, {DEFAULT_CONTROLLER} unless told"),
+    ] = None,
+    speed_mps: Annotated[
+        float | None,
+        Query(
+            allow_inf_nan=False,
+            description=f"Of a CSV: the cruise speed, {DEFAULT_SPEED_MPS} m/s unless told",
+        ),
+    ] = None,
+    start_index: Annotated[
+        int | None, Query(ge=0, description="Of a CSV: the waypoint to begin with, from 0")
+    ] = None,
+    heading: Annotated[
+        Heading | None, Query(description="Of a CSV: what its third column is, `rad` unless told")
+    ] = None,
+) -> TaskOptions | None:
+    """Return how a CSV is to be driven; None: the body is JSON, and says so itself."""
+    kind = request.headers.get("content-type", "").partition(";")[0].strip().lower()
+    if kind == "text/csv":
+        return TaskOptions(
+            controller or DEFAULT_CONTROLLER,
+            DEFAULT_SPEED_MPS if speed_mps is None else speed_mps,
+            start_index or 0,
+            heading or Heading.RAD,
+        )
+    named = {"controller": controller, "speed_mps": speed_mps, "start_index": start_index}
+    given = [name for name, value in {**named, "heading": heading}.items() if value is not None]
+    if given:
+        message = f"{given[0]} in the query is for a CSV (Content-Type: text/csv)"
+        raise InvalidBodyError.at("", InvalidValueError(message))
+    return None
+
+
+TaskPath = Annotated[str, Path(description="Its id, as in `Location` of `POST /tasks`")]
+CsvOptionsDep = Annotated[TaskOptions | None, Depends(_csv_options)]
+
+
+@router.post("", status_code=HTTPStatus.CREATED, response_model=TaskJson, openapi_extra=_BODY)
+async def serve_task(
+    request: Request,
+    csv: CsvOptionsDep,
+    supervisor: SupervisorDep,
+    worker: WorkerDep,
+    actor: ActorDep,
+) -> Response:
+    """Drive along waypoints, in place of the current task.
+
+    They are JSON, or CSV with `x,y,yaw` in m, m and rad (`Content-Type: text/csv`). While something
+    holds the vehicle, as an error does, the task is taken and waits.
+    """
+    raw = await read_body(request, limits_of(request).waypoints_bytes)
+    posted = await _read(raw, csv, worker)
+    task = serve(supervisor, posted, actor)
+    headers = {"Location": f"/tasks/{task.id}"}
+    return Response(task.model_dump_json(), HTTPStatus.CREATED, headers, "application/json")
+
+
+def serve(supervisor: Supervisor, posted: PostedTask, actor: str) -> TaskJson:
+    """Hand a task to the core and show what became of it.
+
+    Raises:
+        InvalidBodyError: It cannot be driven.
+    """
+    asked = TaskRequest(posted.path, posted.start_index, posted.controller, posted.speed_mps, actor)
+    try:
+        identity = supervisor.submit(asked).task
+    except FarStartError:
+        # It says more than the place in the body: where the task could begin instead.
+        raise
+    except InvalidValueError as error:
+        raise InvalidBodyError.at(error.pointer, error) from error
+    except UnknownControllerError as error:
+        raise InvalidBodyError.at("controller", error) from error
+    if identity is None:
+        raise RuntimeError("a task was taken and has no id")
+    return TaskJson.of(supervisor.core.driving.task(identity), supervisor.clock)
+
+
+@router.post("/preview", response_model=PathPreviewJson, openapi_extra=_BODY)
+async def preview_task(
+    request: Request, csv: CsvOptionsDep, supervisor: SupervisorDep, worker: WorkerDep
+) -> Response:
+    """Check waypoints and describe their path; nothing is started."""
+    raw = await read_body(request, limits_of(request).waypoints_bytes)
+    driving = supervisor.core.driving
+    state = driving.vehicle.state
+    pose = None if state is None else state.pose
+    content = await worker.call(
+        preview_posted, raw, csv, pose, driving.limits, supervisor.speed_limits
+    )
+    return Response(content, media_type="application/json")
+
+
+@router.get("")
+async def list_tasks(supervisor: SupervisorDep) -> TasksJson:
+    """List the tasks that are kept, the newest first."""
+    tasks = supervisor.core.driving.tasks()
+    items = [TaskJson.of(view, supervisor.clock) for view in tasks]
+    return TasksJson(items=items, controllers=list(TRACKERS))
+
+
+@router.get("/current")
+async def get_current_task(supervisor: SupervisorDep) -> TaskJson:
+    """Show the task that is driven or held."""
+    view = supervisor.core.driving.current_task
+    if view is None:
+        raise UnknownTaskError("task", "current", (), hint="there is none now; see GET /tasks")
+    return TaskJson.of(view, supervisor.clock)
+
+
+@router.delete("/current", status_code=HTTPStatus.NO_CONTENT, response_class=Response)
+async def cancel_task(supervisor: SupervisorDep, actor: ActorDep) -> None:
+    """End the current task and stand still; also right where there is none."""
+    supervisor.submit(CancelTaskRequest(actor))
+
+
+@router.get("/{task}")
+async def get_task(task: TaskPath, supervisor: SupervisorDep) -> TaskJson:
+    """Show one task, also one that has ended."""
+    return TaskJson.of(supervisor.core.driving.task(task), supervisor.clock)
+
+
+@router.get("/{task}/waypoints", response_model=WaypointsJson)
+async def get_waypoints(
+    task: Annotated[str, Path(description="Its id, or `current`")],
+    supervisor: SupervisorDep,
+    worker: WorkerDep,
+    max_points: Annotated[
+        int | None, Query(ge=2, description="At most so many, evenly spread; else all")
+    ] = None,
+) -> Response:
+    """Return the waypoints of a task."""
+    driving = supervisor.core.driving
+    if task == "current":
+        view = driving.current_task
+        task = task if view is None else view.id
+    waypoints = driving.path_of(task).waypoints
+    shown = min(len(waypoints), max_points or len(waypoints))
+    if shown <= _MAX_POINTS_HERE:
+        content = encode_waypoints(waypoints, max_points)
+    else:
+        content = await worker.call(encode_waypoints, waypoints, max_points)
+    return Response(content, media_type="application/json")
+
+
+async def _read(raw: bytes, csv: TaskOptions | None, worker: Jobs) -> PostedTask:
+    if len(raw) <= _MAX_BYTES_HERE:
+        return read_posted_task(raw, csv)
+    return await worker.call(read_posted_task, raw, csv)

@@ -1,0 +1,110 @@
+"""What all messages at the edge have in common, and the values that several of them hold.
+
+`...Json` is what a client reads, made from a view of the core by `of`; `...Body` is what a client
+sends. Field names carry their unit, times end in `_at`.
+"""
+
+from datetime import datetime
+from typing import Annotated, Literal
+
+from pydantic import BaseModel, ConfigDict, Field
+
+from domain.findings import Blocker, Fact, Finding
+from domain.lifecycle import LifecycleState
+from domain.state_and_mode import StateAndMode
+from domain.timebase import Instant
+from service.clock import Clock
+
+Timestamp = Annotated[
+    str, Field(json_schema_extra={"format": "date-time"}, examples=["2026-01-01T12:00:00.250Z"])
+]
+"""RFC 3339, UTC, with milliseconds."""
+
+
+class Json(BaseModel):
+    """Something that a client reads."""
+
+    model_config = ConfigDict(extra="forbid", frozen=True)
+
+
+class Body(BaseModel):
+    """Something that a client sends; unknown fields, and values of another type, are refused."""
+
+    model_config = ConfigDict(extra="forbid", frozen=True, strict=True, allow_inf_nan=False)
+
+
+def rfc3339(moment: datetime) -> str:
+    """Return a moment in UTC as RFC 3339 with milliseconds and `Z`."""
+    return moment.isoformat(timespec="milliseconds").replace("+00:00", "Z")
+
+
+def timestamp(clock: Clock, at: Instant) -> str:
+    """Return an instant of `clock` as RFC 3339."""
+    return rfc3339(clock.wall_time(at))
+
+
+def timestamp_or_none(clock: Clock, at: Instant | None) -> str | None:
+    """Return an instant of `clock` as RFC 3339; None for none."""
+    return None if at is None else rfc3339(clock.wall_time(at))
+
+
+class StateAndModeJson(Json):
+    """A lifecycle state and, where there is one, the mode in it."""
+
+    state: LifecycleState
+    mode: str | None
+
+    @classmethod
+    def of(cls, pair: StateAndMode) -> "StateAndModeJson":
+        """Show `pair`."""
+        return cls(state=pair.state, mode=pair.mode)
+
+
+class BlockerJson(Json):
+    """One reason why something cannot be done, or why the robot is in ERROR."""
+
+    code: str
+    message: str
+    path: tuple[str, ...] = Field(
+        description="From the asked part down to where the reason lies; for an error, the signal"
+    )
+    value: Fact
+    threshold: Fact
+    since_at: Timestamp | None
+    root_cause: bool
+
+    @classmethod
+    def of(cls, blocker: Blocker, clock: Clock) -> "BlockerJson":
+        """Show `blocker`."""
+        return cls(
+            code=blocker.code,
+            message=blocker.message,
+            path=blocker.path,
+            value=blocker.value,
+            threshold=blocker.threshold,
+            since_at=timestamp_or_none(clock, blocker.since),
+            root_cause=blocker.root_cause,
+        )
+
+
+class FindingJson(Json):
+    """One thing wrong, or at least odd, in a model."""
+
+    severity: Literal["error", "warning"]
+    code: str
+    message: str
+    line: int | None = Field(description="From 1")
+    column: int | None = Field(description="From 1")
+    part: str | None
+
+    @classmethod
+    def of(cls, finding: Finding) -> "FindingJson":
+        """Show `finding`."""
+        return cls(
+            severity=finding.severity,
+            code=finding.code,
+            message=finding.message,
+            line=finding.line,
+            column=finding.column,
+            part=finding.part,
+        )

@@ -1,0 +1,89 @@
+"""Changes of state, mode and parameters as clients see them."""
+
+from typing import Literal
+
+from pydantic import Field
+
+from api.http.schemas.base import Json, Timestamp, timestamp, timestamp_or_none
+from api.http.schemas.parts import ParameterJson, shown
+from domain.changes.request_check import describe_request
+from domain.inputs import ChangeRequest, ParametersRequest
+from domain.lifecycle import Transition
+from domain.snapshot import ChangeStatus, ChangeView, StepStatus, StepView
+from service.clock import Clock
+
+RequestJson = dict[str, str | dict[str, ParameterJson]]
+"""What was asked: `{"mode": ...}`, `{"transition": ...}` or `{"parameters": {...}}`."""
+
+
+class StepJson(Json):
+    """One step of a change: one request to one node."""
+
+    node: str
+    action: Transition | Literal["set_parameters"]
+    status: StepStatus
+    started_at: Timestamp | None
+    ended_at: Timestamp | None
+    error: str | None
+
+    @classmethod
+    def of(cls, view: StepView, clock: Clock) -> "StepJson":
+        """Show `view`."""
+        return cls(
+            node=view.node,
+            action=view.action,
+            status=view.status,
+            started_at=timestamp_or_none(clock, view.started_at),
+            ended_at=timestamp_or_none(clock, view.ended_at),
+            error=view.error,
+        )
+
+
+class ChangeJson(Json):
+    """One change of state, mode or parameters."""
+
+    id: str
+    part: str
+    request: RequestJson
+    status: ChangeStatus
+    reason: str | None
+    steps: list[StepJson]
+    started_at: Timestamp
+    ended_at: Timestamp | None
+    cause: int = Field(description="Id of the event that recorded the request")
+
+    @classmethod
+    def of(cls, view: ChangeView, clock: Clock) -> "ChangeJson":
+        """Show `view`."""
+        return cls(
+            id=view.id,
+            part=view.part,
+            request=shown_request(view.request),
+            status=view.status,
+            reason=view.reason,
+            steps=[StepJson.of(step, clock) for step in view.steps],
+            started_at=timestamp(clock, view.started_at),
+            ended_at=timestamp_or_none(clock, view.ended_at),
+            cause=view.cause,
+        )
+
+
+class ChangesJson(Json):
+    """Changes, the newest first."""
+
+    items: list[ChangeJson]
+
+
+class PlanJson(Json):
+    """The steps that a change would take now."""
+
+    part: str
+    request: RequestJson
+    steps: list[StepJson]
+
+
+def shown_request(request: ChangeRequest) -> RequestJson:
+    """Return what a request asks as a client reads it."""
+    if isinstance(request, ParametersRequest):
+        return {"parameters": {name: shown(value) for name, value in request.values.items()}}
+    return {key: str(value) for key, value in describe_request(request).items()}

@@ -1,0 +1,237 @@
+"""Signals, the system state, the emergency stop and the mock as clients see them."""
+
+from collections.abc import Sequence
+from datetime import datetime
+
+from pydantic import Field
+
+from api.http.schemas.base import BlockerJson, Body, Json, Timestamp, timestamp, timestamp_or_none
+from api.http.values import SentSignalValue
+from domain.errors import InvalidValueError
+from domain.findings import Fact
+from domain.inputs import Reading, SignalValue
+from domain.snapshot import (
+    EmergencyStopView,
+    SignalView,
+    SystemState,
+    SystemStateView,
+    TaskStatus,
+)
+from domain.timebase import Instant, to_seconds
+from service.clock import Clock
+
+MAX_SOURCE = 64
+"""Characters of the name of who measured."""
+
+
+class PendingJson(Json):
+    """An error that will come if the signal stays bad."""
+
+    error: str
+    since_at: Timestamp
+    needs_s: float
+
+
+class AgedPendingJson(PendingJson):
+    """An error that will come if the signal stays bad, and for how long it has been."""
+
+    for_s: float
+
+
+class StreamedSignalJson(Json):
+    """One signal as it is in frames: without ages, which a client computes from the times."""
+
+    signal: str
+    value: SignalValue | None = Field(description="null: never seen")
+    unit: str
+    source: str | None
+    received_at: Timestamp | None
+    stamp_at: Timestamp | None = Field(description="When the sender took it, by its own clock")
+    skewed: bool = Field(description="The sender's clock differs from ours by more than 1 s")
+    stale: bool
+    error: str | None
+    pending: PendingJson | None
+    settings: dict[str, Fact]
+
+    @classmethod
+    def of(cls, view: SignalView, clock: Clock) -> "StreamedSignalJson":
+        """Show `view`."""
+        return cls(
+            signal=view.signal,
+            value=view.value,
+            unit=view.unit,
+            source=view.source,
+            received_at=timestamp_or_none(clock, view.received_at),
+            stamp_at=timestamp_or_none(clock, view.stamp),
+            skewed=view.skewed,
+            stale=view.stale,
+            error=view.error,
+            pending=_pending(view, clock),
+            settings=dict(view.settings),
+        )
+
+
+class SignalJson(StreamedSignalJson):
+    """One signal: the value held, and what is judged of it."""
+
+    age_s: float | None
+    pending: AgedPendingJson | None
+
+    @classmethod
+    def at(cls, view: SignalView, clock: Clock, now: Instant) -> "SignalJson":
+        """Show `view` as it is at `now`."""
+        streamed = dict(StreamedSignalJson.of(view, clock))
+        pending = streamed.pop("pending")
+        since = view.pending_since
+        return cls(
+            **streamed,
+            age_s=None if view.received_at is None else to_seconds(now - view.received_at),
+            pending=(
+                None
+                if pending is None or since is None
+                else AgedPendingJson(**dict(pending), for_s=to_seconds(now - since))
+            ),
+        )
+
+
+def _pending(view: SignalView, clock: Clock) -> PendingJson | None:
+    if view.pending_error is None or view.pending_since is None or view.pending_needs is None:
+        return None
+    return PendingJson(
+        error=view.pending_error,
+        since_at=timestamp(clock, view.pending_since),
+        needs_s=to_seconds(view.pending_needs),
+    )
+
+
+class SignalsJson(Json):
+    """All signals."""
+
+    items: list[SignalJson]
+
+
+class SystemStateJson(Json):
+    """State of the robot with its reasons; error code and state are of one moment."""
+
+    seq: int = Field(description="Number of the newest frame")
+    at: Timestamp
+    state: SystemState
+    error_code: int = Field(description="Bit mask; 0 means no error")
+    errors: tuple[str, ...]
+    reasons: list[BlockerJson]
+    task_status: TaskStatus
+    simulated: tuple[str, ...] = Field(description="What of the robot is not real")
+
+    @classmethod
+    def of(
+        cls,
+        view: SystemStateView,
+        seq: int,
+        at: Instant,
+        simulated: Sequence[str],
+        clock: Clock,
+    ) -> "SystemStateJson":
+        """Show `view` as it was at `at`, when frame number `seq` was the newest."""
+        return cls(
+            seq=seq,
+            at=timestamp(clock, at),
+            state=view.state,
+            error_code=view.error_code,
+            errors=view.errors,
+            reasons=[BlockerJson.of(reason, clock) for reason in view.reasons],
+            task_status=view.task_status,
+            simulated=tuple(simulated),
+        )
+
+
+class EmergencyStopJson(Json):
+    """The latch that only a person releases."""
+
+    engaged: bool
+    by: str | None
+    reason: str | None
+    since_at: Timestamp | None
+    standstill_at: Timestamp | None
+
+    @classmethod
+    def of(cls, view: EmergencyStopView, clock: Clock) -> "EmergencyStopJson":
+        """Show `view`."""
+        return cls(
+            engaged=view.engaged,
+            by=view.by,
+            reason=view.reason,
+            since_at=timestamp_or_none(clock, view.since),
+            standstill_at=timestamp_or_none(clock, view.standstill_at),
+        )
+
+
+class MockSignalJson(Json):
+    """One signal of the mock."""
+
+    signal: str
+    value: SignalValue
+    publishing: bool
+
+
+class MockJson(Json):
+    """All signals of the mock."""
+
+    items: list[MockSignalJson]
+
+
+class ReadingBody(Body):
+    """One reading of one signal."""
+
+    value: SentSignalValue
+    stamp: str | None = Field(
+        default=None,
+        max_length=64,
+        description="When the sender took it: RFC 3339 with an offset, as in `...+01:00` or `...Z`",
+    )
+    source: str | None = Field(
+        default=None,
+        min_length=1,
+        max_length=MAX_SOURCE,
+        description=(
+            "Who measured; several sources of `estop` cannot release each other. A sender without"
+            " a name is `api`, or the mock where the mock runs"
+        ),
+    )
+
+    def reading(self, signal: str, clock: Clock) -> Reading:
+        """Return the reading that was sent.
+
+        Raises:
+            InvalidValueError: The stamp is no time with an offset.
+        """
+        stamp = None if self.stamp is None else read_stamp(self.stamp, clock)
+        return Reading(signal, self.value, stamp)
+
+
+def read_stamp(text: str, clock: Clock) -> Instant:
+    """Return a time in RFC 3339 as an instant of `clock`.
+
+    Raises:
+        InvalidValueError: It is none, or has no offset.
+    """
+    try:
+        return clock.from_wall(datetime.fromisoformat(text))
+    except ValueError as error:
+        message = f"{text!r} is no time such as 2026-05-04T12:00:00.250Z"
+        raise InvalidValueError(message, "/stamp") from error
+    except InvalidValueError as error:
+        raise InvalidValueError(error.message, "/stamp") from error
+
+
+class EmergencyStopBody(Body):
+    """Engage or release the emergency stop."""
+
+    engaged: bool
+    reason: str | None = Field(default=None, max_length=500)
+
+
+class MockBody(Body):
+    """Let the mock hold another value, or stop and resume its publishing of one signal."""
+
+    value: SentSignalValue | None = None
+    publishing: bool | None = None

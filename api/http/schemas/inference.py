@@ -1,0 +1,145 @@
+"""Posted models and facts, and what follows from them."""
+
+from typing import Any
+
+from pydantic import ConfigDict, Field, model_validator
+
+from api.http.bodies import MAX_MODEL_BYTES
+from api.http.schemas.base import Body, FindingJson, Json, StateAndModeJson
+from api.http.schemas.parts import ActualJson
+from api.http.values import SentParameter, split_label
+from domain.findings import Finding
+from domain.parts.system_model import NodeModel, SystemModel
+
+
+def _or_label(schema: dict[str, Any]) -> None:
+    """Describe an object that may be sent as a label."""
+    described = dict(schema)
+    schema.clear()
+    schema["anyOf"] = [{"type": "string", "examples": ["active.FAST"]}, described]
+
+
+class Labelled(Body):
+    """A state and mode, with more, that may be sent as a label: `active.FAST`."""
+
+    model_config = ConfigDict(json_schema_extra=_or_label)
+
+    @model_validator(mode="before")
+    @classmethod
+    def _from_label(cls, sent: object) -> object:
+        return split_label(sent)
+
+
+class TargetBody(Labelled):
+    """A lifecycle state and, where there is one, the mode in it."""
+
+    state: str
+    mode: str | None = None
+
+
+class ReportedNodeBody(Labelled):
+    """What a node is taken to have reported."""
+
+    state: str | None = Field(
+        default=None, description="Label of a lifecycle state; left out: it never reported"
+    )
+    mode: str | None = Field(default=None, description="Outranks the parameters")
+    parameters: dict[str, SentParameter] = Field(
+        default_factory=dict, description="1 is an integer and 1.0 a double, as in ROS 2"
+    )
+
+
+class InferenceBody(Body):
+    """Targets and facts, and the model that they are about."""
+
+    model: str | None = Field(
+        default=None, max_length=MAX_MODEL_BYTES, description="YAML; left out: the loaded one"
+    )
+    targets: dict[str, TargetBody | None] = Field(default_factory=dict)
+    nodes: dict[str, ReportedNodeBody | None] = Field(default_factory=dict)
+
+
+class DeviationJson(Json):
+    """A part that is not where it should be."""
+
+    part: str
+    target: StateAndModeJson
+    actual: StateAndModeJson
+
+
+class InferenceJson(Json):
+    """What follows, for all parts of the model."""
+
+    parts: dict[str, ActualJson]
+    deviations: list[DeviationJson]
+
+
+class ModelCheckJson(Json):
+    """What is wrong with a model, and what is odd about it."""
+
+    valid: bool
+    findings: list[FindingJson]
+
+    @classmethod
+    def of(cls, findings: tuple[Finding, ...]) -> "ModelCheckJson":
+        """Show `findings`."""
+        valid = all(finding.severity != "error" for finding in findings)
+        return cls(valid=valid, findings=[FindingJson.of(finding) for finding in findings])
+
+
+class RuleJson(Json):
+    """What to do when a part of a system is in a given state while it has a given target."""
+
+    name: str
+    if_target: str
+    if_part: tuple[str, str]
+    new_target: str
+
+
+class SystemModelJson(Json):
+    """A system of the model."""
+
+    parts: tuple[str, ...]
+    modes: dict[str, dict[str, StateAndModeJson]] = Field(
+        description="What each mode wants of its parts"
+    )
+    rules: list[RuleJson]
+
+    @classmethod
+    def of(cls, system: SystemModel) -> "SystemModelJson":
+        """Show `system`."""
+        return cls(
+            parts=system.parts,
+            modes={
+                mode: {part: StateAndModeJson.of(want) for part, want in wanted.items()}
+                for mode, wanted in system.modes.items()
+            },
+            rules=[
+                RuleJson(
+                    name=rule.name,
+                    if_target=rule.if_target.label,
+                    if_part=(rule.if_part[0], rule.if_part[1].label),
+                    new_target=rule.new_target.label,
+                )
+                for rule in system.rules
+            ],
+        )
+
+
+class NodeModelJson(Json):
+    """A node of the model."""
+
+    modes: dict[str, dict[str, Any]] = Field(description="Parameters that each mode sets")
+
+    @classmethod
+    def of(cls, node: NodeModel) -> "NodeModelJson":
+        """Show `node`."""
+        return cls(modes={mode: dict(values) for mode, values in node.modes.items()})
+
+
+class ModelJson(Json):
+    """The model of the robot, with what is odd about it."""
+
+    systems: dict[str, SystemModelJson]
+    nodes: dict[str, NodeModelJson]
+    warnings: list[FindingJson]

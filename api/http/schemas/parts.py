@@ -1,0 +1,234 @@
+"""Systems and nodes as clients see them, and what clients ask of them."""
+
+from typing import Annotated, Literal, TypeAlias, cast
+
+from pydantic import Field
+
+from api.http.schemas.base import (
+    BlockerJson,
+    Body,
+    Json,
+    StateAndModeJson,
+    Timestamp,
+    timestamp_or_none,
+)
+from api.http.values import SentParameter
+from domain.lifecycle import LifecycleState, Transition
+from domain.parameters import ParameterValue, value_type
+from domain.snapshot import Actual, EffectiveTarget, ModeView, ParameterView, PartView
+from service.clock import Clock
+
+ParameterType: TypeAlias = Literal[
+    "bool",
+    "integer",
+    "double",
+    "string",
+    "bool_array",
+    "integer_array",
+    "double_array",
+    "string_array",
+]
+"""Labels of `rcl_interfaces/msg/ParameterType`."""
+
+ParameterJson: TypeAlias = (
+    bool | int | float | str | list[bool] | list[int] | list[float] | list[str]
+)
+"""A value of a parameter as a client reads it; 1 is an integer and 1.0 a double, as in ROS 2."""
+
+
+class ActualJson(Json):
+    """What a part is in, and how that is known."""
+
+    state: LifecycleState
+    mode: str | None
+    inferred: bool = Field(description="The state was inferred (systems) rather than reported")
+    mode_inferred: bool = Field(description="The mode was inferred, from parts or parameters")
+    undecidable: bool
+    reason: str | None
+
+    @classmethod
+    def of(cls, actual: Actual) -> "ActualJson":
+        """Show `actual`."""
+        return cls(
+            state=actual.state,
+            mode=actual.mode,
+            inferred=actual.inferred,
+            mode_inferred=actual.mode_inferred,
+            undecidable=actual.undecidable,
+            reason=actual.reason,
+        )
+
+
+class EffectiveTargetJson(Json):
+    """What is pursued now, and why it may differ from what was asked."""
+
+    state: LifecycleState
+    mode: str | None
+    because: str
+
+    @classmethod
+    def of(cls, target: EffectiveTarget) -> "EffectiveTargetJson":
+        """Show `target`."""
+        return cls(state=target.state, mode=target.mode, because=target.because)
+
+
+class PartJson(Json):
+    """One system or node."""
+
+    name: str
+    kind: Literal["system", "node"]
+    parts: tuple[str, ...] = Field(description="Of a system; a node has none")
+    target: StateAndModeJson | None = Field(description="What the operator asked for")
+    effective_target: EffectiveTargetJson | None = Field(description="What is pursued now")
+    actual: ActualJson
+    converged: bool
+    deviation_since_at: Timestamp | None
+    reachable: bool = Field(description="Of a system: all its nodes are")
+    change: str | None = Field(description="Id of the running change that this part is under")
+
+    @classmethod
+    def of(cls, view: PartView, clock: Clock) -> "PartJson":
+        """Show `view`."""
+        effective = view.effective_target
+        return cls(
+            name=view.name,
+            kind=view.kind,
+            parts=view.parts,
+            target=StateAndModeJson.of(view.target) if view.target else None,
+            effective_target=EffectiveTargetJson.of(effective) if effective else None,
+            actual=ActualJson.of(view.actual),
+            converged=view.converged,
+            deviation_since_at=timestamp_or_none(clock, view.deviation_since),
+            reachable=view.reachable,
+            change=view.change,
+        )
+
+
+class PartsJson(Json):
+    """Systems, or nodes."""
+
+    items: list[PartJson]
+
+
+class StateJson(Json):
+    """The lifecycle state of a part."""
+
+    state: LifecycleState
+    inferred: bool
+    target: str | None = Field(
+        description="What the operator asked for, as a label", examples=["active.FAST"]
+    )
+    available_transitions: list[Transition] = Field(
+        description="Those that would be accepted now and lead somewhere else"
+    )
+
+    @classmethod
+    def of(cls, view: PartView, available: tuple[Transition, ...]) -> "StateJson":
+        """Show the state of `view`."""
+        return cls(
+            state=view.actual.state,
+            inferred=view.actual.inferred,
+            target=view.target.label if view.target else None,
+            available_transitions=list(available),
+        )
+
+
+class StatesJson(Json):
+    """The states that a part can rest in."""
+
+    items: list[LifecycleState]
+
+
+class ModeJson(Json):
+    """The mode of a part."""
+
+    mode: str | None
+    inferred: bool
+    target: str | None = Field(
+        description="What the operator asked for, as a label", examples=["active.FAST"]
+    )
+
+    @classmethod
+    def of(cls, view: PartView) -> "ModeJson":
+        """Show the mode of `view`."""
+        return cls(
+            mode=view.actual.mode,
+            inferred=view.actual.mode_inferred,
+            target=view.target.label if view.target else None,
+        )
+
+
+class EnterableModeJson(Json):
+    """One mode of a part, and what stands against entering it now."""
+
+    mode: str
+    can_enter: bool
+    blockers: list[BlockerJson]
+
+    @classmethod
+    def of(cls, view: ModeView, clock: Clock) -> "EnterableModeJson":
+        """Show `view`."""
+        blockers = [BlockerJson.of(blocker, clock) for blocker in view.blockers]
+        return cls(mode=view.mode, can_enter=view.can_enter, blockers=blockers)
+
+
+class ModesJson(Json):
+    """All modes of a part."""
+
+    items: list[EnterableModeJson]
+
+
+class ParameterRowJson(Json):
+    """One parameter of a node."""
+
+    name: str
+    value: ParameterJson | None = Field(description="null: never reported")
+    type: ParameterType | None = Field(description="As in ROS 2; null: not known")
+    wanted: ParameterJson | None = Field(
+        description="What the target mode wants; null where it wants nothing"
+    )
+
+    @classmethod
+    def of(cls, view: ParameterView) -> "ParameterRowJson":
+        """Show `view`."""
+        known = view.wanted if view.value is None else view.value
+        return cls(
+            name=view.name,
+            value=None if view.value is None else shown(view.value),
+            type=type_of(known),
+            wanted=None if view.wanted is None else shown(view.wanted),
+        )
+
+
+class ParametersJson(Json):
+    """The parameters of a node."""
+
+    items: list[ParameterRowJson]
+
+
+class ModeBody(Body):
+    """Bring a part into a mode."""
+
+    mode: str = Field(min_length=1, max_length=256, examples=["PERFORMANCE"])
+
+
+class TransitionBody(Body):
+    """Bring a part through a lifecycle transition."""
+
+    transition: Literal["configure", "activate", "deactivate", "cleanup", "shutdown"]
+
+
+ParametersBody: TypeAlias = Annotated[
+    dict[str, SentParameter], Field(min_length=1, examples=[{"max_speed": 0.4}])
+]
+"""Values by parameter name."""
+
+
+def shown(value: ParameterValue) -> ParameterJson:
+    """Return a value of a parameter as JSON has it."""
+    return list(value) if isinstance(value, tuple) else value  # type: ignore[return-value]
+
+
+def type_of(value: ParameterValue | None) -> ParameterType | None:
+    """Return the type of a value as ROS 2 calls it; None: an empty array could be of any."""
+    return None if value is None or value == () else cast("ParameterType", value_type(value))

@@ -1,0 +1,80 @@
+"""A path before it is driven, as clients see it."""
+
+from pydantic import Field
+
+from api.http.schemas.base import Json
+from api.http.schemas.tasks import PointJson
+from domain.paths.preview import PathPreview
+
+MAX_DRAWN = 2_000
+
+
+class SpacingJson(Json):
+    """Distances between waypoints."""
+
+    min_m: float
+    median_m: float
+    max_m: float
+
+
+class StartJson(Json):
+    """How far the vehicle is from where the path begins."""
+
+    distance_m: float
+    heading_error_rad: float = Field(description="0: the vehicle looks along the path")
+
+
+class PathWarningJson(Json):
+    """Something about the path that a person should look at."""
+
+    code: str
+    message: str
+    index: int | None = Field(description="The waypoint that it is about")
+
+
+class PathPreviewJson(Json):
+    """A path against the vehicle that would drive it."""
+
+    waypoint_count: int
+    length_m: float
+    spacing: SpacingJson
+    min_radius_m: float | None = Field(description="Of the tightest bend; null: it is straight")
+    vehicle_min_radius_m: float
+    steerable: bool = Field(description="Whether the vehicle can steer the tightest bend")
+    start: StartJson | None = Field(description="null: it is not known where the vehicle is")
+    duration_s: float = Field(description="Estimate, from rest to rest")
+    warnings: list[PathWarningJson]
+    items: list[PointJson] = Field(description=f"To draw it: at most {MAX_DRAWN} of its waypoints")
+
+    @classmethod
+    def of(cls, view: PathPreview, drawn: list[list[float]]) -> "PathPreviewJson":
+        """Show `view`.
+
+        Args:
+            view: What is known of the path.
+            drawn: Waypoints to draw it by: x and y in m.
+        """
+        spacing, start = view.spacing, view.start
+        return cls(
+            waypoint_count=view.waypoint_count,
+            length_m=view.length_m,
+            spacing=SpacingJson(
+                min_m=spacing.min_m, median_m=spacing.median_m, max_m=spacing.max_m
+            ),
+            min_radius_m=view.min_radius_m,
+            vehicle_min_radius_m=view.vehicle_min_radius_m,
+            steerable=view.steerable,
+            start=(
+                None
+                if start is None
+                else StartJson(
+                    distance_m=start.distance_m, heading_error_rad=start.heading_error_rad
+                )
+            ),
+            duration_s=view.duration_s,
+            warnings=[
+                PathWarningJson(code=item.code, message=item.message, index=item.index)
+                for item in view.warnings
+            ],
+            items=[PointJson(x_m=x, y_m=y) for x, y in drawn],
+        )

@@ -1,0 +1,288 @@
+"""Scenarios for the simulation, and what comes of them."""
+
+from typing import Annotated, Any, Literal, Self, TypeAlias
+
+from pydantic import AfterValidator, ConfigDict, Discriminator, Field, Tag, model_validator
+
+from api.http.bodies import MAX_MODEL_BYTES
+from api.http.problems import Problem
+from api.http.schemas.base import Body, Json
+from api.http.schemas.health import MAX_SOURCE
+from api.http.schemas.tasks import TaskBody
+from api.http.values import SentParameter, SentSignalValue
+from domain.simulation.node_settings import Fault
+
+MAX_UNTIL_S = 86_400.0
+MAX_SAMPLES = 20_000
+MAX_STEPS = 10_000
+MAX_READINGS = 5_000_000
+"""Of all steps with all their repetitions."""
+
+Time = Annotated[float, Field(ge=0, le=MAX_UNTIL_S, allow_inf_nan=False)]
+
+RECOVER = "recover"
+MAX_DEPTH = 32
+"""Of what is compared or sent on as it is."""
+
+FaultName: TypeAlias = Literal["slow", "refuse", "fail", "error", "silent", "die", "recover"]
+
+
+def _checked_depth(value: Any) -> Any:  # noqa: ANN401
+    """Return a value.
+
+    Raises:
+        ValueError: It holds more than `MAX_DEPTH` objects and lists in each other.
+    """
+    level = [value]
+    for _ in range(MAX_DEPTH + 1):
+        nested = [item for item in level if isinstance(item, dict | list)]
+        if not nested:
+            return value
+        inners = (item.values() if isinstance(item, dict) else item for item in nested)
+        level = [inner for items in inners for inner in items]
+    raise ValueError(f"more than {MAX_DEPTH} objects and lists in each other")
+
+
+class TimedStep(Body):
+    """Something that happens at a time."""
+
+    t_s: Time = Field(description="Seconds from the start of the simulation")
+
+
+class ActingStep(TimedStep):
+    """Something that somebody does, and that may be refused."""
+
+    refused: bool = Field(
+        default=False, description="It is expected to be refused; anything else is a difference"
+    )
+
+
+class ReadingStep(ActingStep):
+    """Readings that arrive together, once or over and over."""
+
+    reading: dict[str, SentSignalValue] = Field(min_length=1)
+    repeat_hz: Annotated[float, Field(gt=0, le=1_000)] | None = None
+    until_s: Time | None = Field(
+        default=None, description="The last repetition is not after this; else the end"
+    )
+    stamp_offset_s: float | None = Field(
+        default=None, ge=-1e9, le=1e9, description="Stamp minus present; left out: no stamp"
+    )
+    source: str = Field(default="api", min_length=1, max_length=MAX_SOURCE)
+
+    @model_validator(mode="after")
+    def _is_judged_once(self) -> Self:
+        if self.refused and self.repeat_hz is not None:
+            raise ValueError("a reading that is expected to be refused is not repeated")
+        return self
+
+    def count(self, until_s: float) -> int:
+        """Return how many times the readings arrive up to `until_s`."""
+        if self.repeat_hz is None:
+            return 1
+        last = until_s if self.until_s is None else min(self.until_s, until_s)
+        # A millionth of a period, so that a grid that ends on `until_s` is not cut by rounding.
+        return max(0, int((last - self.t_s) * self.repeat_hz + 1e-6)) + 1
+
+
+class TaskStep(ActingStep):
+    """A task is served, or with null the current one canceled."""
+
+    task: TaskBody | None
+
+
+class AskedChange(Body):
+    """What is asked of a part: a mode, or a transition."""
+
+    part: str
+    mode: str | None = None
+    transition: Literal["configure", "activate", "deactivate", "cleanup", "shutdown"] | None = None
+
+    @model_validator(mode="after")
+    def _is_one(self) -> Self:
+        if (self.mode is None) is (self.transition is None):
+            raise ValueError("a change names either a mode or a transition")
+        return self
+
+
+class ChangeStep(ActingStep):
+    """A change of mode or state is asked for."""
+
+    change: AskedChange
+
+
+class NodeStep(ActingStep):
+    """Something is wrong with a simulated node, or somebody else sets its parameters."""
+
+    node: str
+    fault: FaultName | None = None
+    parameters: dict[str, SentParameter] | None = None
+
+    @model_validator(mode="after")
+    def _is_one(self) -> Self:
+        if (self.fault is None) is (self.parameters is None):
+            raise ValueError("a step of a node names either a fault or parameters")
+        return self
+
+    @property
+    def set_fault(self) -> Fault | None:
+        """Return what is wrong from now on; None: all is well again."""
+        return None if self.fault in (None, RECOVER) else Fault(str(self.fault))
+
+
+class VehicleStep(ActingStep):
+    """The simulated vehicle stops telling where it is, or tells it again."""
+
+    vehicle: Literal["silent", "recover"]
+
+
+class AskedRequest(Body):
+    """Any request of the HTTP interface."""
+
+    method: Literal["GET", "POST", "PUT", "PATCH", "DELETE"]
+    path: str = Field(pattern=r"^/", max_length=1_000, examples=["/holds/operator"])
+    body: Annotated[Any, AfterValidator(_checked_depth)] = None
+
+
+class RequestStep(ActingStep):
+    """A request of the HTTP interface is sent."""
+
+    request: AskedRequest
+
+
+class ExpectStep(TimedStep):
+    """What has to be seen at this time, after the steps before it."""
+
+    expect: Annotated[dict[str, Any], AfterValidator(_checked_depth)] = Field(
+        min_length=1,
+        description=(
+            "Members of a sample, as far as they matter; `last_task`: the current task, or the one"
+            " that ended last; `events`: how many of a kind there were. A number may be given by"
+            " `above`, `below`, `at_least` and `at_most`, and a state with its mode as a label"
+        ),
+        examples=[{"system_state": {"state": "ERROR"}, "events": {"task.started": 1}}],
+    )
+
+    @model_validator(mode="after")
+    def _counts_events(self) -> Self:
+        if not isinstance(self.expect.get("events", {}), dict):
+            raise ValueError("events: an object is needed, with a number for each kind of event")
+        return self
+
+
+_KINDS = ("reading", "task", "change", "node", "vehicle", "request", "expect")
+
+
+def _kind_of(step: object) -> str | None:
+    names = step if isinstance(step, dict) else getattr(type(step), "model_fields", {})
+    return next((kind for kind in _KINDS if kind in names), None)
+
+
+AnyStep: TypeAlias = (
+    ReadingStep | TaskStep | ChangeStep | NodeStep | VehicleStep | RequestStep | ExpectStep
+)
+Step = Annotated[
+    Annotated[ReadingStep, Tag("reading")]
+    | Annotated[TaskStep, Tag("task")]
+    | Annotated[ChangeStep, Tag("change")]
+    | Annotated[NodeStep, Tag("node")]
+    | Annotated[VehicleStep, Tag("vehicle")]
+    | Annotated[RequestStep, Tag("request")]
+    | Annotated[ExpectStep, Tag("expect")],
+    Discriminator(
+        _kind_of,
+        custom_error_type="unknown_step",
+        custom_error_message=f"a step has t_s and one of {', '.join(_KINDS)}",
+    ),
+]
+
+
+def place_in_body(location: tuple[int | str, ...]) -> tuple[int | str, ...]:
+    """Return the keys that lead to a fault of a scenario.
+
+    Args:
+        location: As pydantic tells it: to a step it adds what kind of step it took it for.
+    """
+    is_in_step = location[:1] == ("steps",) and len(location) > 2
+    return (*location[:2], *location[3:]) if is_in_step else location
+
+
+class SimulationBody(Body):
+    """A scenario: a robot, and what happens to it when."""
+
+    model_config = ConfigDict(validate_by_name=True, validate_by_alias=True)
+
+    title: str = Field(default="", max_length=1_000)
+    model: str | None = Field(
+        default=None, max_length=MAX_MODEL_BYTES, description="SMH as YAML; null: the loaded one"
+    )
+    robot: dict[str, Any] | None = Field(
+        default=None, description="Keys of a robot file; null: what is usual"
+    )
+    begin: Literal["live"] | None = Field(
+        default=None, alias="from", description="`live`: begin with a copy of the live robot"
+    )
+    until_s: Time
+    sample_period_s: Annotated[float, Field(gt=0, le=MAX_UNTIL_S, allow_inf_nan=False)] = 1.0
+    steps: list[Step] = Field(default_factory=list, max_length=MAX_STEPS)
+
+    @model_validator(mode="after")
+    def _fits(self) -> Self:
+        if self.begin is not None and (self.model is not None or self.robot is not None):
+            raise ValueError("a copy of the live robot has its own model and settings")
+        # No integer: the shortest of periods make it infinite.
+        periods = self.until_s / self.sample_period_s
+        if periods >= MAX_SAMPLES:
+            message = f"{periods + 1:.0f} samples; at most {MAX_SAMPLES}: sample less often"
+            raise ValueError(message)
+        readings = sum(
+            len(step.reading) * step.count(self.until_s)
+            for step in self.steps
+            if isinstance(step, ReadingStep)
+        )
+        if readings > MAX_READINGS:
+            raise ValueError(f"{readings} readings; at most {MAX_READINGS}")
+        return self
+
+
+class RefusalJson(Json):
+    """A step that was refused."""
+
+    step: int = Field(description="Its index in `steps`")
+    t_s: float
+    problem: Problem
+
+
+class DifferenceJson(Json):
+    """A member that was seen otherwise than expected."""
+
+    path: str = Field(examples=["task.status"])
+    expected: Any
+    seen: Any
+
+
+class ExpectationJson(Json):
+    """What became of one `expect` step, or of a step that was expected to be refused."""
+
+    step: int = Field(description="Its index in `steps`")
+    t_s: float
+    differences: list[DifferenceJson] = Field(description="Empty: all is as expected")
+
+
+class SampleJson(Json):
+    """The robot at one time."""
+
+    t_s: float
+    system_state: dict[str, Any]
+    parts: dict[str, Any]
+    task: dict[str, Any] | None
+    vehicle: dict[str, Any]
+
+
+class SimulationJson(Json):
+    """What came of a scenario."""
+
+    samples: list[SampleJson]
+    events: list[dict[str, Any]]
+    refusals: list[RefusalJson]
+    expectations: list[ExpectationJson]

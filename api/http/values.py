@@ -1,0 +1,120 @@
+"""Values that a client may send as more than one type, each read with one clear message."""
+
+import math
+from typing import Annotated, Any
+
+from pydantic import PlainValidator, WithJsonSchema
+from pydantic_core import PydanticCustomError
+
+from domain.inputs import SignalValue
+from domain.parameters import ParameterValue
+
+MAX_TEXT = 4_096
+"""Characters of a text in a value."""
+
+MAX_ITEMS = 1_024
+"""Of a list in a value."""
+
+_SCALARS = (bool, int, float, str)
+_INT64 = range(-(2**63), 2**63)
+
+
+def read_signal_value(value: object) -> SignalValue:
+    """Return a boolean, a finite number as a float, or a text.
+
+    Raises:
+        PydanticCustomError: It is none of these; 1 is no boolean and "1" no number.
+    """
+    if isinstance(value, bool):
+        return value
+    if isinstance(value, str) and len(value) <= MAX_TEXT:
+        return value
+    if isinstance(value, int | float):
+        try:
+            number = float(value)
+        except OverflowError:
+            number = math.inf
+        if math.isfinite(number):
+            return number
+    raise PydanticCustomError(
+        "invalid_value", "a value of a signal is a boolean, a finite number or a short text"
+    )
+
+
+def read_parameter_value(value: object) -> ParameterValue:
+    """Return a value of a ROS 2 parameter; a list becomes a tuple.
+
+    A list of integers and doubles is one of doubles, since who writes `[0.5, 1]` means that.
+
+    Raises:
+        PydanticCustomError: No value of a parameter, or one that is too long.
+    """
+    if isinstance(value, list) and len(value) > MAX_ITEMS:
+        message = f"a parameter is a list of at most {MAX_ITEMS} items"
+        raise PydanticCustomError("invalid_parameter", message)
+    items: list[Any] = value if isinstance(value, list) else [value]
+    kinds = {type(item) for item in items}
+    if kinds == {int, float}:
+        items, kinds = [float(item) for item in items], {float}
+    if kinds == {str} and max(map(len, items)) > MAX_TEXT:
+        message = f"a text of a parameter has at most {MAX_TEXT} characters"
+        raise PydanticCustomError("invalid_parameter", message)
+    if len(kinds) > 1 or not all(_is_scalar(item) for item in items):
+        raise PydanticCustomError(
+            "invalid_parameter",
+            "a parameter is a boolean, an integer of 64 bits, a finite number, a text,"
+            " or a list of one of these",
+        )
+    found: ParameterValue = tuple(items) if isinstance(value, list) else items[0]
+    return found
+
+
+def _is_scalar(value: object) -> bool:
+    if type(value) is int:
+        return value in _INT64
+    if type(value) is float:
+        return math.isfinite(value)
+    return type(value) in _SCALARS
+
+
+def split_label(value: object) -> object:
+    """Return `active.FAST` as an object with state and mode; anything else as it is."""
+    if not isinstance(value, str):
+        return value
+    state, _, mode = value.partition(".")
+    return {"state": state, "mode": mode or None}
+
+
+_SCALAR_SCHEMAS: list[dict[str, Any]] = [
+    {"type": "boolean"},
+    {"type": "number"},
+    {"type": "string", "maxLength": MAX_TEXT},
+]
+_PARAMETER_SCALARS: list[dict[str, Any]] = [
+    {"type": "boolean"},
+    {"type": "integer", "minimum": _INT64[0], "maximum": _INT64[-1]},
+    {"type": "number"},
+    {"type": "string", "maxLength": MAX_TEXT},
+]
+
+SentSignalValue = Annotated[
+    bool | float | str,
+    PlainValidator(read_signal_value),
+    WithJsonSchema({"anyOf": _SCALAR_SCHEMAS}),
+]
+SentParameter = Annotated[
+    Any,
+    PlainValidator(read_parameter_value),
+    WithJsonSchema(
+        {
+            "anyOf": [
+                *_PARAMETER_SCALARS,
+                *(
+                    {"type": "array", "items": scalar, "maxItems": MAX_ITEMS}
+                    for scalar in _PARAMETER_SCALARS
+                ),
+            ]
+        }
+    ),
+]
+"""Validates to a `ParameterValue`; 1 is an integer and 1.0 a double, as in ROS 2."""

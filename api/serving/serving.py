@@ -1,0 +1,259 @@
+"""`pilothouse serve`: run robot and web server as equals.
+
+The owner of SIGINT, SIGTERM and every task.
+"""
+
+import asyncio
+import gc
+import logging
+import os
+import signal
+import socket
+import sys
+from collections.abc import Iterator, Sequence
+from pathlib import Path
+
+from api.app import create_app, prepare
+from api.distribution import installed_version
+from api.http.access import (
+    FILE_VARIABLE,
+    MIN_GOOD_CHARACTERS,
+    TOKEN_VARIABLE,
+    Access,
+    InvalidTokenError,
+    take_token,
+)
+from api.http.metrics import metrics
+from api.http.model_check import finding_line
+from api.serving.composition import EXAMPLE, Composition, MisuseError, ServeOptions, compose
+from api.serving.service_manager import ServiceManager, UnknownManagerError
+from api.serving.web_server import ListenError, WebServer, is_loopback, listen, url_of, web_server
+from domain.errors import InvalidModelError
+from domain.findings import Finding
+from service.clock import MonotonicClock
+from service.files.robot_file import InvalidRobotFileError
+from service.files.text_file import UnreadableFileError
+from service.ros.gateway import RosGateway
+from service.ros.graph.graph import GraphFailedError, UnknownFieldError, UnknownTypeError
+from service.start_task import StartTaskError
+from service.supervisor import Supervisor, TaskFailedError
+
+log = logging.getLogger(__name__)
+
+_NOT_IN_ROS = (UnknownFieldError, UnknownTypeError)
+SUCCEEDED, FAILED, MISUSED, INTERRUPTED = 0, 1, 2, 130
+
+
+def serve(options: ServeOptions) -> int:
+    """Run the service until a signal ends it, and return the exit code of the process."""
+    _log_to_stderr(options.log_level)
+    try:
+        access = access_of(options, take_token())
+        manager = ServiceManager.of(os.environ)
+        composition = compose(options, MonotonicClock())
+        sockets = listen(options.host, options.port)
+    except (InvalidTokenError, MisuseError, UnknownManagerError) as error:
+        return _complain(str(error), MISUSED)
+    except InvalidModelError as error:
+        return _complain_of(options.model or EXAMPLE, error.findings)
+    except InvalidRobotFileError as error:
+        return _complain_of(options.robot, error.findings)
+    except (ListenError, StartTaskError, *_NOT_IN_ROS, UnreadableFileError) as error:
+        return _complain(str(error), FAILED)
+    supervisor, hosts = composition.supervisor, (options.host, *options.allowed_hosts)
+    app = create_app(supervisor, allowed_hosts=hosts, access=access, limits=composition.limits)
+    app.state.exposed = options.anonymous and not is_loopback(options.host)
+    prepare(app)
+    metrics(app)
+    greeting = "\n".join(greet(composition, options, url_of(sockets, options.host), access))
+    server = web_server(app, lambda: _say_serving(greeting, manager, supervisor))
+    # What was made until now stays: it need not be looked through again by each collection, which
+    # would stop the tick for as long.
+    gc.collect()
+    gc.freeze()
+    with asyncio.Runner(loop_factory=_new_event_loop) as runner:
+        return runner.run(run_service(composition, server, sockets, manager))
+
+
+def access_of(options: ServeOptions, token: str | None) -> Access:
+    """Return whom the service lets in.
+
+    Args:
+        options: What the command was told.
+        token: That of the environment; None: there is none.
+
+    Raises:
+        MisuseError: Others would reach the robot and nobody said who may, or it was said twice.
+        ListenError: There is no such host.
+    """
+    if token is None:
+        if not options.anonymous and not is_loopback(options.host):
+            raise MisuseError(
+                f"--host {options.host} lets others on the network control the robot: give the "
+                f"service a token by {TOKEN_VARIABLE} or {FILE_VARIABLE}, say --anonymous if "
+                "everybody may, or leave out --host"
+            )
+        return Access.open()
+    if options.anonymous:
+        raise MisuseError(
+            f"--anonymous lets everybody in, and the token of {TOKEN_VARIABLE} or {FILE_VARIABLE} "
+            "does not: leave out one of them"
+        )
+    if len(token) < MIN_GOOD_CHARACTERS:
+        log.warning("the token is shorter than %d characters: guessable", MIN_GOOD_CHARACTERS)
+    return Access.with_token(token)
+
+
+async def run_service(
+    composition: Composition,
+    server: WebServer,
+    sockets: Sequence[socket.socket],
+    manager: ServiceManager,
+) -> int:
+    """Run robot and web server until a signal or a failure, and return the exit code.
+
+    A supervisor that died takes the web server with it: a page that looks alive over a robot that
+    nobody watches is the worst of ends. So does the gateway to ROS 2, if there is one. On a signal
+    the vehicle is stopped, nodes are left as they are, and clients are told that the service goes
+    (close code 1012). A second signal ends the process at once.
+    """
+    supervisor, gateway = composition.supervisor, composition.gateway
+    stopping = asyncio.Event()
+    _on_signals(stopping)
+    code = SUCCEEDED
+    try:
+        async with asyncio.TaskGroup() as tasks:
+            supervising = tasks.create_task(supervisor.run(), name="supervisor")
+            serving = tasks.create_task(_serve_until(stopping, server, sockets), name="web server")
+            offering = tasks.create_task(_offer(gateway), name="gateway") if gateway else None
+            await stopping.wait()
+            manager.say_stopping()
+            # The robot first: the rest may take a moment.
+            supervisor.stop_driving()
+            supervisor.stop_waiting()
+            server.should_exit = True
+            await serving
+            if offering is not None:
+                offering.cancel()
+            supervising.cancel()
+    except* Exception as failures:
+        for failure in _leaves(failures):
+            _tell_failure(failure)
+        code = FAILED
+    return code
+
+
+def greet(
+    composition: Composition, options: ServeOptions, url: str, access: Access
+) -> Iterator[str]:
+    """Say what runs, where, who may use it, and what to try first."""
+    supervisor = composition.supervisor
+    model = supervisor.model
+    source = f"{options.model}" if options.model else "the built-in example"
+    counts = f"{_count(len(model.systems), 'system')}, {_count(len(model.nodes), 'node')}"
+    yield f"Pilothouse {installed_version()} supervises {source}: {counts}"
+    yield f"  page  {url}/"
+    if access.required:
+        yield f"  token needed; the command line sends that in {TOKEN_VARIABLE}"
+    curl = f'curl -H "Authorization: Bearer ${TOKEN_VARIABLE}"' if access.required else "curl"
+    part = next(iter(model.parts), None)
+    if part is not None:
+        kind = "systems" if part in model.systems else "nodes"
+        yield f"  try   {curl} {url}/{kind}/{part}"
+        modes = model.modes_of(part)
+        if modes:
+            body = f'{{"mode": "{modes[-1]}"}}'
+            yield f"        {curl} -X POST {url}/{kind}/{part}/mode -d '{body}'"
+    if composition.gateway is not None:
+        domain = os.environ.get("ROS_DOMAIN_ID") or "0"
+        yield f"ROS 2: domain {domain}. Nodes are real: what is asked here moves them."
+    if supervisor.simulated:
+        harmless = "" if composition.gateway else " Nothing here moves a real robot."
+        yield f"Simulated: {', '.join(supervisor.simulated)}.{harmless}"
+    for warning in supervisor.warnings:
+        yield finding_line(source, warning)
+    yield "Ctrl-C ends it; the vehicle is stopped, nodes are left as they are."
+
+
+def _say_serving(greeting: str, manager: ServiceManager, supervisor: Supervisor) -> None:
+    """Tell people that connections are accepted, and the service manager with the next tick."""
+    print(greeting, flush=True)
+    manager.watch(supervisor)
+
+
+def _on_signals(stopping: asyncio.Event) -> None:
+    def stop() -> None:
+        if stopping.is_set():
+            os._exit(INTERRUPTED)
+        stopping.set()
+
+    for number in (signal.SIGINT, signal.SIGTERM):
+        asyncio.get_running_loop().add_signal_handler(number, stop)
+
+
+async def _serve_until(
+    stopping: asyncio.Event, server: WebServer, sockets: Sequence[socket.socket]
+) -> None:
+    """Serve until told to stop; to end otherwise is a failure like that of any task."""
+    await server.serve(list(sockets))
+    if not stopping.is_set():
+        raise TaskFailedError("web server")
+
+
+async def _offer(gateway: RosGateway) -> None:
+    """Offer the robot to ROS 2; to end is a failure like that of any task."""
+    await gateway.offer()
+    await gateway.run()
+    raise TaskFailedError("gateway")
+
+
+def _tell_failure(failure: BaseException) -> None:
+    """Log why the service ends; what somebody can do something about needs no traceback."""
+    cause = failure.__cause__ or failure
+    causes = [*_leaves(cause)] if isinstance(cause, BaseExceptionGroup) else [cause]
+    if all(isinstance(cause, GraphFailedError | UnknownTypeError) for cause in causes):
+        log.critical("%s", "; ".join(str(cause) for cause in causes))
+    else:
+        log.critical("%s", failure, exc_info=cause)
+
+
+def _leaves(group: BaseExceptionGroup[BaseException]) -> Iterator[BaseException]:
+    for failure in group.exceptions:
+        if isinstance(failure, BaseExceptionGroup):
+            yield from _leaves(failure)
+        else:
+            yield failure
+
+
+def _new_event_loop() -> asyncio.AbstractEventLoop:
+    try:
+        import uvloop
+    except ImportError:  # There is none for Windows.
+        return asyncio.new_event_loop()
+    return uvloop.new_event_loop()
+
+
+def _log_to_stderr(level: str) -> None:
+    logging.basicConfig(
+        level=level.upper(),
+        stream=sys.stderr,
+        format="%(asctime)s %(levelname)s %(name)s: %(message)s",
+    )
+    # It tells of each connection at this level; what matters is told by our own modules.
+    for name in ("uvicorn.error", "uvicorn.access"):
+        logging.getLogger(name).setLevel("DEBUG" if level == "debug" else "WARNING")
+
+
+def _complain(message: str, code: int) -> int:
+    print(f"pilothouse: {message}", file=sys.stderr)
+    return code
+
+
+def _complain_of(file: Path | None, findings: Sequence[Finding]) -> int:
+    for finding in findings:
+        print(finding_line(str(file), finding), file=sys.stderr)
+    return FAILED
+
+
+def _count(number: int, what: str) -> str:
+    return f"{number} {what}" + ("" if number == 1 else "s")

@@ -1,0 +1,185 @@
+"""Uvicorn as part of our own process: our signal handling, our limits, and ends that are ends."""
+
+import contextlib
+import errno
+import ipaddress
+import socket
+from collections.abc import Callable, Generator, Sequence
+
+import uvicorn
+from fastapi import FastAPI
+from uvicorn.protocols.http.httptools_impl import HttpToolsProtocol
+
+from api.http.limits import ServiceLimits
+from api.serving.websocket_protocol import WebSocketProtocol
+
+MAX_HEAD_BYTES = 65_536
+_SEND_BUFFER_BYTES = 65_536
+_GRACE_S = 1
+_OTHER_FILES = 500
+"""Beside those of the stream: connections of requests, pipes to workers, files."""
+
+
+class ListenError(Exception):
+    """The address cannot be listened on; the message says why, and what to do."""
+
+
+class WebServer(uvicorn.Server):
+    """Uvicorn without its signal handling.
+
+    Uvicorn raises SIGTERM again once it has stopped serving, which would end the process before the
+    rest of it is wound down. The composition root owns the signals.
+    """
+
+    def __init__(self, config: uvicorn.Config, on_started: Callable[[], None]) -> None:
+        super().__init__(config)
+        self._on_started = on_started
+
+    async def startup(self, sockets: list[socket.socket] | None = None) -> None:
+        """Begin to accept connections, and say so."""
+        await super().startup(sockets)
+        self._on_started()
+
+    @contextlib.contextmanager
+    def capture_signals(self) -> Generator[None, None, None]:
+        """Capture nothing."""
+        yield
+
+
+class _Http(HttpToolsProtocol):
+    """HTTP/1.1 whose request heads have a limit; the parser in C has none."""
+
+    _in_head = False
+    _head_bytes = 0
+
+    def on_message_begin(self) -> None:
+        super().on_message_begin()
+        self._in_head = True
+        self._head_bytes = 0
+
+    def on_headers_complete(self) -> None:
+        super().on_headers_complete()
+        self._in_head = False
+
+    def data_received(self, data: bytes) -> None:
+        super().data_received(data)
+        if self._in_head and not self.transport.is_closing():
+            self._head_bytes += len(data)
+            if self._head_bytes > MAX_HEAD_BYTES:
+                self.send_400_response("The head of the request is too large.")
+
+
+def web_server(app: FastAPI, on_started: Callable[[], None]) -> WebServer:
+    """Return a server that is stopped by `should_exit`.
+
+    Args:
+        app: What is served, with its limits.
+        on_started: Called once connections are accepted.
+    """
+    limits: ServiceLimits = app.state.limits
+    _allow_open_files(limits.stream_clients + _OTHER_FILES)
+    config = uvicorn.Config(
+        app,
+        http=_Http,
+        ws=WebSocketProtocol,
+        ws_max_size=limits.message_bytes,
+        ws_per_message_deflate=False,
+        # By `api.streaming.fan_out`, to all at once.
+        ws_ping_interval=None,
+        lifespan="on",
+        log_config=None,
+        access_log=False,
+        server_header=False,
+        # A header of a client would decide what is recorded as its address.
+        proxy_headers=False,
+        timeout_graceful_shutdown=_GRACE_S,
+    )
+    # Here and not when it starts, by when the robot ticks.
+    config.load()
+    return WebServer(config, on_started)
+
+
+def listen(host: str, port: int) -> list[socket.socket]:
+    """Listen on all addresses of `host`, before anything else of the service begins.
+
+    Args:
+        host: Name or address.
+        port: 0 takes a free one.
+
+    Raises:
+        ListenError: There is no such host, or its port cannot be had.
+    """
+    sockets: list[socket.socket] = []
+    failure: OSError | None = None
+    try:
+        for family, address in _addresses(host):
+            try:
+                sockets.append(_listener(family, address, port))
+            except OSError as error:
+                # `localhost` has an IPv6 address even where the machine has no IPv6.
+                if error.errno not in (errno.EADDRNOTAVAIL, errno.EAFNOSUPPORT):
+                    raise
+                failure = error
+            else:
+                port = sockets[-1].getsockname()[1]
+        if not sockets and failure is not None:
+            raise failure
+    except OSError as error:
+        for listener in sockets:
+            listener.close()
+        raise ListenError(_why(error, host, port)) from error
+    return sockets
+
+
+def is_loopback(host: str) -> bool:
+    """Tell whether only this machine can reach `host`.
+
+    Raises:
+        ListenError: There is no such host.
+    """
+    try:
+        addresses = [address for _, address in _addresses(host)]
+    except OSError as error:
+        raise ListenError(_why(error, host, 0)) from error
+    return all(ipaddress.ip_address(address).is_loopback for address in addresses)
+
+
+def url_of(sockets: Sequence[socket.socket], host: str) -> str:
+    """Return the address to type into a browser."""
+    port = sockets[0].getsockname()[1]
+    if host in ("0.0.0.0", "::"):
+        host = "127.0.0.1"
+    return f"http://[{host}]:{port}" if ":" in host else f"http://{host}:{port}"
+
+
+def _allow_open_files(count: int) -> None:
+    """Let this process have so many files and connections open, as far as it may say so itself."""
+    try:
+        import resource
+    except ImportError:  # There is none for Windows.
+        return
+    soft, hard = resource.getrlimit(resource.RLIMIT_NOFILE)
+    most = count if hard == resource.RLIM_INFINITY else min(count, hard)
+    if soft != resource.RLIM_INFINITY and soft < most:
+        resource.setrlimit(resource.RLIMIT_NOFILE, (most, hard))
+
+
+def _listener(family: socket.AddressFamily, address: str, port: int) -> socket.socket:
+    listener = socket.create_server((address, port), family=family, backlog=128)
+    # Small, so that a client that does not read is noticed soon: the kernel would let megabytes
+    # pile up, and what it holds is old. Connections inherit it.
+    listener.setsockopt(socket.SOL_SOCKET, socket.SO_SNDBUF, _SEND_BUFFER_BYTES)
+    return listener
+
+
+def _addresses(host: str) -> list[tuple[socket.AddressFamily, str]]:
+    found = socket.getaddrinfo(host, None, type=socket.SOCK_STREAM, flags=socket.AI_PASSIVE)
+    return list(dict.fromkeys((family, str(address[0])) for family, _, _, _, address in found))
+
+
+def _why(error: OSError, host: str, port: int) -> str:
+    if error.errno == errno.EADDRINUSE:
+        return f"port {port} of {host} is in use, perhaps by another Pilothouse; see --port"
+    if isinstance(error, socket.gaierror):
+        return f"there is no host {host!r}"
+    return f"cannot listen on port {port} of {host}: {error.strerror or error}"

@@ -1,0 +1,47 @@
+"""Simulations: the same core, fed with a scenario, in virtual time."""
+
+from fastapi import APIRouter, Request, Response
+
+from api.http.dependencies import SimulatorDep, SupervisorDep
+from api.http.request_bodies import limits_of, read_body
+from api.http.schemas.simulation import SimulationJson
+from api.simulation.posted import LiveCopy, copy_of, simulate_posted
+from service.supervisor import Supervisor
+
+router = APIRouter(prefix="/simulations", tags=["simulation"])
+
+
+@router.post(
+    "",
+    response_model=SimulationJson,
+    openapi_extra={
+        "requestBody": {
+            "required": True,
+            "content": {
+                "application/json": {"schema": {"$ref": "#/components/schemas/SimulationBody"}}
+            },
+        }
+    },
+)
+async def simulate(
+    request: Request, supervisor: SupervisorDep, simulator: SimulatorDep
+) -> Response:
+    """Let a scenario happen in virtual time and return what came of it; nothing live is changed.
+
+    Supervision, planner, navigation and simulated robot are those that run live. Readings come from
+    the scenario alone, unless `robot` says `mock: true`.
+    """
+    raw = await read_body(request, limits_of(request).model_bytes)
+    # Looked at only when it may be asked for: a copy takes time on the loop.
+    live = _copy(supervisor) if b'"live"' in raw else None
+    content = await simulator.call(simulate_posted, raw, supervisor.model_text, live)
+    return Response(content, media_type="application/json")
+
+
+def _copy(supervisor: Supervisor) -> LiveCopy | None:
+    parts = supervisor.simulated_parts
+    if parts is None:
+        return None
+    clock = supervisor.clock
+    now = clock.now()
+    return LiveCopy(copy_of(*parts), now, clock.wall_time(now), supervisor.events.newest)

@@ -1,0 +1,77 @@
+"""What is known of one node, each fact kept apart from the others.
+
+Nothing is derived here from anything else: that a node's parameters match a mode says nothing about
+whether it is active.
+"""
+
+from dataclasses import dataclass, field
+
+from domain.inputs import NodeReport
+from domain.lifecycle import LifecycleState
+from domain.parameters import ParameterValue, same_value
+from domain.state_and_mode import ModeName
+from domain.timebase import Instant
+
+
+@dataclass(slots=True)
+class NodeFacts:
+    """Latest reported facts of a node; None: never reported."""
+
+    state: LifecycleState | None = None
+    mode: ModeName | None = None
+    parameters: dict[str, ParameterValue] = field(default_factory=dict)
+    reachable: bool | None = None
+    has_lifecycle: bool = True
+    state_since: Instant | None = None
+    """Since when the node is in its known state; None: nobody said when."""
+
+    def take(self, report: NodeReport, now: Instant | None = None) -> bool:
+        """Take over what the report says; return whether anything is different now.
+
+        Leaving `active` ends the reported mode, as it does in system_modes.
+
+        Args:
+            report: What the node said.
+            now: When it arrived; None: it does not matter.
+        """
+        known = self.known_state
+        before = (self.state, self.mode, self.reachable, self.has_lifecycle)
+        if report.reachable is not None:
+            self.reachable = report.reachable
+        elif self.reachable is None:
+            self.reachable = True
+        if report.has_lifecycle is not None:
+            self.has_lifecycle = report.has_lifecycle
+        if report.state is not None:
+            self.state = report.state
+            if report.state is not LifecycleState.ACTIVE:
+                self.mode = None
+        if report.mode is not None:
+            self.mode = report.mode
+        if self.known_state is not known or self.state_since is None:
+            self.state_since = now
+        changed = before != (self.state, self.mode, self.reachable, self.has_lifecycle)
+        for name, value in (report.parameters or {}).items():
+            if name not in self.parameters or not same_value(self.parameters[name], value):
+                self.parameters[name] = value
+                changed = True
+        return changed
+
+    @property
+    def known_state(self) -> LifecycleState:
+        """Return the state that holds now: `unknown` for a node that is silent or never spoke.
+
+        A plain node has no lifecycle; it counts as active while it is reachable.
+        """
+        if not self.reachable:
+            return LifecycleState.UNKNOWN
+        if not self.has_lifecycle:
+            return LifecycleState.ACTIVE
+        return self.state or LifecycleState.UNKNOWN
+
+    @property
+    def why_unknown(self) -> str:
+        """Return why the state is unknown, in words that follow the node's name."""
+        if self.reachable is False:
+            return "is unreachable"
+        return "has never reported a state"

@@ -1,0 +1,308 @@
+"""The model of a robot: systems and nodes, their modes, and how they hang together.
+
+Called SMH (system modes and hierarchy) in micro-ROS system_modes. Immutable, and it checks itself:
+an `SmhModel` that exists is free of cycles, unknown parts and unknown modes.
+
+Source: deliverable D4.8, 4.1; micro-ROS system_modes, `mode_inference.cpp` and README.
+"""
+
+from collections.abc import Collection, Iterable, Mapping
+from dataclasses import dataclass, field
+from itertools import chain
+from types import MappingProxyType
+
+from domain.errors import InvalidModelError, UnknownModeError, UnknownPartError
+from domain.findings import Finding
+from domain.lifecycle import LifecycleState
+from domain.parameters import Parameters
+from domain.state_and_mode import DEFAULT_MODE, ModeName, PartName, StateAndMode
+
+MAX_LEVELS = 64
+"""Of systems in systems. No robot comes near, and no walk through a model has to fear more."""
+
+MAX_ANCESTORS = 1_000_000
+"""Of all parts together; a balanced model of 10,000 nodes has less than 50,000."""
+
+_MAX_CYCLES_TOLD = 100
+_MAX_NAMES_TOLD = 12
+
+
+@dataclass(frozen=True, slots=True)
+class NodeModel:
+    """A node: something that runs, and has a lifecycle and parameters of its own."""
+
+    name: PartName
+    modes: Mapping[ModeName, Parameters] = field(default_factory=dict)
+    """Parameters of each mode, those of `__DEFAULT__` merged in; empty: only a lifecycle state."""
+
+
+@dataclass(frozen=True, slots=True)
+class Rule:
+    """What to pursue instead of a given target of a system while one part is in a given state."""
+
+    name: str
+    if_target: StateAndMode
+    if_part: tuple[PartName, StateAndMode]
+    new_target: StateAndMode
+
+
+@dataclass(frozen=True, slots=True)
+class SystemModel:
+    """A system: virtual, inferred from its parts."""
+
+    name: PartName
+    modes: Mapping[ModeName, Mapping[PartName, StateAndMode]]
+    """What each mode wants of its parts, in the order of the file, `__DEFAULT__` merged in; empty
+    for a system of no parts.
+    """
+    rules: tuple[Rule, ...] = ()
+
+    @property
+    def parts(self) -> tuple[PartName, ...]:
+        """Return the parts of this system: those of `__DEFAULT__`, in the order of the file."""
+        return tuple(self.modes.get(DEFAULT_MODE, ()))
+
+    @property
+    def named_parts(self) -> tuple[PartName, ...]:
+        """Return the parts that any mode names, so also those that `__DEFAULT__` leaves out."""
+        return tuple(dict.fromkeys(part for wanted in self.modes.values() for part in wanted))
+
+
+@dataclass(frozen=True)
+class SmhModel:
+    """Systems and nodes of one robot.
+
+    Raises:
+        InvalidModelError: A cycle, or a part or mode that is named but not there, or systems in
+            systems beyond `MAX_LEVELS` or `MAX_ANCESTORS`.
+    """
+
+    nodes: Mapping[PartName, NodeModel]
+    systems: Mapping[PartName, SystemModel]
+    ancestors: Mapping[PartName, tuple[PartName, ...]] = field(init=False)
+    """Every system that a part belongs to, directly or not; children before their parents."""
+
+    def __post_init__(self) -> None:
+        """Check the model, then freeze it."""
+        findings = find_errors(self.nodes, self.systems)
+        if findings:
+            raise InvalidModelError(findings)
+        object.__setattr__(self, "nodes", MappingProxyType(dict(self.nodes)))
+        object.__setattr__(self, "systems", MappingProxyType(dict(self.systems)))
+        object.__setattr__(
+            self, "ancestors", MappingProxyType(_ancestors(self.systems, self.nodes))
+        )
+
+    @property
+    def parts(self) -> tuple[PartName, ...]:
+        """Return all names: systems first, each in the order of the file."""
+        return (*self.systems, *self.nodes)
+
+    def __contains__(self, name: str) -> bool:
+        """Tell whether there is a part of that name."""
+        return name in self.systems or name in self.nodes
+
+    def modes_of(self, part: PartName) -> tuple[ModeName, ...]:
+        """Return the modes of a part in the order of the file; empty where it has none.
+
+        Raises:
+            UnknownPartError: There is no such part.
+        """
+        if part in self.systems:
+            return tuple(self.systems[part].modes)
+        if part in self.nodes:
+            return tuple(self.nodes[part].modes)
+        raise UnknownPartError("part", part, self.parts)
+
+    def require_mode(self, part: PartName, mode: str) -> ModeName:
+        """Return `mode` as a mode of `part`.
+
+        Raises:
+            UnknownPartError: There is no such part.
+            UnknownModeError: The part has no such mode.
+        """
+        modes = self.modes_of(part)
+        if mode not in modes:
+            hint = None if modes else f"{part} has no modes, only a lifecycle state"
+            raise UnknownModeError(f"mode of {part}", mode, modes, hint)
+        return ModeName(mode)
+
+    def nodes_below(self, part: PartName) -> tuple[PartName, ...]:
+        """Return the nodes that a part consists of, each once; a node consists of itself."""
+        if part in self.nodes:
+            return (part,)
+        found: dict[PartName, None] = {}
+        seen: set[PartName] = set()
+        waiting = [part]
+        while waiting:
+            name = waiting.pop()
+            if name in self.nodes:
+                found[name] = None
+            elif name not in seen:
+                seen.add(name)
+                waiting.extend(reversed(self.systems[name].parts))
+        return tuple(found)
+
+
+def find_errors(
+    nodes: Mapping[PartName, NodeModel], systems: Mapping[PartName, SystemModel]
+) -> list[Finding]:
+    """Return everything that makes a model unusable: unknown parts and modes, and cycles."""
+    modes_of: dict[PartName, Collection[ModeName]] = {
+        **{name: node.modes for name, node in nodes.items()},
+        **{name: system.modes for name, system in systems.items()},
+    }
+    findings = [
+        _missing_default(part)
+        for part, modes in modes_of.items()
+        if modes and DEFAULT_MODE not in modes
+    ]
+    for system in systems.values():
+        findings.extend(_check_wants(modes_of, system))
+        for rule in system.rules:
+            findings.extend(_check_rule(modes_of, system.name, rule))
+    hierarchy = _Hierarchy.of(systems)
+    findings.extend(_cycle(systems, cycle) for cycle in hierarchy.cycles)
+    too_deep = None if findings else hierarchy.too_deep()
+    if too_deep is not None:
+        message = f"{too_deep} has more than {MAX_LEVELS} levels of systems below it"
+        findings.append(Finding("error", "TOO_DEEP", message, too_deep, (too_deep,)))
+    return findings
+
+
+def _missing_default(part: PartName) -> Finding:
+    message = f"{part} has modes, but no {DEFAULT_MODE}"
+    return Finding("error", "MISSING_DEFAULT_MODE", message, part, (part, "modes"))
+
+
+def _check_wants(
+    modes_of: Mapping[PartName, Collection[ModeName]], system: SystemModel
+) -> Iterable[Finding]:
+    """Check the lines of all modes; what a mode took over from `__DEFAULT__` is told there."""
+    default = system.modes.get(DEFAULT_MODE, {})
+    for mode, wanted in system.modes.items():
+        for part, want in wanted.items():
+            if mode == DEFAULT_MODE or default.get(part) != want:
+                where = f"{system.name} in {mode}"
+                place = (system.name, "modes", mode, part)
+                yield from _check_pair(modes_of, where, part, want, system.name, place)
+
+
+def _check_rule(
+    modes_of: Mapping[PartName, Collection[ModeName]], system: PartName, rule: Rule
+) -> Iterable[Finding]:
+    for key, part, pair in (
+        ("if_target", system, rule.if_target),
+        ("if_part", *rule.if_part),
+        ("new_target", system, rule.new_target),
+    ):
+        place = (system, "rules", rule.name, key)
+        where = f"rule {rule.name} of {system}, {key}"
+        yield from _check_pair(modes_of, where, part, pair, system, place)
+
+
+def _check_pair(
+    modes_of: Mapping[PartName, Collection[ModeName]],
+    where: str,
+    part: PartName,
+    pair: StateAndMode,
+    owner: PartName,
+    place: tuple[str, ...],
+) -> Iterable[Finding]:
+    """Check that a part is there, and has the mode that is said of it."""
+    modes = modes_of.get(part)
+    if modes is None:
+        message = f"{where}: there is no part {part!r}"
+        yield Finding("error", "UNKNOWN_PART", message, owner, place)
+    elif pair.state is LifecycleState.ACTIVE and pair.mode is not None and pair.mode not in modes:
+        known = f"it has {', '.join(modes)}" if modes else "it has no modes"
+        message = f"{where}: {part} has no mode {pair.mode!r}; {known}"
+        yield Finding("error", "UNKNOWN_MODE", message, owner, place)
+
+
+def _cycle(systems: Mapping[PartName, SystemModel], cycle: tuple[PartName, ...]) -> Finding:
+    owner, name = cycle[-2:]
+    names = cycle
+    if len(cycle) > _MAX_NAMES_TOLD:
+        names = (*cycle[: _MAX_NAMES_TOLD - 2], PartName("..."), *cycle[-2:])
+    mode = next(mode for mode, wanted in systems[owner].modes.items() if name in wanted)
+    message = f"{name} contains itself: {' > '.join(names)}"
+    return Finding("error", "CYCLE", message, owner, (owner, "modes", mode, name))
+
+
+@dataclass(frozen=True, slots=True)
+class _Hierarchy:
+    """How systems contain systems, found in one walk without recursion."""
+
+    children: Mapping[PartName, tuple[PartName, ...]]
+    """The systems in each system."""
+    order: tuple[PartName, ...]
+    """All systems, each after those that it contains."""
+    cycles: tuple[tuple[PartName, ...], ...]
+    """Each from a system back to itself; not all, but none only if there is none."""
+
+    @classmethod
+    def of(cls, systems: Mapping[PartName, SystemModel]) -> "_Hierarchy":
+        """Walk depth first; a system that is met again on the way down closes a cycle."""
+        children = {
+            name: tuple(part for part in system.named_parts if part in systems)
+            for name, system in systems.items()
+        }
+        order: dict[PartName, None] = {}
+        cycles: list[tuple[PartName, ...]] = []
+        for root in systems:
+            if root in order:
+                continue
+            trail: dict[PartName, None] = {root: None}
+            waiting = [iter(children[root])]
+            while waiting:
+                child = next(waiting[-1], None)
+                if child is None:
+                    waiting.pop()
+                    order[trail.popitem()[0]] = None
+                elif child in trail:
+                    if len(cycles) < _MAX_CYCLES_TOLD:
+                        names = tuple(trail)
+                        cycles.append((*names[names.index(child) :], child))
+                elif child not in order:
+                    trail[child] = None
+                    waiting.append(iter(children[child]))
+        return cls(children, tuple(order), tuple(cycles))
+
+    def heights(self) -> dict[PartName, int]:
+        """Return how far each system is above the nodes: higher than all that it contains."""
+        height: dict[PartName, int] = {}
+        for name in self.order:
+            height[name] = 1 + max((height[child] for child in self.children[name]), default=0)
+        return height
+
+    def too_deep(self) -> PartName | None:
+        """Return a system with too many levels below it; there must be no cycle."""
+        heights = self.heights()
+        return next((name for name in self.order if heights[name] > MAX_LEVELS), None)
+
+
+def _ancestors(
+    systems: Mapping[PartName, SystemModel], nodes: Mapping[PartName, NodeModel]
+) -> dict[PartName, tuple[PartName, ...]]:
+    """Return the ancestors of each part, bottom up, so that one pass over them infers them all."""
+    parents: dict[PartName, list[PartName]] = {name: [] for name in (*systems, *nodes)}
+    for system in systems.values():
+        for part in system.named_parts:
+            parents[part].append(system.name)
+    hierarchy = _Hierarchy.of(systems)
+    height = hierarchy.heights()
+    found: dict[PartName, tuple[PartName, ...]] = {}
+    of_parents: dict[tuple[PartName, ...], tuple[PartName, ...]] = {}
+    total = 0
+    for name in (*reversed(hierarchy.order), *nodes):
+        above = tuple(parents[name])
+        if above not in of_parents:
+            all_above = {*above, *chain.from_iterable(found[parent] for parent in above)}
+            of_parents[above] = tuple(sorted(all_above, key=lambda s: (height[s], s)))
+        found[name] = of_parents[above]
+        total += len(found[name])
+        if total > MAX_ANCESTORS:
+            message = "too many parts belong to too many systems"
+            raise InvalidModelError([Finding("error", "TOO_LARGE", message, name, (name,))])
+    return {name: found[name] for name in parents}

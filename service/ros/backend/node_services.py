@@ -1,0 +1,219 @@
+"""The services of one node, asked and answered in our words."""
+
+from collections.abc import Callable, Iterable, Mapping
+from dataclasses import dataclass
+from typing import Any
+
+from domain.commands import AskTransition, NodeCommand
+from domain.lifecycle import TRANSITIONS, LifecycleState, Transition, rule_for
+from domain.parameters import Parameters, ParameterValue, same_value, value_type
+from domain.state_and_mode import PartName
+from service.ros.graph.graph import Fields, Message, RosNode
+
+LOOK_WITHIN_S = 0.8
+"""So long an answer to a question may take."""
+ANSWER_WITHIN_S = 60.0
+"""So long an answer to a command is waited for: longer than those who sent it do."""
+
+
+@dataclass(frozen=True, slots=True)
+class Askers:
+    """The nodes of ours that ask others, by what they ask for."""
+
+    states: RosNode
+    transitions: RosNode
+    parameters: RosNode
+
+
+class NodeServices:
+    """What a node can be asked; it need not be there yet.
+
+    Each question raises TimeoutError if there is no answer in time. Nothing is known then of
+    whether the node took it.
+    """
+
+    def __init__(self, name: PartName, ours: Askers) -> None:
+        """Prepare.
+
+        Args:
+            name: Of the node that has the services.
+            ours: Those that ask.
+
+        Raises:
+            UnknownTypeError: A type is not installed.
+        """
+        states, transitions, parameters = ours.states, ours.transitions, ours.parameters
+        self._get_state = states.client(f"/{name}/get_state", "lifecycle_msgs/srv/GetState")
+        self._change_state = transitions.client(
+            f"/{name}/change_state", "lifecycle_msgs/srv/ChangeState"
+        )
+        self._available = transitions.client(
+            f"/{name}/get_available_transitions", "lifecycle_msgs/srv/GetAvailableTransitions"
+        )
+        self._get_parameters = parameters.client(
+            f"/{name}/get_parameters", "rcl_interfaces/srv/GetParameters"
+        )
+        self._set_parameters = parameters.client(
+            f"/{name}/set_parameters_atomically", "rcl_interfaces/srv/SetParametersAtomically"
+        )
+
+    @property
+    def has_lifecycle(self) -> bool:
+        """Tell whether the graph knows that the node has a lifecycle."""
+        return self._get_state.is_ready()
+
+    @property
+    def processes(self) -> int:
+        """Tell how many processes with the node the graph knows, the dead ones included."""
+        return self._get_state.servers()
+
+    @property
+    def has_parameters(self) -> bool:
+        """Tell whether the graph knows that the node can be asked for parameters."""
+        return self._get_parameters.is_ready()
+
+    @property
+    def are_complete(self) -> bool:
+        """Tell whether the graph knows all services of a node with lifecycle and parameters."""
+        others = (self._change_state, self._set_parameters)
+        return self.has_lifecycle and self.has_parameters and all(c.is_ready() for c in others)
+
+    async def state(self) -> LifecycleState:
+        """Return what the node is in."""
+        response = await self._get_state.call({}, LOOK_WITHIN_S)
+        return read_state(response.current_state)
+
+    async def available_transitions(self) -> tuple[str, ...]:
+        """Return the labels of the transitions that the node offers now."""
+        response = await self._available.call({}, LOOK_WITHIN_S)
+        return tuple(item.transition.label for item in response.available_transitions)
+
+    async def change_state(self, transition: Transition, start: LifecycleState | None) -> bool:
+        """Ask for a transition; return whether it was done, once that is known.
+
+        Args:
+            transition: Found by its label in the node, or else by its number.
+            start: What the node is in, as far as that is known: it decides which number it is.
+        """
+        asked = {"id": _number(transition, start), "label": str(transition)}
+        response = await self._change_state.call({"transition": asked}, ANSWER_WITHIN_S)
+        return bool(response.success)
+
+    async def parameters(self, names: Iterable[str]) -> dict[str, ParameterValue]:
+        """Return those of the parameters that are declared and set."""
+        asked = list(names)
+        values = await self._values(asked)
+        if len(values) != len(asked):
+            # One of them is not declared, and then nothing is said of the others either.
+            found = [(name, await self._values([name])) for name in asked]
+            return _known((name, values[0]) for name, values in found if values)
+        return _known(zip(asked, values, strict=True))
+
+    async def _values(self, names: list[str]) -> list[Message]:
+        response = await self._get_parameters.call({"names": names}, LOOK_WITHIN_S)
+        return list(response.values)
+
+    async def set_parameters(self, values: Parameters, known: Parameters) -> str:
+        """Ask to set parameters, all or none; return why that was refused, empty: it was done.
+
+        Args:
+            values: What to set.
+            known: What is set, which says of what type an empty array is.
+
+        Raises:
+            InvalidValueError: A value is beyond what ROS can carry; nothing was asked.
+        """
+        parameters = [
+            {"name": name, "value": write_value(value, known.get(name))}
+            for name, value in values.items()
+        ]
+        response = await self._set_parameters.call({"parameters": parameters}, ANSWER_WITHIN_S)
+        result = response.result
+        return "" if result.successful else result.reason or "the node does not take the values"
+
+
+def read_state(message: Message) -> LifecycleState:
+    """Return the state that a `lifecycle_msgs/msg/State` names; one of no number of ours: unknown.
+
+    By its number, since the labels are free.
+    """
+    return _STATES.get(message.id, LifecycleState.UNKNOWN)
+
+
+_STATES: Mapping[int, LifecycleState] = {state.id: state for state in LifecycleState}
+
+
+def _number(transition: Transition, start: LifecycleState | None) -> int:
+    rule = None if start is None else rule_for(start, transition)
+    return rule.id if rule else next(r.id for r in TRANSITIONS if r.transition is transition)
+
+
+def read_parameters(messages: Iterable[Message]) -> dict[str, ParameterValue]:
+    """Return what a sequence of `rcl_interfaces/msg/Parameter` says."""
+    return _known((message.name, message.value) for message in messages)
+
+
+def _known(items: Iterable[tuple[str, Message]]) -> dict[str, ParameterValue]:
+    read = ((name, _read_value(value)) for name, value in items)
+    return {name: value for name, value in read if value is not None}
+
+
+def _read_value(message: Message) -> ParameterValue | None:
+    """Return a value; None: it is not set, or is an array of bytes, which no mode can set."""
+    name = next((name for name, number in _NUMBERS.items() if number == message.type), None)
+    if name is None:
+        return None
+    value = getattr(message, f"{name}_value")
+    read = _TYPES[name.removesuffix("_array")]
+    result: ParameterValue = (
+        tuple(read(item) for item in value) if name.endswith("_array") else read(value)
+    )
+    return result
+
+
+def begins(command: NodeCommand, start: LifecycleState, goal: LifecycleState) -> bool:
+    """Tell whether going from `start` to `goal` is how a command begins to be carried out."""
+    if not isinstance(command, AskTransition):
+        return False
+    rule = rule_for(start, command.transition)
+    return rule is not None and rule.via is goal
+
+
+def holds_all(known: Parameters | None, values: Parameters) -> bool:
+    """Tell whether all of some values are known to be set."""
+    if known is None:
+        return False
+    return all(name in known and same_value(known[name], v) for name, v in values.items())
+
+
+def write_value(value: ParameterValue, known: ParameterValue | None = None) -> Fields:
+    """Return a value as the fields of a `rcl_interfaces/msg/ParameterValue`.
+
+    Args:
+        value: What to write.
+        known: What the parameter holds; an empty array is of the same type, or else of strings.
+    """
+    name = value_type(value)
+    if name == "array":
+        name = value_type(known) if isinstance(known, tuple) and known else "string_array"
+    items = list(value) if isinstance(value, tuple) else value
+    return {"type": _NUMBERS[name], f"{name}_value": items}
+
+
+_TYPES: Mapping[str, Callable[[Any], Any]] = {
+    "bool": bool,
+    "integer": int,
+    "double": float,
+    "string": str,
+}
+_NUMBERS: Mapping[str, int] = {
+    "bool": 1,
+    "integer": 2,
+    "double": 3,
+    "string": 4,
+    "bool_array": 6,
+    "integer_array": 7,
+    "double_array": 8,
+    "string_array": 9,
+}
+"""Of the types in `rcl_interfaces/msg/ParameterType`, by their names in `value_type`."""

@@ -1,0 +1,391 @@
+"""One node of the robot: what was heard of it last, and what it is asked.
+
+ROS 2 latches neither states nor parameters, and what is published can get lost. So a node is asked
+for everything when it appears, and again whenever something does not fit what is known of it.
+"""
+
+from collections.abc import Callable, Coroutine
+from functools import partial
+from types import MappingProxyType
+from typing import Any, TypeAlias
+
+from domain.commands import AskFacts, AskParameters, AskTransition, NodeCommand
+from domain.errors import InvalidValueError
+from domain.inputs import NodeAnswer, NodeReport
+from domain.lifecycle import LifecycleState, Transition
+from domain.parameters import Parameters, ParameterValue
+from domain.parts.system_model import NodeModel
+from domain.timebase import Duration, Instant, seconds
+from service.clock import Clock
+from service.ros.backend.insisting import Seen, insist
+from service.ros.backend.node_services import NodeServices, begins, holds_all
+
+LOOK_PERIOD: Duration = seconds(1.0)
+"""How often each node is asked how it is."""
+MOST_COMMANDS = 16
+"""So many commands to one node wait for their answers; further ones are refused."""
+_MISSES = 2
+"""So many answers in a row that do not come make a node unreachable."""
+_BEATS_FOR: Duration = seconds(4.5)
+"""So long a node that beats is left alone after it was heard."""
+_STATE_FOLLOWS: Duration = seconds(0.2)
+_PARAMETERS_FOLLOW: Duration = seconds(0.5)
+"""So long after an answer the news may come; then they are asked for."""
+_TRIES = 3
+
+NodeMessage: TypeAlias = NodeReport | NodeAnswer
+Work: TypeAlias = Callable[[], Coroutine[Any, Any, None]]
+
+
+class NodeWatch:
+    """What is known of one node, and the way to it.
+
+    All methods return at once. What is delivered first is that it is not reachable.
+    """
+
+    def __init__(
+        self,
+        node: NodeModel,
+        services: NodeServices,
+        clock: Clock,
+        deliver: Callable[[NodeMessage], None],
+        start: Callable[[Work], bool],
+    ) -> None:
+        """Prepare; nothing is asked before `look`.
+
+        Args:
+            node: Its name, and the parameters of its modes.
+            services: What it can be asked.
+            clock: The present.
+            deliver: Is handed what the node says.
+            start: Runs something as a task; False: not any more, or not yet.
+        """
+        self._name = node.name
+        # As a dictionary, since that keeps an order.
+        self._names = {name: None for mode in node.modes.values() for name in mode}
+        self._services = services
+        self._clock = clock
+        self._deliver = deliver
+        self._start = start
+        self._is_there = False
+        self._has_lifecycle = True
+        self._state: LifecycleState | None = None
+        self._parameters: dict[str, ParameterValue] | None = None
+        """None: it was not there to be asked for them."""
+        self._heard = 0
+        """Counts what was heard of its state."""
+        self._heard_at: Instant = 0
+        self._news: dict[str, ParameterValue] = {}
+        """Parameters that were heard since they were last asked for."""
+        self._processes = 0
+        """So many of it the graph knew when the node was asked last."""
+        self._known_since: Instant | None = None
+        """Since when the graph knows one of its services."""
+        self._beats = False
+        self._misses = 0
+        self._looking = False
+        self._wants_all = False
+        """Whether it is to be asked for everything, and not only how it is."""
+        self._commands: dict[int, AskTransition | AskParameters] = {}
+        """What it was told and has not answered yet, or whose effect was not heard of yet."""
+        self._newest: int | None = None
+        """Number of the command that came last: an older one must not be sent again after it."""
+        self._taken: set[int] = set()
+        """Of those, transitions that it was heard to begin."""
+        self._deliver(NodeReport(self._name, reachable=False))
+
+    # --- what is heard ---------------------------------------------------------------------------
+
+    def take_transition(self, start: LifecycleState, goal: LifecycleState) -> None:
+        """Take in that the node went from one state to another."""
+        self._note_word()
+        self._heard += 1
+        for request, command in tuple(self._commands.items()):
+            if request not in self._taken and begins(command, start, goal):
+                self._taken.add(request)
+                self._answer(command, True)
+        if not self._is_there:
+            # It will say everything when it has answered.
+            return
+        if start is not self._state:
+            # Something got lost, or comes late, or it is another process: the node itself knows.
+            self._ask_all()
+        else:
+            self._state = goal
+            self._deliver(NodeReport(self._name, state=goal))
+
+    def take_parameters(self, values: Parameters) -> None:
+        """Take in that parameters of the node were set."""
+        self._note_word()
+        self._news.update(values)
+        if self._is_there:
+            if self._parameters is not None:
+                self._parameters.update(values)
+            self._deliver(NodeReport(self._name, parameters=MappingProxyType(dict(values))))
+
+    def take_heartbeat(self, beats: bool) -> None:
+        """Take in that a process of the node came or went: whether there is one that lives."""
+        self._beats = beats
+        if beats:
+            # One that was started anew is heard before the old one is missed.
+            self._ask_all()
+        else:
+            self._lose()
+
+    def _note_word(self) -> None:
+        self._misses = 0
+        self._heard_at = self._clock.now()
+
+    # --- whether it is there ---------------------------------------------------------------------
+
+    def look(self) -> None:
+        """Ask the node how it is, or look for it; to be called every `LOOK_PERIOD`."""
+        if self._is_there:
+            if not self._has_lifecycle and self._services.has_lifecycle:
+                self._has_lifecycle = self._wants_all = True
+            if self._parameters is None and self._services.has_parameters:
+                self._wants_all = True
+            silent_for = self._clock.now() - self._heard_at
+            if self._beats and silent_for < _BEATS_FOR and not self._wants_all:
+                return
+        self._look_soon()
+
+    def _ask_all(self) -> None:
+        self._wants_all = True
+        self._look_soon()
+
+    def _look_soon(self) -> None:
+        """Ask the node, unless that is going on or there is none to be asked."""
+        if not self._looking and (self._is_there or self._can_be_asked()):
+            self._looking = self._start(self._look)
+
+    def _can_be_asked(self) -> bool:
+        """Tell whether the graph knows enough of the node.
+
+        Its services are found one after the other, and a plain node has not all of them: so the
+        others are waited for, but not for long.
+        """
+        now = self._clock.now()
+        if not (self._services.has_lifecycle or self._services.has_parameters):
+            self._known_since = None
+            return False
+        if self._known_since is None:
+            self._known_since = now
+        return self._services.are_complete or now - self._known_since >= LOOK_PERIOD
+
+    async def _look(self) -> None:
+        try:
+            if self._is_there and not self._wants_all:
+                self._wants_all = not await self._is_as_known() or self._wants_all
+            for _ in range(_TRIES):
+                if self._is_there and not self._wants_all:
+                    break
+                await self._learn()
+        except TimeoutError:
+            self._miss()
+        finally:
+            self._looking = False
+
+    async def _is_as_known(self) -> bool:
+        """Ask for the little that shows whether something was missed.
+
+        Raises:
+            TimeoutError: The node does not answer.
+        """
+        heard = self._heard
+        if self._has_lifecycle:
+            # If something was heard meanwhile, the answer may be older than that.
+            is_same = await self._ask_state() is self._state or heard != self._heard
+            return is_same and not self._is_started_anew()
+        values = await self._ask_parameters()
+        return values is None or holds_all(self._parameters, values)
+
+    def _is_started_anew(self) -> bool:
+        """Tell whether there is a new process: it may be in the same state as the old one."""
+        known, self._processes = self._processes, self._services.processes
+        return self._processes > known
+
+    async def _learn(self) -> None:
+        """Ask for everything, and deliver it in one report, unless it was overtaken meanwhile.
+
+        Raises:
+            TimeoutError: The node does not answer.
+        """
+        self._wants_all, heard = False, self._heard
+        processes = self._services.processes
+        has_lifecycle = self._services.has_lifecycle
+        if self._is_there:
+            has_lifecycle = self._has_lifecycle
+        try:
+            state = await self._ask_state() if has_lifecycle else None
+            values = await self._ask_parameters()
+        except TimeoutError:
+            self._wants_all = True
+            raise
+        if self._wants_all or heard != self._heard:
+            self._wants_all = True
+            return
+        self._is_there, self._has_lifecycle = True, has_lifecycle
+        self._state, self._parameters, self._processes = state, values, processes
+        self._heard += 1
+        report = NodeReport(
+            self._name,
+            state=state,
+            parameters=None if values is None else MappingProxyType(dict(values)),
+            reachable=True,
+            has_lifecycle=has_lifecycle,
+        )
+        self._deliver(report)
+
+    async def _ask_state(self) -> LifecycleState:
+        state = await self._services.state()
+        self._note_word()
+        return state
+
+    async def _ask_parameters(self) -> dict[str, ParameterValue] | None:
+        """Return the parameters that matter, as far as they are set; None: it has no such service.
+
+        What is heard meanwhile is newer.
+        """
+        if not self._services.has_parameters:
+            return None
+        self._news = {}
+        values = await self._services.parameters(self._names)
+        self._note_word()
+        return values | self._news
+
+    def _miss(self) -> None:
+        """Count an answer that did not come."""
+        if self._beats and self._is_in_transition():
+            # Its process lives, and its thread is busy with a callback.
+            return
+        self._misses += 1
+        if self._misses >= _MISSES:
+            self._lose()
+
+    def _is_in_transition(self) -> bool:
+        moves = self._state is not None and not self._state.is_primary
+        return moves or self._is_told_to_move()
+
+    def _is_told_to_move(self) -> bool:
+        return any(isinstance(command, AskTransition) for command in self._commands.values())
+
+    def _lose(self) -> None:
+        if self._is_there:
+            self._is_there, self._misses = False, 0
+            self._deliver(NodeReport(self._name, reachable=False))
+
+    # --- what it is told -------------------------------------------------------------------------
+
+    def send(self, command: NodeCommand) -> None:
+        """Ask the node for something, while tasks can be started; a silent one does not answer."""
+        if isinstance(command, AskFacts):
+            self._ask_all()
+            return
+        if reason := self._why_not(command):
+            self._answer(command, False, reason)
+            return
+        work: Work
+        if isinstance(command, AskTransition):
+            work = partial(self._change_state, command)
+        else:
+            work = partial(self._set_parameters, command)
+        self._commands[command.request] = command
+        self._newest = command.request
+        self._start(work)
+
+    def _why_not(self, command: AskTransition | AskParameters) -> str:
+        """Return why a command does not even go out; empty: it does."""
+        if not self._is_there:
+            return "not reachable"
+        if isinstance(command, AskTransition) and not self._has_lifecycle:
+            return "the node has no lifecycle"
+        if len(self._commands) >= MOST_COMMANDS:
+            return f"{MOST_COMMANDS} commands wait for an answer already"
+        return ""
+
+    def _answer(
+        self, command: AskTransition | AskParameters, accepted: bool, reason: str = ""
+    ) -> None:
+        self._deliver(NodeAnswer(command.request, self._name, accepted, reason))
+
+    async def _change_state(self, ask: AskTransition) -> None:
+        """Ask for a transition, and see to it that its end is reported.
+
+        The node answers when its callback is done. That it took the transition is known earlier, if
+        it is heard to begin: it is answered then, see `take_transition`.
+        """
+        heard = self._heard
+        try:
+            start = self._state
+            done = await insist(
+                partial(self._services.change_state, ask.transition, start),
+                partial(self._see_transition, ask, start),
+                True,
+                self._clock,
+            )
+            self._note_word()
+            if ask.request not in self._taken:
+                self._answer(ask, done, "" if done else await self._why_refused(ask))
+            await self._clock.sleep_until(self._clock.now() + _STATE_FOLLOWS)
+        except TimeoutError:
+            return
+        finally:
+            del self._commands[ask.request]
+            self._taken.discard(ask.request)
+        rests = self._state is not None and self._state.is_primary
+        if not self._is_told_to_move() and (heard == self._heard or not rests):
+            self._ask_all()
+
+    async def _see_transition(self, ask: AskTransition, start: LifecycleState | None) -> Seen:
+        """Tell what became of a transition; to activate is never asked twice.
+
+        An e-stop may have come meanwhile, of which nothing is known here.
+        """
+        if ask.request in self._taken:
+            return Seen.UNCLEAR
+        state = await self._ask_state()
+        if state is ask.transition.goal:
+            return Seen.DONE
+        may_be_sent = ask.transition is not Transition.ACTIVATE and ask.request == self._newest
+        return Seen.LOST if state is start and may_be_sent else Seen.UNCLEAR
+
+    async def _see_parameters(self, ask: AskParameters) -> Seen:
+        values = await self._services.parameters(ask.values)
+        self._note_word()
+        if holds_all(values, ask.values):
+            return Seen.DONE
+        return Seen.LOST if ask.request == self._newest else Seen.UNCLEAR
+
+    async def _why_refused(self, ask: AskTransition) -> str:
+        try:
+            offered = await self._services.available_transitions()
+        except TimeoutError:
+            return f"the node refused {ask.transition}"
+        if ask.transition in offered:
+            return f"the node tried to {ask.transition} and went back"
+        return f"the node refused {ask.transition}; it offers {', '.join(offered) or 'nothing'}"
+
+    async def _set_parameters(self, ask: AskParameters) -> None:
+        """Ask to set parameters, and see to it that they are reported."""
+        try:
+            reason = await insist(
+                partial(self._services.set_parameters, ask.values, self._parameters or {}),
+                partial(self._see_parameters, ask),
+                "",
+                self._clock,
+            )
+            self._note_word()
+            self._answer(ask, not reason, reason)
+            if reason:
+                return
+            self._names.update(dict.fromkeys(ask.values))
+            await self._clock.sleep_until(self._clock.now() + _PARAMETERS_FOLLOW)
+            if not holds_all(self._parameters, ask.values):
+                self._ask_all()
+        except TimeoutError:
+            return
+        except InvalidValueError as error:
+            self._answer(ask, False, error.message)
+        finally:
+            del self._commands[ask.request]

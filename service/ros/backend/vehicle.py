@@ -1,0 +1,200 @@
+"""The vehicle: its odometry from one ROS topic, and what it is told on another."""
+
+import logging
+import math
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+
+from domain.commands import Drive
+from domain.inputs import VehicleReport
+from domain.simulation.vehicle import COMMAND_VALID_FOR
+from domain.timebase import NANOSECONDS_PER_SECOND, Duration, Instant, seconds
+from domain.vehicle import DriveCommand, Pose, VehicleLimits, VehicleState
+from service.clock import Clock, since_epoch
+from service.files.ros2_block import CommandType, Ros2Block
+from service.pacing import Alarm
+from service.ros.graph.graph import Fields, Lane, Message, Publisher, Qos, RosGraph
+
+log = logging.getLogger(__name__)
+
+NODE = "pilothouse_vehicle"
+ODOMETRY = "nav_msgs/msg/Odometry"
+
+_PERIOD: Duration = seconds(0.04)
+"""Odometry that comes more often than this is left out."""
+_EARLY: Duration = seconds(0.02)
+"""So much earlier a message may come after one that was late, so that jitter costs none."""
+_QUIET: Duration = seconds(60)
+"""Odometry is complained of no more often than this."""
+_ROLLS_MPS = 0.1
+"""Below this speed the steering angle cannot be told from how quickly the vehicle turns."""
+_AT_REST = DriveCommand(0.0, 0.0)
+
+
+class RosVehicle:
+    """Tells how the vehicle moves, and tells it how to drive.
+
+    Half a second after the last command that was to move it, it is told once to stand still, and
+    nothing further, so that somebody else can drive it. If this process dies nobody tells it so:
+    the vehicle needs a time limit of its own for its commands.
+    """
+
+    def __init__(
+        self, settings: Ros2Block, limits: VehicleLimits, graph: RosGraph, clock: Clock
+    ) -> None:
+        self._settings = settings
+        self._limits = limits
+        self._graph = graph
+        self._clock = clock
+        self._odometry = _Odometry(clock, settings.odometry.topic if settings.odometry else "")
+        self._publisher: Publisher | None = None
+        self._told = _AT_REST
+        self._void_at: Instant | None = None
+        self._alarm = Alarm(lambda: self._void_at, self._stop, clock)
+
+    def start(self, deliver: Callable[[VehicleReport], None]) -> None:
+        """Deliver how the vehicle moves, at 25 Hz at most, for as long as the graph is open.
+
+        Raises:
+            UnknownTypeError: The type of a topic is not installed.
+        """
+        odometry, command = self._settings.odometry, self._settings.command
+        if odometry is None and command is None:
+            return
+        node = self._graph.node(NODE, Lane.SENSORS)
+        if command is not None:
+            self._publisher = node.publisher(command.topic, command.type, Qos.COMMANDS)
+        if odometry is not None:
+
+            def take(motion: _Motion) -> None:
+                deliver(VehicleReport(self._state(motion)))
+
+            node.subscribe(odometry.topic, ODOMETRY, Qos.SENSOR, self._odometry.pick, take)
+
+    async def run(self) -> None:
+        """Let the vehicle stand still when nothing new is commanded, until cancelled."""
+        try:
+            await self._alarm.run()
+        finally:
+            if self._void_at is not None:
+                self._stop()
+
+    def send(self, drive: Drive) -> None:
+        """Tell the vehicle how to drive; what it cannot do is cut, what is no number is a stop."""
+        command = self._possible(drive.command)
+        self._tell(command)
+        moves = command.speed_mps != 0.0
+        self._void_at = self._clock.now() + COMMAND_VALID_FOR if moves else None
+        self._alarm.check()
+
+    def _stop(self) -> None:
+        self._void_at = None
+        self._tell(replace(self._told, speed_mps=0.0))
+
+    def _tell(self, command: DriveCommand) -> None:
+        self._told = command
+        if self._publisher is None or self._settings.command is None:
+            return
+        body = _BODIES[self._settings.command.type]
+        since = since_epoch(self._clock.wall_time(self._clock.now()))
+        sec, nanosec = divmod(since, NANOSECONDS_PER_SECOND)
+        stamp = {"sec": sec, "nanosec": nanosec}
+        self._publisher.publish(body(command, self._limits.wheelbase_m, stamp))
+
+    def _possible(self, command: DriveCommand) -> DriveCommand:
+        """Return what the vehicle can do of a command."""
+        speed, steering = command.speed_mps, command.steering_angle_rad
+        if not (math.isfinite(speed) and math.isfinite(steering)):
+            return replace(self._told, speed_mps=0.0)
+        return DriveCommand(
+            _clipped(speed, self._limits.max_speed_mps),
+            _clipped(steering, self._limits.max_steering_angle_rad),
+        )
+
+    def _state(self, motion: "_Motion") -> VehicleState:
+        speed, steering = motion.speed_mps, self._told.steering_angle_rad
+        if abs(speed) > _ROLLS_MPS:
+            bend = math.atan(self._limits.wheelbase_m * motion.yaw_rate_radps / speed)
+            steering = _clipped(bend, self._limits.max_steering_angle_rad)
+        return VehicleState(motion.pose, speed, steering)
+
+
+@dataclass(frozen=True, slots=True)
+class _Motion:
+    """What matters of one message."""
+
+    pose: Pose
+    speed_mps: float
+    yaw_rate_radps: float
+
+
+class _Odometry:
+    """Takes how the vehicle moves out of messages; all on the thread of ROS."""
+
+    def __init__(self, clock: Clock, topic: str) -> None:
+        self._clock = clock
+        self._topic = topic
+        self._next: Instant = 0
+        self._quiet_until: Instant = 0
+
+    def pick(self, message: Message) -> _Motion | None:
+        """Return how the vehicle moves; None: that is not said, or it was said just before."""
+        place, turn = message.pose.pose.position, message.pose.pose.orientation
+        speed, yaw_rate = message.twist.twist.linear.x, message.twist.twist.angular.z
+        now = self._clock.now()
+        numbers = (place.x, place.y, speed, yaw_rate)
+        length = math.hypot(turn.x, turn.y, turn.z, turn.w)
+        # Of length 0 it is what a sender leaves that does not fill it in.
+        if not all(map(math.isfinite, numbers)) or not 0.9 < length < 1.1:
+            if now >= self._quiet_until:
+                self._quiet_until = now + _QUIET
+                log.warning(
+                    "%s does not say how the vehicle moves: x, y, speed and yaw rate are %s, and "
+                    "its quaternion has the length %s",
+                    self._topic,
+                    numbers,
+                    length,
+                )
+            return None
+        due = max(self._next, now - _EARLY)
+        if due > now:
+            return None
+        self._next = due + _PERIOD
+        return _Motion(Pose(place.x, place.y, _yaw(turn)), speed, yaw_rate)
+
+
+def _yaw(turn: Message) -> float:
+    """Return the heading of a quaternion, in rad."""
+    return math.atan2(
+        2.0 * (turn.w * turn.z + turn.x * turn.y),
+        turn.w**2 + turn.x**2 - turn.y**2 - turn.z**2,
+    )
+
+
+def _twist(command: DriveCommand, wheelbase_m: float, _: Fields) -> Fields:
+    yaw_rate = command.speed_mps * math.tan(command.steering_angle_rad) / wheelbase_m
+    return {"linear": {"x": command.speed_mps}, "angular": {"z": yaw_rate}}
+
+
+def _twist_stamped(command: DriveCommand, wheelbase_m: float, stamp: Fields) -> Fields:
+    return {"header": {"stamp": stamp}, "twist": _twist(command, wheelbase_m, stamp)}
+
+
+def _ackermann(command: DriveCommand, _wheelbase_m: float, _: Fields) -> Fields:
+    return {"speed": command.speed_mps, "steering_angle": command.steering_angle_rad}
+
+
+def _ackermann_stamped(command: DriveCommand, wheelbase_m: float, stamp: Fields) -> Fields:
+    return {"header": {"stamp": stamp}, "drive": _ackermann(command, wheelbase_m, stamp)}
+
+
+_BODIES: dict[CommandType, Callable[[DriveCommand, float, Fields], Fields]] = {
+    "geometry_msgs/msg/Twist": _twist,
+    "geometry_msgs/msg/TwistStamped": _twist_stamped,
+    "ackermann_msgs/msg/AckermannDrive": _ackermann,
+    "ackermann_msgs/msg/AckermannDriveStamped": _ackermann_stamped,
+}
+
+
+def _clipped(value: float, limit: float) -> float:
+    return min(max(value, -limit), limit)

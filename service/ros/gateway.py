@@ -1,0 +1,156 @@
+"""Pilothouse as a part of a ROS 2 graph: what `RosInterface` offers, offered there.
+
+Each system is a ROS node of its own name, so that the tools for lifecycle nodes find it; all else
+has the node `pilothouse`.
+"""
+
+import asyncio
+import logging
+import re
+from collections.abc import Collection
+from functools import partial
+
+from domain.errors import PilothouseError
+from service.ros.graph.graph import Fields, Lane, Publisher, Qos, RosGraph, RosNode
+from service.ros.graph.messages import fields_of
+from service.ros.interface.carriers import (
+    SERVICE_CARRIERS,
+    TOPIC_CARRIERS,
+    Convert,
+    ServiceCarrier,
+    TopicCarrier,
+)
+from service.ros.interface.interface import RosInterface
+from service.ros.interface.offer import OWN_NODE, HeardTopic, OfferedService, OfferedTopic
+
+log = logging.getLogger(__name__)
+
+CALLER = "ros"
+"""Who asks or measures, as it is recorded; ROS does not tell who it is."""
+
+_ROS_NAME = re.compile(r"(/[A-Za-z_][A-Za-z0-9_]*)+")
+_LONGEST = 225
+"""Of a name. ROS allows 247, and gives each node services of its own whose names have up to 22
+more characters than that of the node."""
+
+
+class RosGateway:
+    """Offers an interface in a graph."""
+
+    def __init__(
+        self, interface: RosInterface, graph: RosGraph, mapped_topics: Collection[str] = ()
+    ) -> None:
+        """Prepare.
+
+        Args:
+            interface: What is offered.
+            graph: Where.
+            mapped_topics: Full names of topics that the robot file maps to signals, which are heard
+                there, and so not here.
+        """
+        self._interface = interface
+        self._graph = graph
+        self._mapped_topics = mapped_topics
+        self._nodes: dict[str, RosNode] = {}
+        self._refusing: set[str] = set()
+        """Topics whose last message was refused."""
+        self._missing_types: set[str] = set()
+        self._odd_names: set[str] = set()
+
+    async def offer(self) -> None:
+        """Appear in the graph, with all services and topics that can be offered there.
+
+        The event loop gets its turns in between, since a hundred parts take a second.
+
+        Where a type is not installed, one that always is stands in (`ros_interface.carriers`). What
+        has none, and what has a name that ROS does not allow, is left out and logged.
+        """
+        for service in self._interface.services.values():
+            if not service.of_a_node and self._is_allowed(service.name):
+                self._serve(service)
+                await asyncio.sleep(0)
+        for topic in self._interface.topics.values():
+            if not topic.of_a_node and self._is_allowed(topic.name):
+                self._publish(topic)
+                await asyncio.sleep(0)
+        for heard in self._interface.heard.values():
+            if heard.name not in self._mapped_topics and self._graph.has_type(heard.type):
+                self._hear(heard)
+        for what, names in (("name", self._odd_names), ("type", self._missing_types)):
+            if names:
+                listed = ", ".join(sorted(names))
+                log.warning("not offered in ROS 2, which has no such %s: %s", what, listed)
+
+    async def run(self) -> None:
+        """Publish what happens, until cancelled."""
+        await self._interface.run()
+
+    def _serve(self, service: OfferedService) -> None:
+        carrier = SERVICE_CARRIERS.get(service.type)
+        if self._graph.has_type(service.type):
+            answer = partial(_answer, service)
+            self._node(service.node).serve(service.name, service.type, answer)
+        elif carrier is not None and self._graph.has_type(carrier.type):
+            carried = partial(_answer_carried, service, carrier)
+            self._node(service.node).serve(service.name, carrier.type, carried)
+        else:
+            self._missing_types.add(service.type)
+
+    def _publish(self, topic: OfferedTopic) -> None:
+        carrier = TOPIC_CARRIERS.get(topic.type)
+        if self._graph.has_type(topic.type):
+            carrier = TopicCarrier(topic.type, _as_it_is)
+        if carrier is None or not self._graph.has_type(carrier.type):
+            self._missing_types.add(topic.type)
+            return
+        qos = Qos.LATCHED if topic.latched else Qos.EVENTS
+        publisher = self._node(topic.node).publisher(topic.name, carrier.type, qos)
+        self._interface.listen(topic.name, partial(_send, publisher, carrier.message))
+
+    def _hear(self, heard: HeardTopic) -> None:
+        take = partial(self._take, heard)
+        self._node(OWN_NODE).subscribe(heard.name, heard.type, Qos.SENSOR, fields_of, take)
+
+    def _take(self, heard: HeardTopic, message: Fields) -> None:
+        """Hand in a message; a refused one must not end the others, nor fill the log with its like.
+
+        So the next one is logged once another was taken.
+        """
+        try:
+            heard.take(message, CALLER)
+        except PilothouseError as error:
+            if heard.name not in self._refusing:
+                log.warning("refused a message on %s: %s", heard.name, error)
+            self._refusing.add(heard.name)
+        else:
+            self._refusing.discard(heard.name)
+
+    def _node(self, name: str) -> RosNode:
+        if name not in self._nodes:
+            self._nodes[name] = self._graph.node(name, Lane.GATEWAY)
+        return self._nodes[name]
+
+    def _is_allowed(self, name: str) -> bool:
+        """Tell whether ROS allows a name; models may have others."""
+        allowed = len(name) <= _LONGEST and _ROS_NAME.fullmatch(name) is not None
+        if not allowed:
+            self._odd_names.add(name.rpartition("/")[0])
+        return allowed
+
+
+def _as_it_is(message: Fields) -> Fields:
+    return message
+
+
+async def _answer(service: OfferedService, request: Fields) -> Fields:
+    return await service.call(request, CALLER)
+
+
+async def _answer_carried(
+    service: OfferedService, carrier: ServiceCarrier, request: Fields
+) -> Fields:
+    return carrier.response(await service.call(carrier.request(request), CALLER))
+
+
+def _send(publisher: Publisher, convert: Convert, message: Fields) -> None:
+    publisher.publish(convert(message))

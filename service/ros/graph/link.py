@@ -1,0 +1,394 @@
+"""The ROS 2 graph through rclpy; the only module that imports it.
+
+Each lane has an executor of rclpy that spins in a thread of its own. From there to the event loop
+leads one way, a `Crossing`. From the loop to ROS requests and commands are sent directly, which
+rclpy allows; responses by the lane, since the middleware may wait there for a client that is just
+coming or going; and everything else that is published by a `Sender`.
+"""
+
+import asyncio
+import logging
+import os
+import threading
+import time
+from collections.abc import Awaitable, Callable, Sequence
+from typing import Any
+
+import rclpy
+from rclpy.duration import Duration
+from rclpy.event_handler import PublisherEventCallbacks, SubscriptionEventCallbacks
+from rclpy.exceptions import NoTypeSupportImportedException
+from rclpy.executors import SingleThreadedExecutor
+from rclpy.qos import (
+    DurabilityPolicy,
+    LivelinessPolicy,
+    QoSProfile,
+    ReliabilityPolicy,
+    qos_profile_parameter_events,
+)
+from rclpy.signals import SignalHandlerOptions
+from rclpy.type_support import check_for_type_support
+from rosidl_generator_py.import_type_support_impl import (  # type: ignore[import-not-found]  # as rclpy
+    UnsupportedTypeSupport,
+)
+
+from service.ros.graph.crossing import MAX_UNANSWERED, Crossing, Inbox, Server
+from service.ros.graph.graph import (
+    Fields,
+    GraphFailedError,
+    Lane,
+    Message,
+    PickedT,
+    Qos,
+    UnknownTypeError,
+)
+from service.ros.graph.messages import fill, find_type, require_field
+from service.ros.graph.sending import Sender, Turnstile, send_or_tell
+
+_PROFILES = {
+    Qos.EVENTS: QoSProfile(depth=100),
+    Qos.PARAMETER_EVENTS: qos_profile_parameter_events,
+    Qos.SENSOR: QoSProfile(depth=5, reliability=ReliabilityPolicy.BEST_EFFORT),
+    Qos.COMMANDS: QoSProfile(depth=1),
+    Qos.LATCHED: QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL),
+}
+# By default 10 requests may come at once, and those beyond are lost without a word.
+_SERVING = QoSProfile(depth=2 * MAX_UNANSWERED)
+# Each event that is listened to makes every wait of a lane longer.
+_NO_EVENTS = SubscriptionEventCallbacks(use_default_callbacks=False)
+_NO_PUBLISHER_EVENTS = PublisherEventCallbacks(use_default_callbacks=False)
+_LIVELINESS_DEPTH = 8
+_DOMAINS = range(233)
+_JOIN_S = 1.0
+_REQUESTS_AT_ONCE = 2
+"""In one pass of the event loop; one takes 0.1 to 0.5 ms."""
+
+_log = logging.getLogger(__name__)
+
+
+class RosLink:
+    """Our place in the ROS 2 graph; a `RosGraph`.
+
+    The domain and how others are found is as in every ROS program: by the environment.
+    """
+
+    def __init__(self) -> None:
+        """Join the graph; an event loop is needed only for the first node.
+
+        Raises:
+            RuntimeError: The middleware does not start, or ROS_DOMAIN_ID is no domain.
+        """
+        _check_domain()
+        self.context = rclpy.Context()
+        # No arguments, since those of the command line are not for ROS; no handlers of signals,
+        # since SIGTERM and SIGINT are ours.
+        rclpy.init(args=[], context=self.context, signal_handler_options=SignalHandlerOptions.NO)
+        self.crossing = Crossing()
+        """Leads to the event loop; once it is closed, nothing is sent any more either."""
+        self.sender = Sender()
+        self.turnstile = Turnstile(_REQUESTS_AT_ONCE)
+        self._spinners: dict[Lane, _Spinner] = {}
+        self._nodes: list[Any] = []
+        self._failed = asyncio.Event()
+        self._reason = ""
+
+    def node(self, name: str, lane: Lane) -> "_Node":
+        """Return a new node of ours; the event loop that runs now is the one that hears of it."""
+        self.crossing.open()
+        if lane not in self._spinners:
+            self._spinners[lane] = _Spinner(self, lane)
+        spinner = self._spinners[lane]
+        namespace, _, own_name = name.rpartition("/")
+        node = rclpy.create_node(
+            own_name,
+            namespace=f"/{namespace}",
+            context=self.context,
+            use_global_arguments=False,
+            enable_rosout=False,
+            start_parameter_services=False,
+        )
+        self._nodes.append(node)
+        spinner.executor.add_node(node)
+        return _Node(self, spinner, node)
+
+    def has_type(self, type_name: str) -> bool:
+        """Tell whether a type of message or service is installed."""
+        try:
+            _find_type(type_name)
+        except UnknownTypeError:
+            return False
+        return True
+
+    def require_field(self, type_name: str, path: Sequence[str | int]) -> None:
+        """See that messages of a type have a field."""
+        require_field(type_name, path)
+
+    async def wait_failed(self) -> None:
+        """Wait until a lane breaks down.
+
+        Raises:
+            GraphFailedError: One has; what it raised is in the log.
+        """
+        await self._failed.wait()
+        raise GraphFailedError(self._reason)
+
+    async def close(self) -> None:
+        """Leave the graph within 2 s; once is enough, and more does no harm."""
+        if self.crossing.closed:
+            return
+        await self.crossing.close()
+        await asyncio.to_thread(self._leave)
+
+    def _leave(self) -> None:
+        threads: list[Sender | _Spinner] = [self.sender, *self._spinners.values()]
+        for thread in threads:
+            thread.stop()
+        until = time.monotonic() + _JOIN_S
+        ended = [thread.join(until - time.monotonic()) for thread in threads]
+        if not all(ended):
+            # What a thread may still use cannot be destroyed; the process ends soon anyway.
+            _log.error("ROS 2 is left as it is: a thread of it did not end within %g s", _JOIN_S)
+            return
+        for node in self._nodes:
+            node.destroy_node()
+        for spinner in self._spinners.values():
+            spinner.executor.shutdown()
+        self.context.try_shutdown()
+        self.context.destroy()
+
+    def fail(self, reason: str) -> None:
+        """Let it be known that a lane broke down."""
+        self._reason = reason
+        self._failed.set()
+
+
+class _Spinner:
+    """The thread of a lane, and rclpy's executor in it."""
+
+    def __init__(self, link: RosLink, lane: Lane) -> None:
+        self.executor = SingleThreadedExecutor(context=link.context)
+        self._link = link
+        self._lane = lane
+        self._stopping = False
+        name = f"ros2 {lane.value}"
+        self._thread = threading.Thread(target=self._spin, name=name, daemon=True)
+        self._thread.start()
+
+    def do(self, work: Callable[..., object], *arguments: object) -> None:
+        """Have something done by this thread; it must not raise."""
+        if not self._stopping:
+            self.executor.create_task(work, *arguments)
+
+    def stop(self) -> None:
+        """Let the thread end after what it is doing."""
+        # Alone, a flag would be seen only with the next message.
+        self.do(_nothing)
+        self._stopping = True
+
+    def join(self, within_s: float) -> bool:
+        """Wait for the end of the thread, and tell whether it came."""
+        self._thread.join(max(within_s, 0.0))
+        return not self._thread.is_alive()
+
+    def _spin(self) -> None:
+        try:
+            while not self._stopping:
+                self.executor.spin_once()
+        except Exception as error:
+            # The edge of this thread: whatever rclpy raises, whoever runs us has to know. One of
+            # them says that something else in this process shut ROS down.
+            if not self._stopping:
+                reason = f"the ROS 2 thread of the lane {self._lane.value} broke down: {error!r}"
+                _log.critical(reason, exc_info=True)
+                self._link.crossing.post(self._link.fail, reason)
+
+
+class _Node:
+    """One node of ours; a `RosNode`."""
+
+    def __init__(self, link: RosLink, spinner: _Spinner, node: Any) -> None:  # noqa: ANN401
+        self._link = link
+        self._spinner = spinner
+        self._node = node
+
+    def client(self, service: str, type_name: str) -> "_Client":
+        """Return a client."""
+        kind = _find_type(type_name)
+        return _Client(self._link, self._node, kind, self._node.create_client(kind, service))
+
+    def publisher(self, topic: str, type_name: str, qos: Qos) -> "_Publisher":
+        """Return a publisher."""
+        kind = _find_type(type_name)
+        publisher = self._node.create_publisher(
+            kind, topic, _PROFILES[qos], event_callbacks=_NO_PUBLISHER_EVENTS
+        )
+        sender = None if qos is Qos.COMMANDS else self._link.sender
+        return _Publisher(self._link.crossing, kind, publisher, topic, sender)
+
+    def subscribe(
+        self,
+        topic: str,
+        type_name: str,
+        qos: Qos,
+        pick: Callable[[Message], PickedT | None],
+        take: Callable[[PickedT], None],
+    ) -> None:
+        """Hear a topic for as long as the link is open."""
+        kind = _find_type(type_name)
+        profile = _PROFILES[qos]
+        inbox = Inbox(self._link.crossing, topic, pick, take, profile.depth)
+        self._node.create_subscription(kind, topic, inbox.hear, profile, event_callbacks=_NO_EVENTS)
+
+    def watch_liveliness(
+        self, topic: str, type_name: str, lease_s: float, take: Callable[[bool], None]
+    ) -> None:
+        """Hear which publishers of a topic live."""
+        kind = _find_type(type_name)
+        living = 0
+
+        def change(status: Message) -> bool | None:
+            nonlocal living
+            if status.alive_count == living:
+                return None
+            living = int(status.alive_count)
+            return living > 0
+
+        def warn(_status: object) -> None:
+            wanted = f"automatic liveliness with a lease of {lease_s:g} s or less"
+            _log.warning("%s: a publisher is not noticed, since it has no %s", topic, wanted)
+
+        inbox = Inbox(self._link.crossing, topic, change, take, _LIVELINESS_DEPTH)
+        profile = QoSProfile(
+            depth=1,
+            reliability=ReliabilityPolicy.BEST_EFFORT,
+            liveliness=LivelinessPolicy.AUTOMATIC,
+            liveliness_lease_duration=Duration(seconds=lease_s),
+        )
+        events = SubscriptionEventCallbacks(
+            liveliness=inbox.hear, incompatible_qos=warn, use_default_callbacks=False
+        )
+        self._node.create_subscription(kind, topic, _nothing, profile, event_callbacks=events)
+
+    def serve(
+        self, service: str, type_name: str, answer: Callable[[Fields], Awaitable[Fields]]
+    ) -> None:
+        """Offer a service for as long as the link is open."""
+        kind = _find_type(type_name)
+        server = Server(self._link.crossing, service, kind.Response, answer, self._spinner.do)
+        server.attach(self._node.create_service(kind, service, server.accept, qos_profile=_SERVING))
+
+
+class _Client:
+    """A client of a service; a `Client`."""
+
+    def __init__(self, link: RosLink, node: Any, kind: Any, client: Any) -> None:  # noqa: ANN401
+        self._crossing = link.crossing
+        self._turnstile = link.turnstile
+        self._node = node
+        self._kind = kind
+        self._client = client
+
+    def is_ready(self) -> bool:
+        """Tell whether the graph knows a server."""
+        return not self._crossing.closed and bool(self._client.service_is_ready())
+
+    def servers(self) -> int:
+        """Tell how many servers the graph knows."""
+        if self._crossing.closed:
+            return 0
+        return int(self._node.count_services(self._client.service_name))
+
+    async def call(self, request: Fields, within_s: float) -> Message:
+        """Ask, and return the response.
+
+        Raises:
+            TimeoutError: There was none in time, or the link is closed.
+            InvalidValueError: The service's request has no such fields.
+        """
+        message = self._kind.Request()
+        fill(message, request)
+        await self._turnstile.wait_for_turn()
+        if self._crossing.closed:
+            raise TimeoutError("the link to ROS 2 is closed")
+        response: asyncio.Future[Message] = asyncio.get_running_loop().create_future()
+        asked = self._client.call_async(message)
+        # Awaiting what rclpy returns would poll it without a pause.
+        asked.add_done_callback(lambda done: self._crossing.post(_settle, response, done.result()))
+        try:
+            async with asyncio.timeout(within_s):
+                return await response
+        finally:
+            self._client.remove_pending_request(asked)
+
+
+class _Publisher:
+    """A publisher of a topic; a `Publisher`."""
+
+    def __init__(
+        self,
+        crossing: Crossing,
+        kind: Any,  # noqa: ANN401
+        publisher: Any,  # noqa: ANN401
+        topic: str,
+        sender: Sender | None,
+    ) -> None:
+        """Prepare.
+
+        Args:
+            crossing: Whether we are still in the graph.
+            kind: Type of the messages.
+            publisher: That of rclpy.
+            topic: Names it in the log.
+            sender: Sends; None: whoever publishes does, at once.
+        """
+        self._crossing = crossing
+        self._kind = kind
+        self._publisher = publisher
+        self._topic = topic
+        self._sender = sender
+
+    def publish(self, message: Fields) -> None:
+        """Send a message."""
+        if self._sender is None:
+            send_or_tell(self._topic, self._send, message)
+        else:
+            self._sender.send(self._topic, self._send, message)
+
+    def _send(self, message: Fields) -> None:
+        filled = self._kind()
+        fill(filled, message)
+        if not self._crossing.closed:
+            self._publisher.publish(filled)
+
+
+def _check_domain() -> None:
+    """Refuse a domain that ROS takes for another one, or over which it ends the process."""
+    text = os.environ.get("ROS_DOMAIN_ID", "")
+    try:
+        # By the rules of C, as rcl reads it.
+        domain = int(text or "0", base=0)
+    except ValueError:
+        domain = -1
+    if domain not in _DOMAINS:
+        raise RuntimeError(
+            f"ROS_DOMAIN_ID must be a whole number from 0 to {_DOMAINS[-1]}, not {text!r:.40}"
+        )
+
+
+def _find_type(type_name: str) -> Any:  # noqa: ANN401  # a class of ROS
+    kind = find_type(type_name)
+    try:
+        check_for_type_support(kind)
+    except (AttributeError, NoTypeSupportImportedException, UnsupportedTypeSupport) as error:
+        # It is not of ROS 2, or its shared libraries are missing, or of another Python.
+        raise UnknownTypeError(type_name) from error
+    return kind
+
+
+def _settle(response: asyncio.Future[Message], message: Message) -> None:
+    if not response.done():
+        response.set_result(message)
+
+
+def _nothing(*_: object) -> None:
+    """Do nothing."""

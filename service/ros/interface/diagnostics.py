@@ -1,0 +1,163 @@
+"""The robot as `diagnostic_msgs/msg/DiagnosticArray`, for the tools that show diagnostics.
+
+A name says what it is about: `pilothouse: drive_base` a part, `pilothouse: signal estop` a signal,
+`pilothouse: system state` the robot.
+"""
+
+from collections.abc import Callable, Mapping, Sequence
+from enum import IntEnum
+from typing import TypeVar
+
+from domain.lifecycle import LifecycleState
+from domain.snapshot import PartView, SignalView, SystemState, SystemStateView
+from service.clock import Clock
+from service.frame_feed import Frame
+from service.ros.interface.messages import header
+from service.ros.interface.offer import Fields
+
+ViewT = TypeVar("ViewT")
+
+MAX_STATUSES = 500
+"""In one message; what is wrong comes before what is not."""
+
+
+class Level(IntEnum):
+    """As `diagnostic_msgs/msg/DiagnosticStatus` numbers them."""
+
+    OK = 0
+    WARN = 1
+    ERROR = 2
+    STALE = 3
+
+
+def diagnostic_array(frame: Frame, clock: Clock) -> Fields:
+    """Return everything that a complete frame says, as a `diagnostic_msgs/msg/DiagnosticArray`."""
+    signals = tuple(frame.signals.values())
+    parts = tuple(frame.parts.values())
+    room = MAX_STATUSES - 1
+    listed_signals = _most_urgent(signals, _signal_level, room)
+    listed_parts = _most_urgent(parts, _part_level, room - len(listed_signals))
+    left_out = len(signals) + len(parts) - len(listed_signals) - len(listed_parts)
+    reasons = _reasons(frame.system_state)
+    return {
+        "header": header(clock, frame.at),
+        "status": [
+            _robot_status(frame, left_out),
+            *(_signal_status(signal, reasons.get(signal.signal, "")) for signal in listed_signals),
+            *(_part_status(part) for part in listed_parts),
+        ],
+    }
+
+
+def status(level: Level, what: str, message: str, values: Mapping[str, object]) -> Fields:
+    """Return a `diagnostic_msgs/msg/DiagnosticStatus`.
+
+    Args:
+        level: How bad it is.
+        what: What it is about, without `pilothouse: `.
+        message: One sentence.
+        values: Facts by name; None is left out.
+    """
+    return {
+        "level": int(level),
+        "name": f"pilothouse: {what}",
+        "message": _sendable(message),
+        "hardware_id": "",
+        "values": [
+            {"key": key, "value": _sendable(str(value))}
+            for key, value in values.items()
+            if value is not None
+        ],
+    }
+
+
+def _sendable(text: str) -> str:
+    """Replace what a string of ROS cannot hold; reasons and sources are what somebody wrote."""
+    return text.encode(errors="replace").decode().replace("\0", "?")
+
+
+def _most_urgent(
+    views: Sequence[ViewT], level: Callable[[ViewT], Level], room: int
+) -> Sequence[ViewT]:
+    """Return as many as there is room for: those that are not OK before the others."""
+    if len(views) <= room:
+        return views
+    return sorted(views, key=lambda view: level(view) is Level.OK)[:room]
+
+
+def _reasons(view: SystemStateView) -> dict[str, str]:
+    """Return why errors are on, by signal."""
+    found: dict[str, list[str]] = {}
+    for reason in view.reasons:
+        found.setdefault(reason.path[-1], []).append(reason.message)
+    return {signal: "; ".join(messages) for signal, messages in found.items()}
+
+
+def _robot_status(frame: Frame, left_out: int) -> Fields:
+    view = frame.system_state
+    level = Level.ERROR if view.state is SystemState.ERROR else Level.OK
+    message = "; ".join(reason.message for reason in view.reasons) or str(view.state)
+    values = {
+        "state": view.state,
+        "error_code": view.error_code,
+        "errors": ", ".join(view.errors),
+        "task_status": view.task_status,
+        "simulated": ", ".join(frame.simulated),
+        "left_out": left_out or None,
+    }
+    return status(level, "system state", message, values)
+
+
+def _signal_level(view: SignalView) -> Level:
+    if view.stale:
+        return Level.STALE
+    if view.error is not None:
+        return Level.ERROR
+    return Level.OK if view.pending_error is None else Level.WARN
+
+
+def _signal_status(view: SignalView, reasons: str) -> Fields:
+    level = _signal_level(view)
+    message = reasons
+    if not message:
+        message = "OK" if view.pending_error is None else f"{view.pending_error} is coming"
+    values = {
+        "value": str(view.value).lower() if isinstance(view.value, bool) else view.value,
+        "unit": view.unit or None,
+        "source": view.source,
+        "error": view.error,
+        "pending_error": view.pending_error,
+    }
+    return status(level, f"signal {view.signal}", message, values)
+
+
+def _part_level(view: PartView) -> Level:
+    if not view.reachable or view.actual.state is LifecycleState.ERROR_PROCESSING:
+        return Level.ERROR
+    if view.change is not None:
+        return Level.OK
+    return Level.WARN if view.actual.undecidable or not view.converged else Level.OK
+
+
+def _part_status(view: PartView) -> Fields:
+    actual, target = view.actual, view.target
+    values = {
+        "kind": view.kind,
+        "actual": actual.state_and_mode.label,
+        "target": target.label if target else None,
+        "change": view.change,
+    }
+    return status(_part_level(view), view.name, _part_message(view), values)
+
+
+def _part_message(view: PartView) -> str:
+    actual = view.actual.state_and_mode.label
+    why = f": {view.actual.reason}" if view.actual.reason else ""
+    if not view.reachable:
+        what = "is unreachable" if view.kind == "node" else "has nodes that are unreachable"
+        return f"{what}{why}"
+    if view.change is not None:
+        return f"changing to {view.target.label}" if view.target else "changing"
+    if not view.converged and view.target is not None:
+        return f"should be {view.target.label}, is {actual}{why}"
+    return f"{actual}{why}"

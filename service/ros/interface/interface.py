@@ -1,0 +1,97 @@
+"""Everything that Pilothouse offers to ROS, made of the supervisor; needs no ROS itself."""
+
+import asyncio
+import logging
+from collections.abc import Callable, Mapping
+from contextlib import ExitStack
+from itertools import chain
+
+from domain.timebase import seconds
+from service.event_log import EventReader, Gap
+from service.ros.interface.heard import heard_topics
+from service.ros.interface.lifecycle_services import LifecycleServices
+from service.ros.interface.listeners import Listeners
+from service.ros.interface.mode_services import ModeServices
+from service.ros.interface.offer import Fields, HeardTopic, OfferedService, OfferedTopic
+from service.ros.interface.part_topics import PartTopics
+from service.ros.interface.robot_services import robot_services
+from service.ros.interface.robot_topics import RobotTopics
+from service.supervisor import Supervisor
+
+log = logging.getLogger(__name__)
+
+_AT_ONCE = 10
+_TURN = seconds(0.001)
+"""For so long events are turned into messages before others get their turn: a change of a thousand
+nodes makes events faster than some few in each turn."""
+
+
+class RosInterface:
+    """Services and topics of all parts and of the robot, and the topics that it hears."""
+
+    def __init__(self, supervisor: Supervisor) -> None:
+        self._supervisor = supervisor
+        self._listeners = Listeners()
+        self._part_topics = PartTopics(supervisor, self._listeners)
+        self._robot_topics = RobotTopics(supervisor, self._listeners)
+        parts = supervisor.model.parts
+        services = chain(
+            *(LifecycleServices(supervisor, part).offered() for part in parts),
+            *(ModeServices(supervisor, part).offered() for part in parts),
+            robot_services(supervisor),
+        )
+        topics = chain(self._part_topics.offered(), self._robot_topics.offered())
+        self.services: Mapping[str, OfferedService] = {s.name: s for s in services}
+        """By full name."""
+        self.topics: Mapping[str, OfferedTopic] = {topic.name: topic for topic in topics}
+        """By full name."""
+        self.heard: Mapping[str, HeardTopic] = {t.name: t for t in heard_topics(supervisor)}
+        """By full name."""
+
+    def listen(self, topic: str, take: Callable[[Fields], None]) -> Callable[[], None]:
+        """Hand each message of a topic to `take`, and return what ends that.
+
+        Args:
+            topic: Full name of one of `topics`.
+            take: Returns at once and raises nothing. Of a latched topic it is handed the last
+                message before this returns, if there was one.
+        """
+        last = self._part_topics.last(topic) if self.topics[topic].latched else None
+        if last is not None:
+            take(last)
+        return self._listeners.add(topic, take)
+
+    async def run(self) -> None:
+        """Make messages of what happens, until cancelled; only of what somebody listens to.
+
+        Runs once at a time, and may be run again later: what happened meanwhile is not told, but
+        what was asked is known.
+        """
+        events, frames = self._supervisor.events, self._supervisor.frames
+        reader = EventReader(events)
+        self._part_topics.recall(events)
+        changed = asyncio.Event()
+        with ExitStack() as watching:
+            watching.enter_context(events.watch(changed.set))
+            watching.enter_context(frames.watch(changed.set))
+            while True:
+                await self._tell_events(reader)
+                self._robot_topics.take(frames)
+                await changed.wait()
+                changed.clear()
+
+    async def _tell_events(self, reader: EventReader) -> None:
+        clock, missed = self._supervisor.clock, False
+        while reader.is_behind:
+            ends_at = clock.now() + _TURN
+            while reader.is_behind and clock.now() < ends_at:
+                for event in reader.take(_AT_ONCE):
+                    if isinstance(event, Gap):
+                        log.warning("events %d to %s were missed", event.first, event.last)
+                        missed = True
+                    else:
+                        self._part_topics.take(event)
+            if missed and not reader.is_behind:
+                self._part_topics.catch_up()
+                missed = False
+            await asyncio.sleep(0)

@@ -1,0 +1,204 @@
+"""What is told of parts: where they are, and what is asked of them.
+
+Two topics tell where a part is (`transition_event`, `mode_event`), and two what it should be
+(`transition_request_info`, `mode_request_info`), as the mode manager of D4.8 has them. A target is
+told once, on the topic of what it names: a mode, which means active in that mode, or else a state.
+So of the last message of both, the one with the later timestamp holds.
+"""
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+from domain.events import ChangeRequested, PartActualChanged, RecordedEvent
+from domain.lifecycle import LifecycleState, Transition, rule_for
+from domain.state_and_mode import ModeName, PartName, StateAndMode
+from domain.timebase import Instant
+from service.event_log import EventLog
+from service.ros.interface.listeners import Listeners
+from service.ros.interface.messages import mode_event, nanoseconds, transition_event
+from service.ros.interface.offer import OWN_NODE, Fields, OfferedTopic
+from service.supervisor import Supervisor
+
+TRANSITION_EVENT = "transition_event"
+TRANSITION_REQUEST = "transition_request_info"
+MODE_EVENT = "mode_event"
+MODE_REQUEST = "mode_request_info"
+_TYPES = {
+    TRANSITION_EVENT: "lifecycle_msgs/msg/TransitionEvent",
+    TRANSITION_REQUEST: "lifecycle_msgs/msg/TransitionEvent",
+    MODE_EVENT: "system_modes_msgs/msg/ModeEvent",
+    MODE_REQUEST: "system_modes_msgs/msg/ModeEvent",
+}
+_UNKNOWN = StateAndMode(LifecycleState.UNKNOWN)
+_LATCHED = frozenset({TRANSITION_REQUEST, MODE_REQUEST})
+
+
+@dataclass(frozen=True, slots=True)
+class _Request:
+    """What was asked of a part, from where."""
+
+    at: Instant
+    start: StateAndMode
+    goal: StateAndMode
+    transition: Transition | None = None
+    """None: a mode was asked, or what was asked is a consequence for this part."""
+
+
+class PartTopics:
+    """The topics of all parts, fed with the events of the log."""
+
+    def __init__(self, supervisor: Supervisor, listeners: Listeners) -> None:
+        self._supervisor = supervisor
+        self._listeners = listeners
+        self._requests: dict[str, _Request] = {}
+        """The last one of each topic that tells requests; a message is made when it is wanted."""
+        self._targets: dict[PartName, StateAndMode] = {}
+        """As they were told last."""
+        self._actuals: dict[PartName, StateAndMode] = {}
+        """Where parts were by the event that was taken last; a request moves systems at once."""
+
+    def offered(self) -> Iterator[OfferedTopic]:
+        """Yield all topics; a node in a ROS graph tells its transitions itself."""
+        model = self._supervisor.model
+        for part in model.parts:
+            is_node = part in model.nodes
+            for kind, type_name in _TYPES.items():
+                yield OfferedTopic(
+                    name=_topic(part, kind),
+                    type=type_name,
+                    node=OWN_NODE if is_node else part,
+                    of_a_node=is_node and kind == TRANSITION_EVENT,
+                    latched=kind in _LATCHED,
+                )
+
+    def take(self, event: RecordedEvent) -> None:
+        """Tell what an event means for parts, if it means something."""
+        match event.event:
+            case PartActualChanged(part, actual, was):
+                self._tell_step(part, was, actual, event.at)
+            case ChangeRequested():
+                self._tell_request(event.event, event.at)
+
+    def recall(self, events: EventLog) -> None:
+        """Learn from a log what was asked before, for those who come late, and where parts are.
+
+        From where it was asked is not known any more; nor is when, of what was asked before the
+        oldest event.
+        """
+        self._targets.clear()
+        self._actuals.clear()
+        for event in events.newest_first():
+            # A newer request, of this part or of one above it, is known already.
+            request = event.event
+            if isinstance(request, ChangeRequested) and request.part not in self._targets:
+                self._tell_request(request, event.at)
+        oldest = next(events.oldest_first(), None)
+        self._tell_targets(self._supervisor.clock.now() if oldest is None else oldest.at)
+        parts = self._supervisor.core.parts()
+        self._actuals = {part: view.actual.state_and_mode for part, view in parts.items()}
+
+    def catch_up(self) -> None:
+        """Tell where parts are and should be by now, as far as that was not told yet.
+
+        For who missed events and has taken those that followed: of several steps it tells one.
+        """
+        now = self._supervisor.clock.now()
+        for part, view in self._supervisor.core.parts().items():
+            was = self._actuals.get(part, _UNKNOWN)
+            self._tell_step(part, was, view.actual.state_and_mode, now)
+        self._tell_targets(now)
+
+    def last(self, topic: str) -> Fields | None:
+        """Return the last message of a latched topic; None: there was none yet."""
+        request = self._requests.get(topic)
+        return None if request is None else self._message(topic, request)
+
+    def _tell_step(self, part: PartName, was: StateAndMode, now: StateAndMode, at: Instant) -> None:
+        self._actuals[part] = now
+        timestamp = nanoseconds(self._supervisor.clock, at)
+        topic = _topic(part, TRANSITION_EVENT)
+        if now.state is not was.state and self._listeners.hears(topic):
+            step = _step(was.state, now.state)
+            self._listeners.send(topic, transition_event(timestamp, step, was.state, now.state))
+        topic = _topic(part, MODE_EVENT)
+        if now.mode != was.mode and self._listeners.hears(topic):
+            self._listeners.send(topic, mode_event(timestamp, was.mode, now.mode))
+
+    def _tell_request(self, request: ChangeRequested, at: Instant) -> None:
+        for topic in self._note_request(request, at):
+            self._send_request(topic)
+
+    def _tell_targets(self, at: Instant) -> None:
+        """Tell the targets that were not told, as asked for at that time."""
+        for part, view in self._supervisor.core.parts().items():
+            told = self._targets.get(part)
+            if view.target is not None and not (told and view.target.agrees_with(told)):
+                self._send_request(self._note(part, view.target, at))
+
+    def _send_request(self, topic: str) -> None:
+        if self._listeners.hears(topic):
+            self._listeners.send(topic, self._message(topic, self._requests[topic]))
+
+    def _note_request(self, request: ChangeRequested, at: Instant) -> list[str]:
+        """Keep what is asked of a part and of all parts below it, and return on which topics."""
+        asked = request.part
+        goal = _goal(request)
+        if goal is None:
+            return []
+        topics = [self._note(asked, goal, at, request.transition)]
+        for part in self._below(asked):
+            target = self._supervisor.core.part(part).target
+            told = self._targets.get(part)
+            if target is not None and not (told and target.agrees_with(told)):
+                topics.append(self._note(part, target, at))
+        return topics
+
+    def _note(
+        self, part: PartName, goal: StateAndMode, at: Instant, transition: Transition | None = None
+    ) -> str:
+        self._targets[part] = goal
+        topic = _topic(part, MODE_REQUEST if goal.mode else TRANSITION_REQUEST)
+        start = self._actuals.get(part, _UNKNOWN)
+        self._requests[topic] = _Request(at, start, goal, transition)
+        return topic
+
+    def _below(self, asked: PartName) -> Iterator[PartName]:
+        """Yield the parts below one, each once."""
+        systems = self._supervisor.model.systems
+        seen = {asked}
+        waiting = [asked]
+        while waiting:
+            system = systems.get(waiting.pop())
+            # Those that only some modes name are asked too, when such a mode is.
+            for part in system.named_parts if system else ():
+                if part not in seen:
+                    seen.add(part)
+                    waiting.append(part)
+                    yield part
+
+    def _message(self, topic: str, request: _Request) -> Fields:
+        timestamp = nanoseconds(self._supervisor.clock, request.at)
+        start, goal = request.start, request.goal
+        if topic.endswith(MODE_REQUEST):
+            return mode_event(timestamp, start.mode, goal.mode)
+        return transition_event(timestamp, request.transition, start.state, goal.state)
+
+
+def _topic(part: PartName, kind: str) -> str:
+    return f"/{part}/{kind}"
+
+
+def _goal(request: ChangeRequested) -> StateAndMode | None:
+    """Return what a request asks of its part; None: neither a state nor a mode."""
+    if request.mode is not None:
+        return StateAndMode(LifecycleState.ACTIVE, ModeName(request.mode))
+    return None if request.transition is None else StateAndMode(request.transition.goal)
+
+
+def _step(was: LifecycleState, now: LifecycleState) -> Transition | None:
+    """Return the transition that leads from one state to another, at once or as a first step."""
+    for transition in Transition:
+        rule = rule_for(was, transition)
+        if rule is not None and now in (rule.via, rule.success):
+            return transition
+    return None

@@ -1,0 +1,80 @@
+"""What is told of the robot at 20 Hz, as smart_polaris tells it, and its diagnostics."""
+
+from domain.snapshot import SystemState, TaskStatus
+from domain.timebase import Instant, seconds
+from service.frame_feed import Frame, FrameFeed
+from service.ros.interface.diagnostics import diagnostic_array
+from service.ros.interface.listeners import Listeners
+from service.ros.interface.messages import header
+from service.ros.interface.offer import OWN_NODE, OfferedTopic
+from service.supervisor import PERIOD, Supervisor
+
+SYSTEM_STATE = "/system_state"
+TASK_STATUS = "/task_planner_status"
+DIAGNOSTICS = "/diagnostics"
+_TYPES = {
+    SYSTEM_STATE: "gem_state_msgs/msg/SystemStateStamped",
+    TASK_STATUS: "gem_state_msgs/msg/TaskPlannerStatus",
+    DIAGNOSTICS: "diagnostic_msgs/msg/DiagnosticArray",
+}
+
+# As SystemStateStamped.msg and TaskPlannerStatus.msg of smart_polaris number them.
+_STATES = {state: number for number, state in enumerate(SystemState)}
+_TASK_STATUSES = {status: number for number, status in enumerate(TaskStatus)}
+
+_DIAGNOSTICS_PERIOD = seconds(1.0) - PERIOD // 2
+"""One second in whole ticks, which come a little early or late."""
+
+
+class RobotTopics:
+    """The topics of the robot as a whole, fed with its frames."""
+
+    def __init__(self, supervisor: Supervisor, listeners: Listeners) -> None:
+        self._clock = supervisor.clock
+        self._listeners = listeners
+        self._told: int | None = None
+        """Number of the frame that was told last."""
+        self._diagnosed_at: Instant | None = None
+        self._diagnosed: tuple[SystemState, tuple[str, ...]] | None = None
+
+    def offered(self) -> tuple[OfferedTopic, ...]:
+        """Return the topics."""
+        return tuple(
+            OfferedTopic(name, type_name, OWN_NODE, of_a_node=False, latched=False)
+            for name, type_name in _TYPES.items()
+        )
+
+    def take(self, frames: FrameFeed) -> None:
+        """Tell what the newest frame says, once."""
+        frame = frames.newest
+        if frame is None or frame.seq == self._told:
+            return
+        self._told = frame.seq
+        if self._listeners.hears(SYSTEM_STATE):
+            view = frame.system_state
+            message = {
+                "header": header(self._clock, frame.at),
+                "error_code": view.error_code,
+                "state": _STATES[view.state],
+            }
+            self._listeners.send(SYSTEM_STATE, message)
+        if self._listeners.hears(TASK_STATUS):
+            status = _TASK_STATUSES[frame.system_state.task_status]
+            message = {"header": header(self._clock, frame.at), "status": status}
+            self._listeners.send(TASK_STATUS, message)
+        if self._listeners.hears(DIAGNOSTICS) and self._is_diagnosis_due(frame):
+            complete = frames.complete()
+            if complete is not None:
+                self._diagnosed_at = frame.at
+                self._diagnosed = _what_matters(frame)
+                self._listeners.send(DIAGNOSTICS, diagnostic_array(complete, self._clock))
+
+    def _is_diagnosis_due(self, frame: Frame) -> bool:
+        """Tell whether a second has passed, or the state of the robot is another one."""
+        if self._diagnosed_at is None or _what_matters(frame) != self._diagnosed:
+            return True
+        return frame.at - self._diagnosed_at >= _DIAGNOSTICS_PERIOD
+
+
+def _what_matters(frame: Frame) -> tuple[SystemState, tuple[str, ...]]:
+    return frame.system_state.state, frame.system_state.errors

@@ -1,5 +1,0 @@
-"""What Pilothouse offers to ROS, as plain values: services, topics, and topics that it hears.
-
-Nothing here needs ROS. `service/ros_gateway.py` offers it in a ROS 2 graph, `api/rosbridge` to
-WebSocket clients that speak rosbridge.
-"""

@@ -1,0 +1,48 @@
+"""A robot in virtual time: the parts that run live, advanced as fast as they can be computed."""
+
+from domain.onboard import Onboard
+from domain.simulation.robot import SimulatedRobot
+from domain.timebase import Instant
+from service.event_log import EventLog
+from service.files.model_file import LoadedModel
+from service.simulation.simulated import SimulatedBackend
+from service.simulation.virtual_clock import VirtualClock
+from service.supervisor import Supervisor
+
+
+class VirtualRobot:
+    """Supervisor and simulated robot on a clock that moves only here; no task runs.
+
+    At one instant, what is due on board comes first, then nodes, signals and vehicle, as live.
+    """
+
+    def __init__(
+        self,
+        loaded: LoadedModel,
+        onboard: Onboard,
+        robot: SimulatedRobot,
+        clock: VirtualClock,
+        events: EventLog,
+    ) -> None:
+        self.clock = clock
+        self.backend = SimulatedBackend(robot, clock)
+        self.supervisor = Supervisor(
+            loaded, onboard, clock, self.backend, self.backend.mock, robot.what, events
+        )
+        # Who asks to wait for the end of a change is answered at once.
+        self.supervisor.stop_waiting()
+        self._onboard = onboard
+        self._robot = robot
+
+    def advance_to(self, end: Instant) -> None:
+        """Let time pass until `end`, and happen what is due up to then, that included."""
+        while (due := self._due()) <= end:
+            self.clock.set(due)
+            for message in self._robot.advance(self.clock.now()):
+                self.supervisor.deliver(message)
+            self.supervisor.let_pass()
+        self.clock.set(end)
+
+    def _due(self) -> Instant:
+        robot, onboard = self._robot.wake_at(), self._onboard.wake_at()
+        return robot if onboard is None else min(robot, onboard)

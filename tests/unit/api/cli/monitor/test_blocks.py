@@ -1,0 +1,237 @@
+import pytest
+from rich.text import Text
+
+from api.cli.monitor import blocks
+from api.cli.monitor.rows import SignalRow, part_rows
+from api.cli.monitor.store import Json, Robot
+from api.cli.monitor.view import Contact, Level
+from tests.support.monitor import (
+    AT,
+    after,
+    console,
+    event,
+    frame,
+    hold,
+    named,
+    off_target,
+    part,
+    robot,
+    signal,
+    stop,
+    system,
+    system_state,
+    task,
+    view,
+)
+
+
+def plain(lines: list[Text]) -> list[str]:
+    return [line.plain.rstrip() for line in lines]
+
+
+def drawn_parts(*parts: Json, width: int = 80, later_s: float = 0.0) -> list[str]:
+    rows = part_rows(named("name", *parts))
+    return plain(blocks.parts(view(robot(), later_s=later_s), rows, width, None))
+
+
+def drawn_signals(*signals: Json, later_s: float = 0.0, room: int | None = None) -> list[str]:
+    rows = [SignalRow(given) for given in signals]
+    return plain(blocks.signals(view(robot(), later_s=later_s), rows, 80, room))
+
+
+def drawn_task(*messages: Json, later_s: float = 0.0) -> list[str]:
+    return plain(blocks.task(view(robot(*messages), later_s=later_s), console()))
+
+
+def test_the_head_says_where_this_is_from_and_of_when() -> None:
+    (line,) = blocks.head(view(robot()), 60)
+
+    assert line.plain.startswith("Pilothouse  http://robot:8000 ")
+    assert line.plain[-3] == ":"
+    assert line.cell_len == 60
+
+
+def test_the_head_says_what_is_not_real() -> None:
+    state = {**system_state(), "simulated": ["nodes", "vehicle"]}
+    (line,) = blocks.head(view(robot(frame(system_state=state))), 80)
+
+    assert "  simulated: nodes, vehicle " in line.plain
+
+
+def test_the_head_marks_what_is_old() -> None:
+    (line,) = blocks.head(view(robot(), Contact(Level.LOST, 9.0)), 60)
+
+    assert "  old, of " in line.plain
+
+
+def test_before_the_first_frame_the_head_says_no_time() -> None:
+    assert plain(blocks.head(view(Robot()), 60)) == ["Pilothouse  http://robot:8000"]
+
+
+def test_a_part_has_target_state_and_mode_and_a_star_where_they_are_inferred() -> None:
+    target = {"state": "active", "mode": "FAST"}
+    base = part("base", mode="FAST", target=target)
+    starred = {**base, "actual": {**base["actual"], "mode_inferred": True}}
+
+    assert drawn_parts(system("robot", "base"), starred) == [
+        "  part   target              state            mode",
+        "  robot                      active(*)",
+        "    base active.FAST         active           FAST(*)",
+    ]
+
+
+def test_what_is_pursued_counts_more_than_what_was_asked() -> None:
+    pursued = {"state": "active", "mode": "SLOW", "because": "the arm is inactive"}
+    wanted = {"state": "active", "mode": "FAST"}
+
+    lines = drawn_parts(part("base", target=wanted, effective_target=pursued))
+
+    assert "active.SLOW" in lines[1]
+    assert "FAST" not in lines[1]
+
+
+def test_a_deviation_is_marked_and_its_time_counted() -> None:
+    line = drawn_parts(off_target("arm"), later_s=12.0)[1]
+
+    assert line.startswith("! arm ")
+    assert line.endswith(" deviates 12 s")
+
+
+def test_a_part_that_changes_is_marked_as_changing() -> None:
+    line = drawn_parts(off_target("arm", change="c1"), later_s=3.0)[1]
+
+    assert line.startswith("> arm ")
+    assert line.endswith(" changing 3 s")
+
+
+def test_a_node_that_is_not_reachable_says_so_in_a_word() -> None:
+    line = drawn_parts(part("arm", reachable=False))[1]
+
+    assert line.startswith("x arm ")
+    assert line.endswith(" unreachable")
+
+
+def test_why_a_part_cannot_be_judged_is_told_in_the_words_of_the_service() -> None:
+    lost = part("arm", "unknown")
+    why = {**lost, "actual": {**lost["actual"], "undecidable": True, "reason": "never reported"}}
+
+    line = drawn_parts(why)[1]
+
+    assert " ? " in line
+    assert line.endswith(" never reported")
+
+
+def test_a_narrow_terminal_shows_what_a_part_is_in_and_its_mark() -> None:
+    line = drawn_parts(off_target("arm"), width=40)[1]
+
+    assert line == "! arm  inactive"
+
+
+def test_a_signal_has_value_age_and_verdict() -> None:
+    assert drawn_signals(signal("battery_level", 0.9, "ratio"), later_s=0.5)[1] == (
+        "  battery_level      90 %           now         ok"
+    )
+
+
+def test_ages_are_counted_from_when_the_reading_came() -> None:
+    line = drawn_signals(signal("x", received_at=after(2)), later_s=64.0)[1]
+
+    assert " 1 min 2 s " in line
+
+
+def test_a_signal_that_never_came_says_so() -> None:
+    line = drawn_signals(signal("x", None, received_at=None, stale=True))[1]
+
+    assert line.split() == ["!", "x", "?", "never", "stale"]
+
+
+def test_an_error_that_comes_is_counted_down() -> None:
+    pending = {"error": "GPS_LOST", "since_at": AT, "needs_s": 15.0}
+
+    line = drawn_signals(signal("gps", pending=pending), later_s=5.0)[1]
+
+    assert line.startswith("> gps ")
+    assert line.endswith("GPS_LOST in 10 s")
+
+
+def test_without_room_for_all_signals_the_rest_is_counted() -> None:
+    given = [signal("a"), signal("b", stale=True), signal("c"), signal("d", stale=True)]
+
+    assert drawn_signals(*given, room=3)[1:] == [
+        "! b                  1              now         stale",
+        "  ... and 3 more signals, 1 of them marked",
+    ]
+
+
+def test_where_not_even_a_row_fits_there_are_no_titles() -> None:
+    assert drawn_signals(signal("a"), room=1) == []
+
+
+def test_no_task_is_told() -> None:
+    assert drawn_task() == ["no task"]
+
+
+def test_a_task_is_told_with_its_way_and_how_it_drives() -> None:
+    assert drawn_task(frame(task=task(), vehicle={"speed_mps": 2.7})) == [
+        "task t1  RUNNING  42 %, 336 m of 800 m, waypoint 41 of 66",
+        "  2.7 of 2.8 m/s, 0.03 m left of the path",
+    ]
+
+
+def test_why_a_task_waits_is_told() -> None:
+    lines = drawn_task(frame(task=task("PAUSED", reason="the vehicle is lost")))
+
+    assert lines[-1] == "  the vehicle is lost"
+
+
+def test_holds_are_told_instead_with_since_when_and_by_whom() -> None:
+    holds = {"type": "holds", "items": [hold("operator", "loading", "anna"), hold("error")]}
+
+    lines = drawn_task(frame(task=task("PAUSED", reason="loading; error")), holds, later_s=5.0)
+
+    assert lines[-2:] == [
+        "  held by operator: loading, for 5 s, by anna",
+        "  held by error, for 5 s",
+    ]
+
+
+def test_reasons_wrap_and_stay_behind_their_beginning() -> None:
+    long = "battery 42 % is below 50 %, and that is told at some length"
+    state = system_state("ERROR", long, "e-stop is pressed")
+
+    lines = blocks.sentences(view(robot(frame(system_state=state))), console(30))
+
+    assert plain(lines) == [
+        "ERROR  battery 42 % is below",
+        "  50 %, and that is told at",
+        "  some length",
+        "  e-stop is pressed",
+    ]
+
+
+def test_the_stop_is_told_before_the_state() -> None:
+    engaged = stop(engaged=True, reason="smoke", since_at=AT)
+
+    lines = blocks.sentences(view(robot({"type": "emergency_stop", **engaged})), console(80))
+
+    assert plain(lines) == [
+        "EMERGENCY STOP  engaged: smoke, for 0 s, no standstill seen yet",
+        "IDLE  no task",
+    ]
+
+
+def test_a_reason_cannot_move_the_cursor() -> None:
+    state = system_state("ERROR", "\x1b[2Jgone")
+
+    (line,) = blocks.sentences(view(robot(frame(system_state=state))), console(80))
+
+    assert line.plain == "ERROR  ?[2Jgone"
+
+
+@pytest.mark.parametrize(("room", "told"), [(2, ["t2 drives", "t3 drives"]), (0, []), (-1, [])])
+def test_of_what_happened_the_newest_is_told(room: int, told: list[str]) -> None:
+    starts = [event(number, "task.started", task=f"t{number}") for number in (1, 2, 3)]
+
+    lines = plain(blocks.notes(view(robot(*starts)), room))
+
+    assert [line[len("12:00:00  task ") :] for line in lines] == told

@@ -1,0 +1,114 @@
+import pytest
+
+from api.cli.monitor.picture import picture
+from api.cli.monitor.store import Json, Robot
+from api.cli.monitor.view import Contact, Level, View
+from tests.support.monitor import (
+    console,
+    event,
+    frame,
+    hold,
+    off_target,
+    part,
+    robot,
+    signal,
+    system,
+    system_state,
+    task,
+    view,
+)
+
+PARTS = (system("robot", "arm", "base"), part("arm"), off_target("base"))
+SIGNALS = (signal("battery_level"), signal("estop", value=False), signal("temperature"))
+BUSY = (
+    frame(system_state=system_state("ERROR", "battery is low"), task=task("PAUSED")),
+    {"type": "holds", "items": [hold("operator", "loading"), hold("error", "battery is low")]},
+    *(event(number, "task.started", task=f"t{number}") for number in range(1, 9)),
+)
+
+
+def busy(*more: Json) -> View:
+    return view(robot(*BUSY, *more, parts=PARTS, signals=SIGNALS))
+
+
+def drawn(seen: View, width: int = 80, height: int | None = None) -> list[str]:
+    return [line.plain for line in picture(seen, console(width), height)]
+
+
+def test_it_tells_how_it_is_then_parts_signals_and_task() -> None:
+    lines = drawn(busy(), height=40)
+
+    beginnings = [line.split(" ")[0] or line.split()[0] for line in lines if line]
+    order = ["Pilothouse", "ERROR", "part", "robot", "signal", "battery_level", "task", "(*)"]
+    assert [word for word in beginnings if word in order] == order
+
+
+@pytest.mark.parametrize("width", [1, 5, 20, 40, 60, 79, 80, 120])
+@pytest.mark.parametrize("height", [1, 2, 3, 5, 8, 12, 16, 20, 24, 25, 26, 27, 28, 29, 30, 40])
+def test_it_fits_any_terminal(width: int, height: int) -> None:
+    lines = picture(busy(), console(width), height)
+
+    assert len(lines) <= height
+    assert all(line.cell_len <= width for line in lines)
+
+
+@pytest.mark.parametrize("height", range(8, 30))
+def test_how_it_is_and_the_task_are_there_however_short_the_terminal_is(height: int) -> None:
+    lines = drawn(busy(), height=height)
+
+    assert lines[1].startswith("ERROR  battery is low")
+    assert any(line.startswith("task t1  PAUSED") for line in lines)
+
+
+def test_with_more_parts_than_lines_what_deviates_is_there_and_the_rest_is_counted() -> None:
+    names = [f"node_{number}" for number in range(200)]
+    parts = [system("robot", *names), *(part(name) for name in names[:-1]), off_target("node_199")]
+    lines = drawn(view(robot(parts=tuple(parts), signals=SIGNALS)), height=24)
+
+    at = next(place for place, line in enumerate(lines) if line.startswith("  part"))
+    assert lines[at + 1].startswith("! node_199 ")
+    assert lines[at + 2].startswith("  robot ")
+    shown = sum("node_" in line or line.startswith("  robot") for line in lines)
+    assert f"  ... and {201 - shown} more parts" in lines
+    assert len(lines) == 24
+
+
+def test_many_reasons_leave_room_for_the_rest() -> None:
+    reasons = [f"reason {number}" for number in range(50)]
+    state = frame(system_state=system_state("ERROR", *reasons))
+    lines = drawn(busy(state), height=24)
+
+    assert "  ... and 40 more lines" in lines
+    assert any(line.startswith("!   base") for line in lines)
+
+
+def test_without_a_limit_all_parts_are_there_and_nothing_of_before() -> None:
+    names = [f"node_{number}" for number in range(200)]
+    parts = (system("robot", *names), *(part(name) for name in names))
+    lines = drawn(view(robot(*BUSY, parts=parts)))
+
+    assert sum("node_" in line for line in lines) == 200
+    assert not any("drives" in line for line in lines)
+
+
+def test_where_there_is_room_it_tells_what_happened() -> None:
+    lines = drawn(busy(), height=40)
+
+    assert lines[-3].endswith("task t8 drives")
+
+
+def test_an_old_picture_is_kept_and_dimmed() -> None:
+    lost = View("u", busy().robot, Contact(Level.LOST, 9.0), 0.0)
+    lines = picture(lost, console(80), 40)
+
+    plain = [line.plain for line in lines]
+    assert plain[1].startswith("NO CONTACT")
+    assert any(line.startswith("WAS ERROR") for line in plain)
+    robots = next(line for line in lines if line.plain.startswith("  robot"))
+    assert any(span.style == "dim" for span in robots.spans)
+
+
+def test_before_anything_is_known_it_says_only_that() -> None:
+    waiting = view(Robot(), Contact(Level.CONNECTING, 0.0))
+
+    assert drawn(waiting, height=24)[1:] == ["CONNECTING  waiting for the first values"]

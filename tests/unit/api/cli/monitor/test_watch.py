@@ -1,0 +1,87 @@
+from api.cli.monitor.view import Contact, Level
+from api.cli.monitor.watch import Watch, local_now
+from tests.support.monitor import AT, URL, after, event, frame, hello
+
+
+class Time:
+    """Local time in seconds since 1970, which a test moves."""
+
+    def __init__(self) -> None:
+        self.now_s = 1000.0
+
+    def __call__(self) -> float:
+        return self.now_s
+
+
+def test_it_is_live_as_long_as_frames_come() -> None:
+    time = Time()
+    watch = Watch(URL, now=time)
+    watch.take(frame())
+
+    time.now_s += 2.9
+    assert watch.contact() == Contact(Level.LIVE, time.now_s - 1000.0)
+    time.now_s += 0.2
+    assert watch.contact().level is Level.LOST
+
+
+def test_contact_that_broke_is_lost_at_once_with_the_reason() -> None:
+    watch = Watch(URL, now=Time())
+    watch.take(frame())
+
+    watch.lose("the connection broke")
+
+    assert watch.contact() == Contact(Level.LOST, 0.0, "the connection broke")
+
+
+def test_with_the_next_frame_all_is_well_again() -> None:
+    watch = Watch(URL, now=Time())
+    watch.take(frame())
+    watch.lose("the connection broke")
+
+    watch.take(frame(after(1)))
+
+    assert watch.contact() == Contact(Level.LIVE, 0.0)
+
+
+def test_a_handshake_alone_is_no_contact() -> None:
+    watch = Watch(URL, now=Time())
+
+    watch.take(hello())
+
+    assert watch.contact().level is Level.CONNECTING
+
+
+def test_before_the_first_contact_it_is_connecting_and_after_a_while_there_is_none() -> None:
+    time = Time()
+    watch = Watch(URL, now=time)
+    watch.lose("no service answers")
+
+    assert watch.contact() == Contact(Level.CONNECTING, 0.0, "no service answers")
+    time.now_s += 4.0
+    assert watch.contact() == Contact(Level.LOST, 4.0, "no service answers")
+
+
+def test_the_time_of_a_view_is_that_of_the_service() -> None:
+    time = Time()
+    watch = Watch(URL, now=time)
+    watch.take(frame())
+
+    time.now_s += 2.0
+
+    assert watch.view().age_s(AT) == 2.0
+
+
+def test_news_are_told_with_the_frame_that_what_came_before_fits() -> None:
+    told: list[int] = []
+    watch = Watch(URL, lambda: told.append(watch.robot.last_event_id), Time())
+
+    watch.take(hello())
+    watch.take(event(3, "task.started", task="t1"))
+    watch.take(frame())
+    watch.lose("the connection broke")
+
+    assert told == [3, 3]
+
+
+def test_local_time_does_not_go_back() -> None:
+    assert local_now() <= local_now()

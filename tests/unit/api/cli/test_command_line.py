@@ -1,0 +1,109 @@
+import subprocess
+import sys
+
+import pytest
+
+from api import distribution
+from api.cli import command_line
+from api.cli.command_line import main
+from api.client.service_client import Outcome
+
+Output = pytest.CaptureFixture[str]
+
+COMMANDS = ("serve", "monitor", "check", "mode", "state", "task", "simulate")
+
+
+def exit_code(*arguments: str) -> int:
+    """Return the code of a command that argparse ends."""
+    with pytest.raises(SystemExit) as ended:
+        main(arguments)
+    assert isinstance(ended.value.code, int)
+    return ended.value.code
+
+
+def test_without_a_command_it_says_what_there_is(capsys: Output) -> None:
+    assert main([]) == 2
+
+    told = capsys.readouterr().out
+    assert [line for line in told.splitlines() if len(line) > 80] == []
+    for command in COMMANDS:
+        assert f"pilothouse {command} " in told
+
+
+def test_it_tells_its_version(capsys: Output) -> None:
+    assert exit_code("--version") == 0
+    assert capsys.readouterr().out.startswith("pilothouse 0.")
+
+
+@pytest.mark.parametrize("command", COMMANDS)
+def test_each_command_explains_itself_in_80_columns(
+    command: str, capsys: Output, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv("COLUMNS", "80")
+
+    assert exit_code(command, "--help") == 0
+
+    told = capsys.readouterr().out
+    assert "usage: pilothouse" in told
+    assert [line for line in told.splitlines() if len(line) > 80] == []
+
+
+@pytest.mark.parametrize(
+    ("arguments", "words"),
+    [
+        (["serve", "--port", "65536"], "65536 is no port"),
+        (["serve", "--port", "http"], "invalid"),
+        (["mode", "actuation"], "MODE"),
+        (["mode", "actuation", "FAST", "--wait", "nan"], "not within 0 to 3600"),
+        (["mode", "actuation", "FAST", "--wait", "-1"], "not within 0 to 3600"),
+        (["state", "actuation", "fly"], "invalid choice"),
+        (["task"], "FILE --cancel is required"),
+        (["task", "a.csv", "--cancel"], "not allowed with argument FILE"),
+        (["task", "a.csv", "--heading", "up"], "invalid choice"),
+        (["task", "a.csv", "--speed", "fast"], "invalid float value"),
+        (["simulate"], "SCENARIO"),
+        (["simulate", "a.yaml", "--format", "xml"], "invalid choice"),
+        (["monitor", "--format", "xml"], "invalid choice"),
+        (["fly"], "invalid choice"),
+    ],
+)
+def test_a_misspelt_command_is_told_and_ends_with_two(
+    arguments: list[str], words: str, capsys: Output
+) -> None:
+    assert exit_code(*arguments) == 2
+    assert words in capsys.readouterr().err
+
+
+def test_help_is_quick_since_nothing_is_imported_that_it_does_not_need() -> None:
+    code = "import sys, api.cli.command_line; print(*sys.modules)"
+    loaded = subprocess.run(
+        [sys.executable, "-c", code], capture_output=True, text=True, check=True
+    ).stdout.split()
+
+    assert "api.cli.commands.monitor" in loaded
+    heavy = {"asyncio", "domain", "fastapi", "httpx", "numpy", "pydantic", "rich", "websockets"}
+    assert heavy.isdisjoint(loaded)
+
+
+def test_ctrl_c_ends_without_a_trace(monkeypatch: pytest.MonkeyPatch, capsys: Output) -> None:
+    def change(*_: object) -> Outcome:
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr("api.client.service_client.change", change)
+
+    assert main(["mode", "actuation", "PERFORMANCE"]) == 130
+    assert capsys.readouterr() == ("", "")
+
+
+def test_a_foreign_package_is_told_before_anything_is_done(
+    monkeypatch: pytest.MonkeyPatch, capsys: Output
+) -> None:
+    def find_foreign() -> None:
+        raise distribution.ForeignPackageError("domain", "it lies elsewhere")
+
+    monkeypatch.setattr(command_line, "check_packages", find_foreign)
+
+    assert main(["check", "robot.yaml"]) == 1
+    told = capsys.readouterr().err
+    assert "'domain'" in told
+    assert "environment of its own" in told

@@ -1,0 +1,191 @@
+"""Who wrote what is in the log of events, and nothing that would wash it clean is."""
+
+from typing import Any
+
+import pytest
+from fastapi.routing import APIRoute
+from starlette.types import Receive, Scope, Send
+
+from api.http.access import Access
+from api.http.gate.audit import Audit, is_write
+from domain.inputs import WriteRecord
+from tests.support.asgi import messages_of
+from tests.support.http_robot import HttpRobot, http_robot, http_scope
+
+
+def audits(robot: HttpRobot) -> list[dict[str, Any]]:
+    events = robot.supervisor.events.oldest_first()
+    return [dict(event.data) for event in events if event.kind == "audit.write"]
+
+
+async def test_a_write_is_recorded_with_who_asked_and_how_it_was_answered(
+    robot: HttpRobot,
+) -> None:
+    await robot.http.put("/emergency_stop", json={"engaged": True, "reason": "test"})
+
+    (told,) = (await robot.get("/events?kind=audit.write"))["items"]
+    assert told["actor"] == "http:127.0.0.1"
+    assert told["cause"] is None
+    assert told["data"] == {
+        "method": "PUT",
+        "path": "/emergency_stop",
+        "status": 200,
+        "address": "127.0.0.1:123",
+    }
+
+
+@pytest.mark.parametrize(
+    ("method", "path", "body", "status"),
+    [
+        ("POST", "/systems/actuation/mode", {"mode": "MODERATE"}, 202),
+        ("POST", "/systems/actuation/mode", {"mode": "NO_SUCH_MODE"}, 422),
+        ("POST", "/systems/nobody/mode", {"mode": "MODERATE"}, 404),
+        ("PATCH", "/nodes/drive_base/parameters", {"max_speed": 0.2}, 202),
+        ("DELETE", "/changes/c99", None, 404),
+        ("POST", "/tasks", {"waypoints": []}, 422),
+        ("DELETE", "/tasks/current", None, 204),
+        ("PUT", "/holds/operator", {"reason": "test"}, 200),
+        ("DELETE", "/holds/error", None, 409),
+        ("PATCH", "/mock/battery_level", {"value": 0.7}, 200),
+        ("POST", "/errors/ESTOP/acknowledge", None, 200),
+    ],
+)
+async def test_every_write_that_reaches_a_route_is_recorded_also_a_refused_one(
+    method: str, path: str, body: object, status: int, robot: HttpRobot
+) -> None:
+    answer = await robot.http.request(method, path, json=body)
+
+    assert answer.status_code == status
+    address = "127.0.0.1:123"
+    assert audits(robot) == [{"method": method, "path": path, "status": status, "address": address}]
+
+
+async def test_the_query_is_not_recorded_since_anything_may_be_in_it(robot: HttpRobot) -> None:
+    await robot.http.delete("/tasks/current?token=secret")
+
+    assert "secret" not in str(audits(robot))
+
+
+@pytest.mark.parametrize(
+    ("method", "path", "body"),
+    [
+        ("GET", "/systems", None),
+        ("HEAD", "/systems", None),
+        ("POST", "/signals", {"battery_level": 0.9}),
+        ("POST", "/signals/battery_level", {"value": 0.9}),
+        ("POST", "/inference", {}),
+        ("POST", "/model/check", {}),
+        ("POST", "/tasks/preview", {}),
+        ("POST", "/systems/actuation/mode?dry_run=true", {"mode": "MODERATE"}),
+        ("POST", "/systems/actuation/mode?dry_run=1", {"mode": "MODERATE"}),
+        ("PATCH", "/nodes/drive_base/parameters?dry_run=yes", {"max_speed": 0.2}),
+        ("POST", "/nowhere", {}),
+        ("POST", "/emergency_stop", {}),
+    ],
+)
+async def test_what_changes_nothing_and_what_only_reports_is_not(
+    method: str, path: str, body: object, robot: HttpRobot
+) -> None:
+    await robot.http.request(method, path, json=body)
+
+    assert audits(robot) == []
+
+
+@pytest.mark.parametrize(
+    ("method", "path"),
+    [
+        ("POST", "/systems/actuation/mode?dry_run=false"),
+        ("POST", "/systems/actuation/mode?dry_run=true&dry_run=false"),
+        ("POST", "/systems/actuation/mode?dry_run=perhaps"),
+        ("PUT", "/emergency_stop?dry_run=true"),
+        ("DELETE", "/tasks/current?dry_run=true"),
+        ("POST", "/tasks?dry_run=true"),
+    ],
+)
+async def test_a_query_hides_no_write(method: str, path: str, robot: HttpRobot) -> None:
+    await robot.http.request(method, path, json={"mode": "MODERATE"})
+
+    assert len(audits(robot)) == 1
+
+
+def test_everything_that_takes_a_dry_run_is_known_here(robot: HttpRobot) -> None:
+    planned = {
+        (method.upper(), path)
+        for path, operations in robot.app.openapi()["paths"].items()
+        for method, operation in operations.items()
+        if any(given["name"] == "dry_run" for given in operation.get("parameters", ()))
+    }
+
+    assert planned
+    for method, path in planned:
+        assert is_write(http_scope(method, path))
+        assert not is_write(http_scope(method, path, "dry_run=true"))
+
+
+@pytest.mark.parametrize(
+    "headers", [{"host": "evil.example"}, {"origin": "http://evil.example"}, {"authorization": "x"}]
+)
+async def test_who_was_turned_away_at_the_gate_did_not_write(headers: dict[str, str]) -> None:
+    access = Access.with_token("correct-horse-battery")
+    async with http_robot(access=access) as robot:
+        answer = await robot.http.delete("/tasks/current", headers=headers)
+
+        assert answer.status_code in (401, 403)
+        assert audits(robot) == []
+
+
+async def test_a_fault_in_a_route_is_recorded_as_one(
+    robot: HttpRobot, caplog: pytest.LogCaptureFixture
+) -> None:
+    async def fail() -> None:
+        raise ValueError("inside")
+
+    robot.app.router.routes.append(APIRoute("/fails", fail, methods=["POST"]))
+
+    await robot.http.post("/fails")
+
+    assert [told["status"] for told in audits(robot)] == [500]
+
+
+async def test_the_record_is_there_before_the_answer_is(robot: HttpRobot) -> None:
+    order = []
+
+    async def route(scope: Scope, receive: Receive, send: Send) -> None:
+        scope["endpoint"] = route
+        await send({"type": "http.response.start", "status": 204, "headers": []})
+        order.append("answered")
+
+    def record(given: WriteRecord) -> None:
+        order.append(f"recorded {given.status}")
+
+    await messages_of(Audit(route, record), http_scope("DELETE", "/tasks/current"))
+
+    assert order == ["recorded 204", "answered"]
+
+
+async def test_an_address_is_written_as_in_an_url_and_a_path_is_cut() -> None:
+    found: list[WriteRecord] = []
+
+    async def route(scope: Scope, receive: Receive, send: Send) -> None:
+        scope["endpoint"] = route
+        await send({"type": "http.response.start", "status": 200, "headers": []})
+
+    for client in (("fd00::1", 50_000), None):
+        scope = {**http_scope("PUT", "/holds/" + "x" * 1_000), "client": client}
+        await messages_of(Audit(route, found.append), scope)
+
+    assert [given.address for given in found] == ["[fd00::1]:50000", "unknown"]
+    assert [given.actor for given in found] == ["http:fd00::1", "http:unknown"]
+    assert {len(given.path) for given in found} == {200}
+
+
+async def test_a_simulation_records_no_writes_since_nobody_wrote(robot: HttpRobot) -> None:
+    hold = {"method": "PUT", "path": "/holds/operator", "body": {"reason": "test"}}
+    scenario = {"until_s": 1, "steps": [{"t_s": 0, "request": hold}]}
+
+    answer = await robot.http.post("/simulations", json=scenario)
+
+    kinds = {event["kind"] for event in answer.json()["events"]}
+    assert "hold.set" in kinds
+    assert "audit.write" not in kinds
+    assert audits(robot) == []

@@ -1,0 +1,147 @@
+"""`/livez`, `/readyz` and `/healthz`: how the service fares, whatever the robot does."""
+
+from collections.abc import AsyncIterator
+from typing import Any
+
+import httpx
+import pytest
+from fastapi import FastAPI
+
+from api.app import create_app
+from domain.findings import Finding
+from domain.inputs import EmergencyStopRequest, Reading
+from domain.timebase import seconds
+from service.supervisor import Supervisor
+from tests.support.live_robot import make_supervisor, running
+from tests.support.manual_clock import ManualClock
+
+ODD = Finding("warning", "INDISTINGUISHABLE_MODES", "WEAK is equal to __DEFAULT__", "manipulator")
+
+
+@pytest.fixture
+def clock() -> ManualClock:
+    return ManualClock()
+
+
+@pytest.fixture
+def supervisor(clock: ManualClock) -> Supervisor:
+    return make_supervisor(clock, warnings=[ODD])
+
+
+@pytest.fixture
+def app(supervisor: Supervisor) -> FastAPI:
+    return create_app(supervisor, allowed_hosts=[])
+
+
+@pytest.fixture
+async def http(app: FastAPI) -> AsyncIterator[httpx.AsyncClient]:
+    transport = httpx.ASGITransport(app)
+    async with httpx.AsyncClient(transport=transport, base_url="http://127.0.0.1:8000") as client:
+        yield client
+
+
+async def warnings(http: httpx.AsyncClient) -> dict[str, str]:
+    return {item["code"]: item["message"] for item in (await health(http))["warnings"]}
+
+
+async def health(http: httpx.AsyncClient) -> dict[str, Any]:
+    answer = await http.get("/healthz")
+    assert answer.status_code == 200
+    found = answer.json()
+    assert isinstance(found, dict)
+    return found
+
+
+async def test_a_service_is_alive_before_it_is_ready(http: httpx.AsyncClient) -> None:
+    assert (await http.get("/livez")).status_code == 200
+
+    refused = await http.get("/readyz")
+
+    assert refused.status_code == 503
+    assert refused.headers["content-type"] == "application/problem+json"
+    assert refused.json()["code"] == "NOT_READY"
+    assert "has not ticked" in refused.json()["detail"]
+
+
+async def test_a_service_that_ticks_is_ready(
+    http: httpx.AsyncClient, supervisor: Supervisor
+) -> None:
+    async with running(supervisor):
+        answer = await http.get("/readyz")
+
+    assert answer.status_code == 200
+    assert answer.json()["status"] == "ready"
+
+
+async def test_a_service_whose_core_stands_still_for_a_second_is_not_ready(
+    http: httpx.AsyncClient, supervisor: Supervisor, clock: ManualClock
+) -> None:
+    async with running(supervisor):
+        pass
+    await clock.advance(0.99)
+    before = await http.get("/readyz")
+
+    await clock.advance(0.01)
+
+    assert before.status_code == 200
+    assert (await http.get("/readyz")).status_code == 503
+    assert (await health(http))["status"] == "failing"
+
+
+async def test_a_robot_in_error_is_watched_by_a_healthy_service(
+    http: httpx.AsyncClient, supervisor: Supervisor
+) -> None:
+    async with running(supervisor):
+        supervisor.submit(EmergencyStopRequest(True, "test", "operator"))
+
+        assert (await http.get("/readyz")).status_code == 200
+        assert (await health(http))["status"] == "ok"
+
+
+async def test_what_is_odd_about_the_model_is_a_warning(http: httpx.AsyncClient) -> None:
+    assert (await warnings(http))["INDISTINGUISHABLE_MODES"] == ODD.message
+
+
+async def test_a_sender_with_a_wrong_clock_is_a_warning(
+    http: httpx.AsyncClient, supervisor: Supervisor, clock: ManualClock
+) -> None:
+    await clock.advance(10)
+    early = Reading("temperature", 30.0, clock.now() - seconds(5))
+
+    supervisor.submit_readings([early])
+
+    assert "temperature" in (await warnings(http))["CLOCK_SKEW"]
+
+
+async def test_ticks_that_were_late_are_a_warning(
+    http: httpx.AsyncClient, supervisor: Supervisor
+) -> None:
+    assert "LATE_TICKS" not in await warnings(http)
+
+    supervisor.late_ticks = 3
+
+    assert "3 ticks" in (await warnings(http))["LATE_TICKS"]
+
+
+async def test_a_service_that_anybody_can_reach_warns_of_it(
+    http: httpx.AsyncClient, app: FastAPI
+) -> None:
+    assert "NO_AUTHENTICATION" not in await warnings(http)
+
+    app.state.exposed = True
+
+    assert "NO_AUTHENTICATION" in await warnings(http)
+
+
+async def test_a_vehicle_that_does_not_tell_where_it_is_is_a_warning(
+    http: httpx.AsyncClient, supervisor: Supervisor, clock: ManualClock
+) -> None:
+    assert (await warnings(http))["NO_POSE"] == "the vehicle never told where it is"
+    async with running(supervisor):
+        assert "NO_POSE" not in await warnings(http)
+        parts = supervisor.simulated_parts
+        assert parts is not None
+        parts[1].vehicle.set_reporting(False, clock.now())
+        await clock.advance(1)
+
+        assert (await warnings(http))["NO_POSE"] == "no pose of the vehicle for 0.3 s"

@@ -1,0 +1,170 @@
+import sys
+from pathlib import Path
+from types import SimpleNamespace
+
+import pytest
+
+from api.serving.composition import MisuseError, ServeOptions, compose
+from service.files.robot_file import RobotSettings
+from service.ros.graph.graph import UnknownFieldError, UnknownTypeError
+from service.start_task import StartTaskError
+from tests.support.manual_clock import ManualClock
+from tests.support.ros_graph import FakeGraph
+
+LINK = "service.ros.graph.link"
+
+
+@pytest.fixture
+def robot(tmp_path: Path) -> Path:
+    return tmp_path / "robot.yaml"
+
+
+@pytest.fixture
+def _ros(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Let there be ROS 2 on this machine."""
+    link = SimpleNamespace(RosLink=lambda: FakeGraph(ManualClock()))
+    monkeypatch.setitem(sys.modules, LINK, link)
+
+
+def test_without_arguments_the_example_is_served_with_everything_simulated() -> None:
+    composition = compose(ServeOptions(), ManualClock())
+
+    assert "actuation" in composition.supervisor.model.systems
+    assert composition.supervisor.simulated == ("nodes", "signals", "vehicle")
+    assert composition.supervisor.warnings == ()
+    assert composition.gateway is None
+
+
+def test_a_robot_file_may_turn_the_mock_off(robot: Path) -> None:
+    robot.write_text("mock: false\n")
+    supervisor = compose(ServeOptions(robot=robot), ManualClock()).supervisor
+
+    assert supervisor.simulated == ("nodes", "vehicle")
+
+
+def test_the_command_line_may_turn_the_mock_on_again(robot: Path) -> None:
+    robot.write_text("mock: false\n")
+    supervisor = compose(ServeOptions(robot=robot, mock_signals=True), ManualClock()).supervisor
+
+    assert supervisor.mock is not None
+
+
+def test_the_settings_of_a_robot_file_reach_the_core_and_the_service(robot: Path) -> None:
+    robot.write_text("signals: {battery_level: {threshold: 0.3}}\nlimits: {stream_clients: 3}\n")
+    composition = compose(ServeOptions(robot=robot), ManualClock())
+
+    signal = composition.supervisor.core.signal("battery_level")
+    assert signal.settings["threshold"] == 0.3
+    assert composition.limits.stream_clients == 3
+
+
+def test_a_start_task_that_cannot_be_driven_is_told(robot: Path) -> None:
+    (robot.parent / "path.csv").write_text("0,0,0\n")
+    robot.write_text("start_task: {file: path.csv}\n")
+
+    with pytest.raises(StartTaskError, match=r"path\.csv"):
+        compose(ServeOptions(robot=robot), ManualClock())
+
+
+def test_nothing_set_is_a_robot_file_without_content() -> None:
+    assert RobotSettings().mock is None
+
+
+# --- ROS 2 ---------------------------------------------------------------------------------------
+
+
+@pytest.mark.usefixtures("_ros")
+def test_real_nodes_are_reached_where_that_is_said() -> None:
+    composition = compose(ServeOptions(backend="ros2"), ManualClock())
+
+    assert composition.gateway is not None
+    assert composition.supervisor.simulated_parts is None
+    assert composition.supervisor.simulated == ()
+    assert composition.supervisor.mock is None
+
+
+@pytest.mark.usefixtures("_ros")
+def test_a_robot_file_says_so_too_and_the_command_line_has_the_last_word(robot: Path) -> None:
+    robot.write_text("backend: ros2\n")
+
+    assert compose(ServeOptions(robot=robot), ManualClock()).gateway is not None
+    simulated = compose(ServeOptions(robot=robot, backend="simulated"), ManualClock())
+    assert simulated.gateway is None
+    assert simulated.supervisor.simulated == ("nodes", "signals", "vehicle")
+
+
+@pytest.mark.usefixtures("_ros")
+@pytest.mark.parametrize(
+    ("text", "flag", "mocked"),
+    [("", False, False), ("mock: false", True, True), ("mock: true", False, True)],
+)
+def test_signals_of_a_real_robot_are_mocked_only_where_that_is_asked(
+    robot: Path, text: str, flag: bool, mocked: bool
+) -> None:
+    robot.write_text(f"{text}\n")
+    options = ServeOptions(robot=robot, backend="ros2", mock_signals=flag)
+    supervisor = compose(options, ManualClock()).supervisor
+
+    assert (supervisor.mock is not None) is mocked
+    assert supervisor.simulated == (("signals",) if mocked else ())
+
+
+@pytest.mark.parametrize("absent", ["rclpy", LINK])
+def test_without_rclpy_it_is_said_what_to_do(absent: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.delitem(sys.modules, LINK, raising=False)
+    monkeypatch.setitem(sys.modules, absent, None)
+
+    with pytest.raises(MisuseError) as caught:
+        compose(ServeOptions(backend="ros2"), ManualClock())
+
+    for way in ("source the setup.bash", "pip install 'pilothouse[ros2]'"):
+        assert way in str(caught.value)
+
+
+def test_a_middleware_that_does_not_start_is_told(monkeypatch: pytest.MonkeyPatch) -> None:
+    def start() -> None:
+        raise RuntimeError("ROS_DOMAIN_ID is not an integral number")
+
+    link = SimpleNamespace(RosLink=start)
+    monkeypatch.setitem(sys.modules, LINK, link)
+
+    with pytest.raises(MisuseError, match="ROS 2 does not start: ROS_DOMAIN_ID is"):
+        compose(ServeOptions(backend="ros2"), ManualClock())
+
+
+@pytest.mark.parametrize(
+    "topics",
+    [
+        "signals: {estop: {topic: /e, type: gone_msgs/msg/Stop, field: pressed}}",
+        "command: {topic: /c, type: ackermann_msgs/msg/AckermannDrive}",
+    ],
+)
+def test_a_type_that_the_robot_file_names_has_to_be_there(
+    robot: Path, topics: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    absent = ("gone_msgs/msg/Stop", "ackermann_msgs/msg/AckermannDrive")
+    link = SimpleNamespace(RosLink=lambda: FakeGraph(ManualClock(), absent))
+    monkeypatch.setitem(sys.modules, LINK, link)
+    robot.write_text(f"ros2: {{{topics}}}\n")
+
+    with pytest.raises(UnknownTypeError, match="install its package"):
+        compose(ServeOptions(robot=robot, backend="ros2"), ManualClock())
+
+
+@pytest.mark.usefixtures("_ros")
+def test_a_field_that_the_robot_file_names_has_to_be_there(robot: Path) -> None:
+    topic = "{topic: /load, type: std_msgs/msg/Float64, field: no_such_field}"
+    robot.write_text(f"ros2: {{signals: {{temperature: {topic}}}}}\n")
+
+    with pytest.raises(UnknownFieldError, match="has no field no_such_field; it has data"):
+        compose(ServeOptions(robot=robot, backend="ros2"), ManualClock())
+
+
+def test_topics_of_a_robot_that_is_simulated_are_said_to_have_no_effect(
+    robot: Path, caplog: pytest.LogCaptureFixture
+) -> None:
+    robot.write_text("ros2: {odometry: {topic: /odom}}\n")
+
+    compose(ServeOptions(robot=robot), ManualClock())
+
+    assert "`ros2` of the robot file has no effect" in caplog.text

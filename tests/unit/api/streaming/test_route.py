@@ -1,0 +1,443 @@
+"""`WS /ws` as a client sees it, over the real supervisor in virtual time."""
+
+import json
+from collections.abc import AsyncIterator
+
+import pytest
+from fastapi import FastAPI
+
+from api.app import create_app
+from api.http.access import Access
+from api.http.limits import ServiceLimits
+from api.streaming import hub
+from api.streaming import route as stream
+from api.streaming.hub import stream_hub
+from domain.inputs import EmergencyStopRequest, ModeRequest
+from domain.state_and_mode import PartName
+from service.supervisor import Supervisor
+from tests.support.live_robot import make_supervisor, running
+from tests.support.manual_clock import ManualClock
+from tests.support.waiting import until
+from tests.support.websocket import WebSocketClient
+
+PERFORMANCE = ModeRequest(PartName("actuation"), "PERFORMANCE", "operator")
+
+
+@pytest.fixture
+def clock() -> ManualClock:
+    return ManualClock()
+
+
+@pytest.fixture
+async def supervisor(clock: ManualClock) -> AsyncIterator[Supervisor]:
+    supervisor = make_supervisor(clock)
+    async with running(supervisor):
+        yield supervisor
+
+
+@pytest.fixture
+def app(supervisor: Supervisor) -> FastAPI:
+    return create_app(supervisor, allowed_hosts=[])
+
+
+async def in_step(client: WebSocketClient) -> None:
+    """Read what is there from the start."""
+    await client.frame("state")
+    client.frames()
+
+
+async def test_a_client_is_greeted_and_then_told_everything(
+    app: FastAPI, supervisor: Supervisor
+) -> None:
+    async with WebSocketClient(app) as client:
+        hello = await client.frame()
+        state = await client.frame()
+
+    assert hello["type"] == "hello"
+    assert hello["epoch"] == supervisor.epoch
+    assert state["type"] == "state"
+    assert state["skipped"] == 0
+    assert set(state["parts"]) == {"actuation", "drive_base", "manipulator"}
+    assert len(state["signals"]) == 5
+
+
+async def test_frames_come_at_twenty_a_second_without_a_gap(
+    app: FastAPI, clock: ManualClock
+) -> None:
+    async with WebSocketClient(app) as client:
+        await in_step(client)
+        await clock.advance(3)
+        frames = client.frames()
+
+    states = [frame for frame in frames if frame["type"] == "state"]
+    assert len(states) == 60
+    assert [frame["seq"] - states[0]["seq"] for frame in states] == list(range(60))
+    assert {frame["skipped"] for frame in states} == {0}
+
+
+async def test_once_a_second_everything_is_told_again(app: FastAPI, clock: ManualClock) -> None:
+    async with WebSocketClient(app, topics="parts") as client:
+        await in_step(client)
+        await clock.advance(3)
+        complete = [frame for frame in client.frames() if len(frame.get("parts", ())) == 3]
+
+    assert len(complete) == 3
+
+
+async def test_an_emergency_stop_is_told_at_once_and_not_at_the_next_tick(
+    app: FastAPI, supervisor: Supervisor
+) -> None:
+    async with WebSocketClient(app, topics="system_state") as client:
+        await in_step(client)
+
+        supervisor.submit(EmergencyStopRequest(True, "test", "operator"))
+
+        frame = await client.frame("state")
+    assert frame["system_state"]["state"] == "ERROR"
+    assert frame["system_state"]["errors"] == ["ESTOP"]
+
+
+async def test_a_change_of_mode_is_followed_by_events_in_order(
+    app: FastAPI, supervisor: Supervisor, clock: ManualClock
+) -> None:
+    async with WebSocketClient(app, topics="events") as client:
+        await client.frame("hello")
+        supervisor.submit(PERFORMANCE)
+        await clock.advance(2)
+        events = client.frames()
+
+    assert {event["type"] for event in events} == {"event"}
+    ids = [event["id"] for event in events]
+    assert ids == list(range(ids[0], ids[0] + len(ids)))
+    assert events[0]["kind"] == "change.requested"
+    assert events[0]["actor"] == "operator"
+    assert "change.succeeded" in {event["kind"] for event in events}
+
+
+async def test_the_last_frame_of_a_change_shows_the_robot_as_it_was_asked_to_be(
+    app: FastAPI, supervisor: Supervisor, clock: ManualClock
+) -> None:
+    parts: dict[str, object] = {}
+    async with WebSocketClient(app) as client:
+        await in_step(client)
+        supervisor.submit(PERFORMANCE)
+        await clock.advance(2)
+        for frame in client.frames():
+            parts |= frame.get("parts", {})
+
+    actuation = parts["actuation"]
+    assert isinstance(actuation, dict)
+    assert actuation["converged"] is True
+    assert actuation["actual"]["mode"] == "PERFORMANCE"
+
+
+async def test_a_client_that_comes_back_gets_the_events_it_missed(
+    app: FastAPI, supervisor: Supervisor, clock: ManualClock
+) -> None:
+    known = supervisor.events.newest
+    supervisor.submit(PERFORMANCE)
+    await clock.advance(2)
+    newest = supervisor.events.newest
+
+    epoch = supervisor.epoch
+    async with WebSocketClient(app, topics="events", after=known, epoch=epoch) as client:
+        ids = [(await client.frame("event"))["id"] for _ in range(known, newest)]
+
+    assert ids == list(range(known + 1, newest + 1))
+
+
+async def test_a_client_of_an_earlier_run_is_told_of_the_gap_and_gets_all_there_is(
+    app: FastAPI, supervisor: Supervisor
+) -> None:
+    async with WebSocketClient(app, topics="events", after=88, epoch="earlier") as client:
+        await client.frame("hello")
+        gap = await client.frame()
+        first = await client.frame()
+
+    assert gap == {"type": "gap", "from": 89, "to": None, "epoch": "earlier"}
+    assert (first["type"], first["id"], first["epoch"]) == ("event", 1, supervisor.epoch)
+
+
+async def test_without_a_cursor_only_new_events_come(app: FastAPI, supervisor: Supervisor) -> None:
+    known = supervisor.events.newest
+    assert known > 0
+
+    async with WebSocketClient(app, topics="events") as client:
+        await client.frame("hello")
+        supervisor.submit(EmergencyStopRequest(True, "test", "operator"))
+        event = await client.frame()
+
+    assert event["id"] == known + 1
+
+
+async def test_a_slow_client_skips_is_told_how_many_and_gets_everything_then(
+    app: FastAPI, clock: ManualClock
+) -> None:
+    async with WebSocketClient(app, topics="parts,signals") as client:
+        await in_step(client)
+        client.stop_reading()
+        await clock.advance(0.5)
+        client.go_on_reading()
+        await clock.advance(0.05)
+        waited = await client.frame("state")
+        after = await client.frame("state")
+
+    assert waited["skipped"] == 0
+    assert after["seq"] == waited["seq"] + after["skipped"] + 1
+    assert after["skipped"] == 9
+    assert len(after["parts"]) == 3
+
+
+async def test_a_slow_client_delays_nobody(app: FastAPI, clock: ManualClock) -> None:
+    async with WebSocketClient(app) as slow, WebSocketClient(app) as quick:
+        await in_step(slow)
+        await in_step(quick)
+        slow.stop_reading()
+        await clock.advance(2)
+        frames = quick.frames()
+
+    assert len([frame for frame in frames if frame["type"] == "state"]) == 40
+    assert not any(frame.get("skipped") for frame in frames)
+
+
+async def test_a_client_that_does_not_read_at_all_is_cut_off_within_five_seconds(
+    app: FastAPI, clock: ManualClock
+) -> None:
+    async with WebSocketClient(app) as client:
+        await in_step(client)
+        client.stop_reading()
+        await clock.advance(4)
+        assert not client.cut_off
+        await clock.advance(1)
+
+        assert client.cut_off
+        await client.end()
+    assert stream_hub(app).fan_out.dropped == 1
+    assert stream_hub(app).clients == 0
+
+
+async def test_a_client_that_leaves_by_itself_is_not(app: FastAPI) -> None:
+    async with WebSocketClient(app) as client:
+        await in_step(client)
+
+    assert stream_hub(app).fan_out.dropped == 0
+
+
+async def test_one_client_too_many_is_told_to_come_later(
+    supervisor: Supervisor,
+) -> None:
+    app = create_app(supervisor, allowed_hosts=[], limits=ServiceLimits(stream_clients=1))
+
+    async with WebSocketClient(app) as first, WebSocketClient(app) as second:
+        assert await second.end() == 1013
+        assert (await first.frame())["type"] == "hello"
+
+
+async def test_nothing_is_said_to_a_client_that_went_while_it_was_let_in(
+    app: FastAPI, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    client = WebSocketClient(app)
+    monkeypatch.setattr(client, "is_closing", lambda: True)
+    async with client:
+        await client.end()
+
+    assert client.frames() == []
+
+
+async def test_a_client_that_left_leaves_its_place_to_the_next(app: FastAPI) -> None:
+    async with WebSocketClient(app) as client:
+        await client.frame()
+        assert stream_hub(app).clients == 1
+
+    assert stream_hub(app).clients == 0
+
+
+@pytest.mark.parametrize(
+    ("query", "words"),
+    [
+        ({"topics": "partz"}, "there is no topic 'partz'"),
+        ({"topics": ""}, "no topic is named"),
+        ({"after": "yesterday"}, "no id of an event"),
+    ],
+)
+async def test_what_is_wrong_with_the_address_is_told_before_it_is_closed(
+    app: FastAPI, query: dict[str, str], words: str
+) -> None:
+    async with WebSocketClient(app, "/ws", None, **query) as client:
+        problem = await client.frame()
+
+        assert await client.end() == 1008
+    assert (problem["type"], problem["status"]) == ("problem", 422)
+    assert words in problem["detail"]
+
+
+@pytest.mark.parametrize(
+    ("named", "told"), [({}, "mock"), ({"source": "left button"}, "left button")]
+)
+async def test_the_mock_stands_in_for_a_client_that_does_not_say_who_measured(
+    named: dict[str, str], told: str, app: FastAPI, supervisor: Supervisor
+) -> None:
+    async with WebSocketClient(app) as client:
+        await in_step(client)
+
+        client.send({"type": "reading", "signal": "estop", "value": True, **named})
+        await until(lambda: bool(supervisor.core.system_state().errors))
+
+    assert told in supervisor.core.system_state().reasons[0].message
+
+
+async def test_a_reading_over_the_stream_counts_like_any_other(
+    app: FastAPI, supervisor: Supervisor
+) -> None:
+    async with WebSocketClient(app, topics="system_state") as client:
+        await in_step(client)
+        client.send({"type": "reading", "signal": "battery_level", "value": 0.2})
+        frame = await client.frame("state")
+
+    assert frame["system_state"]["errors"] == ["BATTERY_LOW"]
+    assert supervisor.core.signal("battery_level").value == 0.2
+
+
+BAD = [
+    ("{", 400),
+    ("", 400),
+    ("[" * 30_000, 400),
+    ('{"type":"reading","signal":"battery_level","value":"\\ud800"}', 400),
+    ('"reading"', 422),
+    ("{}", 422),
+    ('{"type":"command","signal":"battery_level","value":0.8}', 422),
+    ('{"type":"reading","signal":"battery_level"}', 422),
+    ('{"type":"reading","signal":"battery_level","value":0.8,"more":1}', 422),
+    ('{"type":"reading","signal":"battery_level","value":NaN}', 422),
+    ('{"type":"reading","signal":"battery_level","value":1e999}', 422),
+    ('{"type":"reading","signal":"battery_level","value":null}', 422),
+    ('{"type":"reading","signal":"battery_level","value":true}', 422),
+    ('{"type":"reading","signal":"battery_level","value":0.8,"stamp":"noon"}', 422),
+    ('{"type":"reading","signal":"battery_level","value":0.8,"stamp":"2026-01-01T00:00:00"}', 422),
+    ('{"type":"reading","signal":"no_such_signal","value":0.8}', 404),
+]
+
+
+@pytest.mark.parametrize(("text", "status"), BAD, ids=[text[:60] for text, _ in BAD])
+async def test_a_bad_message_is_answered_with_a_problem_and_the_connection_stays(
+    app: FastAPI, supervisor: Supervisor, text: str, status: int
+) -> None:
+    before = supervisor.core.signals()
+    async with WebSocketClient(app, topics="events") as client:
+        await client.frame("hello")
+        client.send_text(text)
+        problem = await client.frame()
+        client.send({"type": "reading", "signal": "battery_level", "value": 0.3})
+        event = await client.frame()
+
+    assert (problem["type"], problem["status"]) == ("problem", status)
+    assert event["data"]["values"] == {"battery_level": 0.3}
+    assert before["battery_level"].value == 1.0
+
+
+async def test_a_binary_message_is_answered_with_a_problem_too(app: FastAPI) -> None:
+    async with WebSocketClient(app, topics="events") as client:
+        await client.frame("hello")
+        client.send_bytes(b"\x00")
+        problem = await client.frame()
+
+        assert problem["status"] == 422
+        assert "binary" in problem["detail"]
+        assert client.closed is None
+
+
+async def test_a_flood_of_messages_does_not_keep_others_from_their_turn(
+    app: FastAPI, clock: ManualClock
+) -> None:
+    text = json.dumps({"type": "reading", "signal": "battery_level", "value": 0.9})
+    async with WebSocketClient(app, topics="events") as loud, WebSocketClient(app) as other:
+        await in_step(other)
+        for _ in range(500):
+            loud.send_text(text)
+        await clock.advance(0.05)
+
+        assert (await other.frame("state"))["skipped"] == 0
+
+
+TOKEN = "correct horse battery staple"
+
+
+@pytest.fixture
+def closed_app(supervisor: Supervisor) -> FastAPI:
+    """The interface of a service that was started with a token."""
+    return create_app(supervisor, allowed_hosts=[], access=Access.with_token(TOKEN))
+
+
+async def test_a_client_that_gives_the_token_first_is_let_in(closed_app: FastAPI) -> None:
+    async with WebSocketClient(closed_app) as client:
+        client.send({"type": "auth", "token": TOKEN})
+
+        assert (await client.frame())["type"] == "hello"
+        assert (await client.frame("state"))["skipped"] == 0
+
+
+async def test_a_client_that_gives_it_in_the_handshake_is_let_in(closed_app: FastAPI) -> None:
+    headers = {"authorization": f"Bearer {TOKEN}"}
+    async with WebSocketClient(closed_app, headers=headers) as client:
+        assert (await client.frame())["type"] == "hello"
+
+
+@pytest.mark.parametrize(
+    ("text", "words"),
+    [
+        ('{"type":"auth","token":"a guess"}', "not the token"),
+        ('{"type":"auth","token":7}', "first message"),
+        ('{"type":"reading","signal":"estop","value":true}', "first message"),
+        ("{", "first message"),
+    ],
+)
+async def test_a_client_that_gives_something_else_is_told_and_sees_nothing_of_the_robot(
+    closed_app: FastAPI, supervisor: Supervisor, text: str, words: str
+) -> None:
+    async with WebSocketClient(closed_app) as client:
+        client.send_text(text)
+        problem = await client.frame()
+
+        assert await client.end() == 4401
+        assert client.frames() == []
+    assert (problem["type"], problem["status"]) == ("problem", 401)
+    assert problem["code"] == "UNAUTHORIZED"
+    assert words in problem["detail"]
+    assert not supervisor.core.system_state().errors
+    assert closed_app.state.refusals.counts == {401: 1}
+
+
+async def test_a_client_that_says_nothing_is_closed_in_the_end(
+    closed_app: FastAPI, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(stream, "AUTH_TIMEOUT_S", 0.01)
+    async with WebSocketClient(closed_app) as client:
+        problem = await client.frame()
+
+        assert await client.end() == 4401
+    assert "no token came" in problem["detail"]
+
+
+async def test_strangers_keep_out_other_strangers_only(
+    closed_app: FastAPI, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(hub, "MAX_STRANGERS", 1)
+    headers = {"authorization": f"Bearer {TOKEN}"}
+    async with WebSocketClient(closed_app) as waits:
+        async with WebSocketClient(closed_app) as stranger:
+            assert await stranger.end() == 1013
+        async with WebSocketClient(closed_app, headers=headers) as known:
+            assert (await known.frame())["type"] == "hello"
+        waits.send({"type": "auth", "token": TOKEN})
+        assert (await waits.frame())["type"] == "hello"
+
+
+async def test_a_token_that_nobody_asked_for_is_passed_over(
+    app: FastAPI, supervisor: Supervisor
+) -> None:
+    async with WebSocketClient(app, topics="events") as client:
+        await client.frame("hello")
+        client.send({"type": "auth", "token": TOKEN})
+        supervisor.submit(EmergencyStopRequest(True, "test", "operator"))
+
+        assert (await client.frame())["type"] == "event"
