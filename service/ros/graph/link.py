@@ -28,7 +28,7 @@ from rclpy.qos import (
 )
 from rclpy.signals import SignalHandlerOptions
 from rclpy.type_support import check_for_type_support
-from rosidl_generator_py.import_type_support_impl import (  # type: ignore[import-not-found]  # as rclpy
+from rosidl_generator_py.import_type_support_impl import (
     UnsupportedTypeSupport,
 )
 
