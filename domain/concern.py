@@ -55,6 +55,7 @@ def settle(concerns: Sequence[Concern], now: Instant, max_rounds: int) -> None:
     Raises:
         NotSettledError: They still move after `max_rounds`.
     """
+    moving: list[Concern] = []
     for _ in range(max_rounds):
         moving = [concern for concern in concerns if concern.settle(now)]
         if not moving:

@@ -50,15 +50,15 @@ def read_parameter_value(value: object) -> ParameterValue:
         PydanticCustomError: No value of a parameter, or one that is too long.
     """
     if isinstance(value, list) and len(value) > MAX_ITEMS:
-        message = f"a parameter is a list of at most {MAX_ITEMS} items"
-        raise PydanticCustomError("invalid_parameter", message)
+        message = "a parameter is a list of at most {limit} items"
+        raise PydanticCustomError("invalid_parameter", message, {"limit": MAX_ITEMS})
     items: list[Any] = value if isinstance(value, list) else [value]
     kinds = {type(item) for item in items}
     if kinds == {int, float}:
         items, kinds = [float(item) for item in items], {float}
     if kinds == {str} and max(map(len, items)) > MAX_TEXT:
-        message = f"a text of a parameter has at most {MAX_TEXT} characters"
-        raise PydanticCustomError("invalid_parameter", message)
+        message = "a text of a parameter has at most {limit} characters"
+        raise PydanticCustomError("invalid_parameter", message, {"limit": MAX_TEXT})
     if len(kinds) > 1 or not all(_is_scalar(item) for item in items):
         raise PydanticCustomError(
             "invalid_parameter",

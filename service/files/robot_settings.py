@@ -164,7 +164,7 @@ class SignalsBlock(SettingsBlock):
     """The signals; every other key declares a further one."""
 
     model_config = ConfigDict(extra="allow")
-    __pydantic_extra__: dict[_SignalName, DeclaredSignal]  # type: ignore[mutable-override]
+    __pydantic_extra__: dict[_SignalName, DeclaredSignal] = Field(init=False)  # type: ignore[mutable-override]
 
     stale_after_s: Seconds | None = None
     """Of all signals that say nothing else, in seconds; 0 turns staleness off. Left out: 2."""

@@ -153,6 +153,7 @@ class _Builder:
         Raises:
             yaml.YAMLError: The text is not YAML.
         """
+        event: Any = None
         for _ in range(MAX_EVENTS):
             event = next_event()
             kind = type(event)

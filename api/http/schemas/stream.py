@@ -81,15 +81,16 @@ class EventJson(Json):
     notable: bool = Field(description="false: detail that a short list leaves out")
 
 
-class GapJson(Json):
+class GapJson(Json, serialize_by_alias=True):
     """Events that the client asked for and that are not kept any more."""
 
-    model_config = ConfigDict(**_WHOLE, serialize_by_alias=True, validate_by_name=True)
+    model_config = _WHOLE
 
     type: Literal["gap"] = "gap"
-    first: int = Field(alias="from", description="Id of the first of them")
+    first: int = Field(serialization_alias="from", description="Id of the first of them")
     last: int | None = Field(
-        alias="to", description="null: the service was restarted since, and nobody knows"
+        serialization_alias="to",
+        description="null: the service was restarted since, and nobody knows",
     )
     epoch: str = Field(description="Epoch that the ids belong to")
 
