@@ -10,7 +10,7 @@ from prometheus_client.metrics_core import Metric
 from prometheus_client.registry import Collector
 
 from api.http.gate.refusals import COUNTED, Refusals
-from api.streaming.hub import StreamHub, stream_hub
+from api.streaming.stream_server import StreamServer, stream_server
 from domain.snapshot import ChangeStatus, SystemState
 from domain.timebase import to_seconds
 from service.supervisor import Supervisor
@@ -27,7 +27,7 @@ _PERIODS_S = (0.025, 0.045, 0.049, 0.05, 0.051, 0.055, 0.075, 0.1, 0.2, 1.0)
 class Metrics:
     """The metrics of one service, in a registry of their own."""
 
-    def __init__(self, hub: StreamHub, refusals: Refusals) -> None:
+    def __init__(self, hub: StreamServer, refusals: Refusals) -> None:
         self.registry = CollectorRegistry(auto_describe=False)
         period = Histogram(
             "pilothouse_publish_period_seconds",
@@ -45,7 +45,7 @@ def metrics(app: FastAPI) -> Metrics:
     """Return the metrics of an application; the first who asks makes them."""
     known = getattr(app.state, "metrics", None)
     if not isinstance(known, Metrics):
-        known = app.state.metrics = Metrics(stream_hub(app), app.state.refusals)
+        known = app.state.metrics = Metrics(stream_server(app), app.state.refusals)
     return known
 
 
@@ -117,7 +117,7 @@ class _RobotCollector(Collector):
 class _ServiceCollector(Collector):
     """How the service fares."""
 
-    def __init__(self, hub: StreamHub) -> None:
+    def __init__(self, hub: StreamServer) -> None:
         self._hub = hub
 
     def collect(self) -> Iterator[Metric]:

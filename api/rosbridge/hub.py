@@ -11,7 +11,7 @@ from fastapi import Depends, FastAPI
 from fastapi.requests import HTTPConnection
 
 from api.rosbridge.bridge import Bridge
-from api.streaming.hub import StreamHub, stream_hub
+from api.streaming.stream_server import StreamServer, stream_server
 from service.ros.interface.interface import RosInterface
 from service.supervisor import Supervisor
 
@@ -24,7 +24,7 @@ MAX_CLIENTS = 50
 class RosbridgeHub:
     """Owns the task that makes messages of what happens."""
 
-    def __init__(self, make_bridge: Callable[[], Bridge], lobby: StreamHub) -> None:
+    def __init__(self, make_bridge: Callable[[], Bridge], lobby: StreamServer) -> None:
         """Begin without clients.
 
         Args:
@@ -92,7 +92,7 @@ def rosbridge_hub(app: FastAPI) -> RosbridgeHub:
     hub = getattr(app.state, "rosbridge_hub", None)
     if not isinstance(hub, RosbridgeHub):
         make = partial(_make_bridge, app.state.supervisor, app.state.limits.requests_per_s)
-        hub = app.state.rosbridge_hub = RosbridgeHub(make, stream_hub(app))
+        hub = app.state.rosbridge_hub = RosbridgeHub(make, stream_server(app))
     return hub
 
 

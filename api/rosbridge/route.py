@@ -14,7 +14,7 @@ from api.rosbridge.client import Client
 from api.rosbridge.hub import RosbridgeHub, RosbridgeHubDep
 from api.rosbridge.operations import Authenticate, id_of, read_message, read_operation
 from api.rosbridge.replies import status_text
-from api.streaming.prepared import connection_of
+from api.streaming.websocket_frames import connection_of
 from domain.errors import PilothouseError
 
 router = APIRouter()

@@ -1,12 +1,14 @@
 """Frames, events and views for tests of what is streamed."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from types import MappingProxyType
 
 from domain.events import Event
 from domain.lifecycle import LifecycleState
 from domain.snapshot import (
     Actual,
+    EmergencyStopView,
+    HoldView,
     PartView,
     SignalView,
     SystemState,
@@ -21,6 +23,8 @@ from domain.vehicle import DriveCommand
 from service.frame_feed import Frame
 
 NOWHERE = VehicleView(None, None, DriveCommand(0.0, 0.0), None)
+NO_HOLDS: Mapping[str, HoldView] = MappingProxyType({})
+RELEASED = EmergencyStopView(engaged=False, by=None, reason=None, since=None, standstill_at=None)
 IDLE = SystemStateView(SystemState.IDLE, 0, (), (), TaskStatus.NO_TASK)
 
 
@@ -71,6 +75,10 @@ def frame(
     task_changed: bool = False,
     vehicle: VehicleView = NOWHERE,
     vehicle_changed: bool = False,
+    holds: Mapping[str, HoldView] = NO_HOLDS,
+    holds_changed: bool = False,
+    emergency_stop: EmergencyStopView = RELEASED,
+    emergency_stop_changed: bool = False,
 ) -> Frame:
     """Make frame number `seq`, of the tick at `seq` * 50 ms."""
     return Frame(
@@ -83,6 +91,10 @@ def frame(
         task_changed=full or task_changed,
         vehicle=vehicle,
         vehicle_changed=full or vehicle_changed,
+        holds=holds,
+        holds_changed=full or holds_changed,
+        emergency_stop=emergency_stop,
+        emergency_stop_changed=full or emergency_stop_changed,
         full=full,
         simulated=("nodes",),
     )
