@@ -1,13 +1,10 @@
-"""The contact with a service: its stream, and requests for what that does not carry.
-
-It comes back by itself, with pauses that grow.
-"""
+"""The contact with a service: its stream, which comes back by itself, with pauses that grow."""
 
 import asyncio
 import json
 import random
 import socket
-from collections.abc import AsyncIterator, Iterator, Sequence
+from collections.abc import AsyncIterator, Iterator
 from contextlib import asynccontextmanager
 from http import HTTPStatus
 from itertools import chain, repeat
@@ -19,7 +16,6 @@ from websockets.asyncio.client import ClientConnection
 
 from api.cli.monitor.address import Address
 from api.cli.monitor.store import Json
-from api.cli.monitor.together import together
 from api.cli.monitor.watch import Watch
 from api.client.service_client import NoAnswerError, ServiceProblemError, token_hint
 
@@ -40,8 +36,6 @@ class Link:
     def __init__(self, address: Address, watch: Watch) -> None:
         self._address = address
         self._watch = watch
-        self._asked: set[str] = set()
-        self._ask = asyncio.Event()
 
     async def run(self) -> NoReturn:
         """Connect, and whenever that ends connect again.
@@ -67,12 +61,9 @@ class Link:
             NoAnswerError: The service did not answer, or does not any more.
             ServiceProblemError: It refuses us.
         """
-        async with self._http() as http:
-            structure = await self._structure(http)
-            async with self._stream() as stream:
-                await together(self._read(stream, structure), self._answer(http))
-
-    # --- the stream ------------------------------------------------------------------------------
+        await self._knock()
+        async with self._stream() as stream:
+            await self._read(stream)
 
     @asynccontextmanager
     async def _stream(self) -> AsyncIterator[ClientConnection]:
@@ -96,7 +87,7 @@ class Link:
         finally:
             await stream.close()
 
-    async def _read(self, stream: ClientConnection, structure: Sequence[Json]) -> NoReturn:
+    async def _read(self, stream: ClientConnection) -> NoReturn:
         while True:
             try:
                 async with asyncio.timeout(SILENCE_S):
@@ -108,21 +99,22 @@ class Link:
             if frame["type"] == "problem":
                 raise _refusal(frame, self._address)
             self._watch.take(frame)
-            if frame["type"] == "hello":
-                self._watch.take({"type": "structure", "items": structure})
-            self._look_for_questions(frame)
 
-    def _look_for_questions(self, frame: Json) -> None:
-        """Ask for what no frame carries when it may have changed."""
-        kind = frame.get("kind", "")
-        if frame["type"] in ("hello", "gap") or kind.startswith("emergency_stop."):
-            self._asked.add("emergency_stop")
-        if frame["type"] in ("hello", "gap") or kind.startswith(("hold.", "task.")):
-            self._asked.add("holds")
-        if self._asked:
-            self._ask.set()
-
-    # --- requests --------------------------------------------------------------------------------
+    async def _knock(self) -> None:
+        """Ask over HTTP, which refuses at once and in words; the stream waits for a token first."""
+        url = self._address.url
+        try:
+            async with self._http() as http:
+                response = await http.get("/system_state")
+        except httpx.ConnectError as error:
+            raise NoAnswerError(f"no service answers at {url}: is it running?") from error
+        except httpx.HTTPError as error:
+            why = str(error) or f"none within {_ANSWER_S:g} s"
+            raise NoAnswerError(f"no answer from {url}: {why}") from error
+        if response.is_error:
+            raise _refusal(_problem_in(response.content, response.status_code), self._address)
+        if "task_status" not in (_object_in(response.content) or {}):
+            raise NoAnswerError(f"what answers at {url} is not Pilothouse")
 
     def _http(self) -> httpx.AsyncClient:
         # A proxy of the environment does not lead back to this machine.
@@ -132,36 +124,6 @@ class Link:
             timeout=_ANSWER_S,
             trust_env=self._address.loopback is None,
         )
-
-    async def _answer(self, http: httpx.AsyncClient) -> NoReturn:
-        """Ask one after the other, so that a burst of events does not lead to a burst of them."""
-        while True:
-            await self._ask.wait()
-            self._ask.clear()
-            asked, self._asked = self._asked, set()
-            for what in sorted(asked):
-                answer = await self._get(http, f"/{what}")
-                self._watch.take({**answer, "type": what})
-
-    async def _structure(self, http: httpx.AsyncClient) -> list[Json]:
-        systems, nodes = await self._get(http, "/systems"), await self._get(http, "/nodes")
-        return [*_items(systems), *_items(nodes)]
-
-    async def _get(self, http: httpx.AsyncClient, path: str) -> dict[str, Any]:
-        url = self._address.url
-        try:
-            response = await http.get(path)
-        except httpx.ConnectError as error:
-            raise NoAnswerError(f"no service answers at {url}: is it running?") from error
-        except httpx.HTTPError as error:
-            why = str(error) or f"none within {_ANSWER_S:g} s"
-            raise NoAnswerError(f"no answer from {url}: {why}") from error
-        if response.is_error:
-            raise _refusal(_problem_in(response.content, response.status_code), self._address)
-        answer = _object_in(response.content)
-        if answer is None:
-            raise NoAnswerError(f"what answers at {url} is not Pilothouse")
-        return answer
 
 
 async def _socket(address: Address) -> socket.socket | None:
@@ -175,13 +137,6 @@ def _pauses() -> Iterator[float]:
     """Yield pauses that grow, spread so that many clients do not come back in the same moment."""
     for pause_s in chain(_RETRY_S, repeat(_RETRY_S[-1])):
         yield pause_s * random.uniform(0.8, 1.2)
-
-
-def _items(answer: Json) -> list[Json]:
-    items = answer.get("items")
-    if not isinstance(items, list):
-        raise NoAnswerError("what answers there is not Pilothouse")
-    return items
 
 
 def _why(error: Exception) -> str:

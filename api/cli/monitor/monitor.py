@@ -5,7 +5,9 @@ import io
 import os
 import signal
 import sys
+from collections.abc import Coroutine
 from contextlib import suppress
+from typing import Any
 
 from rich.console import Console
 
@@ -14,7 +16,6 @@ from api.cli.monitor.link import Link
 from api.cli.monitor.output import ChangeLog, Form, write_picture
 from api.cli.monitor.picture import picture
 from api.cli.monitor.screen import Screen, alternate_screen
-from api.cli.monitor.together import together
 from api.cli.monitor.watch import Watch
 from api.client.service_client import NoAnswerError, Outcome
 from api.http.access import InvalidTokenError, read_token
@@ -68,7 +69,7 @@ async def _once(address: Address, form: Form, console: Console) -> None:
 
     try:
         async with asyncio.timeout(_PATIENCE_S):
-            await together(Link(address, watch).serve(), wait())
+            await until_first_ends(Link(address, watch).serve(), wait())
     except TimeoutError as error:
         message = f"no whole picture from {address.url} within {_PATIENCE_S:g} s"
         raise NoAnswerError(message) from error
@@ -89,7 +90,7 @@ async def _draw(address: Address, console: Console) -> None:
         if hasattr(signal, "SIGCONT"):
             # After Ctrl-Z and `fg` the terminal shows something else.
             asyncio.get_running_loop().add_signal_handler(signal.SIGCONT, screen.forget)
-        await together(Link(address, watch).run(), _redraw(screen, watch, console))
+        await until_first_ends(Link(address, watch).run(), _redraw(screen, watch, console))
 
 
 async def _redraw(screen: Screen, watch: Watch, console: Console) -> None:
@@ -107,3 +108,21 @@ def _end_with_signals() -> None:
         with suppress(AttributeError, NotImplementedError):
             number = getattr(signal, name)
             asyncio.get_running_loop().add_signal_handler(number, lambda: task and task.cancel())
+
+
+async def until_first_ends(*coroutines: Coroutine[Any, Any, None]) -> None:
+    """Run until one ends, and cancel the others.
+
+    Raises:
+        Exception: That of the one that failed, by itself and not in a group.
+    """
+    tasks = [asyncio.create_task(coroutine) for coroutine in coroutines]
+    try:
+        await asyncio.wait(tasks, return_when=asyncio.FIRST_COMPLETED)
+    finally:
+        for task in tasks:
+            task.cancel()
+        ended = await asyncio.gather(*tasks, return_exceptions=True)
+    for error in ended:
+        if isinstance(error, Exception):
+            raise error
