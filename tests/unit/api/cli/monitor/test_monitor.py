@@ -79,7 +79,7 @@ def test_once_of_a_robot_in_error_is_a_picture_all_the_same(
     monkeypatch: pytest.MonkeyPatch, capsys: Output
 ) -> None:
     state = frame(system_state=system_state("ERROR", "battery is low"))
-    monkeypatch.setattr(Link, "says", (*WHOLE[:2], {**WHOLE[2], **state}))
+    monkeypatch.setattr(Link, "says", ({**WHOLE[0], **state},))
 
     assert monitor(URL, "text", once=True) == 0
     assert "ERROR  battery is low" in capsys.readouterr().out
