@@ -27,7 +27,7 @@ export function stateSentence(state, contact) {
 /** What a restart of the service has taken away; empty without one. */
 export function restartWords({ restartedAt }) {
   if (restartedAt === null) return "";
-  return `The service was restarted at ${timeOfDay(restartedAt)}: earlier tasks and holds are gone.`;
+  return `Service restarted at ${timeOfDay(restartedAt)}: earlier tasks and holds are gone.`;
 }
 
 function sentence(level, word, text, more = []) {
