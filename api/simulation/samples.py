@@ -4,7 +4,7 @@ from collections import Counter
 from collections.abc import Iterator
 
 from api.streaming.robot_encoder import RobotEncoder
-from domain.events import Event
+from domain.events import RecordedEvent
 from domain.snapshot import TaskView
 from service.event_log import EventReader, Gap
 from service.supervisor import Supervisor
@@ -23,7 +23,7 @@ class Sampler:
         self._encoder = RobotEncoder(supervisor)
         self._reader = EventReader(supervisor.events, supervisor.events.newest)
         self._left = MAX_CHARACTERS
-        self.events: list[Event] = []
+        self.events: list[RecordedEvent] = []
         """All that happened since the begin."""
 
     def kept_sample(self, t_s: float, number: int) -> str:

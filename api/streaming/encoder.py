@@ -11,7 +11,7 @@ from api.http.schemas.stream import GapJson, HelloJson
 from api.streaming.client_input import STATE_TOPICS, TOPICS
 from api.streaming.robot_encoder import RobotEncoder
 from domain.errors import PilothouseError
-from domain.events import Event
+from domain.events import RecordedEvent
 from domain.timebase import to_seconds
 from service.event_log import Gap
 from service.frame_feed import Frame
@@ -66,7 +66,7 @@ class StreamEncoder:
             self._texts[_shape(frame, topics)] = (frame, known)
         return known.after(skipped)
 
-    def event(self, event: Event) -> str:
+    def event(self, event: RecordedEvent) -> str:
         """Return an `event` frame."""
         text = self._events.get(event.id)
         if text is None:

@@ -5,12 +5,11 @@ from typing import Any, Generic, TypeVar
 
 from pydantic_core import to_json
 
-from api.event_words import event_words
 from api.http.schemas.base import timestamp
 from api.http.schemas.health import EmergencyStopJson, StreamedSignalJson, SystemStateJson
 from api.http.schemas.parts import PartJson
 from api.http.schemas.tasks import HoldJson, TaskJson, VehicleJson
-from domain.events import Event
+from domain.events import RecordedEvent
 from domain.snapshot import (
     EmergencyStopView,
     HoldView,
@@ -33,7 +32,7 @@ class RobotEncoder:
         """Keep nothing yet.
 
         Args:
-            supervisor: Its clock, epoch, model and vehicle limits are used.
+            supervisor: Its clock, epoch and vehicle limits are used.
         """
         self._supervisor = supervisor
         self._clock = clock = supervisor.clock
@@ -69,9 +68,8 @@ class RobotEncoder:
         """Return the emergency stop; encoded anew only for another view."""
         return self._emergency_stop.text(view)
 
-    def event(self, event: Event) -> str:
+    def event(self, event: RecordedEvent) -> str:
         """Return an `event` frame, as it is in the log and in simulations too."""
-        words = event_words(event, self._supervisor.model.systems)
         shown = {
             "type": "event",
             "epoch": self._supervisor.epoch,
@@ -81,8 +79,8 @@ class RobotEncoder:
             "cause": event.cause,
             "actor": event.actor,
             "data": event.data,
-            "words": words or event.kind.replace(".", " ").replace("_", " "),
-            "notable": words is not None,
+            "words": event.event.words,
+            "notable": event.event.notable,
         }
         # A node may report a parameter that is NaN, which JSON does not know.
         return to_json(shown, inf_nan_mode="null", fallback=_plain).decode()

@@ -1,6 +1,6 @@
 """Holds: whoever has a reason keeps the vehicle from driving, each under a name of its own.
 
-Source: the holds of SEMANTICS section 5; smart_polaris has one, its `allow_run_tasks`.
+Source: smart_polaris, whose one hold is `allow_run_tasks`; here each owner has its own.
 """
 
 from collections.abc import Mapping

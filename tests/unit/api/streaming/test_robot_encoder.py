@@ -1,12 +1,13 @@
 import json
 import math
-from types import MappingProxyType
 
 import pytest
 
 from api.streaming.robot_encoder import LatestCache, MemberCache, RobotEncoder
-from domain.events import Event
+from domain.events import NodeReported, RecordedEvent, TaskStarted, TimeWasDue
+from domain.identifiers import GoalId, TaskId
 from domain.inputs import EmergencyStopRequest, HoldRequest
+from domain.state_and_mode import PartName
 from domain.timebase import seconds
 from service.supervisor import Supervisor
 from tests.support.live_robot import make_supervisor
@@ -30,12 +31,9 @@ def encoder(supervisor: Supervisor) -> RobotEncoder:
 def test_an_event_tells_what_happened_when_and_why_and_in_words(
     encoder: RobotEncoder, supervisor: Supervisor
 ) -> None:
-    event = Event(3, seconds(1.5), "task.started", 2, "http:1", {"task": "t1"})
+    started = TaskStarted(TaskId("t1"), GoalId(1), 0)
 
-    told = json.loads(encoder.event(event))
-
-    assert told.pop("words") == "task t1 drives"
-    assert told == {
+    assert json.loads(encoder.event(RecordedEvent(3, seconds(1.5), 2, "http:1", started))) == {
         "type": "event",
         "epoch": supervisor.epoch,
         "id": 3,
@@ -43,25 +41,25 @@ def test_an_event_tells_what_happened_when_and_why_and_in_words(
         "kind": "task.started",
         "cause": 2,
         "actor": "http:1",
-        "data": {"task": "t1"},
+        "data": {"task": "t1", "goal": 1, "target_index": 0},
+        "words": "task t1 started",
         "notable": True,
     }
 
 
 def test_a_detail_has_words_too_and_is_not_notable(encoder: RobotEncoder) -> None:
-    event = Event(1, 0, "time.passed", None, "", {})
-
-    told = json.loads(encoder.event(event))
+    told = json.loads(encoder.event(RecordedEvent(1, 0, None, "", TimeWasDue())))
 
     assert told["words"]
     assert told["notable"] is False
 
 
 def test_what_json_does_not_know_is_shown_as_near_as_can_be(encoder: RobotEncoder) -> None:
-    data = {"nan": math.nan, "view": MappingProxyType({"a": 1})}
-    event = Event(1, 0, "node.reported", None, "", data)
+    reported = NodeReported(PartName("arm"), parameters={"torque": math.nan, "gains": (1.0, 2.0)})
 
-    assert json.loads(encoder.event(event))["data"] == {"nan": None, "view": {"a": 1}}
+    shown = json.loads(encoder.event(RecordedEvent(1, 0, None, "", reported)))
+
+    assert shown["data"] == {"node": "arm", "parameters": {"torque": None, "gains": [1.0, 2.0]}}
 
 
 def test_holds_are_a_map_by_owner_encoded_once_as_long_as_they_are_the_same(
