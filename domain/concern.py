@@ -1,6 +1,6 @@
 """A concern: one subject that the core decides about, with its own inputs and its own state."""
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from types import MappingProxyType
 from typing import Any, TypeAlias
 
@@ -44,6 +44,19 @@ class Concern:
 class NotSettledError(RuntimeError):
     """Concerns kept moving each other: a fault of the core, not of an input."""
 
-    def __init__(self, moving: str, rounds: int) -> None:
-        super().__init__(f"not settled after {rounds} rounds; still moving: {moving}")
+    def __init__(self, moving: tuple[str, ...], rounds: int) -> None:
+        super().__init__(f"not settled after {rounds} rounds; still moving: {', '.join(moving)}")
         self.moving = moving
+
+
+def settle(concerns: Sequence[Concern], now: Instant, max_rounds: int) -> None:
+    """Let concerns follow each other, round by round, until none of them moves any more.
+
+    Raises:
+        NotSettledError: They still move after `max_rounds`.
+    """
+    for _ in range(max_rounds):
+        moving = [concern for concern in concerns if concern.settle(now)]
+        if not moving:
+            return
+    raise NotSettledError(tuple(type(concern).__name__ for concern in moving), max_rounds)

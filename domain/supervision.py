@@ -13,7 +13,7 @@ from typing import Any
 from domain.audit import Audit
 from domain.changes.changing import Changing
 from domain.changes.record import ChangeSettings
-from domain.concern import Concern, NotSettledError
+from domain.concern import Concern, settle
 from domain.events import TimeWasDue
 from domain.health.emergency_stop import EmergencyStop
 from domain.health.health import Health
@@ -88,17 +88,14 @@ class Supervision:
         self._clocked = [c for c in self._concerns if _overrides(c, "wake_at")]
         self._settling = [c for c in self._concerns if _overrides(c, "settle")]
         self._max_rounds = _SPARE_ROUNDS + len(model.parts)
+        self._wake_at = self._next_wake()
+        """Kept: it is asked for several times per input, and only inputs and time change it."""
 
     # --- time and inputs -------------------------------------------------------------------------
 
     def wake_at(self) -> Instant | None:
         """Return the next instant at which time alone changes something; None: never."""
-        due = None
-        for concern in self._clocked:
-            at = concern.wake_at()
-            if at is not None and (due is None or at < due):
-                due = at
-        return due
+        return self._wake_at
 
     def handle(self, given: Input, now: Instant) -> Outputs:
         """Take in one input, after letting pass what was due before it, each at its own time.
@@ -121,7 +118,7 @@ class Supervision:
 
     def _let_pass(self, now: Instant) -> None:
         """Handle what became due up to now, in order; what follows later is due then."""
-        while (due := self.wake_at()) is not None and due <= now:
+        while (due := self._wake_at) is not None and due <= now:
             self._now = max(due, self._now)
             self._outbox.begin(self._now, TimeWasDue())
             for concern in self._clocked:
@@ -130,15 +127,16 @@ class Supervision:
         self._now = now
 
     def _settle(self) -> None:
-        """Let concerns follow each other until nothing moves any more."""
-        for _ in range(self._max_rounds):
-            moving: Concern | None = None
-            for concern in self._settling:
-                if concern.settle(self._now):
-                    moving = concern
-            if moving is None:
-                return
-        raise NotSettledError(type(moving).__name__, self._max_rounds)
+        settle(self._settling, self._now, self._max_rounds)
+        self._wake_at = self._next_wake()
+
+    def _next_wake(self) -> Instant | None:
+        due = None
+        for concern in self._clocked:
+            at = concern.wake_at()
+            if at is not None and (due is None or at < due):
+                due = at
+        return due
 
     # --- what can be seen ------------------------------------------------------------------------
 
