@@ -292,7 +292,7 @@ class Supervisor:
                 if full
                 else {s: core.signal(s) for s in sorted(self._changed_signals)}
             ),
-            task=core.driving.latest_task,
+            task=core.driving.latest_task if last is None or self._task_changed else last.task,
             task_changed=full or self._task_changed,
             vehicle=core.driving.vehicle,
             vehicle_changed=full or self._vehicle_changed,

@@ -105,7 +105,7 @@ def test_holds_the_stop_and_the_end_of_a_task_of_others_are_shown_without_a_ques
     service.request("PUT", "/emergency_stop", {"engaged": False, "reason": "clear"})
     expect(stop(desktop)).to_have_text("STOP")
     events = desktop.get_by_role("list", name="Recent events")
-    expect(events).to_contain_text("hold of gate: the gate is shut")
+    expect(events).to_contain_text("hold gate set: the gate is shut")
     known = {"/holds", "/emergency_stop", "/systems", "/nodes", "/tasks", "/events"}
     assert known.isdisjoint(asked)
     assert complaints.messages == []
@@ -116,7 +116,7 @@ def test_details_are_left_out_of_the_events_until_they_are_asked_for(
 ) -> None:
     service.request("PUT", "/holds/gate", {"reason": "the gate is shut"})
     events = desktop.get_by_role("list", name="Recent events")
-    expect(events).to_contain_text("hold of gate: the gate is shut")
+    expect(events).to_contain_text("hold gate set: the gate is shut")
     detail = events.locator('[data-kind="audit.write"]')
     expect(detail).to_have_count(0)
     desktop.get_by_role("switch", name="Details too").check()

@@ -133,7 +133,7 @@ async def test_nothing_is_asked_for_when_holds_or_the_stop_change() -> None:
     async with linked(service) as watch:
         await until(lambda: watch.robot.is_whole)
         held = {"operator": hold("operator", "loading")}
-        await service.say(event(1, "hold of operator: loading"), frame(after(1), holds=held))
+        await service.say(event(1, "hold operator set: loading"), frame(after(1), holds=held))
 
         await until(lambda: watch.robot.holds == held)
 
