@@ -113,6 +113,10 @@ class FrameReader:
         """Return the number of the frame that was taken last; None before the first."""
         return self._seen
 
+    def begin_anew(self) -> None:
+        """Take a complete frame next, also if it is the one that was taken last."""
+        self._seen = None
+
     def take(self) -> tuple[Frame, int] | None:
         """Return the newest frame and how many were missed before it; None when it is known.
 

@@ -2,10 +2,10 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, TypeAlias
 
 from api.http.bodies import check_body, parse_json
-from api.http.schemas.stream import AuthMessage, ReadingMessage
+from api.http.schemas.stream import AuthMessage, ReadingMessage, ResyncMessage
 from domain.errors import InvalidValueError
 
 TOPICS = (
@@ -21,6 +21,8 @@ TOPICS = (
 """In the order in which they are listed."""
 
 STATE_TOPICS = frozenset(TOPICS) - {"events"}
+
+ClientMessage: TypeAlias = ReadingMessage | ResyncMessage | AuthMessage
 
 
 @dataclass(frozen=True, slots=True)
@@ -74,19 +76,22 @@ def _after(text: str | None) -> int | None:
     return int(text)
 
 
-def read_client_message(message: Mapping[str, Any]) -> ReadingMessage | AuthMessage:
+def read_client_message(message: Mapping[str, Any]) -> ClientMessage:
     """Return what a client said.
 
     Args:
         message: As ASGI has it, with `text` or `bytes`.
 
     Raises:
-        PilothouseError: It is neither a reading nor a token.
+        PilothouseError: It is none of the messages that a client may send.
     """
     text = message.get("text")
     if text is None:
         raise InvalidValueError("binary messages are not read; send JSON as text")
     said = parse_json(text.encode())
-    if isinstance(said, dict) and said.get("type") == "auth":
+    kind = said.get("type") if isinstance(said, dict) else None
+    if kind == "auth":
         return check_body(AuthMessage, said)
+    if kind == "resync":
+        return check_body(ResyncMessage, said)
     return check_body(ReadingMessage, said)

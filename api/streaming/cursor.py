@@ -71,6 +71,11 @@ class Cursor:
             content.append(encoded.frame(frame, skipped, self.topics))
         return b"".join(content), skipped
 
+    def begin_frames_anew(self) -> None:
+        """Take a complete frame next; events go on where they are."""
+        if self._frames is not None:
+            self._frames.begin_anew()
+
     @property
     def position(self) -> tuple[object, object]:
         """Return what tells this cursor from others of the same topics."""

@@ -41,7 +41,9 @@ class FanOut:
         self._task: asyncio.Task[None] | None = None
 
     @contextmanager
-    def serve(self, connection: Connection, query: StreamQuery, address: str) -> Iterator[None]:
+    def serve(
+        self, connection: Connection, query: StreamQuery, address: str
+    ) -> Iterator[StreamClient]:
         """Write to a client as long as the context lasts.
 
         Args:
@@ -63,7 +65,7 @@ class FanOut:
             self._task = asyncio.create_task(self._run(), name="stream fan-out")
             self._task.add_done_callback(self._ended)
         try:
-            yield
+            yield client
         finally:
             connection.listen(None)
             group.remove(client)
@@ -72,6 +74,11 @@ class FanOut:
             if not self._groups and self._task is not None:
                 self._task.cancel()
                 self._task = None
+
+    def resync(self, client: StreamClient) -> None:
+        """Write a complete frame to a client next, to it alone."""
+        client.resync()
+        self._woken.set()
 
     def drop(self, transport: asyncio.WriteTransport, address: str) -> None:
         """Cut off a client that does not read."""

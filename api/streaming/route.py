@@ -14,8 +14,9 @@ from typing import Any
 from fastapi import APIRouter, WebSocket, WebSocketDisconnect
 
 from api.http.access import UnauthorizedError
-from api.http.schemas.stream import AuthMessage
+from api.http.schemas.stream import AuthMessage, ResyncMessage
 from api.streaming.client_input import read_client_message, read_stream_query
+from api.streaming.stream_client import StreamClient
 from api.streaming.stream_server import StreamServer, StreamServerDep
 from api.streaming.websocket_frames import connection_of, text_frame
 from domain.errors import PilothouseError
@@ -111,8 +112,8 @@ class _Client:
         complete = self._server.supervisor.frames.complete()
         if complete is not None:
             await encoder.prepare(complete, query.topics)
-        with self._server.fan_out.serve(self._connection, query, self._address):
-            await self._listen()
+        with self._server.fan_out.serve(self._connection, query, self._address) as client:
+            await self._listen(client)
 
     async def _hear_token(self) -> None:
         """Take the first message.
@@ -134,12 +135,12 @@ class _Client:
         if not self._server.access.accepts(said.token):
             raise UnauthorizedError("this is not the token of the service")
 
-    async def _listen(self) -> None:
+    async def _listen(self, client: StreamClient) -> None:
         """Take one message after the other; the next waits in the client until this one is done."""
         while True:
             message = await self._receive()
             try:
-                self._take(message)
+                self._take(message, client)
             except PilothouseError as error:
                 await self._answer(error)
             # Messages that came together are all there at once: others get their turn in between.
@@ -151,11 +152,14 @@ class _Client:
             raise _GoneError
         return message
 
-    def _take(self, message: Mapping[str, Any]) -> None:
+    def _take(self, message: Mapping[str, Any], client: StreamClient) -> None:
         supervisor = self._server.supervisor
         given = read_client_message(message)
         if isinstance(given, AuthMessage):
             # A page that still has a token sends it, whether or not it is needed.
+            return
+        if isinstance(given, ResyncMessage):
+            self._server.fan_out.resync(client)
             return
         reading = given.reading(given.signal, supervisor.clock)
         supervisor.submit_readings([reading], given.source, f"websocket:{self._address}")

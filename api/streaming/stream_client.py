@@ -95,6 +95,11 @@ class StreamClient:
         """Go on alone: what was written last has to be taken first."""
         self._group.part_from(self)
 
+    def resync(self) -> None:
+        """Go on alone, with a complete frame."""
+        self._group.part_from(self)
+        self.cursor.begin_frames_anew()
+
     def answered(self) -> None:
         """Learn that the client reads."""
         self.owes_answer = False

@@ -130,6 +130,12 @@ class ReadingMessage(ReadingBody):
     signal: str = Field(min_length=1, max_length=256)
 
 
+class ResyncMessage(Body):
+    """A client that wants a complete frame next, as after a loss of its own."""
+
+    type: Literal["resync"]
+
+
 class AuthMessage(Body):
     """Who the client is; its first message where the service was started with a token."""
 

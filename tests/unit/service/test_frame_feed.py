@@ -74,6 +74,19 @@ def test_a_slow_reader_gets_the_newest_frame_whole_and_is_told_how_many_it_misse
     assert newest.parts == {"arm": moved, "drive_base": DRIVE}
 
 
+def test_a_reader_that_begins_anew_gets_everything_also_of_the_frame_that_it_has() -> None:
+    feed = started()
+    reader = FrameReader(feed)
+    reader.take()
+    feed.publish(frame(2))
+    reader.take()
+
+    reader.begin_anew()
+
+    newest, skipped = taken(reader)
+    assert (newest.seq, newest.full, skipped) == (2, True, 0)
+
+
 def test_a_reader_that_caught_up_is_in_step_again() -> None:
     feed = started()
     reader = FrameReader(feed)

@@ -1,6 +1,6 @@
 import pytest
 
-from api.http.schemas.stream import AuthMessage, ReadingMessage
+from api.http.schemas.stream import AuthMessage, ReadingMessage, ResyncMessage
 from api.streaming.client_input import TOPICS, read_client_message, read_stream_query
 from domain.errors import InvalidValueError, PilothouseError
 
@@ -73,6 +73,12 @@ def test_a_token_is_read() -> None:
     given = read_client_message({"text": '{"type":"auth","token":"secret"}'})
 
     assert given == AuthMessage(type="auth", token="secret")
+
+
+def test_a_resync_is_read_and_holds_nothing_else() -> None:
+    assert read_client_message({"text": '{"type":"resync"}'}) == ResyncMessage(type="resync")
+    with pytest.raises(PilothouseError):
+        read_client_message({"text": '{"type":"resync","seq":7}'})
 
 
 def test_a_binary_message_is_not_read() -> None:

@@ -84,6 +84,27 @@ async def test_once_a_second_everything_is_told_again(app: FastAPI, clock: Manua
     assert len(complete) == 3
 
 
+async def test_a_client_that_asks_for_it_gets_everything_and_is_in_step_again(
+    app: FastAPI, clock: ManualClock
+) -> None:
+    async with WebSocketClient(app) as asking, WebSocketClient(app) as other:
+        await in_step(asking)
+        await in_step(other)
+        await clock.advance(0.1)
+        asking.frames()
+        other.frames()
+
+        asking.send({"type": "resync"})
+        complete = await asking.frame("state")
+        await clock.advance(0.05)
+        following = await asking.frame("state")
+
+        assert {"parts", "signals", "task", "vehicle", "holds", "emergency_stop"} <= set(complete)
+        assert (following["seq"], following["skipped"]) == (complete["seq"] + 1, 0)
+        assert "holds" not in following
+        assert [frame["seq"] for frame in other.frames()] == [following["seq"]]
+
+
 async def test_an_emergency_stop_is_told_at_once_and_not_at_the_next_tick(
     app: FastAPI, supervisor: Supervisor
 ) -> None:
