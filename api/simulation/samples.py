@@ -4,7 +4,7 @@ from collections import Counter
 from collections.abc import Iterator
 
 from api.streaming.robot_encoder import RobotEncoder
-from domain.events import RecordedEvent
+from domain.events.event import RecordedEvent
 from domain.snapshot import TaskView
 from service.event_log import EventReader, Gap
 from service.supervisor import Supervisor

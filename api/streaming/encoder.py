@@ -11,7 +11,7 @@ from api.http.schemas.stream import GapJson, HelloJson
 from api.streaming.client_input import STATE_TOPICS, TOPICS
 from api.streaming.robot_encoder import RobotEncoder
 from domain.errors import PilothouseError
-from domain.events import RecordedEvent
+from domain.events.event import RecordedEvent
 from domain.timebase import to_seconds
 from service.event_log import Gap
 from service.frame_feed import Frame

@@ -9,7 +9,7 @@ from api.http.schemas.base import timestamp
 from api.http.schemas.health import EmergencyStopJson, StreamedSignalJson, SystemStateJson
 from api.http.schemas.parts import PartJson
 from api.http.schemas.tasks import HoldJson, TaskJson, VehicleJson
-from domain.events import RecordedEvent
+from domain.events.event import RecordedEvent
 from domain.snapshot import (
     EmergencyStopView,
     HoldView,

@@ -4,7 +4,10 @@ import math
 import pytest
 
 from api.streaming.robot_encoder import LatestCache, MemberCache, RobotEncoder
-from domain.events import NodeReported, RecordedEvent, TaskStarted, TimeWasDue
+from domain.events.driving import TaskStarted
+from domain.events.event import RecordedEvent
+from domain.events.parts import NodeReported
+from domain.events.service import TimeWasDue
 from domain.identifiers import GoalId, TaskId
 from domain.inputs import EmergencyStopRequest, HoldRequest
 from domain.state_and_mode import PartName
