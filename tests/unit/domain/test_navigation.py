@@ -14,7 +14,7 @@ from domain.paths.path import Path
 from domain.timebase import Instant, seconds
 from domain.tracking.tracker import ControlStep
 from domain.vehicle import Point, Pose, VehicleLimits, VehicleState
-from tests.support.driver import straight
+from tests.support.paths import straight
 
 LIMITS = VehicleLimits()
 

@@ -17,10 +17,10 @@ from domain.inputs import (
 )
 from domain.state_and_mode import PartName
 from service.supervisor import Supervisor
-from tests.support.driver import straight
 from tests.support.frames import event
 from tests.support.live_robot import make_supervisor, running
 from tests.support.manual_clock import ManualClock
+from tests.support.paths import straight
 from tests.support.websocket import WebSocketClient
 
 

@@ -1,6 +1,6 @@
 from domain.inputs import CancelTaskRequest, HoldRequest, ReleaseRequest, TaskRequest
 from domain.tasks.drive_words import describe_drive_request
-from tests.support.driver import straight
+from tests.support.paths import straight
 
 
 def test_a_task_is_recorded_by_what_it_is_and_not_by_all_its_waypoints() -> None:
