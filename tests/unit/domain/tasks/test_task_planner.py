@@ -27,8 +27,9 @@ def commands_of(outputs: Outputs) -> list[str]:
 # --- serve ---------------------------------------------------------------------------------------
 
 
-def test_a_task_that_nothing_holds_is_one_goal_from_its_first_waypoint() -> None:
-    robot = ScriptedRobot()
+def test_a_task_that_nothing_holds_is_one_goal_from_its_first_waypoint(
+    robot: ScriptedRobot,
+) -> None:
     served = robot.submit_task()
 
     assert commands_of(served) == ["SendGoal"]
@@ -37,16 +38,14 @@ def test_a_task_that_nothing_holds_is_one_goal_from_its_first_waypoint() -> None
     assert robot.task.status is TaskPhase.RUNNING
 
 
-def test_running_for_a_while_sends_nothing_twice() -> None:
-    robot = ScriptedRobot()
+def test_running_for_a_while_sends_nothing_twice(robot: ScriptedRobot) -> None:
     robot.submit_task()
     robot.advance(2.0, speed_mps=2.8)
 
     assert len(robot.goals) == 1
 
 
-def test_a_task_served_in_error_is_taken_and_waits() -> None:
-    robot = ScriptedRobot()
+def test_a_task_served_in_error_is_taken_and_waits(robot: ScriptedRobot) -> None:
     robot.read(estop=True)
     robot.submit_task()
 
@@ -55,8 +54,7 @@ def test_a_task_served_in_error_is_taken_and_waits() -> None:
     assert robot.goals == []
 
 
-def test_a_task_served_in_error_starts_when_the_error_ends() -> None:
-    robot = ScriptedRobot()
+def test_a_task_served_in_error_starts_when_the_error_ends(robot: ScriptedRobot) -> None:
     robot.read(estop=True)
     robot.submit_task()
     robot.advance(0.5)
@@ -66,8 +64,7 @@ def test_a_task_served_in_error_starts_when_the_error_ends() -> None:
     assert [data["task"] for data in robot.happened("task.started")] == ["t1"]
 
 
-def test_a_new_task_takes_the_place_of_a_running_one_without_a_stop() -> None:
-    robot = ScriptedRobot()
+def test_a_new_task_takes_the_place_of_a_running_one_without_a_stop(robot: ScriptedRobot) -> None:
     robot.submit_task()
     robot.feedback(9)
     replaced = robot.submit_task(straight(y_m=0.5))
@@ -79,8 +76,7 @@ def test_a_new_task_takes_the_place_of_a_running_one_without_a_stop() -> None:
     assert robot.core.driving.task("t1").reason == "replaced by t2"
 
 
-def test_of_two_tasks_served_in_error_the_last_one_runs() -> None:
-    robot = ScriptedRobot()
+def test_of_two_tasks_served_in_error_the_last_one_runs(robot: ScriptedRobot) -> None:
     robot.read(estop=True)
     robot.submit_task()
     robot.submit_task(straight(y_m=0.5))
@@ -89,8 +85,7 @@ def test_of_two_tasks_served_in_error_the_last_one_runs() -> None:
     assert [goal.path.waypoint(0).y_m for goal in robot.goals] == [0.5]
 
 
-def test_a_task_may_begin_at_a_later_waypoint() -> None:
-    robot = ScriptedRobot()
+def test_a_task_may_begin_at_a_later_waypoint(robot: ScriptedRobot) -> None:
     robot.submit_task(start_index=3)
 
     assert robot.goals[0].start_index == 3
@@ -98,24 +93,23 @@ def test_a_task_may_begin_at_a_later_waypoint() -> None:
 
 
 @pytest.mark.parametrize("start_index", [-1, 20, 21])
-def test_a_start_with_no_path_behind_it_is_refused(start_index: int) -> None:
-    robot = ScriptedRobot()
+def test_a_start_with_no_path_behind_it_is_refused(robot: ScriptedRobot, start_index: int) -> None:
     with pytest.raises(InvalidValueError, match="start_index"):
         robot.submit_task(start_index=start_index)
 
     assert robot.core.driving.current_task is None
 
 
-def test_an_unknown_controller_is_refused_and_the_known_ones_are_named() -> None:
-    robot = ScriptedRobot()
+def test_an_unknown_controller_is_refused_and_the_known_ones_are_named(
+    robot: ScriptedRobot,
+) -> None:
     with pytest.raises(UnknownControllerError) as refused:
         robot.submit_task(controller="magic")
 
     assert refused.value.hint == "known: pure_pursuit, stanley"
 
 
-def test_a_path_that_begins_more_than_five_metres_away_is_refused() -> None:
-    robot = ScriptedRobot()
+def test_a_path_that_begins_more_than_five_metres_away_is_refused(robot: ScriptedRobot) -> None:
     with pytest.raises(FarStartError, match=r"begins 5\.1 m from the vehicle"):
         robot.submit_task(straight(y_m=5.1))
     robot.submit_task(straight(y_m=5.0))
@@ -137,8 +131,7 @@ def test_where_the_vehicle_was_unknown_the_distance_is_judged_at_the_start() -> 
 # --- holds ---------------------------------------------------------------------------------------
 
 
-def test_an_error_takes_the_goal_back_and_stops_in_the_same_step() -> None:
-    robot = ScriptedRobot()
+def test_an_error_takes_the_goal_back_and_stops_in_the_same_step(robot: ScriptedRobot) -> None:
     robot.submit_task()
     robot.report(speed_mps=2.8, steering_rad=0.2)
     stopped = robot.read(estop=True)
@@ -149,8 +142,7 @@ def test_an_error_takes_the_goal_back_and_stops_in_the_same_step() -> None:
     assert robot.task.status is TaskPhase.PAUSING
 
 
-def test_a_stop_leaves_the_wheels_as_they_are() -> None:
-    robot = ScriptedRobot()
+def test_a_stop_leaves_the_wheels_as_they_are(robot: ScriptedRobot) -> None:
     robot.submit_task()
     robot.report(speed_mps=2.8, steering_rad=0.2)
     robot.hold()
@@ -158,8 +150,7 @@ def test_a_stop_leaves_the_wheels_as_they_are() -> None:
     assert robot.sent(Drive)[0].command.steering_angle_rad == 0.2
 
 
-def test_a_held_task_is_paused_once_the_vehicle_is_seen_to_stand() -> None:
-    robot = ScriptedRobot()
+def test_a_held_task_is_paused_once_the_vehicle_is_seen_to_stand(robot: ScriptedRobot) -> None:
     robot.submit_task()
     robot.hold()
     robot.report(speed_mps=0.06)
@@ -170,8 +161,9 @@ def test_a_held_task_is_paused_once_the_vehicle_is_seen_to_stand() -> None:
     assert robot.task.reason == "lunch"
 
 
-def test_a_released_task_goes_on_from_the_first_waypoint_not_yet_passed() -> None:
-    robot = ScriptedRobot()
+def test_a_released_task_goes_on_from_the_first_waypoint_not_yet_passed(
+    robot: ScriptedRobot,
+) -> None:
     robot.submit_task()
     robot.feedback(7)
     robot.hold()
@@ -182,8 +174,7 @@ def test_a_released_task_goes_on_from_the_first_waypoint_not_yet_passed() -> Non
     assert robot.happened("task.resumed") == [{"task": "t1", "goal": 2, "target_index": 7}]
 
 
-def test_a_task_goes_on_even_while_it_is_still_pausing() -> None:
-    robot = ScriptedRobot()
+def test_a_task_goes_on_even_while_it_is_still_pausing(robot: ScriptedRobot) -> None:
     robot.submit_task()
     robot.feedback(7)
     robot.hold()
@@ -194,8 +185,7 @@ def test_a_task_goes_on_even_while_it_is_still_pausing() -> None:
     assert len(robot.goals) == 2
 
 
-def test_progress_never_goes_back_over_pauses() -> None:
-    robot = ScriptedRobot()
+def test_progress_never_goes_back_over_pauses(robot: ScriptedRobot) -> None:
     robot.submit_task()
     for index in (3, 9, 9, 5, 15):
         robot.feedback(index)
@@ -205,8 +195,7 @@ def test_progress_never_goes_back_over_pauses() -> None:
     assert [goal.start_index for goal in robot.goals] == [0, 3, 9, 9, 9, 15]
 
 
-def test_only_the_last_of_several_holds_lets_the_task_go_on() -> None:
-    robot = ScriptedRobot()
+def test_only_the_last_of_several_holds_lets_the_task_go_on(robot: ScriptedRobot) -> None:
     robot.submit_task()
     robot.hold("operator", "lunch")
     robot.hold("gate", "closed")
@@ -219,8 +208,7 @@ def test_only_the_last_of_several_holds_lets_the_task_go_on() -> None:
     assert len(robot.goals) == 2
 
 
-def test_a_hold_is_kept_across_a_replaced_task() -> None:
-    robot = ScriptedRobot()
+def test_a_hold_is_kept_across_a_replaced_task(robot: ScriptedRobot) -> None:
     robot.submit_task()
     robot.hold()
     robot.submit_task(straight(y_m=0.5))
@@ -230,8 +218,7 @@ def test_a_hold_is_kept_across_a_replaced_task() -> None:
     assert [goal.path.waypoint(0).y_m for goal in robot.goals] == [0.0, 0.5]
 
 
-def test_a_hold_without_a_task_holds_the_next_one() -> None:
-    robot = ScriptedRobot()
+def test_a_hold_without_a_task_holds_the_next_one(robot: ScriptedRobot) -> None:
     robot.hold()
     robot.submit_task()
 
@@ -239,8 +226,9 @@ def test_a_hold_without_a_task_holds_the_next_one() -> None:
     assert robot.task.status is TaskPhase.PAUSED
 
 
-def test_a_hold_set_again_keeps_who_set_it_first_and_takes_the_new_reason() -> None:
-    robot = ScriptedRobot()
+def test_a_hold_set_again_keeps_who_set_it_first_and_takes_the_new_reason(
+    robot: ScriptedRobot,
+) -> None:
     robot.hold(reason="lunch")
     since = robot.core.driving.holds["operator"].since
     robot.stay_silent(0.1)
@@ -254,8 +242,7 @@ def test_a_hold_set_again_keeps_who_set_it_first_and_takes_the_new_reason() -> N
 # --- cancel and end ------------------------------------------------------------------------------
 
 
-def test_cancel_stops_and_ends_the_task_at_once() -> None:
-    robot = ScriptedRobot()
+def test_cancel_stops_and_ends_the_task_at_once(robot: ScriptedRobot) -> None:
     robot.submit_task()
     canceled = robot.cancel_task()
 
@@ -264,8 +251,7 @@ def test_cancel_stops_and_ends_the_task_at_once() -> None:
     assert robot.task.status is TaskPhase.CANCELED
 
 
-def test_cancel_while_pausing_leaves_nothing_to_resume() -> None:
-    robot = ScriptedRobot()
+def test_cancel_while_pausing_leaves_nothing_to_resume(robot: ScriptedRobot) -> None:
     robot.submit_task()
     robot.hold()
     robot.report(speed_mps=1.0)
@@ -276,15 +262,13 @@ def test_cancel_while_pausing_leaves_nothing_to_resume() -> None:
     assert robot.status == "NO_TASK"
 
 
-def test_cancel_without_a_task_changes_nothing() -> None:
-    robot = ScriptedRobot()
+def test_cancel_without_a_task_changes_nothing(robot: ScriptedRobot) -> None:
     outputs = robot.cancel_task()
 
     assert (outputs.commands, outputs.events) == ((), ())
 
 
-def test_a_goal_that_succeeds_ends_the_task_with_its_whole_progress() -> None:
-    robot = ScriptedRobot()
+def test_a_goal_that_succeeds_ends_the_task_with_its_whole_progress(robot: ScriptedRobot) -> None:
     robot.submit_task()
     robot.feedback(20)
     ended = robot.arrive()
@@ -294,8 +278,7 @@ def test_a_goal_that_succeeds_ends_the_task_with_its_whole_progress() -> None:
     assert (robot.status, robot.state) == ("NO_TASK", "IDLE")
 
 
-def test_a_goal_that_is_given_up_ends_the_task_with_the_reason() -> None:
-    robot = ScriptedRobot()
+def test_a_goal_that_is_given_up_ends_the_task_with_the_reason(robot: ScriptedRobot) -> None:
     robot.submit_task()
     robot.arrive(succeeded=False, reason="no progress for 20 s")
 
@@ -304,8 +287,7 @@ def test_a_goal_that_is_given_up_ends_the_task_with_the_reason() -> None:
     assert robot.stops == 1
 
 
-def test_what_navigation_says_late_of_a_goal_taken_back_is_void() -> None:
-    robot = ScriptedRobot()
+def test_what_navigation_says_late_of_a_goal_taken_back_is_void(robot: ScriptedRobot) -> None:
     robot.submit_task()
     robot.hold()
     robot.feedback(15)
@@ -315,8 +297,9 @@ def test_what_navigation_says_late_of_a_goal_taken_back_is_void() -> None:
     assert robot.task.target_index == 0
 
 
-def test_what_navigation_says_late_does_not_touch_the_task_that_came_after() -> None:
-    robot = ScriptedRobot()
+def test_what_navigation_says_late_does_not_touch_the_task_that_came_after(
+    robot: ScriptedRobot,
+) -> None:
     robot.submit_task()
     robot.submit_task(straight(y_m=0.5))
     robot.feedback(15, robot.goals[0])
@@ -324,8 +307,7 @@ def test_what_navigation_says_late_does_not_touch_the_task_that_came_after() -> 
     assert robot.task.target_index == 0
 
 
-def test_progress_counts_by_distance_from_where_the_task_began() -> None:
-    robot = ScriptedRobot()
+def test_progress_counts_by_distance_from_where_the_task_began(robot: ScriptedRobot) -> None:
     robot.report(x_m=10.0)
     robot.submit_task(start_index=10)
     robot.feedback(15)
@@ -334,8 +316,7 @@ def test_progress_counts_by_distance_from_where_the_task_began() -> None:
     assert robot.task.progress == 0.45
 
 
-def test_each_event_of_a_task_leads_back_to_what_caused_it() -> None:
-    robot = ScriptedRobot()
+def test_each_event_of_a_task_leads_back_to_what_caused_it(robot: ScriptedRobot) -> None:
     robot.submit_task()
     robot.read(estop=True)
     by_id = {event.id: event for event in robot.events}
@@ -348,8 +329,7 @@ def test_each_event_of_a_task_leads_back_to_what_caused_it() -> None:
     assert way == ["task.pausing", "hold.set", "error.raised", "signal.read"]
 
 
-def test_ended_tasks_can_be_read_and_unknown_ones_not() -> None:
-    robot = ScriptedRobot()
+def test_ended_tasks_can_be_read_and_unknown_ones_not(robot: ScriptedRobot) -> None:
     robot.submit_task()
     robot.cancel_task()
 
@@ -358,8 +338,7 @@ def test_ended_tasks_can_be_read_and_unknown_ones_not() -> None:
         robot.core.driving.task("t2")
 
 
-def test_not_one_command_to_drive_follows_a_goal_that_is_taken_back() -> None:
-    robot = ScriptedRobot()
+def test_not_one_command_to_drive_follows_a_goal_that_is_taken_back(robot: ScriptedRobot) -> None:
     robot.submit_task()
     robot.hold()
     after = robot.commands[robot.commands.index(PreemptGoal(robot.goals[0].goal)) :]
@@ -367,8 +346,7 @@ def test_not_one_command_to_drive_follows_a_goal_that_is_taken_back() -> None:
     assert all(c.command.speed_mps == 0 for c in after if isinstance(c, Drive))
 
 
-def test_what_is_left_of_a_path_that_stands_still_is_nothing_to_drive() -> None:
-    robot = ScriptedRobot()
+def test_what_is_left_of_a_path_that_stands_still_is_nothing_to_drive(robot: ScriptedRobot) -> None:
     path = Path(np.array([[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [1.0, 0.0, 0.0], [1.0, 0.0, 0.0]]))
     with pytest.raises(InvalidValueError) as refused:
         robot.submit_task(path, start_index=1)
@@ -388,8 +366,9 @@ def test_a_speed_that_the_vehicle_does_not_go_is_refused(speed_mps: float) -> No
     check_cruise(limits.max_speed_mps, limits)
 
 
-def test_a_refused_start_names_the_nearest_waypoint_with_a_path_behind_it() -> None:
-    robot = ScriptedRobot()
+def test_a_refused_start_names_the_nearest_waypoint_with_a_path_behind_it(
+    robot: ScriptedRobot,
+) -> None:
     robot.report(x_m=19.9)
     with pytest.raises(FarStartError) as refused:
         robot.submit_task(straight())
@@ -414,8 +393,7 @@ def told(robot: ScriptedRobot, *kinds: str) -> list[tuple[str, str, dict[str, ob
     ]
 
 
-def test_the_life_of_a_task_is_told_with_what_caused_each_turn() -> None:
-    robot = ScriptedRobot()
+def test_the_life_of_a_task_is_told_with_what_caused_each_turn(robot: ScriptedRobot) -> None:
     robot.submit_task()
     robot.feedback(7)
     robot.hold()
@@ -444,8 +422,7 @@ def test_the_life_of_a_task_is_told_with_what_caused_each_turn() -> None:
     ]
 
 
-def test_a_hold_is_told_when_it_is_set_and_when_it_goes() -> None:
-    robot = ScriptedRobot()
+def test_a_hold_is_told_when_it_is_set_and_when_it_goes(robot: ScriptedRobot) -> None:
     robot.hold("gate", "closed")
     robot.hold("gate", "still closed")
     robot.release("gate")
@@ -457,8 +434,9 @@ def test_a_hold_is_told_when_it_is_set_and_when_it_goes() -> None:
     ]
 
 
-def test_a_task_served_while_held_and_standing_is_told_as_paused_because_of_that() -> None:
-    robot = ScriptedRobot()
+def test_a_task_served_while_held_and_standing_is_told_as_paused_because_of_that(
+    robot: ScriptedRobot,
+) -> None:
     robot.hold()
     robot.submit_task()
 
@@ -467,8 +445,7 @@ def test_a_task_served_while_held_and_standing_is_told_as_paused_because_of_that
     ]
 
 
-def test_a_task_served_while_held_and_still_rolling_is_pausing() -> None:
-    robot = ScriptedRobot()
+def test_a_task_served_while_held_and_still_rolling_is_pausing(robot: ScriptedRobot) -> None:
     robot.report(speed_mps=1.0)
     robot.hold()
     robot.submit_task()
@@ -476,8 +453,7 @@ def test_a_task_served_while_held_and_still_rolling_is_pausing() -> None:
     assert robot.task.status is TaskPhase.PAUSING
 
 
-def test_what_ends_a_task_is_told_with_how_far_it_came() -> None:
-    robot = ScriptedRobot()
+def test_what_ends_a_task_is_told_with_how_far_it_came(robot: ScriptedRobot) -> None:
     robot.submit_task()
     robot.feedback(10)
     robot.stay_silent(0.1)
@@ -515,8 +491,7 @@ def test_a_task_that_begins_too_far_away_once_that_is_known_ends_with_that_cause
     assert robot.task.ended_at == seconds(0.1)
 
 
-def test_how_navigation_ended_it_and_when_can_be_read_afterwards() -> None:
-    robot = ScriptedRobot()
+def test_how_navigation_ended_it_and_when_can_be_read_afterwards(robot: ScriptedRobot) -> None:
     robot.submit_task()
     robot.stay_silent(0.1)
     robot.arrive(succeeded=False, reason="no progress for 20 s")
@@ -524,8 +499,9 @@ def test_how_navigation_ended_it_and_when_can_be_read_afterwards() -> None:
     assert (robot.task.ended_at, robot.task.reason) == (seconds(0.1), "no progress for 20 s")
 
 
-def test_a_task_that_just_goes_on_is_told_as_changed_and_one_that_waits_is_not() -> None:
-    robot = ScriptedRobot()
+def test_a_task_that_just_goes_on_is_told_as_changed_and_one_that_waits_is_not(
+    robot: ScriptedRobot,
+) -> None:
     assert robot.submit_task().task_changed
     assert robot.feedback(3).task_changed
     assert robot.hold().task_changed
@@ -535,8 +511,7 @@ def test_a_task_that_just_goes_on_is_told_as_changed_and_one_that_waits_is_not()
     assert not robot.cancel_task().task_changed
 
 
-def test_a_goal_tells_navigation_everything_about_the_task() -> None:
-    robot = ScriptedRobot()
+def test_a_goal_tells_navigation_everything_about_the_task(robot: ScriptedRobot) -> None:
     robot.report(x_m=3.0)
     path = straight()
     robot.submit_task(path, start_index=3, controller="stanley")
@@ -555,16 +530,16 @@ def test_a_goal_tells_navigation_everything_about_the_task() -> None:
 @pytest.mark.parametrize(
     ("start_index", "words"), [(-1, "start_index -1 is not within 0 to 19"), (20, "0 to 19")]
 )
-def test_a_refused_start_says_which_ones_there_are(start_index: int, words: str) -> None:
-    robot = ScriptedRobot()
+def test_a_refused_start_says_which_ones_there_are(
+    robot: ScriptedRobot, start_index: int, words: str
+) -> None:
     with pytest.raises(InvalidValueError, match=words) as refused:
         robot.submit_task(start_index=start_index)
 
     assert refused.value.pointer == "start_index"
 
 
-def test_a_task_can_be_traced_to_who_asked_for_it() -> None:
-    robot = ScriptedRobot()
+def test_a_task_can_be_traced_to_who_asked_for_it(robot: ScriptedRobot) -> None:
     robot.submit_task()
     asked = next(event for event in robot.events if event.kind == "task.requested")
 
@@ -572,8 +547,9 @@ def test_a_task_can_be_traced_to_who_asked_for_it() -> None:
     assert asked.actor == "operator"
 
 
-def test_a_hold_of_a_task_that_has_no_goal_any_more_does_not_make_it_pause_again() -> None:
-    robot = ScriptedRobot()
+def test_a_hold_of_a_task_that_has_no_goal_any_more_does_not_make_it_pause_again(
+    robot: ScriptedRobot,
+) -> None:
     robot.submit_task()
     robot.hold("gate", "closed")
     robot.report()
@@ -583,22 +559,21 @@ def test_a_hold_of_a_task_that_has_no_goal_any_more_does_not_make_it_pause_again
     assert len(robot.preempted) == 1
 
 
-def test_the_last_waypoint_but_one_is_a_start() -> None:
-    robot = ScriptedRobot()
+def test_the_last_waypoint_but_one_is_a_start(robot: ScriptedRobot) -> None:
     robot.report(x_m=19.0)
     robot.submit_task(start_index=19)
 
     assert robot.task.length_m == 1
 
 
-def test_an_unknown_controller_is_named() -> None:
-    robot = ScriptedRobot()
+def test_an_unknown_controller_is_named(robot: ScriptedRobot) -> None:
     with pytest.raises(UnknownControllerError, match="there is no controller 'magic'"):
         robot.submit_task(controller="magic")
 
 
-def test_the_nearest_waypoint_is_found_in_both_directions_and_up_to_the_limit() -> None:
-    robot = ScriptedRobot()
+def test_the_nearest_waypoint_is_found_in_both_directions_and_up_to_the_limit(
+    robot: ScriptedRobot,
+) -> None:
     diagonal = Path(
         np.array([[10.0, 9.0, 0.0], [6.0, 5.0, 0.0], [3.0, 4.0, 0.0], [30.0, 0.0, 0.0]])
     )
@@ -622,8 +597,7 @@ def test_a_speed_is_refused_with_what_the_vehicle_can() -> None:
     assert refused.value.message == "speed 0.05 m/s is not within 0.1 to 3 m/s"
 
 
-def test_the_nearest_waypoint_is_the_one_near_where_the_vehicle_is() -> None:
-    robot = ScriptedRobot()
+def test_the_nearest_waypoint_is_the_one_near_where_the_vehicle_is(robot: ScriptedRobot) -> None:
     robot.give(VehicleReport(VehicleState(Pose(10.0, 4.0, 0.0), 0.0, 0.0)))
     places = [[0.0, 0.0, 0.0], [10.0, -4.0, 0.0], [10.0, 1.0, 0.0], [30.0, 0.0, 0.0]]
     with pytest.raises(FarStartError) as refused:
