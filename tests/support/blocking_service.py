@@ -1,8 +1,7 @@
 """The HTTP interface of a supervisor that does not run, for tests that are no coroutines."""
 
 import asyncio
-from collections.abc import Iterator, Mapping
-from contextlib import contextmanager
+from collections.abc import Mapping
 from typing import Any
 
 import httpx
@@ -29,13 +28,3 @@ class BlockingService:
         self._runner.run(self._http.aclose())
         self._runner.run(close_workers(self._app))
         self._runner.close()
-
-
-@contextmanager
-def blocking_service() -> Iterator[BlockingService]:
-    """Offer the interface as long as the context lasts."""
-    service = BlockingService()
-    try:
-        yield service
-    finally:
-        service.close()
