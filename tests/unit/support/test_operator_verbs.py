@@ -5,7 +5,6 @@ from typing import Any
 
 import pytest
 
-from domain.events import Event
 from domain.health.signals import Recovery, default_signals
 from domain.supervision import SupervisionSettings
 from service.files.model_file import read_model
@@ -40,7 +39,7 @@ STORY: list[Callable[[Verbs], Any]] = [
 ]
 
 
-def kinds(events: Iterable[Event]) -> list[str]:
+def kinds(events: Iterable[Any]) -> list[str]:
     return [event.kind for event in events if event.kind not in OFTEN]
 
 
