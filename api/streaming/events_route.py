@@ -5,7 +5,7 @@ from typing import Annotated
 
 from fastapi import APIRouter, Query, Response
 
-from api.http.long_lists import joined
+from api.http.list_answers import joined
 from api.http.schemas.stream import EventsJson
 from api.streaming.hub import StreamHubDep
 from domain.events import Event

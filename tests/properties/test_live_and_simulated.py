@@ -13,12 +13,12 @@ from typing import Any
 import hypothesis.strategies as st
 from hypothesis import given, settings
 
-from api.http.posted_tasks import task_of
-from api.http.routes.tasks import serve
+from api.http.routes.tasks import submit_task
 from api.http.schemas.simulation import SimulationBody
 from api.http.schemas.tasks import TaskBody
-from api.simulation.posted import robot_for
+from api.http.task_jobs import task_of
 from api.simulation.simulation import Simulation
+from api.simulation.simulation_job import robot_for
 from domain.errors import PilothouseError
 from domain.inputs import (
     CancelTaskRequest,
@@ -179,7 +179,7 @@ def _act(robot: HttpRobot, step: dict[str, Any]) -> None:
         if step["task"] is None:
             supervisor.submit(CancelTaskRequest())
         else:
-            serve(supervisor, task_of(TaskBody.model_validate(step["task"])), "")
+            submit_task(supervisor, task_of(TaskBody.model_validate(step["task"])), "")
     elif "change" in step:
         asked = step["change"]
         part = PartName(asked["part"])

@@ -6,7 +6,8 @@ from math import ceil
 from starlette.types import ASGIApp, Receive, Scope, Send
 
 from api.http.gate.refusals import Refusals, address_of, refuse
-from api.http.problems import Problem, make_problem
+from api.http.problems import make_problem
+from api.http.schemas.problem import Problem
 from domain.timebase import NANOSECONDS_PER_SECOND, Duration, Instant, to_seconds
 from service.clock import Clock
 

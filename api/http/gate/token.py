@@ -8,7 +8,8 @@ from starlette.types import ASGIApp, Receive, Scope, Send
 
 from api.http.access import Access, bearer_of
 from api.http.gate.refusals import Refusals, address_of, refuse
-from api.http.problems import Problem, make_problem
+from api.http.problems import make_problem
+from api.http.schemas.problem import Problem
 
 _CHALLENGE = 'Bearer realm="pilothouse"'
 _HINT = "send the header `Authorization: Bearer TOKEN` with the token that the service was given"

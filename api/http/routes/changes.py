@@ -6,7 +6,7 @@ from typing import Annotated
 from fastapi import APIRouter, Path, Query, Response
 
 from api.http.dependencies import ActorDep, SupervisorDep
-from api.http.long_lists import json_list
+from api.http.list_answers import json_list
 from api.http.schemas.changes import ChangeJson, ChangesJson
 from domain.errors import UnknownPartError
 from domain.identifiers import ChangeId

@@ -3,7 +3,7 @@
 from fastapi import APIRouter
 
 from api.http.dependencies import ActorDep, SupervisorDep
-from api.http.json_route import JsonRoute
+from api.http.request_body import JsonRoute
 from api.http.schemas.health import EmergencyStopBody, EmergencyStopJson
 from domain.inputs import EmergencyStopRequest
 

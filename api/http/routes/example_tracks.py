@@ -3,14 +3,28 @@
 from typing import Annotated
 
 from fastapi import APIRouter, Path, Response
+from pydantic import Field
 
 from api.http.dependencies import SupervisorDep
-from api.http.schemas.example_tracks import ExampleTrackJson, ExampleTracksJson
+from api.http.schemas.base import Json
 from domain.errors import UnknownNameError
 from service.example_tracks import TRACKS, track_text
 from service.supervisor import Supervisor
 
 router = APIRouter(prefix="/examples/tracks", tags=["drive"])
+
+
+class ExampleTrackJson(Json):
+    """A track that comes along."""
+
+    name: str = Field(description="As in `GET /examples/tracks/{name}`")
+    title: str
+
+
+class ExampleTracksJson(Json):
+    """Tracks that come along; none where the vehicle is real."""
+
+    items: list[ExampleTrackJson]
 
 
 @router.get("")

@@ -6,7 +6,7 @@ from typing import Annotated
 from fastapi import APIRouter, Path, Response
 
 from api.http.dependencies import ActorDep, SupervisorDep
-from api.http.json_route import JsonRoute
+from api.http.request_body import JsonRoute
 from api.http.schemas.tasks import HoldBody, HoldJson, HoldsJson
 from domain.inputs import HoldRequest, ReleaseRequest
 

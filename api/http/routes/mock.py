@@ -5,10 +5,10 @@ from typing import Annotated
 
 from fastapi import APIRouter, Path
 
-from api.http.bodies import InvalidBodyError
+from api.http.body_parsing import InvalidBodyError
 from api.http.dependencies import ActorDep, SupervisorDep
-from api.http.json_route import JsonRoute
 from api.http.problems import HttpError
+from api.http.request_body import JsonRoute
 from api.http.schemas.health import MockBody, MockJson, MockSignalJson
 from domain.errors import InvalidValueError, UnknownSignalError
 from service.simulation.mock_source import MockSource

@@ -3,8 +3,8 @@
 from fastapi import APIRouter, Request, Response
 
 from api.http.dependencies import SupervisorDep, WorkerDep
-from api.http.posted_models import check_posted
-from api.http.request_bodies import limits_of, read_body
+from api.http.model_jobs import check_posted
+from api.http.request_body import limits_of, read_body
 from api.http.schemas.base import FindingJson
 from api.http.schemas.inference import ModelCheckJson, ModelJson, NodeModelJson, SystemModelJson
 from service.supervisor import Supervisor

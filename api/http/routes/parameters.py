@@ -4,10 +4,10 @@ from typing import Annotated
 
 from fastapi import APIRouter, Body, Request, Response
 
-from api.http.bodies import InvalidBodyError
+from api.http.body_parsing import InvalidBodyError
 from api.http.change_answers import CHANGE_RESPONSES, ChangeOptionsDep, answer_change
 from api.http.dependencies import ActorDep, PartDep, SupervisorDep
-from api.http.json_route import JsonRoute
+from api.http.request_body import JsonRoute
 from api.http.schemas.parts import ParameterRowJson, ParametersBody, ParametersJson
 from domain.errors import UnknownParameterError
 from domain.inputs import ParametersRequest

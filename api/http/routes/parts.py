@@ -5,11 +5,11 @@ The same routes are there for both kinds, below `/systems` and `/nodes`. A name 
 
 from fastapi import APIRouter, Request, Response
 
-from api.http.bodies import InvalidBodyError
+from api.http.body_parsing import InvalidBodyError
 from api.http.change_answers import CHANGE_RESPONSES, ChangeOptionsDep, answer_change
 from api.http.dependencies import ActorDep, PartDep, SupervisorDep
-from api.http.json_route import JsonRoute
-from api.http.long_lists import json_list
+from api.http.list_answers import json_list
+from api.http.request_body import JsonRoute
 from api.http.schemas.parts import (
     EnterableModeJson,
     ModeBody,

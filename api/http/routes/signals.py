@@ -4,9 +4,9 @@ from typing import Annotated
 
 from fastapi import APIRouter, Body, Path
 
-from api.http.bodies import InvalidBodyError
+from api.http.body_parsing import InvalidBodyError
 from api.http.dependencies import ActorDep, SupervisorDep
-from api.http.json_route import JsonRoute
+from api.http.request_body import JsonRoute
 from api.http.routes.system_state import current_system_state
 from api.http.schemas.health import (
     MAX_SOURCE,
@@ -15,7 +15,7 @@ from api.http.schemas.health import (
     SignalsJson,
     SystemStateJson,
 )
-from api.http.values import SentSignalValue
+from api.http.schemas.sent_values import SentSignalValue
 from domain.errors import InvalidValueError, UnknownSignalError
 from domain.inputs import Reading
 

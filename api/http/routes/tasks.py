@@ -5,16 +5,9 @@ from typing import Annotated
 
 from fastapi import APIRouter, Depends, Path, Query, Request, Response
 
-from api.http.bodies import InvalidBodyError
+from api.http.body_parsing import InvalidBodyError
 from api.http.dependencies import ActorDep, SupervisorDep, WorkerDep
-from api.http.posted_tasks import (
-    PostedTask,
-    TaskOptions,
-    encode_waypoints,
-    preview_posted,
-    read_posted_task,
-)
-from api.http.request_bodies import limits_of, read_body
+from api.http.request_body import limits_of, read_body
 from api.http.schemas.path_preview import PathPreviewJson
 from api.http.schemas.tasks import (
     DEFAULT_CONTROLLER,
@@ -23,6 +16,13 @@ from api.http.schemas.tasks import (
     TaskJson,
     TasksJson,
     WaypointsJson,
+)
+from api.http.task_jobs import (
+    PostedTask,
+    TaskOptions,
+    encode_waypoints,
+    preview_posted,
+    read_posted_task,
 )
 from domain.errors import FarStartError, InvalidValueError, UnknownControllerError, UnknownTaskError
 from domain.inputs import CancelTaskRequest, TaskRequest
@@ -104,12 +104,12 @@ async def serve_task(
     """
     raw = await read_body(request, limits_of(request).waypoints_bytes)
     posted = await _read(raw, csv, worker)
-    task = serve(supervisor, posted, actor)
+    task = submit_task(supervisor, posted, actor)
     headers = {"Location": f"/tasks/{task.id}"}
     return Response(task.model_dump_json(), HTTPStatus.CREATED, headers, "application/json")
 
 
-def serve(supervisor: Supervisor, posted: PostedTask, actor: str) -> TaskJson:
+def submit_task(supervisor: Supervisor, posted: PostedTask, actor: str) -> TaskJson:
     """Hand a task to the core and show what became of it.
 
     Raises:

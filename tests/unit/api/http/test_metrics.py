@@ -21,7 +21,6 @@ from tests.support.driver import straight
 from tests.support.frames import event
 from tests.support.live_robot import make_supervisor, running
 from tests.support.manual_clock import ManualClock
-from tests.support.websocket import WebSocketClient
 
 
 @pytest.fixture
@@ -131,19 +130,6 @@ async def test_the_metrics_tell_the_period_of_the_tick(
 
     assert await metric(http, "pilothouse_publish_period_seconds_count") == 20
     assert await metric(http, "pilothouse_publish_period_seconds_sum") == pytest.approx(1)
-
-
-async def test_the_metrics_count_the_clients_of_the_stream(
-    http: httpx.AsyncClient, app: FastAPI, supervisor: Supervisor
-) -> None:
-    async with running(supervisor):
-        async with WebSocketClient(app) as client:
-            await client.frame()
-            assert await metric(http, "pilothouse_ws_clients") == 1
-
-        assert await metric(http, "pilothouse_ws_clients") == 0
-        assert await metric(http, "pilothouse_ws_dropped_total") == 0
-        assert await metric(http, "pilothouse_ws_frames_skipped_total") == 0
 
 
 async def test_the_metrics_count_the_ticks_that_were_skipped(
