@@ -12,6 +12,7 @@ from api.http.access import Access
 from api.http.gate.audit import Audit
 from api.http.gate.headers import SecurityHeaders
 from api.http.gate.origin import OriginGate
+from api.http.gate.policies import RoutePolicies
 from api.http.gate.rate import RateGate
 from api.http.gate.token import TokenGate
 from api.http.limits import USUAL_LIMITS, ServiceLimits
@@ -65,10 +66,11 @@ def _guard(app: FastAPI, supervisor: Supervisor, allowed_hosts: Sequence[str]) -
     """
     state = app.state
     refusals, clock, per_s = state.refusals, supervisor.clock, state.limits.requests_per_s
-    app.add_middleware(Audit, record=supervisor.submit)
-    app.add_middleware(TokenGate, access=state.access, refusals=refusals)
+    policies = RoutePolicies(app.routes)
+    app.add_middleware(Audit, record=supervisor.submit, policies=policies)
+    app.add_middleware(TokenGate, access=state.access, policies=policies, refusals=refusals)
     app.add_middleware(OriginGate, allowed_hosts=allowed_hosts, refusals=refusals)
-    app.add_middleware(RateGate, per_s=per_s, clock=clock, refusals=refusals)
+    app.add_middleware(RateGate, per_s=per_s, clock=clock, policies=policies, refusals=refusals)
     app.add_middleware(SecurityHeaders)
 
 

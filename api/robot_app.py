@@ -10,6 +10,7 @@ from starlette.middleware import Middleware
 
 from api.distribution import installed_version
 from api.documents.openapi import describe
+from api.documents.route import openapi_router
 from api.http.access import Access
 from api.http.gate.faults import UnexpectedErrors
 from api.http.gate.refusals import Refusals
@@ -41,6 +42,7 @@ from service.jobs import Jobs
 from service.supervisor import Supervisor
 
 _RESOURCES = (
+    openapi_router,
     # Before the parts: the path of a part matches everything below /nodes.
     parameters.router,
     changes.router,
@@ -84,6 +86,8 @@ def create_robot_app(
         title="Pilothouse",
         summary="States and modes of a robot's systems and nodes, its health, and why",
         version=installed_version(),
+        # Its own routes declare no policy; ours are in api.documents.
+        openapi_url=None,
         docs_url=None,
         redoc_url=None,
         redirect_slashes=False,

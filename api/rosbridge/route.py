@@ -10,6 +10,7 @@ from typing import Any
 from fastapi import APIRouter, WebSocket, WebSocketDisconnect
 
 from api.http.access import UnauthorizedError
+from api.http.route_policy import AuditClass, Permission, policy
 from api.rosbridge.clients import RosbridgeClients, RosbridgeClientsDep
 from api.rosbridge.operations import Authenticate, id_of, read_message, read_operation
 from api.rosbridge.replies import status_text
@@ -28,7 +29,9 @@ _TRY_AGAIN_LATER = 1013
 _UNAUTHORIZED = 4401
 
 
+# Not the handshake: each call of a service has an event of its own.
 @router.websocket("/rosbridge")
+@policy(Permission.OPERATE, AuditClass.NEVER)
 async def rosbridge(socket: WebSocket, clients: RosbridgeClientsDep) -> None:
     """Serve one client until it goes, does not read, or the service ends."""
     await socket.accept()

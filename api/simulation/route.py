@@ -6,6 +6,7 @@ from fastapi import APIRouter, Depends, Request, Response
 
 from api.http.dependencies import SupervisorDep
 from api.http.request_body import limits_of, read_body
+from api.http.route_policy import Permission, policy
 from api.http.schemas.simulation import SimulationJson
 from api.simulation.simulation_job import LiveCopy, copy_of, simulate_posted
 from service.jobs import Jobs
@@ -36,6 +37,7 @@ SimulatorDep = Annotated[Jobs, Depends(_simulator)]
         }
     },
 )
+@policy(Permission.OBSERVE)
 async def simulate(
     request: Request, supervisor: SupervisorDep, simulator: SimulatorDep
 ) -> Response:

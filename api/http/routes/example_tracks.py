@@ -6,6 +6,7 @@ from fastapi import APIRouter, Path, Response
 from pydantic import Field
 
 from api.http.dependencies import SupervisorDep
+from api.http.route_policy import Permission, policy
 from api.http.schemas.base import Json
 from domain.errors import UnknownNameError
 from service.example_tracks import TRACKS, track_text
@@ -28,6 +29,7 @@ class ExampleTracksJson(Json):
 
 
 @router.get("")
+@policy(Permission.OBSERVE)
 async def list_example_tracks(supervisor: SupervisorDep) -> ExampleTracksJson:
     """List the tracks that come along; none where the vehicle is real."""
     return ExampleTracksJson(
@@ -40,6 +42,7 @@ async def list_example_tracks(supervisor: SupervisorDep) -> ExampleTracksJson:
     response_class=Response,
     responses={200: {"content": {"text/csv": {"schema": {"type": "string"}}}}},
 )
+@policy(Permission.OBSERVE)
 async def get_example_track(
     name: Annotated[str, Path(description="As in `GET /examples/tracks`")],
     supervisor: SupervisorDep,

@@ -10,6 +10,7 @@ from prometheus_client import CONTENT_TYPE_LATEST, generate_latest
 from api.http.dependencies import SupervisorDep
 from api.http.metrics import Metrics
 from api.http.problems import make_problem, problem_response
+from api.http.route_policy import Permission, policy
 from api.http.schemas.base import Json
 from domain.tasks.holds import VEHICLE_HOLD
 from domain.timebase import Duration, seconds, to_seconds
@@ -57,12 +58,14 @@ class HealthJson(Json):
 
 
 @router.get("/livez")
+@policy(Permission.PROBE)
 async def get_livez() -> LiveJson:
     """Tell that the event loop turns."""
     return LiveJson()
 
 
 @router.get("/readyz", response_model=ReadyJson, responses={503: {"description": "It does not"}})
+@policy(Permission.PROBE)
 async def get_readyz(supervisor: SupervisorDep, request: Request) -> ReadyJson | Response:
     """Tell whether the model is loaded and the core ticks; 503 if not."""
     checks = _checks(supervisor)
@@ -76,6 +79,7 @@ async def get_readyz(supervisor: SupervisorDep, request: Request) -> ReadyJson |
 
 
 @router.get("/healthz")
+@policy(Permission.OBSERVE)
 async def get_healthz(supervisor: SupervisorDep, request: Request) -> HealthJson:
     """Tell how the service fares, and what should be looked at; always 200."""
     checks = _checks(supervisor)
@@ -97,6 +101,7 @@ async def _metrics(request: Request) -> Metrics:
     response_class=Response,
     responses={200: {"content": {"text/plain": {"schema": {"type": "string"}}}}},
 )
+@policy(Permission.OBSERVE)
 async def get_metrics(known: Annotated[Metrics, Depends(_metrics)]) -> Response:
     """Return the metrics in the text format of Prometheus."""
     return Response(generate_latest(known.registry), media_type=CONTENT_TYPE_LATEST)
