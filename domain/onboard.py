@@ -8,7 +8,7 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 from domain.commands import Command, Drive, PreemptGoal, SendGoal
-from domain.inputs import Input, TimePassed, VehicleReport
+from domain.inputs import Input, TimePassed
 from domain.navigation import Navigation
 from domain.outbox import Outputs
 from domain.supervision import Supervision
@@ -48,10 +48,6 @@ class Onboard:
             PilothouseError: The input is refused; nothing was changed by it.
         """
         self._let_pass(now)
-        if isinstance(given, VehicleReport):
-            # Before the core, which may send a goal because of it.
-            self.core.driving.check(given)
-            self.navigation.take_report(given, now)
         self._take(given, now)
         gathered, self._untold = self._untold, []
         return _merged(gathered)

@@ -12,6 +12,7 @@ from contextlib import suppress
 
 from domain.commands import PreemptGoal, SendGoal
 from domain.errors import PilothouseError
+from domain.events import ChangeEnded
 from domain.findings import Finding
 from domain.health.signals import ESTOP_SIGNAL
 from domain.identifiers import ChangeId
@@ -261,14 +262,14 @@ class Supervisor:
         self._vehicle_changed |= outputs.vehicle_changed
         for event in outputs.events:
             self.events.append(event)
-            if event.kind in _ENDS:
-                self.ended_changes[event.kind.removeprefix("change.")] += 1
-                self._wake_waiting(event.data["change"])
+            if isinstance(event.event, ChangeEnded):
+                self.ended_changes[event.event.status] += 1
+                self._wake_waiting(event.event.change)
         if outputs.system_state and self._seq:
             self._publish()
 
-    def _wake_waiting(self, change: object) -> None:
-        for ended in self._waiting.pop(ChangeId(str(change)), ()):
+    def _wake_waiting(self, change: ChangeId) -> None:
+        for ended in self._waiting.pop(change, ()):
             if not ended.done():
                 ended.set_result(None)
 
@@ -322,9 +323,6 @@ class Supervisor:
         self.last_tick_at = now
         self._publish(full=self._ticks % _TICKS_PER_FULL == 0)
         self._ticks += 1
-
-
-_ENDS = frozenset(f"change.{status}" for status in ChangeStatus if status != ChangeStatus.RUNNING)
 
 
 async def _forever(name: str, work: Coroutine[object, object, None]) -> None:

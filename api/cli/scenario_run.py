@@ -8,7 +8,6 @@ from pathlib import Path
 from typing import Literal
 
 from api.cli.terminal_line import TerminalLine
-from api.event_words import event_words
 from api.http.schemas.simulation import DifferenceJson, ExpectationJson, RefusalJson
 from api.simulation.expectations import MISSING
 from api.simulation.scenario_file import InvalidScenarioError, Scenario, load_scenario
@@ -80,11 +79,9 @@ def report(scenario: Scenario, simulation: Simulation, took_s: float) -> Iterato
     """
     if scenario.body.title:
         yield scenario.body.title
-    systems = scenario.robot.supervisor.model.systems
     for event in simulation.events:
-        words = event_words(event, systems)
-        if words is not None:
-            yield f"{simulation.seconds_to(event):9.2f} s  {words}"
+        if event.event.notable:
+            yield f"{simulation.seconds_to(event):9.2f} s  {event.event.words}"
     failed = failures(scenario, simulation)
     yield from failed
     speed = f"{scenario.body.until_s:g} s in {took_s:.2f} s"

@@ -16,7 +16,6 @@ from domain.errors import InvalidValueError
 from domain.paths.path import Path
 from domain.paths.preview import preview
 from domain.paths.speed_profile import SpeedLimits
-from domain.paths.waypoints import checked_waypoints
 from domain.tasks.task_planner import check_cruise
 from domain.vehicle import Pose, VehicleLimits
 from service.files.waypoint_file import Heading, read_waypoints_csv
@@ -70,8 +69,7 @@ def task_of(body: TaskBody) -> PostedTask:
     """
     rows = [(point.x_m, point.y_m, point.yaw_rad) for point in body.waypoints]
     try:
-        waypoints = checked_waypoints(np.array(rows, dtype=np.float64).reshape(-1, 3))
-        path = Path(waypoints)
+        path = Path(np.array(rows, dtype=np.float64).reshape(-1, 3))
     except InvalidValueError as error:
         raise InvalidBodyError.at(error.pointer or "waypoints", error) from error
     return PostedTask(path, body.start_index, body.controller, body.speed_mps)

@@ -8,7 +8,7 @@ from api.http.schemas.parts import PartJson
 from api.http.schemas.tasks import TaskJson, VehicleJson
 from api.streaming.event_text import event_text
 from api.streaming.members import Members
-from domain.events import Event
+from domain.events import RecordedEvent
 from domain.snapshot import PartView, TaskView
 from service.event_log import EventReader, Gap
 from service.supervisor import Supervisor
@@ -28,7 +28,7 @@ class Sampler:
         self._parts = Members[PartView](lambda view: PartJson.of(view, clock).model_dump_json())
         self._reader = EventReader(supervisor.events, supervisor.events.newest)
         self._left = MAX_CHARACTERS
-        self.events: list[Event] = []
+        self.events: list[RecordedEvent] = []
         """All that happened since the begin."""
 
     def kept_sample(self, t_s: float, number: int) -> str:

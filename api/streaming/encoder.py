@@ -13,7 +13,7 @@ from api.streaming.event_text import event_text
 from api.streaming.members import Members
 from api.streaming.query import TOPICS
 from domain.errors import PilothouseError
-from domain.events import Event
+from domain.events import RecordedEvent
 from domain.snapshot import PartView, SignalView
 from domain.timebase import to_seconds
 from service.event_log import Gap
@@ -67,7 +67,7 @@ class StreamEncoder:
             self._texts[_shape(frame, topics)] = (frame, known)
         return known.after(skipped)
 
-    def event(self, event: Event) -> str:
+    def event(self, event: RecordedEvent) -> str:
         """Return an `event` frame."""
         text = self._events.get(event.id)
         if text is None:

@@ -5,11 +5,11 @@ from collections.abc import Mapping
 from pydantic_core import to_json
 
 from api.http.schemas.base import timestamp
-from domain.events import Event
+from domain.events import RecordedEvent
 from service.clock import Clock
 
 
-def event_text(event: Event, epoch: str, clock: Clock) -> str:
+def event_text(event: RecordedEvent, epoch: str, clock: Clock) -> str:
     """Return an `event` frame, as it stands in the log and in simulations too."""
     shown = {
         "type": "event",
@@ -20,6 +20,8 @@ def event_text(event: Event, epoch: str, clock: Clock) -> str:
         "cause": event.cause,
         "actor": event.actor,
         "data": event.data,
+        "words": event.event.words,
+        "notable": event.event.notable,
     }
     # A node may report a parameter that is NaN, which JSON does not know.
     return to_json(shown, inf_nan_mode="null", fallback=_plain).decode()

@@ -9,7 +9,7 @@ from api.http.list_answers import joined
 from api.http.route_policy import Permission, policy
 from api.http.schemas.stream import EventsJson
 from api.streaming.hub import StreamHubDep
-from domain.events import Event
+from domain.events import RecordedEvent
 from service.event_log import EventLog, EventReader, Gap
 
 router = APIRouter(tags=["events"])
@@ -58,7 +58,7 @@ async def get_events(
 
 def _following(
     log: EventLog, after: int, epoch: str | None, limit: int, kind: str | None
-) -> tuple[list[Gap], list[Event]]:
+) -> tuple[list[Gap], list[RecordedEvent]]:
     """Read on behind a cursor until there are `limit` events of `kind`.
 
     It is one look at the log, without turns for others: it takes 3 ms at most, and `newest` so
@@ -66,12 +66,12 @@ def _following(
     """
     reader = EventReader(log, after, epoch)
     gaps: list[Gap] = []
-    events: list[Event] = []
+    events: list[RecordedEvent] = []
     while len(events) < limit and (found := reader.take(_READ_AT_ONCE)):
         gaps += [item for item in found if isinstance(item, Gap)]
-        events += [item for item in found if isinstance(item, Event) and _is_of(item, kind)]
+        events += [item for item in found if isinstance(item, RecordedEvent) and _is_of(item, kind)]
     return gaps, events[:limit]
 
 
-def _is_of(event: Event, kind: str | None) -> bool:
+def _is_of(event: RecordedEvent, kind: str | None) -> bool:
     return kind is None or event.kind == kind or event.kind.startswith(f"{kind}.")

@@ -5,7 +5,7 @@ from copy import copy
 from api.streaming.encoder import StreamEncoder
 from api.streaming.prepared import text_frame
 from api.streaming.query import StreamQuery
-from domain.events import Event
+from domain.events import RecordedEvent
 from service.event_log import EventReader, Gap
 from service.frame_feed import Frame, FrameReader
 from service.supervisor import Supervisor
@@ -29,7 +29,7 @@ class News:
             known = self._frames[key] = text_frame(self._encoder.frame(frame, skipped, topics))
         return known
 
-    def event(self, item: Event | Gap) -> bytes:
+    def event(self, item: RecordedEvent | Gap) -> bytes:
         """Return an `event` or `gap` frame."""
         if isinstance(item, Gap):
             return text_frame(self._encoder.gap(item))

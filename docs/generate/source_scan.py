@@ -7,13 +7,7 @@ from pathlib import Path
 
 PROJECT = Path(__file__).resolve().parents[2]
 
-_KIND = re.compile(r"[a-z][a-z_]*\.[a-z][a-z_]*")
 _CODE = re.compile(r"[A-Z]+(?:_[A-Z]+)*")
-# Loggers, packages, files, messages of ASGI and a member of a frame are written like kinds.
-_NO_KIND = re.compile(
-    r"(?:api|http|websocket|lifespan|uvicorn|pilothouse)\..*|task\.status|system_state\..*_?status"
-    r"|.*\.(?:csv|css|html|js|json|md|py|svg|txt|ya?ml)"
-)
 
 
 class UndescribedError(Exception):
@@ -33,12 +27,6 @@ def require_described(what: str, in_source: set[str], described: set[str]) -> No
     """
     if in_source != described:
         raise UndescribedError(what, in_source - described, described - in_source)
-
-
-def event_kinds() -> set[str]:
-    """Return the kinds of events that are written out in domain, service and api."""
-    found = {text for tree in trees("domain", "service", "api") for text in _texts(tree)}
-    return {text for text in found if _KIND.fullmatch(text) and not _NO_KIND.fullmatch(text)}
 
 
 def metric_names() -> set[str]:

@@ -14,11 +14,10 @@ from api.http.schemas.simulation import SimulationBody
 from api.simulation.simulation import Simulation
 from api.simulation.simulation_job import robot_for
 from docs.generate.__main__ import main as renew
-from docs.generate.events_page import KINDS
 from docs.generate.pages import FOLDER, PAGES
 from docs.generate.source_scan import UndescribedError, codes_given_to, require_described
 from domain.changes.admission import ADVISORY
-from domain.events import Event
+from domain.events import EVENTS, RecordedEvent
 from domain.inputs import BackendStatus, Input, WriteRecord
 from domain.supervision import Supervision, SupervisionSettings
 from tests.support.good import GOOD
@@ -101,7 +100,9 @@ def test_codes_are_found_as_arguments_and_as_constants() -> None:
 # --- events --------------------------------------------------------------------------------------
 
 
-def happened(*steps: dict[str, object], until_s: float = 20, **robot: object) -> list[Event]:
+def happened(
+    *steps: dict[str, object], until_s: float = 20, **robot: object
+) -> list[RecordedEvent]:
     """Return the events of a scenario of the robot of Annex 4."""
     settings = {"signals": {"stale_after_s": 0}, **robot}
     first = {"t_s": 0, "reading": dict(GOOD)}
@@ -118,7 +119,7 @@ def request(t_s: float, method: str, path: str, **body: object) -> dict[str, obj
     return {"t_s": t_s, "request": {"method": method, "path": path, "body": body or None}}
 
 
-def a_drive() -> list[Event]:
+def a_drive() -> list[RecordedEvent]:
     """Stops of all kinds, a release, a cancel, and a task that is given up."""
     return happened(
         {"t_s": 1, "task": {"waypoints": STRAIGHT}},
@@ -137,7 +138,7 @@ def a_drive() -> list[Event]:
     )
 
 
-def a_sick_robot() -> list[Event]:
+def a_sick_robot() -> list[RecordedEvent]:
     """Errors that wait, clocks that differ, changes that end in every way."""
     mode = {"part": "actuation", "mode": "PERFORMANCE"}
     return happened(
@@ -165,28 +166,28 @@ def a_sick_robot() -> list[Event]:
     )
 
 
-def a_lost_backend() -> list[Event]:
+def a_lost_backend() -> list[RecordedEvent]:
     return told(BackendStatus(available=False, reason="no network"), BackendStatus(available=True))
 
 
-def a_write() -> list[Event]:
+def a_write() -> list[RecordedEvent]:
     return told(WriteRecord("PUT", "/holds/operator", 200, "10.0.0.7:50000", "http:10.0.0.7"))
 
 
-def told(*inputs: Input) -> list[Event]:
+def told(*inputs: Input) -> list[RecordedEvent]:
     """Return the events of a core that is given what no scenario holds."""
     core = Supervision(actuation_model(), SupervisionSettings(), 0)
     return [event for given in inputs for event in core.handle(given, 1).events]
 
 
-def the_examples() -> list[Event]:
-    events: list[Event] = []
+def the_examples() -> list[RecordedEvent]:
+    events: list[RecordedEvent] = []
     for path in sorted((FOLDER.parents[1] / "examples" / "scenarios").glob("*.yaml")):
         events += _example(path)
     return events
 
 
-def _example(path: Path) -> list[Event]:
+def _example(path: Path) -> list[RecordedEvent]:
     """Play a scenario that names no files."""
     text = yaml.safe_load(path.read_text(encoding="utf-8"))
     steps = [step for step in text["steps"] if not (step.get("task") or {}).get("file")]
@@ -202,12 +203,11 @@ def test_events_that_happen_are_listed_with_what_they_carry() -> None:
     stories = (a_drive, a_sick_robot, a_lost_backend, a_write, the_examples)
     for event in (event for story in stories for event in story()):
         seen.setdefault(event.kind, []).append(set(event.data))
-    listed = {kind.name: kind for kind in KINDS}
 
-    assert set(seen) - set(listed) == set()
+    assert set(seen) - set(EVENTS) == set()
     for name, carried in sorted(seen.items()):
-        always = {key for key in listed[name].keys if not key.endswith("?")}
-        allowed = {key.removesuffix("?") for key in listed[name].keys}
+        allowed = set(EVENTS[name].data_keys())
+        always = allowed - EVENTS[name].optional
         assert all(always <= keys <= allowed for keys in carried), name
         assert allowed - set().union(*carried) <= NOT_BY_SIMULATED_NODES, name
-    assert sorted(set(listed) - set(seen)) == sorted(NEVER_SEEN_HERE)
+    assert sorted(set(EVENTS) - set(seen)) == sorted(NEVER_SEEN_HERE)

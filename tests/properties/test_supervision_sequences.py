@@ -12,7 +12,7 @@ from hypothesis.stateful import RuleBasedStateMachine, invariant, precondition, 
 
 from domain.changes.record import ChangeSettings
 from domain.errors import PilothouseError
-from domain.events import Event
+from domain.events import RecordedEvent
 from domain.inputs import (
     AcknowledgeRequest,
     CancelRequest,
@@ -168,8 +168,8 @@ class Sequences(RuleBasedStateMachine):
         assert ARM in self.robot.core.parts()
 
 
-def _deviating(events: list[Event]) -> dict[PartName, Event]:
-    told: dict[PartName, Event] = {}
+def _deviating(events: list[RecordedEvent]) -> dict[PartName, RecordedEvent]:
+    told: dict[PartName, RecordedEvent] = {}
     for event in events:
         part = PartName(str(event.data.get("part")))
         if event.kind == "part.deviation_began":
@@ -179,7 +179,7 @@ def _deviating(events: list[Event]) -> dict[PartName, Event]:
     return told
 
 
-def _root(event: Event, by_id: Mapping[int, Event]) -> Event:
+def _root(event: RecordedEvent, by_id: Mapping[int, RecordedEvent]) -> RecordedEvent:
     while event.cause is not None:
         assert event.cause < event.id
         event = by_id[event.cause]

@@ -6,7 +6,7 @@ from typing import Any, TypeVar
 import numpy as np
 
 from domain.commands import Command, Drive, PreemptGoal, SendGoal
-from domain.events import Event
+from domain.events import RecordedEvent
 from domain.inputs import (
     CancelTaskRequest,
     GoalFeedback,
@@ -51,7 +51,7 @@ class Driver:
     ) -> None:
         self.now: Instant = 0
         self.core = Supervision(SmhModel({}, {}), settings or SupervisionSettings(), 0)
-        self.events: list[Event] = []
+        self.events: list[RecordedEvent] = []
         self.commands: list[Command] = []
         if good:
             self.read(**GOOD)

@@ -1,9 +1,10 @@
 """Frames, events and views for tests of what is streamed."""
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 from types import MappingProxyType
 
-from domain.events import Event
+from domain.events import Event, RecordedEvent
 from domain.lifecycle import LifecycleState
 from domain.snapshot import (
     Actual,
@@ -88,6 +89,27 @@ def frame(
     )
 
 
-def event(number: int, kind: str = "test.happened") -> Event:
+@dataclass(frozen=True, slots=True)
+class Happened(Event):
+    """An event of a kind that only tests have."""
+
+    kind = "test.happened"
+
+    number: int
+
+    @property
+    def words(self) -> str:
+        """Return its number."""
+        return f"number {self.number}"
+
+
+@dataclass(frozen=True, slots=True)
+class RareHappened(Happened):
+    """One more kind that only tests have."""
+
+    kind = "test.rare"
+
+
+def event(number: int, happened: type[Happened] = Happened) -> RecordedEvent:
     """Make event number `number`, caused by the one before."""
-    return Event(number, seconds(number), kind, number - 1 or None, "test", {"number": number})
+    return RecordedEvent(number, seconds(number), number - 1 or None, "test", happened(number))

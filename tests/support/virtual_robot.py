@@ -4,7 +4,7 @@ from collections.abc import Mapping
 from typing import Any
 
 from domain.commands import Command, PreemptGoal, SendGoal
-from domain.events import Event
+from domain.events import RecordedEvent
 from domain.identifiers import ChangeId
 from domain.inputs import (
     CancelTaskRequest,
@@ -52,7 +52,7 @@ class VirtualRobot:
         by_name = {PartName(name): setting for name, setting in (nodes or {}).items()}
         self.robot = SimulatedRobot(model, start, by_name, vehicle)
         self.nodes = self.robot.nodes
-        self.events: list[Event] = []
+        self.events: list[RecordedEvent] = []
         self.commands: list[Command] = []
         """What was sent to nodes and vehicle."""
         self.advance(0)

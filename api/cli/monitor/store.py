@@ -5,9 +5,6 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 from api.cli.monitor.latches import holds_after, stop_after
-from api.event_words import event_words
-from domain.events import Event
-from domain.timebase import Instant
 
 Json = Mapping[str, Any]
 
@@ -131,15 +128,9 @@ def _event(robot: Robot, event: Json) -> Robot:
         holds=None if holds is None else holds_after(holds, event),
         emergency_stop=None if stop is None else stop_after(stop, event),
     )
-    parts = robot.parts or {}
-    systems = {name for name, part in parts.items() if part.get("kind") == "system"}
-    data = event["data"]
-    # The instant is not used by the words, and could not be told without the service's clock.
-    happened = Event(event["id"], Instant(0), event["kind"], None, event["actor"], data)
-    words = event_words(happened, systems)
-    if words is None:
+    if not event["notable"]:
         return robot
-    return replace(robot, notes=_kept((*robot.notes, Note(event["at"], words))))
+    return replace(robot, notes=_kept((*robot.notes, Note(event["at"], event["words"]))))
 
 
 def _gap(robot: Robot, gap: Json) -> Robot:

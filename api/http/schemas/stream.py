@@ -77,6 +77,8 @@ class EventJson(Json):
     cause: int | None = Field(description="The event that led to this one; null: from outside")
     actor: str = Field(description="Who asked for it; empty: nobody")
     data: dict[str, Any] = Field(description="What there is to tell of it; another for each kind")
+    words: str = Field(description="What happened, as one sentence for an operator")
+    notable: bool = Field(description="false: detail that a short list leaves out")
 
 
 class GapJson(Json):

@@ -10,7 +10,10 @@ from domain.errors import InvalidValueError
 from domain.identifiers import GoalId
 from domain.inputs import GoalFeedback, GoalResult, VehicleReport
 from domain.navigation import Navigation, NavigationMessage, NavigationSettings
+from domain.outbox import Outbox
 from domain.paths.path import Path
+from domain.tasks.settings import TaskSettings
+from domain.tasks.vehicle_watch import VehicleWatch
 from domain.timebase import Instant, seconds
 from domain.tracking.tracker import ControlStep
 from domain.vehicle import Point, Pose, VehicleLimits, VehicleState
@@ -41,13 +44,16 @@ class Drive20Hz:
     def __init__(self, tracker: Straight | None = None, length_m: float = 20.0) -> None:
         self.now: Instant = seconds(100)
         tracker = tracker or Straight()
-        self.navigation = Navigation(LIMITS, NavigationSettings(), {"test": lambda _: tracker})
+        self.vehicle = VehicleWatch(TaskSettings(), Outbox())
+        self.navigation = Navigation(
+            LIMITS, NavigationSettings(), self.vehicle, {"test": lambda _: tracker}
+        )
         self.path = straight(length_m)
         self.said: list[NavigationMessage] = []
 
     def report(self, x_m: float = 0.0, y_m: float = 0.0, speed_mps: float = 0.0) -> None:
         state = VehicleState(Pose(x_m, y_m, 0.0), speed_mps, 0.0)
-        self.navigation.take_report(VehicleReport(state), self.now)
+        self.vehicle.take(VehicleReport(state), self.now)
 
     def send(self, goal: int = 1, start_index: int = 0, speed_mps: float = 2.8) -> None:
         reached_m = self.path.distance_of(max(start_index - 1, 0))

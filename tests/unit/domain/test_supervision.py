@@ -23,7 +23,7 @@ from domain.errors import (
     UnknownPartError,
     UnknownSignalError,
 )
-from domain.events import Event
+from domain.events import RecordedEvent
 from domain.health.signals import Recovery, default_signals
 from domain.identifiers import ChangeId
 from domain.inputs import (
@@ -204,14 +204,14 @@ def test_an_input_in_the_past_counts_as_now(robot: VirtualRobot) -> None:
 # --- inputs and their causes ---------------------------------------------------------------------
 
 
-def _root(events: Iterable[Event], event: Event) -> Event:
+def _root(events: Iterable[RecordedEvent], event: RecordedEvent) -> RecordedEvent:
     by_id = {other.id: other for other in events}
     while event.cause is not None:
         event = by_id[event.cause]
     return event
 
 
-def _last(robot: VirtualRobot, kind: str) -> Event:
+def _last(robot: VirtualRobot, kind: str) -> RecordedEvent:
     return [event for event in robot.events if event.kind == kind][-1]
 
 
@@ -641,7 +641,7 @@ class Run:
     """All that came out of one core."""
 
     core: Supervision
-    events: tuple[Event, ...] = ()
+    events: tuple[RecordedEvent, ...] = ()
     commands: tuple[Command, ...] = ()
     refusals: tuple[str, ...] = ()
 

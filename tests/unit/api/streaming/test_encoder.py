@@ -7,9 +7,11 @@ import pytest
 
 from api.streaming.encoder import StreamEncoder
 from domain.errors import BlockedError
-from domain.events import Event
+from domain.events import NodeReported, RecordedEvent
 from domain.findings import Blocker
+from domain.parameters import Parameters
 from domain.snapshot import PartView
+from domain.state_and_mode import PartName
 from domain.timebase import seconds
 from service.event_log import Gap
 from service.supervisor import Supervisor
@@ -209,15 +211,17 @@ async def test_a_large_frame_of_known_parts_is_made_at_once(encoder: StreamEncod
 def test_an_event_has_the_fields_that_the_log_is_read_by(
     encoder: StreamEncoder, supervisor: Supervisor
 ) -> None:
-    assert read(encoder.event(event(88, "change.succeeded"))) == {
+    assert read(encoder.event(event(88))) == {
         "type": "event",
         "epoch": supervisor.epoch,
         "id": 88,
         "at": "2026-01-01T00:01:28.000Z",
-        "kind": "change.succeeded",
+        "kind": "test.happened",
         "cause": 87,
         "actor": "test",
         "data": {"number": 88},
+        "words": "number 88",
+        "notable": True,
     }
 
 
@@ -234,11 +238,12 @@ def test_old_events_are_not_kept_for_ever(encoder: StreamEncoder) -> None:
 
 
 def test_an_event_may_hold_what_json_does_not_know(encoder: StreamEncoder) -> None:
-    data = MappingProxyType({"speed": float("nan"), "nested": MappingProxyType({"a": (1, 2)})})
+    parameters: Parameters = MappingProxyType({"speed": float("nan"), "gains": (1, 2)})
+    reported = NodeReported(PartName("arm"), parameters=parameters)
 
-    shown = read(encoder.event(Event(1, seconds(1), "node.reported", None, "", data)))
+    shown = read(encoder.event(RecordedEvent(1, seconds(1), None, "", reported)))
 
-    assert shown["data"] == {"speed": None, "nested": {"a": [1, 2]}}
+    assert shown["data"]["parameters"] == {"speed": None, "gains": [1, 2]}
 
 
 def test_a_gap_says_from_where_to_where(encoder: StreamEncoder) -> None:

@@ -1,15 +1,17 @@
 import json
 import math
-from types import MappingProxyType
 
 from api.streaming.event_text import event_text
-from domain.events import Event
+from domain.events import NodeReported, RecordedEvent, TaskStarted
+from domain.identifiers import GoalId, TaskId
+from domain.state_and_mode import PartName
 from domain.timebase import seconds
 from tests.support.manual_clock import ManualClock
 
 
 def test_an_event_tells_what_happened_when_and_why() -> None:
-    event = Event(3, seconds(1.5), "task.started", 2, "http:1", {"task": "t1"})
+    started = TaskStarted(TaskId("t1"), GoalId(1), 0)
+    event = RecordedEvent(3, seconds(1.5), 2, "http:1", started)
 
     assert json.loads(event_text(event, "e1", ManualClock())) == {
         "type": "event",
@@ -19,15 +21,15 @@ def test_an_event_tells_what_happened_when_and_why() -> None:
         "kind": "task.started",
         "cause": 2,
         "actor": "http:1",
-        "data": {"task": "t1"},
+        "data": {"task": "t1", "goal": 1, "target_index": 0},
+        "words": "task t1 started",
+        "notable": True,
     }
 
 
 def test_what_json_does_not_know_is_shown_as_near_as_can_be() -> None:
-    data = {"nan": math.nan, "view": MappingProxyType({"a": 1})}
-    event = Event(1, 0, "node.reported", None, "", data)
+    reported = NodeReported(PartName("arm"), parameters={"torque": math.nan, "gains": (1.0, 2.0)})
 
-    assert json.loads(event_text(event, "e", ManualClock()))["data"] == {
-        "nan": None,
-        "view": {"a": 1},
-    }
+    shown = json.loads(event_text(RecordedEvent(1, 0, None, "", reported), "e", ManualClock()))
+
+    assert shown["data"] == {"node": "arm", "parameters": {"torque": None, "gains": [1.0, 2.0]}}

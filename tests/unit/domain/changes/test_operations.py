@@ -542,7 +542,7 @@ def test_a_node_that_somebody_else_keeps_moving_is_given_up() -> None:
         core.handle(NodeReport(BASE, parameters={"max_speed": 0.3}), 0)
     change = core.change("c1")
     assert change.status is ChangeStatus.FAILED
-    assert change.reason == "drive_base does not stay where it is put"
+    assert change.reason == "drive_base keeps leaving the requested state"
 
 
 # --- when, and in which words --------------------------------------------------------------------

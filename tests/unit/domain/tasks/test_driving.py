@@ -67,7 +67,7 @@ def test_a_vehicle_that_is_lost_is_not_known_to_stand() -> None:
     robot.serve()
     robot.wait(1.0)
 
-    assert not robot.core.driving.stands
+    assert not robot.core.driving.watch.stands
     assert robot.task.status is TaskPhase.PAUSING
 
 
