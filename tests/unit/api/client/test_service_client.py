@@ -1,3 +1,6 @@
+import subprocess
+import sys
+
 import httpx
 import pytest
 
@@ -165,3 +168,14 @@ def test_the_token_of_the_environment_is_taken(monkeypatch: pytest.MonkeyPatch) 
     monkeypatch.setenv(TOKEN_VARIABLE, "correct-horse-battery")
     with service_at(URL) as client:
         assert client.url == URL
+
+
+def test_a_command_starts_quickly_since_a_client_needs_nothing_of_the_service() -> None:
+    code = "import sys, api.cli.commands.change, api.client.service_client; print(*sys.modules)"
+    loaded = subprocess.run(
+        [sys.executable, "-c", code], capture_output=True, text=True, check=True
+    ).stdout.split()
+
+    assert "httpx" in loaded
+    heavy = {"api.http", "domain", "fastapi", "numpy", "pydantic", "starlette", "uvicorn"}
+    assert heavy.isdisjoint(loaded)
