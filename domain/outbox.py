@@ -31,6 +31,9 @@ class Outputs:
     """Whether the vehicle moves differently, is told something else, or steers to another point."""
 
 
+NOTHING = Outputs()
+
+
 class Outbox:
     """Outputs while they are gathered.
 
@@ -89,6 +92,9 @@ class Outbox:
 
     def take(self) -> Outputs:
         """Return what was gathered since the last call."""
+        if not self._has_anything():
+            # Most inputs, such as reports of a vehicle at standstill, lead to nothing.
+            return NOTHING
         outputs = Outputs(
             tuple(self._commands),
             tuple(self._events),
@@ -105,6 +111,19 @@ class Outbox:
         self.parts, self.signals = set(), set()
         self.task, self.task_changed, self.vehicle_changed = None, False, False
         return outputs
+
+    def _has_anything(self) -> bool:
+        return bool(
+            self._events
+            or self._commands
+            or self.vehicle_changed
+            or self.task_changed
+            or self.parts
+            or self.signals
+            or self.system_state
+            or self.change
+            or self.task
+        )
 
     def _append(self, event: Event, cause: int | None) -> int:
         recorded = RecordedEvent(self._next_event, self._at, cause, self._actor, event)
