@@ -12,7 +12,7 @@ from typing import Any
 
 from domain.audit import Audit
 from domain.changes.changing import Changing
-from domain.changes.record import ChangeSettings
+from domain.changes.settings import ChangeSettings
 from domain.concern import Concern, settle
 from domain.events import TimeWasDue
 from domain.health.emergency_stop import EmergencyStop

@@ -8,7 +8,8 @@ from collections.abc import Callable, Iterable
 
 from domain.changes.operations import Changes
 from domain.changes.plan import ChangeGoal
-from domain.changes.record import ChangeSettings, Step
+from domain.changes.record import Step
+from domain.changes.settings import ChangeSettings
 from domain.errors import BackendUnavailableError, RefusedError
 from domain.events import NodeNotRestored, NodeRestoring
 from domain.identifiers import ChangeId

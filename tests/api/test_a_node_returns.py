@@ -2,7 +2,7 @@
 
 import pytest
 
-from domain.changes.record import ChangeSettings
+from domain.changes.settings import ChangeSettings
 from domain.simulation.node_settings import Fault
 from domain.supervision import SupervisionSettings
 from tests.support.http_robot import HttpRobot, http_robot

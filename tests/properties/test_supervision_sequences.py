@@ -10,7 +10,7 @@ import hypothesis.strategies as st
 from hypothesis import settings
 from hypothesis.stateful import RuleBasedStateMachine, invariant, precondition, rule
 
-from domain.changes.record import ChangeSettings
+from domain.changes.settings import ChangeSettings
 from domain.errors import PilothouseError
 from domain.events import RecordedEvent
 from domain.inputs import (

@@ -4,7 +4,7 @@ from collections.abc import Iterable, Mapping
 
 import pytest
 
-from domain.changes.record import ChangeSettings
+from domain.changes.settings import ChangeSettings
 from domain.inputs import (
     BackendStatus,
     CancelRequest,
