@@ -3,7 +3,8 @@
 from dataclasses import dataclass
 
 from domain.commands import Command
-from domain.events import Event, RecordedEvent, TimeWasDue
+from domain.events.event import Event, RecordedEvent
+from domain.events.service import TimeWasDue
 from domain.identifiers import ChangeId, TaskId
 from domain.state_and_mode import PartName
 from domain.timebase import Instant

@@ -14,7 +14,7 @@ from domain.audit import Audit
 from domain.changes.changing import Changing
 from domain.changes.settings import ChangeSettings
 from domain.concern import Concern, settle
-from domain.events import TimeWasDue
+from domain.events.service import TimeWasDue
 from domain.health.emergency_stop import EmergencyStop
 from domain.health.health import Health
 from domain.health.signals import SignalSettings, default_signals

@@ -9,7 +9,7 @@ from api.http.list_answers import joined
 from api.http.route_policy import Permission, policy
 from api.http.schemas.stream import EventsJson
 from api.streaming.hub import StreamHubDep
-from domain.events import RecordedEvent
+from domain.events.event import RecordedEvent
 from service.event_log import EventLog, EventReader, Gap
 
 router = APIRouter(tags=["events"])

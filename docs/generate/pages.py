@@ -1,4 +1,4 @@
-"""All files that follow from the code, by the name of their file in `docs/reference`."""
+"""All generated files, by their name in `docs/reference`."""
 
 from collections.abc import Callable, Mapping
 from pathlib import Path

@@ -11,7 +11,7 @@ from domain.changes.restoring import Restoring
 from domain.changes.settings import ChangeSettings
 from domain.concern import Concern, Takers
 from domain.errors import BackendUnavailableError
-from domain.events import (
+from domain.events.changes import (
     BackendAvailable,
     BackendUnavailable,
     ChangeCancelRequested,

@@ -14,7 +14,7 @@ from domain.changes.step_judgement import judge_report
 from domain.commands import AskFacts, AskParameters, AskTransition
 from domain.deadlines import Deadlines
 from domain.errors import UnknownChangeError
-from domain.events import CHANGE_ENDS, StepEnded, StepStarted
+from domain.events.changes import CHANGE_ENDS, StepEnded, StepStarted
 from domain.health.health import Health
 from domain.identifiers import ChangeId
 from domain.inputs import ChangeRequest, NodeAnswer, NodeReport

@@ -11,7 +11,7 @@ from domain.changes.plan import ChangeGoal
 from domain.changes.record import Step
 from domain.changes.settings import ChangeSettings
 from domain.errors import BackendUnavailableError, RefusedError
-from domain.events import NodeNotRestored, NodeRestoring
+from domain.events.changes import NodeNotRestored, NodeRestoring
 from domain.identifiers import ChangeId
 from domain.inputs import ChangeRequest, ModeRequest, NodeReport, TransitionRequest
 from domain.lifecycle import LifecycleState, Transition, arrival

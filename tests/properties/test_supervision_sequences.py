@@ -12,7 +12,7 @@ from hypothesis.stateful import RuleBasedStateMachine, invariant, precondition, 
 
 from domain.changes.settings import ChangeSettings
 from domain.errors import PilothouseError
-from domain.events import RecordedEvent
+from domain.events.event import RecordedEvent
 from domain.inputs import (
     AcknowledgeRequest,
     CancelRequest,

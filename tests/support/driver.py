@@ -6,7 +6,7 @@ from typing import Any, TypeVar
 import numpy as np
 
 from domain.commands import Command, Drive, PreemptGoal, SendGoal
-from domain.events import RecordedEvent
+from domain.events.event import RecordedEvent
 from domain.inputs import (
     CancelTaskRequest,
     GoalFeedback,

@@ -4,7 +4,7 @@ from collections.abc import Mapping
 from typing import Any
 
 from domain.commands import Command, PreemptGoal, SendGoal
-from domain.events import RecordedEvent
+from domain.events.event import RecordedEvent
 from domain.identifiers import ChangeId
 from domain.inputs import (
     CancelTaskRequest,

@@ -23,7 +23,7 @@ from domain.errors import (
     UnknownPartError,
     UnknownSignalError,
 )
-from domain.events import RecordedEvent
+from domain.events.event import RecordedEvent
 from domain.health.signals import Recovery, default_signals
 from domain.identifiers import ChangeId
 from domain.inputs import (
