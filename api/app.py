@@ -50,7 +50,7 @@ def create_app(
     app = create_robot_app(supervisor, worker, access=access, limits=limits, lifespan=_lifespan)
     app.state.simulator = Worker(deadline_s=SIMULATION_DEADLINE_S)
     app.state.rosbridge_clients = make_rosbridge_clients(
-        supervisor, limits.requests_per_s, app.state.stream_hub
+        supervisor, limits.requests_per_s, app.state.stream_server
     )
     app.include_router(simulations.router)
     app.include_router(documents.router)

@@ -36,8 +36,8 @@ from api.http.routes import (
 from api.http.static_page import page_routes
 from api.streaming import events_route as events
 from api.streaming import route as stream
-from api.streaming.hub import StreamHub
 from api.streaming.stream_metrics import StreamCollector
+from api.streaming.stream_server import StreamServer
 from service.jobs import Jobs
 from service.supervisor import Supervisor
 
@@ -103,9 +103,11 @@ def create_robot_app(
     state.limits = limits
     state.refusals = Refusals(supervisor.clock)
     state.model_json = model.encode_model(supervisor)
-    state.stream_hub = StreamHub(supervisor, limits.stream_clients, state.access, state.refusals)
+    state.stream_server = StreamServer(
+        supervisor, limits.stream_clients, state.access, state.refusals
+    )
     state.metrics = Metrics(supervisor, state.refusals)
-    state.metrics.registry.register(StreamCollector(state.stream_hub))
+    state.metrics.registry.register(StreamCollector(state.stream_server))
     add_problem_handlers(app, supervisor.clock)
     for router in _RESOURCES:
         app.include_router(router)

@@ -1,4 +1,4 @@
-"""The contact with a service: its stream, and requests for what that does not carry.
+"""The contact with a service: its stream.
 
 It comes back by itself, with pauses that grow, and goes on behind the last event that it heard.
 """
@@ -7,7 +7,7 @@ import asyncio
 import json
 import random
 import socket
-from collections.abc import AsyncIterator, Iterator, Sequence
+from collections.abc import AsyncIterator, Iterator
 from contextlib import asynccontextmanager
 from http import HTTPStatus
 from itertools import chain, repeat
@@ -19,7 +19,6 @@ from websockets.asyncio.client import ClientConnection
 
 from api.client.address import Address
 from api.client.outcomes import Json, NoAnswerError, ServiceProblemError, token_hint
-from api.client.together import together
 
 SILENCE_S = 5.0
 """A dead peer never closes: after such a silence the stream is given up."""
@@ -54,8 +53,6 @@ class Link:
         self._last_event_id = 0
         self._is_heard = False
         """Whether a `state` frame came since the last pause."""
-        self._asked: set[str] = set()
-        self._ask = asyncio.Event()
 
     async def run(self) -> NoReturn:
         """Connect, and whenever that ends connect again.
@@ -81,12 +78,9 @@ class Link:
             NoAnswerError: The service did not answer, or does not any more.
             ServiceProblemError: It refuses us.
         """
-        async with self._http() as http:
-            structure = await self._structure(http)
-            async with self._stream() as stream:
-                await together(self._read(stream, structure), self._answer(http))
-
-    # --- the stream ------------------------------------------------------------------------------
+        await self._knock()
+        async with self._stream() as stream:
+            await self._read(stream)
 
     @asynccontextmanager
     async def _stream(self) -> AsyncIterator[ClientConnection]:
@@ -110,7 +104,7 @@ class Link:
         finally:
             await stream.close()
 
-    async def _read(self, stream: ClientConnection, structure: Sequence[Json]) -> NoReturn:
+    async def _read(self, stream: ClientConnection) -> NoReturn:
         while True:
             try:
                 async with asyncio.timeout(SILENCE_S):
@@ -123,9 +117,6 @@ class Link:
                 raise _refusal(frame, self._address)
             self._listener.take(frame)
             self._remember(frame)
-            if frame["type"] == "hello":
-                self._listener.take({"type": "structure", "items": structure})
-            self._look_for_questions(frame)
 
     def _remember(self, frame: Json) -> None:
         """Keep up to which event everything is known: the next stream begins behind it."""
@@ -139,17 +130,21 @@ class Link:
             case "state":
                 self._is_heard = True
 
-    def _look_for_questions(self, frame: Json) -> None:
-        """Ask for what no frame carries when it may have changed."""
-        kind = frame.get("kind", "")
-        if frame["type"] in ("hello", "gap") or kind.startswith("emergency_stop."):
-            self._asked.add("emergency_stop")
-        if frame["type"] in ("hello", "gap") or kind.startswith(("hold.", "task.")):
-            self._asked.add("holds")
-        if self._asked:
-            self._ask.set()
-
-    # --- requests --------------------------------------------------------------------------------
+    async def _knock(self) -> None:
+        """Ask over HTTP, which refuses at once and in words; the stream waits for a token first."""
+        url = self._address.url
+        try:
+            async with self._http() as http:
+                response = await http.get("/system_state")
+        except httpx.ConnectError as error:
+            raise NoAnswerError(f"no service answers at {url}: is it running?") from error
+        except httpx.HTTPError as error:
+            why = str(error) or f"none within {_ANSWER_S:g} s"
+            raise NoAnswerError(f"no answer from {url}: {why}") from error
+        if response.is_error:
+            raise _refusal(_problem_in(response.content, response.status_code), self._address)
+        if "task_status" not in (_object_in(response.content) or {}):
+            raise NoAnswerError(f"what answers at {url} is not Pilothouse")
 
     def _http(self) -> httpx.AsyncClient:
         # A proxy of the environment does not lead back to this machine.
@@ -159,36 +154,6 @@ class Link:
             timeout=_ANSWER_S,
             trust_env=self._address.loopback is None,
         )
-
-    async def _answer(self, http: httpx.AsyncClient) -> NoReturn:
-        """Ask one after the other, so that a burst of events does not lead to a burst of them."""
-        while True:
-            await self._ask.wait()
-            self._ask.clear()
-            asked, self._asked = self._asked, set()
-            for what in sorted(asked):
-                answer = await self._get(http, f"/{what}")
-                self._listener.take({**answer, "type": what})
-
-    async def _structure(self, http: httpx.AsyncClient) -> list[Json]:
-        systems, nodes = await self._get(http, "/systems"), await self._get(http, "/nodes")
-        return [*_items(systems), *_items(nodes)]
-
-    async def _get(self, http: httpx.AsyncClient, path: str) -> dict[str, Any]:
-        url = self._address.url
-        try:
-            response = await http.get(path)
-        except httpx.ConnectError as error:
-            raise NoAnswerError(f"no service answers at {url}: is it running?") from error
-        except httpx.HTTPError as error:
-            why = str(error) or f"none within {_ANSWER_S:g} s"
-            raise NoAnswerError(f"no answer from {url}: {why}") from error
-        if response.is_error:
-            raise _refusal(_problem_in(response.content, response.status_code), self._address)
-        answer = _object_in(response.content)
-        if answer is None:
-            raise NoAnswerError(f"what answers at {url} is not Pilothouse")
-        return answer
 
 
 async def _socket(address: Address) -> socket.socket | None:
@@ -202,13 +167,6 @@ def _pauses() -> Iterator[float]:
     """Yield pauses that grow, spread so that many clients do not come back in the same moment."""
     for pause_s in chain(_RETRY_S, repeat(_RETRY_S[-1])):
         yield pause_s * random.uniform(0.8, 1.2)
-
-
-def _items(answer: Json) -> list[Json]:
-    items = answer.get("items")
-    if not isinstance(items, list):
-        raise NoAnswerError("what answers there is not Pilothouse")
-    return items
 
 
 def _why(error: Exception) -> str:

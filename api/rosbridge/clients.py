@@ -11,7 +11,7 @@ from fastapi import Depends, FastAPI
 from fastapi.requests import HTTPConnection
 
 from api.rosbridge.bridge import Bridge
-from api.streaming.hub import StreamHub
+from api.streaming.stream_server import StreamServer
 from service.ros.interface.interface import RosInterface
 from service.supervisor import Supervisor
 
@@ -24,7 +24,7 @@ MAX_CLIENTS = 50
 class RosbridgeClients:
     """Owns the task that makes messages of what happens."""
 
-    def __init__(self, make_bridge: Callable[[], Bridge], lobby: StreamHub) -> None:
+    def __init__(self, make_bridge: Callable[[], Bridge], lobby: StreamServer) -> None:
         """Begin without clients.
 
         Args:
@@ -88,7 +88,7 @@ class RosbridgeClients:
 
 
 def make_rosbridge_clients(
-    supervisor: Supervisor, calls_per_s: int, lobby: StreamHub
+    supervisor: Supervisor, calls_per_s: int, lobby: StreamServer
 ) -> RosbridgeClients:
     """Return what takes clients to the ROS interface of a robot.
 

@@ -15,7 +15,7 @@ from api.rosbridge.clients import RosbridgeClients, RosbridgeClientsDep
 from api.rosbridge.operations import Authenticate, id_of, read_message, read_operation
 from api.rosbridge.replies import status_text
 from api.rosbridge.served_client import ServedClient
-from api.streaming.prepared import connection_of
+from api.streaming.websocket_frames import connection_of
 from domain.errors import PilothouseError
 
 router = APIRouter()

@@ -9,7 +9,7 @@ from api.rosbridge.bridge import Bridge
 from api.rosbridge.send_queue import SendQueue
 from api.rosbridge.session import Session
 from api.rosbridge.wire import Wire
-from api.streaming.prepared import Connection
+from api.streaming.websocket_frames import Connection
 
 log = logging.getLogger(__name__)
 

@@ -6,13 +6,13 @@ from prometheus_client.core import CounterMetricFamily, GaugeMetricFamily
 from prometheus_client.metrics_core import Metric
 from prometheus_client.registry import Collector
 
-from api.streaming.hub import StreamHub
+from api.streaming.stream_server import StreamServer
 
 
 class StreamCollector(Collector):
     """How many clients there are, and how well they read."""
 
-    def __init__(self, hub: StreamHub) -> None:
+    def __init__(self, hub: StreamServer) -> None:
         self._hub = hub
 
     def collect(self) -> Iterator[Metric]:

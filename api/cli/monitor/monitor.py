@@ -4,7 +4,9 @@ import asyncio
 import io
 import signal
 import sys
+from collections.abc import Coroutine
 from contextlib import suppress
+from typing import Any
 
 from rich.console import Console
 
@@ -15,7 +17,6 @@ from api.cli.monitor.watch import Watch
 from api.client.address import Address
 from api.client.link import Link
 from api.client.outcomes import NoAnswerError, Outcome
-from api.client.together import together
 
 REDRAW_S = 0.25
 _PATIENCE_S = 10.0
@@ -63,7 +64,7 @@ async def _once(address: Address, form: Form, console: Console) -> None:
 
     try:
         async with asyncio.timeout(_PATIENCE_S):
-            await together(Link(address, watch).serve(), wait())
+            await until_first_ends(Link(address, watch).serve(), wait())
     except TimeoutError as error:
         message = f"no whole picture from {address.url} within {_PATIENCE_S:g} s"
         raise NoAnswerError(message) from error
@@ -84,7 +85,7 @@ async def _draw(address: Address, console: Console) -> None:
         if hasattr(signal, "SIGCONT"):
             # After Ctrl-Z and `fg` the terminal shows something else.
             asyncio.get_running_loop().add_signal_handler(signal.SIGCONT, screen.forget)
-        await together(Link(address, watch).run(), _redraw(screen, watch, console))
+        await until_first_ends(Link(address, watch).run(), _redraw(screen, watch, console))
 
 
 async def _redraw(screen: Screen, watch: Watch, console: Console) -> None:
@@ -102,3 +103,21 @@ def _end_with_signals() -> None:
         with suppress(AttributeError, NotImplementedError):
             number = getattr(signal, name)
             asyncio.get_running_loop().add_signal_handler(number, lambda: task and task.cancel())
+
+
+async def until_first_ends(*coroutines: Coroutine[Any, Any, None]) -> None:
+    """Run until one ends, and cancel the others.
+
+    Raises:
+        Exception: That of the one that failed, by itself and not in a group.
+    """
+    tasks = [asyncio.create_task(coroutine) for coroutine in coroutines]
+    try:
+        await asyncio.wait(tasks, return_when=asyncio.FIRST_COMPLETED)
+    finally:
+        for task in tasks:
+            task.cancel()
+        ended = await asyncio.gather(*tasks, return_exceptions=True)
+    for error in ended:
+        if isinstance(error, Exception):
+            raise error

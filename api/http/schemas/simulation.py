@@ -269,13 +269,16 @@ class ExpectationJson(Json):
 
 
 class SampleJson(Json):
-    """The robot at one time."""
+    """The robot at one time, with all that a complete frame has."""
 
     t_s: float
     system_state: dict[str, Any]
     parts: dict[str, Any]
-    task: dict[str, Any] | None
+    signals: dict[str, Any]
+    task: dict[str, Any] | None = Field(description="The current task; null: there is none")
     vehicle: dict[str, Any]
+    holds: dict[str, Any] = Field(description="By owner")
+    emergency_stop: dict[str, Any]
 
 
 class SimulationJson(Json):

@@ -19,22 +19,34 @@ from api.client import link as link_module
 from api.client.address import Address
 from api.client.link import Link
 from api.client.outcomes import NoAnswerError, ServiceProblemError
-from tests.support.monitor import after, event, frame, hello, hold, named, part, stop, system
+from tests.support.monitor import (
+    after,
+    event,
+    frame,
+    hello,
+    hold,
+    named,
+    part,
+    stop,
+    system,
+    system_state,
+)
 from tests.support.waiting import until
 
-FIRST = frame(parts=named("name", part("arm")), signals={}, task=None)
+FIRST = frame(
+    parts=named("name", system("robot", "arm"), part("arm")),
+    signals={},
+    task=None,
+    holds={},
+    emergency_stop=stop(),
+)
 
 
 class Service:
     """Answers like Pilothouse, as far as the monitor asks."""
 
     def __init__(self) -> None:
-        self.answers: dict[str, tuple[int, Json]] = {
-            "/systems": (200, {"items": [system("robot", "arm")]}),
-            "/nodes": (200, {"items": [part("arm")]}),
-            "/holds": (200, {"items": []}),
-            "/emergency_stop": (200, stop()),
-        }
+        self.answers: dict[str, tuple[int, Json]] = {"/system_state": (200, system_state())}
         self.handshake: tuple[int, Json] | None = None
         """With what the stream is refused; None: it is not."""
         self.begin: list[Json] = [hello(), FIRST]
@@ -96,9 +108,12 @@ def no_pauses(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(link_module, "_RETRY_S", (0.0,))
 
 
-async def test_the_first_frame_and_a_few_answers_make_the_whole_picture() -> None:
-    async with linked(Service()) as watch:
+async def test_the_first_frame_is_the_whole_picture() -> None:
+    service = Service()
+    async with linked(service) as watch:
         await until(lambda: watch.robot.is_whole)
+
+    assert service.asked == ["/system_state", "/ws"]
 
     assert watch.robot.parts is not None
     assert list(watch.robot.parts) == ["robot", "arm"]
@@ -113,21 +128,23 @@ async def test_the_token_goes_with_requests_and_with_the_handshake() -> None:
     assert service.tokens == {"Bearer s3cret"}
 
 
-async def test_what_no_frame_carries_is_asked_for_when_an_event_tells_of_it() -> None:
+async def test_nothing_is_asked_for_when_holds_or_the_stop_change() -> None:
     service = Service()
     async with linked(service) as watch:
         await until(lambda: watch.robot.is_whole)
-        service.answers["/holds"] = (200, {"items": [hold("operator", "renewed")]})
-        await service.say(event(1, "hold.requested", owner="operator", reason="renewed"))
+        held = {"operator": hold("operator", "loading")}
+        await service.say(event(1, "hold operator set: loading"), frame(after(1), holds=held))
 
-        await until(lambda: watch.robot.holds == (hold("operator", "renewed"),))
+        await until(lambda: watch.robot.holds == held)
+
+    assert service.asked == ["/system_state", "/ws"]
 
 
 async def test_a_stream_that_ends_comes_back_and_goes_on_behind_the_last_event() -> None:
     service = Service()
     async with linked(service) as watch:
         await until(lambda: watch.robot.is_whole)
-        await service.say(event(7, "task.started", task="t1"), frame(after(1)))
+        await service.say(event(7), frame(after(1)))
         await until(lambda: watch.robot.at == after(1))
 
         await service.streams[-1].close(1012)
@@ -146,7 +163,9 @@ async def test_another_service_at_the_same_place_is_gone_on_with() -> None:
         await service.streams[-1].close()
         await until(lambda: watch.robot.epoch == "two" and watch.robot.is_whole)
 
-    assert [note.words for note in watch.robot.notes] == ["the service was restarted"]
+    assert [note.words for note in watch.robot.notes] == [
+        "the service was restarted: earlier tasks and holds are gone"
+    ]
 
 
 @pytest.mark.parametrize(
@@ -202,17 +221,17 @@ async def test_a_peer_that_is_silent_is_given_up(monkeypatch: pytest.MonkeyPatch
 @pytest.mark.parametrize("status", [401, 403])
 async def test_who_is_refused_does_not_try_again(status: int) -> None:
     service = Service()
-    service.answers["/systems"] = (status, {"detail": "a token is needed"})
+    service.answers["/system_state"] = (status, {"detail": "a token is needed"})
 
     with pytest.raises(ServiceProblemError, match="a token is needed"):
         await run_to_its_end(service)
 
-    assert service.asked == ["/systems"]
+    assert service.asked == ["/system_state"]
 
 
 async def test_who_has_no_token_is_told_where_it_belongs() -> None:
     service = Service()
-    service.answers["/systems"] = (401, {"detail": "a token is needed"})
+    service.answers["/system_state"] = (401, {"detail": "a token is needed"})
 
     with pytest.raises(ServiceProblemError) as refused:
         await run_to_its_end(service)
@@ -241,19 +260,19 @@ async def test_a_stream_that_begins_with_a_refusal_ends_it() -> None:
     [
         ((503, {"detail": "the model is being read"}), "the model is being read"),
         ((404, {}), "what answers says 404: is it Pilothouse?"),
-        ((200, {}), "what answers there is not Pilothouse"),
+        ((200, {}), "is not Pilothouse"),
     ],
 )
 async def test_an_answer_that_may_be_better_later_is_told_and_tried_again(
     answer: tuple[int, Json], words: str
 ) -> None:
     service = Service()
-    service.answers["/systems"] = answer
+    service.answers["/system_state"] = answer
     async with linked(service) as watch:
-        await until(lambda: service.asked.count("/systems") > 1)
-        assert watch.contact().why == words
+        await until(lambda: service.asked.count("/system_state") > 1)
+        assert words in watch.contact().why
 
-        service.answers["/systems"] = (200, {"items": []})
+        service.answers["/system_state"] = (200, system_state())
         await until(lambda: watch.robot.is_whole)
 
 

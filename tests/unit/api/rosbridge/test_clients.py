@@ -5,7 +5,7 @@ import pytest
 
 from api.app import create_app
 from api.rosbridge.clients import MAX_CLIENTS, RosbridgeClients, rosbridge_clients
-from api.streaming.hub import stream_hub
+from api.streaming.stream_server import stream_server
 from tests.support.live_robot import make_supervisor
 from tests.support.manual_clock import settle
 from tests.support.rosbridge import Pipe, SmallInterface, make_bridge
@@ -18,7 +18,7 @@ def interface() -> SmallInterface:
 
 @pytest.fixture
 def hub(interface: SmallInterface) -> RosbridgeClients:
-    lobby = stream_hub(create_app(make_supervisor(), allowed_hosts=[]))
+    lobby = stream_server(create_app(make_supervisor(), allowed_hosts=[]))
     return RosbridgeClients(lambda: make_bridge(interface), lobby)
 
 
@@ -26,7 +26,7 @@ def test_all_who_ask_share_one_hub() -> None:
     app = create_app(make_supervisor(), allowed_hosts=[])
 
     assert rosbridge_clients(app) is rosbridge_clients(app)
-    assert rosbridge_clients(app).lobby is stream_hub(app)
+    assert rosbridge_clients(app).lobby is stream_server(app)
 
 
 async def test_messages_are_made_while_there_is_a_client(

@@ -11,7 +11,7 @@ from api.http.limits import ServiceLimits
 from api.rosbridge import clients as clients_module
 from api.rosbridge import route as rosbridge
 from api.rosbridge.clients import rosbridge_clients
-from api.streaming import hub as stream_hub_module
+from api.streaming import stream_server as stream_server_module
 from domain.inputs import ModeRequest
 from domain.state_and_mode import PartName
 from service.supervisor import Supervisor
@@ -241,7 +241,7 @@ async def test_a_stranger_that_goes_is_no_refusal(closed_app: FastAPI) -> None:
 async def test_strangers_keep_out_other_strangers_only(
     closed_app: FastAPI, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(stream_hub_module, "MAX_STRANGERS", 1)
+    monkeypatch.setattr(stream_server_module, "MAX_STRANGERS", 1)
     headers = {"authorization": f"Bearer {TOKEN}"}
     async with RosbridgeClient(closed_app):
         await settle()

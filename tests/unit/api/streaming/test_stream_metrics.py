@@ -3,14 +3,14 @@
 from fastapi import FastAPI
 
 from api.app import create_app
-from api.streaming.hub import stream_hub
 from api.streaming.stream_metrics import StreamCollector
+from api.streaming.stream_server import stream_server
 from tests.support.live_robot import make_supervisor, running
 from tests.support.websocket import WebSocketClient
 
 
 def collected(app: FastAPI) -> dict[str, float]:
-    families = StreamCollector(stream_hub(app)).collect()
+    families = StreamCollector(stream_server(app)).collect()
     return {sample.name: sample.value for family in families for sample in family.samples}
 
 

@@ -6,7 +6,7 @@ from websockets.frames import Frame, Opcode
 from websockets.protocol import State
 from websockets.uri import parse_uri
 
-from api.streaming.prepared import EXTENSION, PING, Connection, connection_of, text_frame
+from api.streaming.websocket_frames import EXTENSION, PING, Connection, connection_of, text_frame
 
 
 @pytest.mark.parametrize("length", [0, 1, 125, 126, 65_535, 65_536, 200_000])

@@ -1,4 +1,4 @@
-"""What all clients of the stream share: the encoder, the fan-out, how many and who may come."""
+"""What all clients of the stream share: encoder, fan-out, limits and access."""
 
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -18,8 +18,8 @@ MAX_STRANGERS = 100
 """
 
 
-class StreamHub:
-    """The clients of one service."""
+class StreamServer:
+    """Serves the stream of one supervisor to all of its clients."""
 
     def __init__(
         self, supervisor: Supervisor, max_clients: int, access: Access, refusals: Refusals
@@ -63,15 +63,15 @@ class StreamHub:
             self.strangers -= 1
 
 
-def stream_hub(app: FastAPI) -> StreamHub:
-    """Return the hub of an application."""
-    hub: StreamHub = app.state.stream_hub
-    return hub
+def stream_server(app: FastAPI) -> StreamServer:
+    """Return the stream server of an application."""
+    server: StreamServer = app.state.stream_server
+    return server
 
 
 # A coroutine, since the framework would call a plain function in a thread.
-async def _hub(connection: HTTPConnection) -> StreamHub:
-    return stream_hub(connection.app)
+async def _server(connection: HTTPConnection) -> StreamServer:
+    return stream_server(connection.app)
 
 
-StreamHubDep = Annotated[StreamHub, Depends(_hub)]
+StreamServerDep = Annotated[StreamServer, Depends(_server)]

@@ -2,9 +2,9 @@
 
 from copy import copy
 
+from api.streaming.client_input import StreamQuery
 from api.streaming.encoder import StreamEncoder
-from api.streaming.prepared import text_frame
-from api.streaming.query import StreamQuery
+from api.streaming.websocket_frames import text_frame
 from domain.events.event import RecordedEvent
 from service.event_log import EventReader, Gap
 from service.frame_feed import Frame, FrameReader
@@ -13,7 +13,7 @@ from service.supervisor import Supervisor
 _EVENTS_AT_ONCE = 32
 
 
-class News:
+class FrameBytes:
     """Bytes of what is new, made for the first who needs them, and then the same for all."""
 
     def __init__(self, encoder: StreamEncoder) -> None:
@@ -39,8 +39,8 @@ class News:
         return known
 
 
-class Place:
-    """A place in the frames and events; what is before it has been sent."""
+class Cursor:
+    """A cursor in the frames and events; what is before it has been sent."""
 
     def __init__(self, supervisor: Supervisor, query: StreamQuery) -> None:
         """Begin with a complete frame, and behind the event that `query` names."""
@@ -52,10 +52,10 @@ class Place:
 
     @property
     def has_events(self) -> bool:
-        """Tell whether there are events behind this place."""
+        """Tell whether there are events behind this cursor."""
         return self._events is not None and self._events.is_behind
 
-    def take(self, news: News) -> tuple[bytes, int]:
+    def take(self, encoded: FrameBytes) -> tuple[bytes, int]:
         """Move on, past some events and to the newest frame.
 
         Returns:
@@ -64,21 +64,26 @@ class Place:
         content: list[bytes] = []
         skipped = 0
         if self._events is not None and self._events.is_behind:
-            content += map(news.event, self._events.take(_EVENTS_AT_ONCE))
+            content += map(encoded.event, self._events.take(_EVENTS_AT_ONCE))
         taken = self._frames.take() if self._frames is not None else None
         if taken is not None:
             frame, skipped = taken
-            content.append(news.frame(frame, skipped, self.topics))
+            content.append(encoded.frame(frame, skipped, self.topics))
         return b"".join(content), skipped
+
+    def begin_frames_anew(self) -> None:
+        """Take a complete frame next; events go on where they are."""
+        if self._frames is not None:
+            self._frames.begin_anew()
 
     @property
     def position(self) -> tuple[object, object]:
-        """Return what tells this place from others of the same topics."""
+        """Return what tells this cursor from others of the same topics."""
         frames, events = self._frames, self._events
         return frames and frames.position, events and events.position
 
-    def copy(self) -> "Place":
-        """Return a place of its own that begins here."""
+    def copy(self) -> "Cursor":
+        """Return a cursor of its own that begins here."""
         other = copy(self)
         other._frames, other._events = copy(self._frames), copy(self._events)  # noqa: SLF001
         return other

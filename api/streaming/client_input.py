@@ -1,14 +1,28 @@
-"""What a client of the stream asks for in the address."""
+"""What a client of the stream asks for in the address, and the messages that it may send."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from typing import Any, TypeAlias
 
+from api.http.body_parsing import check_body, parse_json
+from api.http.schemas.stream import AuthMessage, ReadingMessage, ResyncMessage
 from domain.errors import InvalidValueError
 
-TOPICS = ("system_state", "parts", "signals", "task", "vehicle", "events")
+TOPICS = (
+    "system_state",
+    "parts",
+    "signals",
+    "task",
+    "vehicle",
+    "holds",
+    "emergency_stop",
+    "events",
+)
 """In the order in which they are listed."""
 
 STATE_TOPICS = frozenset(TOPICS) - {"events"}
+
+ClientMessage: TypeAlias = ReadingMessage | ResyncMessage | AuthMessage
 
 
 @dataclass(frozen=True, slots=True)
@@ -58,5 +72,26 @@ def _after(text: str | None) -> int | None:
         return None
     # isdecimal alone accepts digits of other scripts, and int() alone accepts "1_0" and " 1".
     if not (text.isascii() and text.isdecimal() and len(text) <= 18):
-        raise InvalidValueError(f"{text[:40]!r} is no id of an event: 0, 1, 2, ...", "/after")
+        raise InvalidValueError(f"invalid event id {text[:40]!r}: ids are 0, 1, 2, ...", "/after")
     return int(text)
+
+
+def read_client_message(message: Mapping[str, Any]) -> ClientMessage:
+    """Return what a client said.
+
+    Args:
+        message: As ASGI has it, with `text` or `bytes`.
+
+    Raises:
+        PilothouseError: It is none of the messages that a client may send.
+    """
+    text = message.get("text")
+    if text is None:
+        raise InvalidValueError("binary messages are not read; send JSON as text")
+    said = parse_json(text.encode())
+    kind = said.get("type") if isinstance(said, dict) else None
+    if kind == "auth":
+        return check_body(AuthMessage, said)
+    if kind == "resync":
+        return check_body(ResyncMessage, said)
+    return check_body(ReadingMessage, said)
