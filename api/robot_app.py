@@ -96,18 +96,7 @@ def create_robot_app(
         responses={"default": {"description": "A problem"}},
         middleware=[Middleware(UnexpectedErrors)],
     )
-    state = app.state
-    state.supervisor = supervisor
-    state.worker = worker
-    state.access = access or Access.open()
-    state.limits = limits
-    state.refusals = Refusals(supervisor.clock)
-    state.model_json = model.encode_model(supervisor)
-    state.stream_server = StreamServer(
-        supervisor, limits.stream_clients, state.access, state.refusals
-    )
-    state.metrics = Metrics(supervisor, state.refusals)
-    state.metrics.registry.register(StreamCollector(state.stream_server))
+    _share(app, supervisor, worker, access or Access.open(), limits)
     add_problem_handlers(app, supervisor.clock)
     for router in _RESOURCES:
         app.include_router(router)
@@ -116,3 +105,19 @@ def create_robot_app(
     app.include_router(page_routes())
     app.openapi = partial(describe, app)  # type: ignore[method-assign]
     return app
+
+
+def _share(
+    app: FastAPI, supervisor: Supervisor, worker: Jobs, access: Access, limits: ServiceLimits
+) -> None:
+    """Put what routes and gates have in common where they find it."""
+    state = app.state
+    state.supervisor = supervisor
+    state.worker = worker
+    state.access = access
+    state.limits = limits
+    state.refusals = Refusals(supervisor.clock)
+    state.model_json = model.encode_model(supervisor)
+    state.stream_server = StreamServer(supervisor, limits.stream_clients, access, state.refusals)
+    state.metrics = Metrics(supervisor, state.refusals)
+    state.metrics.registry.register(StreamCollector(state.stream_server))
