@@ -7,10 +7,10 @@ from domain.inputs import (
 )
 from domain.snapshot import TaskPhase
 from service.frame_feed import Frame, FrameFeed, FrameReader
-from tests.support.driver import straight
 from tests.support.frames import frame, part_view, signal_view
 from tests.support.live_robot import make_supervisor, running
 from tests.support.manual_clock import ManualClock
+from tests.support.paths import straight
 
 ARM = part_view("arm")
 DRIVE = part_view("drive_base")
