@@ -65,7 +65,6 @@ format: $(INSTALLED_DEV) ## let ruff format and fix what it can
 
 docs: $(INSTALLED_DEV) ## renew what follows from the code: OpenAPI, AsyncAPI, pages of docs/reference
 	@$(BIN)/python -m tests.support.document_examples
-	@$(BIN)/python -m api.documents.renew
 	@$(BIN)/python -m docs.generate
 
 bench: $(INSTALLED_DEV) ## measure, beside what others do, and write docs/benchmarks.md

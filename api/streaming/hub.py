@@ -64,13 +64,8 @@ class StreamHub:
 
 
 def stream_hub(app: FastAPI) -> StreamHub:
-    """Return the hub of an application; the first who asks makes it."""
-    hub = getattr(app.state, "stream_hub", None)
-    if not isinstance(hub, StreamHub):
-        state = app.state
-        limit = state.limits.stream_clients
-        hub = StreamHub(state.supervisor, limit, state.access, state.refusals)
-        state.stream_hub = hub
+    """Return the hub of an application."""
+    hub: StreamHub = app.state.stream_hub
     return hub
 
 

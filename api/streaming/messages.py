@@ -3,7 +3,7 @@
 from collections.abc import Mapping
 from typing import Any
 
-from api.http.bodies import check_body, parse_json
+from api.http.body_parsing import check_body, parse_json
 from api.http.schemas.stream import AuthMessage, ReadingMessage
 from domain.errors import InvalidValueError
 

@@ -3,9 +3,9 @@
 import time
 from collections.abc import Callable
 
-from api.cli.monitor.server_clock import ServerClock
 from api.cli.monitor.store import Json, Robot, fold
 from api.cli.monitor.view import Contact, Level, View, seconds_of
+from api.client.server_clock import ServerClock
 
 LOST_S = 3.0
 """Frames come many times a second; after such a silence there is no contact."""

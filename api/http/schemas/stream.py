@@ -5,10 +5,10 @@ from typing import Any, Literal
 from pydantic import ConfigDict, Field
 from pydantic.json_schema import SkipJsonSchema
 
-from api.http.problems import Problem
 from api.http.schemas.base import Body, Json, Timestamp
 from api.http.schemas.health import ReadingBody, StreamedSignalJson, SystemStateJson
 from api.http.schemas.parts import PartJson
+from api.http.schemas.problem import Problem
 from api.http.schemas.tasks import TaskJson, VehicleJson
 
 # No member with a value of its own is ever left out.
