@@ -23,7 +23,7 @@ from tests.support.process import ServiceProcess, connect, service
 _RECORDING = """\
 import json, sys, time
 from importlib.util import find_spec
-from api import command_line
+from api.cli import command_line
 from domain.inputs import Drive
 from service.supervisor import Supervisor
 
