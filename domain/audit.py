@@ -1,7 +1,7 @@
 """The audit trail: who asked to change something, and how that was answered."""
 
 from domain.concern import Concern, Takers
-from domain.events import WriteAnswered
+from domain.events.service import WriteAnswered
 from domain.inputs import WriteRecord
 from domain.outbox import Outbox
 from domain.timebase import Instant

@@ -3,7 +3,8 @@
 from dataclasses import dataclass
 
 from domain.commands import Command
-from domain.events import Event, RecordedEvent, TimeWasDue
+from domain.events.event import Event, RecordedEvent
+from domain.events.service import TimeWasDue
 from domain.identifiers import ChangeId, TaskId
 from domain.state_and_mode import PartName
 from domain.timebase import Instant
@@ -29,6 +30,9 @@ class Outputs:
     """Whether the view of the current task changed, or there is another one or none."""
     vehicle_changed: bool = False
     """Whether the vehicle moves differently, is told something else, or steers to another point."""
+
+
+NOTHING = Outputs()
 
 
 class Outbox:
@@ -89,6 +93,9 @@ class Outbox:
 
     def take(self) -> Outputs:
         """Return what was gathered since the last call."""
+        if not self._has_anything():
+            # Most inputs, such as reports of a vehicle at standstill, lead to nothing.
+            return NOTHING
         outputs = Outputs(
             tuple(self._commands),
             tuple(self._events),
@@ -105,6 +112,19 @@ class Outbox:
         self.parts, self.signals = set(), set()
         self.task, self.task_changed, self.vehicle_changed = None, False, False
         return outputs
+
+    def _has_anything(self) -> bool:
+        return bool(
+            self._events
+            or self._commands
+            or self.vehicle_changed
+            or self.task_changed
+            or self.parts
+            or self.signals
+            or self.system_state
+            or self.change
+            or self.task
+        )
 
     def _append(self, event: Event, cause: int | None) -> int:
         recorded = RecordedEvent(self._next_event, self._at, cause, self._actor, event)

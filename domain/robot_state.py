@@ -1,7 +1,7 @@
 """The state of the whole robot: IDLE, RUNNING or ERROR, a view of its errors and its task."""
 
 from domain.concern import Concern
-from domain.events import SystemStateChanged
+from domain.events.health import SystemStateChanged
 from domain.health.health import Health
 from domain.outbox import Outbox
 from domain.snapshot import SystemStateView, TaskStatus

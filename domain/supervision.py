@@ -12,9 +12,9 @@ from typing import Any
 
 from domain.audit import Audit
 from domain.changes.changing import Changing
-from domain.changes.record import ChangeSettings
+from domain.changes.settings import ChangeSettings
 from domain.concern import Concern, settle
-from domain.events import TimeWasDue
+from domain.events.service import TimeWasDue
 from domain.health.emergency_stop import EmergencyStop
 from domain.health.health import Health
 from domain.health.signals import SignalSettings, default_signals
@@ -88,17 +88,14 @@ class Supervision:
         self._clocked = [c for c in self._concerns if _overrides(c, "wake_at")]
         self._settling = [c for c in self._concerns if _overrides(c, "settle")]
         self._max_rounds = _SPARE_ROUNDS + len(model.parts)
+        self._wake_at = self._next_wake()
+        """Kept: it is asked for several times per input, and only inputs and time change it."""
 
     # --- time and inputs -------------------------------------------------------------------------
 
     def wake_at(self) -> Instant | None:
         """Return the next instant at which time alone changes something; None: never."""
-        due = None
-        for concern in self._clocked:
-            at = concern.wake_at()
-            if at is not None and (due is None or at < due):
-                due = at
-        return due
+        return self._wake_at
 
     def handle(self, given: Input, now: Instant) -> Outputs:
         """Take in one input, after letting pass what was due before it, each at its own time.
@@ -116,18 +113,30 @@ class Supervision:
         self._let_pass(max(now, self._now))
         for take in self._takers[type(given)]:
             take(given, self._now)
-        settle(self._settling, self._now, self._max_rounds)
+        self._settle()
         return self._outbox.take()
 
     def _let_pass(self, now: Instant) -> None:
         """Handle what became due up to now, in order; what follows later is due then."""
-        while (due := self.wake_at()) is not None and due <= now:
+        while (due := self._wake_at) is not None and due <= now:
             self._now = max(due, self._now)
             self._outbox.begin(self._now, TimeWasDue())
             for concern in self._clocked:
                 concern.pass_time(self._now)
-            settle(self._settling, self._now, self._max_rounds)
+            self._settle()
         self._now = now
+
+    def _settle(self) -> None:
+        settle(self._settling, self._now, self._max_rounds)
+        self._wake_at = self._next_wake()
+
+    def _next_wake(self) -> Instant | None:
+        due = None
+        for concern in self._clocked:
+            at = concern.wake_at()
+            if at is not None and (due is None or at < due):
+                due = at
+        return due
 
     # --- what can be seen ------------------------------------------------------------------------
 

@@ -5,7 +5,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from itertools import islice
 
-from domain.events import RecordedEvent
+from domain.events.event import RecordedEvent
 from service.watching import Watched
 
 DEFAULT_CAPACITY = 10_000

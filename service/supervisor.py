@@ -12,7 +12,7 @@ from contextlib import suppress
 
 from domain.commands import PreemptGoal, SendGoal
 from domain.errors import PilothouseError
-from domain.events import ChangeEnded
+from domain.events.changes import ChangeEnded
 from domain.findings import Finding
 from domain.health.signals import ESTOP_SIGNAL
 from domain.identifiers import ChangeId

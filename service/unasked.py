@@ -3,7 +3,9 @@
 import asyncio
 import logging
 
-from domain.events import NodeNotRestored, NodeRestoring, NodeUnreachable, RecordedEvent
+from domain.events.changes import NodeNotRestored, NodeRestoring
+from domain.events.event import RecordedEvent
+from domain.events.parts import NodeUnreachable
 from service.event_log import EventLog, EventReader
 
 log = logging.getLogger(__name__)

@@ -8,7 +8,7 @@ from api.http.schemas.parts import PartJson
 from api.http.schemas.tasks import TaskJson, VehicleJson
 from api.streaming.event_text import event_text
 from api.streaming.members import Members
-from domain.events import RecordedEvent
+from domain.events.event import RecordedEvent
 from domain.snapshot import PartView, TaskView
 from service.event_log import EventReader, Gap
 from service.supervisor import Supervisor

@@ -21,7 +21,7 @@ from api.http.schemas.simulation import (
 from api.simulation.expectations import differences
 from api.simulation.samples import Sampler
 from api.simulation.steps import Actors
-from domain.events import RecordedEvent
+from domain.events.event import RecordedEvent
 from domain.timebase import NANOSECONDS_PER_SECOND, Duration, seconds, to_seconds
 from service.simulation.virtual_robot import VirtualRobot
 

@@ -13,7 +13,7 @@ from api.streaming.event_text import event_text
 from api.streaming.members import Members
 from api.streaming.query import TOPICS
 from domain.errors import PilothouseError
-from domain.events import RecordedEvent
+from domain.events.event import RecordedEvent
 from domain.snapshot import PartView, SignalView
 from domain.timebase import to_seconds
 from service.event_log import Gap

@@ -5,7 +5,7 @@ from collections.abc import Mapping
 from pydantic_core import to_json
 
 from api.http.schemas.base import timestamp
-from domain.events import RecordedEvent
+from domain.events.event import RecordedEvent
 from service.clock import Clock
 
 

@@ -8,7 +8,7 @@ from fastapi import APIRouter, Query, Response
 from api.http.long_lists import joined
 from api.http.schemas.stream import EventsJson
 from api.streaming.hub import StreamHubDep
-from domain.events import RecordedEvent
+from domain.events.event import RecordedEvent
 from service.event_log import EventLog, EventReader, Gap
 
 router = APIRouter(tags=["events"])

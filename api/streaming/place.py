@@ -5,7 +5,7 @@ from copy import copy
 from api.streaming.encoder import StreamEncoder
 from api.streaming.prepared import text_frame
 from api.streaming.query import StreamQuery
-from domain.events import RecordedEvent
+from domain.events.event import RecordedEvent
 from service.event_log import EventReader, Gap
 from service.frame_feed import Frame, FrameReader
 from service.supervisor import Supervisor

@@ -1,4 +1,4 @@
-"""All pages that follow from the code, by the name of their file in `docs/reference`."""
+"""All generated pages, by the name of their file in `docs/reference`."""
 
 from collections.abc import Callable, Mapping
 from pathlib import Path

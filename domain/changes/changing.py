@@ -5,12 +5,13 @@ from itertools import islice
 from domain.changes.admission import ChangeAdmission
 from domain.changes.operations import Changes
 from domain.changes.plan import ChangeGoal, next_steps, presumed_steps
-from domain.changes.record import ChangeSettings, Step
+from domain.changes.record import Step
 from domain.changes.request_check import check_request
 from domain.changes.restoring import Restoring
+from domain.changes.settings import ChangeSettings
 from domain.concern import Concern, Takers
 from domain.errors import BackendUnavailableError
-from domain.events import (
+from domain.events.changes import (
     BackendAvailable,
     BackendUnavailable,
     ChangeCancelRequested,

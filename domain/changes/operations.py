@@ -8,12 +8,13 @@ for its node waits for its end or its deadline.
 from collections.abc import Mapping, Sequence
 
 from domain.changes.plan import ChangeGoal, SetParameters, next_steps, presumed_steps
-from domain.changes.record import Change, ChangeSettings, Pursuit, Step
+from domain.changes.record import Change, Pursuit, Step
+from domain.changes.settings import ChangeSettings
 from domain.changes.step_judgement import judge_report
 from domain.commands import AskFacts, AskParameters, AskTransition
 from domain.deadlines import Deadlines
 from domain.errors import UnknownChangeError
-from domain.events import CHANGE_ENDS, StepEnded, StepStarted
+from domain.events.changes import CHANGE_ENDS, StepEnded, StepStarted
 from domain.health.health import Health
 from domain.identifiers import ChangeId
 from domain.inputs import ChangeRequest, NodeAnswer, NodeReport

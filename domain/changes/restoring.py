@@ -8,9 +8,10 @@ from collections.abc import Callable, Iterable
 
 from domain.changes.operations import Changes
 from domain.changes.plan import ChangeGoal
-from domain.changes.record import ChangeSettings, Step
+from domain.changes.record import Step
+from domain.changes.settings import ChangeSettings
 from domain.errors import BackendUnavailableError, RefusedError
-from domain.events import NodeNotRestored, NodeRestoring
+from domain.events.changes import NodeNotRestored, NodeRestoring
 from domain.identifiers import ChangeId
 from domain.inputs import ChangeRequest, ModeRequest, NodeReport, TransitionRequest
 from domain.lifecycle import LifecycleState, Transition, arrival

@@ -3,7 +3,11 @@
 from dataclasses import replace
 
 from domain.concern import Concern, Takers
-from domain.events import EmergencyStopEngaged, EmergencyStopReleased, EmergencyStopStandstill
+from domain.events.health import (
+    EmergencyStopEngaged,
+    EmergencyStopReleased,
+    EmergencyStopStandstill,
+)
 from domain.health.health import Health
 from domain.inputs import EmergencyStopRequest
 from domain.outbox import Outbox

@@ -3,7 +3,7 @@
 from collections.abc import Iterable, Mapping
 
 from domain.concern import Concern, Takers
-from domain.events import (
+from domain.events.parts import (
     DeviationBegan,
     DeviationEnded,
     NodeReachable,

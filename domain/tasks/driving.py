@@ -3,7 +3,7 @@
 from collections.abc import Iterator, Mapping
 
 from domain.concern import Concern, Takers
-from domain.events import (
+from domain.events.driving import (
     GoalEnded,
     GoalProgressed,
     HoldReleaseRequested,

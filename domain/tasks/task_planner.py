@@ -13,9 +13,8 @@ import numpy as np
 
 from domain.commands import Drive, PreemptGoal, SendGoal
 from domain.errors import FarStartError, InvalidValueError, UnknownControllerError
-from domain.events import (
+from domain.events.driving import (
     TASK_ENDS,
-    Event,
     HoldReleased,
     HoldSet,
     TaskPaused,
@@ -24,6 +23,7 @@ from domain.events import (
     TaskServed,
     TaskStarted,
 )
+from domain.events.event import Event
 from domain.identifiers import GoalId, TaskId
 from domain.inputs import GoalFeedback, GoalResult, TaskRequest
 from domain.outbox import Outbox

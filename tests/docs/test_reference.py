@@ -15,7 +15,8 @@ from docs.generate.__main__ import main as renew
 from docs.generate.pages import FOLDER, PAGES
 from docs.generate.source_scan import UndescribedError, codes_given_to, require_described
 from domain.changes.admission import ADVISORY
-from domain.events import EVENTS, RecordedEvent
+from domain.events.event import RecordedEvent
+from domain.events.kinds import EVENTS
 from domain.inputs import BackendStatus, Input, WriteRecord
 from domain.supervision import Supervision, SupervisionSettings
 from tests.support.good import GOOD

@@ -4,7 +4,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from types import MappingProxyType
 
-from domain.events import Event, RecordedEvent
+from domain.events.event import Event, RecordedEvent
 from domain.lifecycle import LifecycleState
 from domain.snapshot import (
     Actual,

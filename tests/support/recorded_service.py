@@ -24,7 +24,7 @@ _RECORDING = """\
 import json, sys, time
 from importlib.util import find_spec
 from api.cli import command_line
-from domain.inputs import Drive
+from domain.commands import Drive
 from service.supervisor import Supervisor
 
 path, found = sys.argv.pop(1), {"asks": [], "drives": [], "ticks": []}

@@ -9,7 +9,9 @@ So of the last message of both, the one with the later timestamp holds.
 from collections.abc import Iterator
 from dataclasses import dataclass
 
-from domain.events import ChangeRequested, PartActualChanged, RecordedEvent
+from domain.events.changes import ChangeRequested
+from domain.events.event import RecordedEvent
+from domain.events.parts import PartActualChanged
 from domain.lifecycle import LifecycleState, Transition, rule_for
 from domain.state_and_mode import ModeName, PartName, StateAndMode
 from domain.timebase import Instant

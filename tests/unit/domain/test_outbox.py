@@ -1,14 +1,10 @@
 """What one input leads to, and what caused what."""
 
 from domain.commands import AskFacts
-from domain.events import (
-    ChangeRequested,
-    ErrorRaised,
-    NodeReported,
-    SignalPending,
-    SignalRead,
-    TimeWasDue,
-)
+from domain.events.changes import ChangeRequested
+from domain.events.health import ErrorRaised, SignalPending, SignalRead
+from domain.events.parts import NodeReported
+from domain.events.service import TimeWasDue
 from domain.identifiers import ChangeId
 from domain.outbox import Outbox, Outputs
 from domain.state_and_mode import PartName

@@ -2,7 +2,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from domain.events import RecordedEvent
+from domain.events.event import RecordedEvent
 from service.event_log import EventLog, EventReader, Gap
 from tests.support.frames import event
 

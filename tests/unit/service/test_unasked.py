@@ -4,7 +4,9 @@ from collections.abc import AsyncIterator
 
 import pytest
 
-from domain.events import ChangeRequested, NodeRestoring, NodeUnreachable, RecordedEvent
+from domain.events.changes import ChangeRequested, NodeRestoring
+from domain.events.event import RecordedEvent
+from domain.events.parts import NodeUnreachable
 from domain.state_and_mode import PartName
 from service.event_log import EventLog
 from service.unasked import log_unasked

@@ -1,7 +1,5 @@
 """`GET /metrics`: what Prometheus is told."""
 
-from collections.abc import AsyncIterator
-
 import httpx
 import pytest
 from fastapi import FastAPI
@@ -17,33 +15,11 @@ from domain.inputs import (
 )
 from domain.state_and_mode import PartName
 from service.supervisor import Supervisor
-from tests.support.driver import straight
 from tests.support.frames import event
 from tests.support.live_robot import make_supervisor, running
 from tests.support.manual_clock import ManualClock
+from tests.support.paths import straight
 from tests.support.websocket import WebSocketClient
-
-
-@pytest.fixture
-def clock() -> ManualClock:
-    return ManualClock()
-
-
-@pytest.fixture
-def supervisor(clock: ManualClock) -> Supervisor:
-    return make_supervisor(clock)
-
-
-@pytest.fixture
-def app(supervisor: Supervisor) -> FastAPI:
-    return create_app(supervisor, allowed_hosts=[])
-
-
-@pytest.fixture
-async def http(app: FastAPI) -> AsyncIterator[httpx.AsyncClient]:
-    transport = httpx.ASGITransport(app)
-    async with httpx.AsyncClient(transport=transport, base_url="http://127.0.0.1:8000") as client:
-        yield client
 
 
 async def metric(http: httpx.AsyncClient, name: str, **labels: str) -> float | None:

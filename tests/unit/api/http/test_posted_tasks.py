@@ -16,7 +16,7 @@ from api.http.posted_tasks import (
 from domain.paths.speed_profile import SpeedLimits
 from domain.vehicle import Pose, VehicleLimits
 from service.files.waypoint_file import Heading, InvalidWaypointsError
-from tests.support.driver import straight
+from tests.support.paths import straight
 
 LINE = b"0,0,0\n5,0,0\n10,0,0\n"
 OPTIONS = TaskOptions("stanley", 2.8, 1, Heading.RAD)

@@ -23,11 +23,6 @@ TOKEN = "correct horse battery staple"
 
 
 @pytest.fixture
-def clock() -> ManualClock:
-    return ManualClock()
-
-
-@pytest.fixture
 async def supervisor(clock: ManualClock) -> AsyncIterator[Supervisor]:
     supervisor = make_supervisor(clock)
     async with running(supervisor):

@@ -8,11 +8,6 @@ from tests.support.websocket import texts_of
 
 
 @pytest.fixture
-def clock() -> ManualClock:
-    return ManualClock()
-
-
-@pytest.fixture
 def pipe() -> Pipe:
     return Pipe()
 

@@ -7,7 +7,8 @@ import pytest
 
 from api.streaming.encoder import StreamEncoder
 from domain.errors import BlockedError
-from domain.events import NodeReported, RecordedEvent
+from domain.events.event import RecordedEvent
+from domain.events.parts import NodeReported
 from domain.findings import Blocker
 from domain.parameters import Parameters
 from domain.snapshot import PartView

@@ -2,7 +2,9 @@ import json
 import math
 
 from api.streaming.event_text import event_text
-from domain.events import NodeReported, RecordedEvent, TaskStarted
+from domain.events.driving import TaskStarted
+from domain.events.event import RecordedEvent
+from domain.events.parts import NodeReported
 from domain.identifiers import GoalId, TaskId
 from domain.state_and_mode import PartName
 from domain.timebase import seconds

@@ -9,7 +9,7 @@ import pytest
 
 from api.app import create_app
 from api.streaming.encoder import StreamEncoder
-from domain.events import RecordedEvent
+from domain.events.event import RecordedEvent
 from domain.inputs import ModeRequest
 from domain.state_and_mode import PartName
 from service.event_log import EventReader, Gap

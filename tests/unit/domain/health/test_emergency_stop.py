@@ -1,4 +1,4 @@
-from domain.events import RecordedEvent
+from domain.events.event import RecordedEvent
 from domain.health.emergency_stop import EmergencyStop
 from domain.health.health import Health
 from domain.health.signals import default_signals

@@ -5,7 +5,8 @@ from typing import cast
 
 import pytest
 
-from domain.events import RecordedEvent, TimeWasDue
+from domain.events.event import RecordedEvent
+from domain.events.service import TimeWasDue
 from domain.health.health import Health
 from domain.health.signals import default_signals
 from domain.inputs import Reading, Readings, SignalValue

@@ -2,7 +2,8 @@
 
 import pytest
 
-from domain.events import ChangeRequested, RecordedEvent, StepStarted
+from domain.events.changes import ChangeRequested, StepStarted
+from domain.events.event import RecordedEvent
 from domain.identifiers import ChangeId
 from domain.inputs import NodeReport
 from domain.lifecycle import LifecycleState

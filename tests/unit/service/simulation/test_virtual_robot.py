@@ -4,7 +4,7 @@ from typing import Any, Protocol, TypeAlias
 
 import numpy as np
 
-from domain.events import RecordedEvent
+from domain.events.event import RecordedEvent
 from domain.inputs import (
     EmergencyStopRequest,
     HoldRequest,

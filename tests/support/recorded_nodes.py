@@ -15,7 +15,7 @@ from domain.timebase import Instant, seconds, to_seconds
 from tests.support.models import actuation_model
 
 
-class SimulatedRobot:
+class RecordedNodes:
     """Simulated nodes in virtual time; what they say is kept with its time in seconds."""
 
     def __init__(

@@ -3,43 +3,30 @@
 from collections.abc import Mapping
 from typing import Any, TypeVar
 
-import numpy as np
-
 from domain.commands import Command, Drive, PreemptGoal, SendGoal
-from domain.events import RecordedEvent
+from domain.events.event import RecordedEvent
+from domain.identifiers import ChangeId
 from domain.inputs import (
-    CancelTaskRequest,
+    ChangeRequest,
     GoalFeedback,
     GoalResult,
-    HoldRequest,
     Input,
-    Reading,
-    Readings,
-    ReleaseRequest,
-    SignalValue,
-    TaskRequest,
     TimePassed,
     VehicleReport,
 )
 from domain.outbox import Outputs
 from domain.parts.system_model import SmhModel
-from domain.paths.path import Path
 from domain.snapshot import TaskView
 from domain.supervision import Supervision, SupervisionSettings
 from domain.timebase import Instant, seconds
 from domain.vehicle import DriveCommand, Point, Pose, VehicleState
 from tests.support.good import GOOD
+from tests.support.operator_verbs import OperatorVerbs, change_of
 
 AnyCommand = TypeVar("AnyCommand", bound=Command)
 
 
-def straight(length_m: float = 20.0, spacing_m: float = 1.0, y_m: float = 0.0) -> Path:
-    """Return a path along the x axis."""
-    x = np.arange(0.0, length_m + spacing_m / 2, spacing_m)
-    return Path(np.column_stack((x, np.full_like(x, y_m), np.zeros_like(x))))
-
-
-class Driver:
+class ScriptedRobot(OperatorVerbs[Outputs, ChangeId, None]):
     """A robot whose readings are good and whose vehicle stands at the origin, unless told."""
 
     def __init__(
@@ -67,47 +54,28 @@ class Driver:
         self.commands += outputs.commands
         return outputs
 
-    def wait(self, by_s: float) -> None:
-        """Let time pass in silence."""
-        self.now += seconds(by_s)
-        self.give(TimePassed())
+    def begin(self, request: ChangeRequest) -> ChangeId:
+        """Ask for a change and return it."""
+        return change_of(self.give(request))
 
-    def live(self, by_s: float, speed_mps: float = 0.0) -> None:
+    def advance(self, duration_s: float, speed_mps: float = 0.0) -> None:
         """Let time pass, with good readings and the vehicle's reports at 20 Hz."""
-        for _ in range(round(by_s / 0.05)):
+        for _ in range(round(duration_s / 0.05)):
             self.now += seconds(0.05)
             self.read(**GOOD)
             self.report(speed_mps)
 
-    def read(self, **values: SignalValue) -> Outputs:
-        """Hand in readings."""
-        items = tuple(Reading(name, value) for name, value in values.items())
-        return self.give(Readings(items, "test"))
+    def stay_silent(self, duration_s: float) -> None:
+        """Let time pass without a reading or a report."""
+        self.now += seconds(duration_s)
+        self.give(TimePassed())
 
     def report(self, speed_mps: float = 0.0, x_m: float = 0.0, steering_rad: float = 0.0) -> None:
         """Let the vehicle say where it is."""
         pose = Pose(x_m, 0.0, 0.0)
         self.give(VehicleReport(VehicleState(pose, speed_mps, steering_rad)))
 
-    # --- operator and navigation -----------------------------------------------------------------
-
-    def serve(
-        self, path: Path | None = None, start_index: int = 0, controller: str = "pure_pursuit"
-    ) -> Outputs:
-        """Serve a task."""
-        return self.give(TaskRequest(path or straight(), start_index, controller, 2.8, "operator"))
-
-    def cancel(self) -> Outputs:
-        """Cancel the current task."""
-        return self.give(CancelTaskRequest("operator"))
-
-    def hold(self, owner: str = "operator", reason: str = "lunch") -> Outputs:
-        """Set a hold."""
-        return self.give(HoldRequest(owner, reason, "operator"))
-
-    def release(self, owner: str = "operator") -> Outputs:
-        """Release a hold."""
-        return self.give(ReleaseRequest(owner, "operator"))
+    # --- navigation ------------------------------------------------------------------------------
 
     def feedback(self, target_index: int, goal: SendGoal | None = None) -> Outputs:
         """Let navigation say that it is right before a waypoint of a path with 1 m spacing."""

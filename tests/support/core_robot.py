@@ -4,26 +4,11 @@ from collections.abc import Mapping
 from typing import Any
 
 from domain.commands import Command, PreemptGoal, SendGoal
-from domain.events import RecordedEvent
+from domain.events.event import RecordedEvent
 from domain.identifiers import ChangeId
-from domain.inputs import (
-    CancelTaskRequest,
-    EmergencyStopRequest,
-    HoldRequest,
-    Input,
-    ModeRequest,
-    Reading,
-    Readings,
-    ReleaseRequest,
-    SignalValue,
-    TaskRequest,
-    TimePassed,
-    TransitionRequest,
-)
-from domain.lifecycle import Transition
+from domain.inputs import ChangeRequest, Input, TimePassed
 from domain.outbox import Outputs
 from domain.parts.system_model import SmhModel
-from domain.paths.path import Path
 from domain.simulation.node_settings import Fault, NodeSettings
 from domain.simulation.robot import SimulatedRobot
 from domain.simulation.vehicle_settings import VehicleSettings
@@ -32,9 +17,10 @@ from domain.state_and_mode import PartName
 from domain.supervision import SupervisionSettings
 from domain.timebase import Instant, seconds
 from tests.support.live_robot import make_onboard
+from tests.support.operator_verbs import OperatorVerbs, change_of
 
 
-class VirtualRobot:
+class CoreRobot(OperatorVerbs[Outputs, ChangeId, None]):
     """A robot whose time moves only when told to; what the core asks is done by simulated nodes."""
 
     def __init__(
@@ -67,6 +53,10 @@ class VirtualRobot:
             self.robot.handle(command, self.now)
         return outputs
 
+    def begin(self, request: ChangeRequest) -> ChangeId:
+        """Ask for a change and return it."""
+        return change_of(self.give(request))
+
     def advance(self, duration_s: float) -> None:
         """Let time pass; everything due happens at its own time, the robot's part first."""
         end = self.now + seconds(duration_s)
@@ -85,42 +75,7 @@ class VirtualRobot:
         if due is not None and due <= self.now:
             self.give(TimePassed())
 
-    # --- what an operator does -------------------------------------------------------------------
-
-    def mode(self, part: str, mode: str) -> ChangeId:
-        """Ask for a mode."""
-        return self._change(ModeRequest(PartName(part), mode))
-
-    def transition(self, part: str, transition: str) -> ChangeId:
-        """Ask for a transition."""
-        return self._change(TransitionRequest(PartName(part), Transition(transition)))
-
-    def read(self, **values: SignalValue) -> Outputs:
-        """Hand in readings."""
-        items = tuple(Reading(name, value) for name, value in values.items())
-        return self.give(Readings(items, "test"))
-
-    def stop(self, *, engaged: bool = True) -> Outputs:
-        """Press or release the emergency stop."""
-        return self.give(EmergencyStopRequest(engaged, "test", "operator"))
-
-    def serve(
-        self, path: Path, controller: str = "pure_pursuit", speed_mps: float = 2.8
-    ) -> Outputs:
-        """Serve a task from the first waypoint on."""
-        return self.give(TaskRequest(path, 0, controller, speed_mps, "operator"))
-
-    def cancel(self) -> Outputs:
-        """Cancel the task."""
-        return self.give(CancelTaskRequest("operator"))
-
-    def hold(self, owner: str = "operator", reason: str = "lunch") -> Outputs:
-        """Hold the task."""
-        return self.give(HoldRequest(owner, reason, "operator"))
-
-    def release(self, owner: str = "operator") -> Outputs:
-        """Let go of a hold."""
-        return self.give(ReleaseRequest(owner, "operator"))
+    # --- what goes wrong -------------------------------------------------------------------------
 
     def lose_pose(self, *, lost: bool = True) -> None:
         """Let the vehicle stop telling where it is, or tell it again."""
@@ -131,11 +86,6 @@ class VirtualRobot:
         """Let something be wrong with a node."""
         self.nodes.set_fault(PartName(node), fault, self.now)
         self.advance(0)
-
-    def _change(self, request: ModeRequest | TransitionRequest) -> ChangeId:
-        change = self.give(request).change
-        assert change is not None
-        return change
 
     # --- what an operator sees -------------------------------------------------------------------
 
