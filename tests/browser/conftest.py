@@ -59,8 +59,8 @@ def service(running_service: Service) -> Service:
     return running_service
 
 
-# Not of the session: while playwright runs, no coroutine of another test can.
-@pytest.fixture(scope="package")
+# Of a module, not of more: while playwright runs, no coroutine of another test can.
+@pytest.fixture(scope="module")
 def browser() -> Iterator["Browser"]:
     sync_api = pytest.importorskip("playwright.sync_api", reason="playwright is not installed")
     if not CHROMIUM.exists():
