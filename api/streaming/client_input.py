@@ -4,7 +4,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any, TypeAlias
 
-from api.http.bodies import check_body, parse_json
+from api.http.body_parsing import check_body, parse_json
 from api.http.schemas.stream import AuthMessage, ReadingMessage, ResyncMessage
 from domain.errors import InvalidValueError
 

@@ -5,7 +5,8 @@ from typing import Annotated
 
 from fastapi import APIRouter, Query, Response
 
-from api.http.long_lists import joined
+from api.http.list_answers import joined
+from api.http.route_policy import Permission, policy
 from api.http.schemas.stream import EventsJson
 from api.streaming.stream_server import StreamServerDep
 from domain.events.event import RecordedEvent
@@ -19,6 +20,7 @@ _READ_AT_ONCE = 1_000
 
 
 @router.get("/events", response_model=EventsJson)
+@policy(Permission.OBSERVE)
 async def get_events(
     server: StreamServerDep,
     after: Annotated[

@@ -14,6 +14,7 @@ from typing import Any
 from fastapi import APIRouter, WebSocket, WebSocketDisconnect
 
 from api.http.access import UnauthorizedError
+from api.http.route_policy import Permission, policy
 from api.http.schemas.stream import AuthMessage, ResyncMessage
 from api.streaming.client_input import read_client_message, read_stream_query
 from api.streaming.stream_client import StreamClient
@@ -36,6 +37,7 @@ _UNAUTHORIZED = 4401
 
 
 @router.websocket("/ws")
+@policy(Permission.OBSERVE)
 async def stream(socket: WebSocket, server: StreamServerDep) -> None:
     """Serve one client until it goes, is too slow, or the service ends.
 

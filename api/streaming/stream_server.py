@@ -64,13 +64,8 @@ class StreamServer:
 
 
 def stream_server(app: FastAPI) -> StreamServer:
-    """Return the stream server of an application, which is made at the first call."""
-    server = getattr(app.state, "stream_server", None)
-    if not isinstance(server, StreamServer):
-        state = app.state
-        limit = state.limits.stream_clients
-        server = StreamServer(state.supervisor, limit, state.access, state.refusals)
-        state.stream_server = server
+    """Return the stream server of an application."""
+    server: StreamServer = app.state.stream_server
     return server
 
 

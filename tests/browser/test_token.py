@@ -8,7 +8,7 @@ pytest.importorskip("playwright.sync_api", reason="playwright is not installed")
 
 from playwright.sync_api import Browser, Locator, Page, expect
 
-from api.http.access import TOKEN_VARIABLE
+from api.access_token import TOKEN_VARIABLE
 from tests.support.process import ServiceProcess, service
 
 pytestmark = pytest.mark.browser

@@ -13,11 +13,11 @@ from typing import Any
 import hypothesis.strategies as st
 from hypothesis import given, settings
 
-from api.http.posted_tasks import task_of
 from api.http.schemas.simulation import SimulationBody
 from api.http.schemas.tasks import TaskBody
-from api.simulation.posted import robot_for
+from api.http.task_jobs import task_of
 from api.simulation.simulation import Simulation
+from api.simulation.simulation_job import robot_for
 from domain.errors import PilothouseError
 from domain.simulation.node_settings import Fault
 from domain.state_and_mode import PartName

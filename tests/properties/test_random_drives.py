@@ -30,7 +30,7 @@ from tests.support.random_paths import Walk, evenly, passed_share, walks
 from tests.support.track_study import PLANTS
 
 SOAK = os.environ.get("PILOTHOUSE_SOAK") == "1"
-EXAMPLES = 10_000 if SOAK else 500
+EXAMPLES = 10_000 if SOAK else 100
 
 LIMITS = VehicleLimits()
 MOST_M = 60.0

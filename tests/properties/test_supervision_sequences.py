@@ -191,6 +191,6 @@ def _root(event: RecordedEvent, by_id: Mapping[int, RecordedEvent]) -> RecordedE
 
 SOAK = bool(os.environ.get("PILOTHOUSE_SOAK"))
 Sequences.TestCase.settings = settings(
-    max_examples=10_000 if SOAK else 500, stateful_step_count=30, deadline=None
+    max_examples=10_000 if SOAK else 100, stateful_step_count=30, deadline=None
 )
 TestSequences = Sequences.TestCase

@@ -2,7 +2,6 @@
 
 import asyncio
 import io
-import os
 import signal
 import sys
 from collections.abc import Coroutine
@@ -11,14 +10,13 @@ from typing import Any
 
 from rich.console import Console
 
-from api.cli.monitor.address import Address
-from api.cli.monitor.link import Link
 from api.cli.monitor.output import ChangeLog, Form, write_picture
 from api.cli.monitor.picture import picture
 from api.cli.monitor.screen import Screen, alternate_screen
 from api.cli.monitor.watch import Watch
-from api.client.service_client import NoAnswerError, Outcome
-from api.http.access import InvalidTokenError, read_token
+from api.client.address import Address
+from api.client.link import Link
+from api.client.outcomes import NoAnswerError, Outcome
 
 REDRAW_S = 0.25
 _PATIENCE_S = 10.0
@@ -37,10 +35,7 @@ def monitor(url: str, form: Form, *, once: bool) -> int:
             answers who is asked once.
         ServiceProblemError: The service refuses us.
     """
-    try:
-        address = Address.of(url, read_token(os.environ))
-    except InvalidTokenError as error:
-        raise NoAnswerError(str(error)) from error
+    address = Address.with_token_of_environment(url)
     console = _console()
     if once:
         asyncio.run(_once(address, form, console))

@@ -4,12 +4,11 @@ from typing import Annotated, Any, Literal, Self, TypeAlias
 
 from pydantic import AfterValidator, ConfigDict, Discriminator, Field, Tag, model_validator
 
-from api.http.bodies import MAX_MODEL_BYTES
-from api.http.problems import Problem
-from api.http.schemas.base import Body, Json
+from api.http.schemas.base import MAX_MODEL_BYTES, Body, Json
 from api.http.schemas.health import MAX_SOURCE
+from api.http.schemas.problem import Problem
+from api.http.schemas.sent_values import SentParameter, SentSignalValue
 from api.http.schemas.tasks import TaskBody
-from api.http.values import SentParameter, SentSignalValue
 from domain.simulation.node_settings import Fault
 
 MAX_UNTIL_S = 86_400.0

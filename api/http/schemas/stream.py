@@ -5,7 +5,6 @@ from typing import Any, Literal
 from pydantic import ConfigDict, Field
 from pydantic.json_schema import SkipJsonSchema
 
-from api.http.problems import Problem
 from api.http.schemas.base import Body, Json, Timestamp
 from api.http.schemas.health import (
     EmergencyStopJson,
@@ -14,6 +13,7 @@ from api.http.schemas.health import (
     SystemStateJson,
 )
 from api.http.schemas.parts import PartJson
+from api.http.schemas.problem import Problem
 from api.http.schemas.tasks import HoldJson, TaskJson, VehicleJson
 
 # No member with a value of its own is ever left out.

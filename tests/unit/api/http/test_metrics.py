@@ -2,7 +2,6 @@
 
 import httpx
 import pytest
-from fastapi import FastAPI
 from prometheus_client.parser import text_string_to_metric_families
 
 from api.app import create_app
@@ -19,7 +18,6 @@ from tests.support.frames import event
 from tests.support.live_robot import make_supervisor, running
 from tests.support.manual_clock import ManualClock
 from tests.support.paths import straight
-from tests.support.websocket import WebSocketClient
 
 
 async def metric(http: httpx.AsyncClient, name: str, **labels: str) -> float | None:
@@ -107,19 +105,6 @@ async def test_the_metrics_tell_the_period_of_the_tick(
 
     assert await metric(http, "pilothouse_publish_period_seconds_count") == 20
     assert await metric(http, "pilothouse_publish_period_seconds_sum") == pytest.approx(1)
-
-
-async def test_the_metrics_count_the_clients_of_the_stream(
-    http: httpx.AsyncClient, app: FastAPI, supervisor: Supervisor
-) -> None:
-    async with running(supervisor):
-        async with WebSocketClient(app) as client:
-            await client.frame()
-            assert await metric(http, "pilothouse_ws_clients") == 1
-
-        assert await metric(http, "pilothouse_ws_clients") == 0
-        assert await metric(http, "pilothouse_ws_dropped_total") == 0
-        assert await metric(http, "pilothouse_ws_frames_skipped_total") == 0
 
 
 async def test_the_metrics_count_the_ticks_that_were_skipped(

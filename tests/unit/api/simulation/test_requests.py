@@ -6,7 +6,7 @@ import pytest
 from starlette.responses import JSONResponse
 from starlette.types import Receive, Scope, Send
 
-from api.http.problems import Problem
+from api.http.schemas.problem import Problem
 from api.http.schemas.simulation import AskedRequest
 from api.simulation.requests import Requests
 from domain.state_and_mode import PartName

@@ -9,11 +9,11 @@ from collections.abc import Callable
 import pytest
 
 from api.cli.monitor import monitor as module
-from api.cli.monitor.address import Address
 from api.cli.monitor.monitor import monitor, until_first_ends
 from api.cli.monitor.store import Json
 from api.cli.monitor.watch import Watch
-from api.client.service_client import NoAnswerError, ServiceProblemError
+from api.client.address import Address
+from api.client.outcomes import NoAnswerError, ServiceProblemError
 from tests.support.monitor import URL, after, frame, hello, named, part, stop, system_state
 
 Output = pytest.CaptureFixture[str]

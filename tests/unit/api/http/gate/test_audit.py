@@ -4,14 +4,18 @@ import json
 from typing import Any
 
 import pytest
-from fastapi.routing import APIRoute
+from fastapi import FastAPI
+from starlette.middleware import Middleware
 from starlette.types import Receive, Scope, Send
 
 from api.http.access import Access
-from api.http.gate.audit import Audit, is_write
+from api.http.gate.audit import Audit
+from api.http.gate.faults import UnexpectedErrors
+from api.http.gate.policies import RoutePolicies, each_route
+from api.http.route_policy import AuditClass, Permission, policy, policy_of
 from domain.inputs import WriteRecord
 from tests.support.asgi import messages_of
-from tests.support.http_robot import HttpRobot, http_robot, http_scope
+from tests.support.http_robot import HttpRobot, declared_policies, http_robot, http_scope
 from tests.support.tables import text_table
 
 
@@ -107,18 +111,24 @@ async def test_a_query_hides_no_write(method: str, path: str, robot: HttpRobot) 
     assert len(audits(robot)) == 1
 
 
-def test_everything_that_takes_a_dry_run_is_known_here(robot: HttpRobot) -> None:
+def test_just_the_routes_that_take_a_dry_run_are_recorded_without_it_only(
+    robot: HttpRobot,
+) -> None:
     planned = {
-        (method.upper(), path)
+        (path, method.upper())
         for path, operations in robot.app.openapi()["paths"].items()
         for method, operation in operations.items()
         if any(given["name"] == "dry_run" for given in operation.get("parameters", ()))
     }
+    declared = {
+        (route.path.replace(":path", ""), method)
+        for route in each_route(robot.app.routes)
+        if (found := policy_of(route.endpoint)) and found.audit is AuditClass.UNLESS_DRY_RUN
+        for method in route.methods
+    }
 
     assert planned
-    for method, path in planned:
-        assert is_write(http_scope(method, path))
-        assert not is_write(http_scope(method, path, "dry_run=true"))
+    assert declared == planned
 
 
 @pytest.mark.parametrize(
@@ -133,31 +143,34 @@ async def test_who_was_turned_away_at_the_gate_did_not_write(headers: dict[str, 
         assert audits(robot) == []
 
 
-async def test_a_fault_in_a_route_is_recorded_as_one(
-    robot: HttpRobot, caplog: pytest.LogCaptureFixture
-) -> None:
+async def test_a_fault_in_a_route_is_recorded_as_one() -> None:
+    found: list[WriteRecord] = []
+    app = FastAPI(middleware=[Middleware(UnexpectedErrors)])
+
+    @app.post("/fails")
+    @policy(Permission.OPERATE)
     async def fail() -> None:
         raise ValueError("inside")
 
-    robot.app.router.routes.append(APIRoute("/fails", fail, methods=["POST"]))
+    policies = RoutePolicies(app.routes[-1:])
+    await messages_of(Audit(app, found.append, policies), http_scope("POST", "/fails"))
 
-    await robot.http.post("/fails")
-
-    assert [told["status"] for told in audits(robot)] == [500]
+    assert [told.status for told in found] == [500]
 
 
 async def test_the_record_is_there_before_the_answer_is(robot: HttpRobot) -> None:
     order = []
 
     async def route(scope: Scope, receive: Receive, send: Send) -> None:
-        scope["endpoint"] = route
         await send({"type": "http.response.start", "status": 204, "headers": []})
         order.append("answered")
 
     def record(given: WriteRecord) -> None:
         order.append(f"recorded {given.status}")
 
-    await messages_of(Audit(route, record), http_scope("DELETE", "/tasks/current"))
+    await messages_of(
+        Audit(route, record, declared_policies()), http_scope("DELETE", "/tasks/current")
+    )
 
     assert order == ["recorded 204", "answered"]
 
@@ -166,12 +179,11 @@ async def test_an_address_is_written_as_in_an_url_and_a_path_is_cut() -> None:
     found: list[WriteRecord] = []
 
     async def route(scope: Scope, receive: Receive, send: Send) -> None:
-        scope["endpoint"] = route
         await send({"type": "http.response.start", "status": 200, "headers": []})
 
     for client in (("fd00::1", 50_000), None):
         scope = {**http_scope("PUT", "/holds/" + "x" * 1_000), "client": client}
-        await messages_of(Audit(route, found.append), scope)
+        await messages_of(Audit(route, found.append, declared_policies()), scope)
 
     assert [given.address for given in found] == ["[fd00::1]:50000", "unknown"]
     assert [given.actor for given in found] == ["http:fd00::1", "http:unknown"]
