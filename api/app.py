@@ -18,6 +18,7 @@ from api.http.limits import USUAL_LIMITS, ServiceLimits
 from api.robot_app import create_robot_app
 from api.rosbridge import route as rosbridge
 from api.simulation import route as simulations
+from api.simulation.posted import SimulatedParts
 from service.supervisor import Supervisor
 from service.worker import Worker
 
@@ -30,6 +31,7 @@ def create_app(
     allowed_hosts: Sequence[str],
     access: Access | None = None,
     limits: ServiceLimits = USUAL_LIMITS,
+    simulated: SimulatedParts | None = None,
 ) -> FastAPI:
     """Return the application; it starts no task and no process.
 
@@ -43,10 +45,12 @@ def create_app(
         allowed_hosts: Names by which this service may be asked, beside those of loopback.
         access: Whom it lets in; None: everybody.
         limits: How much may be asked of it.
+        simulated: What a simulation can go on with a copy of; None: the robot is real.
     """
     worker = Worker([posted_models.__name__, posted_tasks.__name__])
     app = create_robot_app(supervisor, worker, access=access, limits=limits, lifespan=_lifespan)
     app.state.simulator = Worker(deadline_s=SIMULATION_DEADLINE_S)
+    app.state.simulated = simulated
     app.include_router(simulations.router)
     app.include_router(documents.router)
     app.include_router(rosbridge.router)

@@ -35,7 +35,7 @@ class Metrics:
             buckets=_PERIODS_S,
             registry=self.registry,
         )
-        hub.supervisor.on_tick.append(period.observe)
+        hub.supervisor.publisher.on_tick.append(period.observe)
         self.registry.register(_RobotCollector(hub.supervisor))
         self.registry.register(_ServiceCollector(hub))
         self.registry.register(_GateCollector(refusals))
@@ -123,7 +123,9 @@ class _ServiceCollector(Collector):
     def collect(self) -> Iterator[Metric]:
         supervisor = self._hub.supervisor
         yield CounterMetricFamily(
-            "pilothouse_ticks_late", "Ticks that were skipped", value=supervisor.late_ticks
+            "pilothouse_ticks_late",
+            "Ticks that were skipped",
+            value=supervisor.publisher.late_ticks,
         )
         yield GaugeMetricFamily(
             "pilothouse_ws_clients", "Clients of the stream", value=self._hub.clients
@@ -140,7 +142,7 @@ class _ServiceCollector(Collector):
         )
         changes = CounterMetricFamily("pilothouse_changes", "Changes that ended", labels=["status"])
         for status in _ENDS:
-            changes.add_metric([status], supervisor.ended_changes[status])
+            changes.add_metric([status], supervisor.change_ends.counts[status])
         yield changes
 
 

@@ -7,7 +7,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from datetime import UTC, datetime
 from types import MappingProxyType
-from typing import Any
+from typing import Any, NamedTuple
 
 from pydantic import ValidationError
 
@@ -21,13 +21,21 @@ from domain.timebase import Instant
 from service.event_log import EventLog
 from service.files.model_file import LoadedModel, read_model
 from service.files.robot_file import RobotSettings, robot_settings_of
-from service.robot_parts import make_onboard, make_simulated_robot
+from service.onboard_parts import make_onboard
+from service.simulation.from_settings import make_simulated_robot
 from service.simulation.virtual_clock import VirtualClock
 from service.simulation.virtual_robot import VirtualRobot
 
 EPOCH = "simulation"
 BEGIN = datetime(2000, 1, 1, tzinfo=UTC)
 """What a calendar says at 0 s, so that two runs say the same."""
+
+
+class SimulatedParts(NamedTuple):
+    """A live robot of which nothing is real, so that a simulation can go on with a copy of it."""
+
+    onboard: Onboard
+    robot: SimulatedRobot
 
 
 @dataclass(frozen=True, slots=True)

@@ -159,7 +159,7 @@ class _Client:
             # A page that still has a token sends it, whether or not it is needed.
             return
         reading = given.reading(given.signal, supervisor.clock)
-        supervisor.submit_readings([reading], given.source, f"websocket:{self._address}")
+        supervisor.readings.submit([reading], given.source, f"websocket:{self._address}")
 
     async def _answer(self, error: PilothouseError) -> None:
         """Say what is wrong, once the client has taken most of what was written before."""

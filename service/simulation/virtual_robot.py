@@ -25,24 +25,24 @@ class VirtualRobot:
         events: EventLog,
     ) -> None:
         self.clock = clock
+        self.onboard = onboard
+        self.robot = robot
         self.backend = SimulatedBackend(robot, clock)
         self.supervisor = Supervisor(
-            loaded, onboard, clock, self.backend, self.backend.mock, robot.what, events
+            loaded, onboard, clock, self.backend, self.backend.readings, robot.what, events
         )
         # Who asks to wait for the end of a change is answered at once.
-        self.supervisor.stop_waiting()
-        self._onboard = onboard
-        self._robot = robot
+        self.supervisor.change_ends.stop()
 
     def advance_to(self, end: Instant) -> None:
         """Let time pass until `end`, and happen what is due up to then, that included."""
         while (due := self._due()) <= end:
             self.clock.set(due)
-            for message in self._robot.advance(self.clock.now()):
+            for message in self.robot.advance(self.clock.now()):
                 self.supervisor.deliver(message)
             self.supervisor.let_pass()
         self.clock.set(end)
 
     def _due(self) -> Instant:
-        robot, onboard = self._robot.wake_at(), self._onboard.wake_at()
+        robot, onboard = self.robot.wake_at(), self.onboard.wake_at()
         return robot if onboard is None else min(robot, onboard)

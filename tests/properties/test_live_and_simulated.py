@@ -174,7 +174,7 @@ def _act(robot: HttpRobot, step: dict[str, Any]) -> None:
     supervisor = robot.supervisor
     if "reading" in step:
         items = [Reading(name, value) for name, value in step["reading"].items()]
-        supervisor.submit_readings(items, "api")
+        supervisor.readings.submit(items, "api")
     elif "task" in step:
         if step["task"] is None:
             supervisor.submit(CancelTaskRequest())

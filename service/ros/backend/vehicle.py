@@ -7,9 +7,8 @@ from dataclasses import dataclass, replace
 
 from domain.commands import Drive
 from domain.inputs import VehicleReport
-from domain.simulation.vehicle import COMMAND_VALID_FOR
 from domain.timebase import NANOSECONDS_PER_SECOND, Duration, Instant, seconds
-from domain.vehicle import DriveCommand, Pose, VehicleLimits, VehicleState
+from domain.vehicle import COMMAND_VALID_FOR, DriveCommand, Pose, VehicleLimits, VehicleState
 from service.clock import Clock, since_epoch
 from service.files.ros2_block import CommandType, Ros2Block
 from service.pacing import Alarm

@@ -24,7 +24,7 @@ async def carry_out(supervisor: Supervisor, request: ModeRequest | TransitionReq
         change = supervisor.submit(request).change
         if change is None:
             raise RuntimeError(f"{request} was taken and is no change")
-        view = await supervisor.change_ended(change, MAX_WAIT_S)
+        view = await supervisor.change_ends.wait(change, MAX_WAIT_S)
     except PilothouseError as error:
         log.info("refused %s: %.500s", what, error)
         return False

@@ -77,7 +77,7 @@ def _take(supervisor: Supervisor, given: _Input, fields: Fields, sender: str) ->
         raise InvalidValueError(f"{given.field} is missing", given.field)
     stamp = _stamp(supervisor.clock, message["header"]["stamp"])
     reading = Reading(given.signal, given.read(message[given.field]), stamp)
-    supervisor.submit_readings([reading], source=sender, actor=sender)
+    supervisor.readings.submit([reading], source=sender, actor=sender)
 
 
 def _stamp(clock: Clock, stamp: Mapping[str, int]) -> Instant | None:

@@ -11,8 +11,8 @@ from fastapi import APIRouter, FastAPI
 from fastapi.dependencies.models import Dependant
 from fastapi.routing import APIRoute, APIWebSocketRoute
 
-from api.http import routes
 from api.app import create_app
+from api.http import routes
 from tests.support.http_robot import HttpRobot
 from tests.support.live_robot import make_supervisor
 

@@ -33,9 +33,8 @@ def live() -> VirtualRobot:
 
 
 def copied(robot: VirtualRobot) -> LiveCopy:
-    parts = robot.supervisor.simulated_parts
-    assert parts is not None
-    return LiveCopy(copy_of(*parts), robot.clock.now(), NOW, robot.supervisor.events.newest)
+    state = copy_of(robot.onboard, robot.robot)
+    return LiveCopy(state, robot.clock.now(), NOW, robot.supervisor.events.newest)
 
 
 def test_a_scenario_happens_to_the_loaded_model() -> None:
@@ -131,9 +130,7 @@ def test_a_copy_goes_on_from_the_live_robot_in_time_events_and_state(live: Virtu
 
 
 def test_what_happens_to_a_copy_does_not_happen_to_the_live_robot(live: VirtualRobot) -> None:
-    parts = live.supervisor.simulated_parts
-    assert parts is not None
-    before = copy_of(*parts)
+    before = copy_of(live.onboard, live.robot)
     steps = [
         ALL_GOOD,
         {"t_s": 1, "task": {"waypoints": STRAIGHT}},
@@ -143,7 +140,7 @@ def test_what_happens_to_a_copy_does_not_happen_to_the_live_robot(live: VirtualR
 
     posted({"from": "live", "until_s": 10, "steps": steps}, copied(live))
 
-    assert copy_of(*parts) == before
+    assert copy_of(live.onboard, live.robot) == before
     assert live.supervisor.core.driving.holds.keys() == {"operator"}
 
 

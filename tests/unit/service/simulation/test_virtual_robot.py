@@ -93,7 +93,7 @@ async def test_who_waits_for_a_change_gets_it_at_once_as_it_is() -> None:
     robot.advance_to(0)
     change = robot.supervisor.submit(ModeRequest(ACTUATION, PERFORMANCE)).change
     assert change is not None
-    view = await asyncio.wait_for(robot.supervisor.change_ended(change, 60), 5)
+    view = await asyncio.wait_for(robot.supervisor.change_ends.wait(change, 60), 5)
 
     assert view.status is ChangeStatus.RUNNING
 
@@ -103,7 +103,7 @@ def test_deadlines_of_the_core_are_kept_between_what_the_robot_says() -> None:
     robot.advance_to(seconds(1.03))
     assert robot.backend.mock is not None
     robot.backend.mock.set_publishing("temperature", False)
-    robot.supervisor.submit_readings([Reading("temperature", 20.0)], source="test")
+    robot.supervisor.readings.submit([Reading("temperature", 20.0)], source="test")
     robot.advance_to(seconds(5))
 
     raised = [event.at for event in told(robot.supervisor.events) if event.kind == "error.raised"]
@@ -114,13 +114,13 @@ def test_deadlines_of_the_core_are_kept_between_what_the_robot_says() -> None:
 def test_the_robot_is_advanced_no_more_often_than_it_wants() -> None:
     robot = virtual(mock=False)
     advanced: list[float] = []
-    advance = robot.backend.simulation.advance
+    advance = robot.robot.advance
 
     def counting(now: int) -> Any:  # noqa: ANN401  # whatever it is
         advanced.append(to_seconds(now))
         return advance(now)
 
-    robot.backend.simulation.advance = counting  # type: ignore[method-assign]
+    robot.robot.advance = counting  # type: ignore[method-assign]
     robot.advance_to(seconds(1))
 
     assert len(advanced) <= 30
@@ -158,8 +158,8 @@ STORY: list[tuple[float, Act]] = [
     (0.7, lambda s: s.backend.set_fault(BASE, Fault.DIE)),
     (2.5, lambda s: s.backend.set_fault(BASE, None)),
     (3.0, _drive),
-    (5.123, lambda s: s.supervisor.submit_readings([Reading("estop", value=True)])),
-    (6.0, lambda s: s.supervisor.submit_readings([Reading("estop", value=False)])),
+    (5.123, lambda s: s.supervisor.readings.submit([Reading("estop", value=True)])),
+    (6.0, lambda s: s.supervisor.readings.submit([Reading("estop", value=False)])),
     (7.0, lambda s: s.supervisor.submit(HoldRequest("operator", "lunch", "operator"))),
     (8.0, lambda s: s.supervisor.submit(ReleaseRequest("operator", "operator"))),
     (9.0, lambda s: s.backend.set_vehicle_reporting(False)),
@@ -183,7 +183,7 @@ class Live:
         self.backend = SimulatedBackend(robot, self.clock)
         onboard = make_onboard(MODEL, 0)
         self.supervisor = Supervisor(
-            LOADED, onboard, self.clock, self.backend, self.backend.mock, robot.what
+            LOADED, onboard, self.clock, self.backend, self.backend.readings, robot.what
         )
 
 

@@ -1,4 +1,4 @@
-"""What happens to nodes without anybody asking, in the log: for whoever reads it the day after."""
+"""Logs what happens to nodes on its own: lost, being restored, not restored."""
 
 import asyncio
 import logging
@@ -12,7 +12,7 @@ KINDS = frozenset({"node.unreachable", "node.restoring", "node.not_restored"})
 _AT_ONCE = 100
 
 
-async def log_unasked(events: EventLog) -> None:
+async def log_node_incidents(events: EventLog) -> None:
     """Log what comes, until cancelled; a simulation has its events, and nobody who does this."""
     reader, changed = EventReader(events), asyncio.Event()
     with events.watch(changed.set):

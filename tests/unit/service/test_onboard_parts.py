@@ -1,15 +1,14 @@
 import numpy as np
 import pytest
 
-from domain.errors import InvalidValueError, UnknownPartError
-from domain.inputs import NodeReport, Reading, Readings, TaskRequest, VehicleReport
+from domain.errors import InvalidValueError
+from domain.inputs import Reading, Readings, TaskRequest, VehicleReport
 from domain.paths.path import Path
-from domain.simulation.robot import SimulatedRobot
 from domain.timebase import seconds
 from domain.vehicle import Pose, VehicleState
 from service.files.robot_file import RobotSettings
-from service.robot_parts import make_onboard, make_simulated_robot
-from tests.support.models import ARM, actuation_model
+from service.onboard_parts import make_onboard
+from tests.support.models import actuation_model
 
 MODEL = actuation_model()
 START = seconds(50.0)
@@ -17,10 +16,6 @@ START = seconds(50.0)
 
 def settings(**said: object) -> RobotSettings:
     return RobotSettings.model_validate(said)
-
-
-def simulated(robot: RobotSettings, *, mock: bool = False) -> SimulatedRobot:
-    return make_simulated_robot(MODEL, robot, START, mock=mock)
 
 
 def test_the_supervision_is_of_the_model() -> None:
@@ -71,30 +66,3 @@ def test_tasks_are_judged_as_the_settings_say(
             onboard.handle(task(begins_at_m, speed_mps), START)
     else:
         assert onboard.handle(task(begins_at_m, speed_mps), START).task is not None
-
-
-def test_nodes_and_vehicle_are_as_the_settings_say() -> None:
-    robot = settings(
-        nodes={ARM: {"fault": "die"}}, vehicle={"pose": {"x_m": 3.0, "y_m": 4.0, "yaw_rad": 0.5}}
-    )
-    said = simulated(robot).advance(START + seconds(2))
-
-    assert NodeReport(ARM, reachable=False) in said
-    (pose,) = {message.state.pose for message in said if isinstance(message, VehicleReport)}
-    assert pose == Pose(3.0, 4.0, 0.5)
-
-
-def test_it_begins_at_the_start_and_not_before() -> None:
-    assert simulated(settings(), mock=True).wake_at() == START
-
-
-@pytest.mark.parametrize("mock", [True, False])
-def test_signals_are_mocked_where_that_is_asked(mock: bool) -> None:
-    said = simulated(settings(), mock=mock).advance(START)
-
-    assert any(isinstance(message, Readings) for message in said) is mock
-
-
-def test_settings_of_a_node_that_is_not_there_are_refused() -> None:
-    with pytest.raises(UnknownPartError, match="tail"):
-        simulated(settings(nodes={"tail": {}}))

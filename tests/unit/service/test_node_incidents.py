@@ -6,14 +6,14 @@ import pytest
 
 from domain.events import Event
 from service.event_log import EventLog
-from service.unasked import log_unasked
+from service.node_incidents import log_node_incidents
 from tests.support.manual_clock import settle
 
 
 @pytest.fixture
 async def events() -> AsyncIterator[EventLog]:
     log = EventLog()
-    logging_ = asyncio.create_task(log_unasked(log), name="log")
+    logging_ = asyncio.create_task(log_node_incidents(log), name="log")
     await settle()
     yield log
     logging_.cancel()
