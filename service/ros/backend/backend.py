@@ -7,13 +7,13 @@ from domain.inputs import BackendStatus
 from domain.parts.system_model import SmhModel
 from service.clock import Clock
 from service.files.robot_file import RobotSettings
-from service.ports import BackendMessage, Deliver
+from service.ports import Deliver
+from service.ros.backend.delivery import Delivery
 from service.ros.backend.nodes import RosNodes
 from service.ros.backend.signals import SignalTopics
 from service.ros.backend.vehicle import RosVehicle
 from service.ros.graph.graph import RosGraph
 
-_AT_ONCE = 4
 _ROOM = 10_000
 _ROOM_PER_NODE = 200
 """For messages that were not delivered yet; a busy event loop finds no more, since the graph holds
@@ -24,7 +24,7 @@ back about a hundred of each topic.
 class Ros2Backend:
     """Reaches a robot through ROS 2: its nodes, its vehicle and its signals, as one adapter.
 
-    What is heard is delivered by `run` alone, in the order in which it was heard.
+    What is heard is delivered by `run` alone: readings of `estop` first, reports of nodes last.
     """
 
     def __init__(
@@ -48,7 +48,7 @@ class Ros2Backend:
         limits = robot.to_vehicle_limits()
         self._vehicle = RosVehicle(robot.ros2, limits, graph, clock)
         room = _ROOM + _ROOM_PER_NODE * len(model.nodes)
-        self._heard: asyncio.Queue[BackendMessage] = asyncio.Queue(room)
+        self._delivery = Delivery(room)
 
     async def run(self, deliver: Deliver) -> None:
         """Deliver what nodes, signals and vehicle say, until cancelled; then leave the graph.
@@ -59,7 +59,7 @@ class Ros2Backend:
         """
         try:
             deliver(BackendStatus(available=True))
-            hear = self._heard.put_nowait
+            hear = self._delivery.put
             self._signals.start(hear)
             self._vehicle.start(hear)
             await self._nodes.start(hear)
@@ -67,7 +67,7 @@ class Ros2Backend:
                 group.create_task(self._graph.wait_failed(), name="link to ROS 2")
                 group.create_task(self._nodes.run(), name="nodes")
                 group.create_task(self._vehicle.run(), name="vehicle")
-                await self._hand_over(deliver)
+                await self._delivery.run(deliver)
         finally:
             await self._graph.close()
 
@@ -77,11 +77,3 @@ class Ros2Backend:
             self._vehicle.send(command)
         else:
             self._nodes.send(command)
-
-    async def _hand_over(self, deliver: Deliver) -> None:
-        while True:
-            deliver(await self._heard.get())
-            for _ in range(min(self._heard.qsize(), _AT_ONCE)):
-                deliver(self._heard.get_nowait())
-            # Thousands may have come at once, and the rest of the service runs on.
-            await asyncio.sleep(0)

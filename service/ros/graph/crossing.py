@@ -18,6 +18,8 @@ MAX_UNANSWERED = 32
 """So many requests to one service of ours wait for their responses; more get an empty one."""
 
 _CANCEL_S = 0.5
+_AT_ONCE = 20
+"""So many messages of a topic are taken in one pass of the event loop; other topics follow."""
 
 _log = logging.getLogger(__name__)
 
@@ -126,8 +128,8 @@ class Inbox(Generic[PickedT]):
 
     def _hand_out(self) -> None:
         with self._lock:
-            items = list(self._waiting)
-            self._waiting.clear()
+            items = [self._waiting.popleft() for _ in range(min(len(self._waiting), _AT_ONCE))]
+            has_more = bool(self._waiting)
             dropped, self._dropped = self._dropped, 0
         if dropped:
             _log.warning(
@@ -136,6 +138,8 @@ class Inbox(Generic[PickedT]):
         for item in items:
             # One call each, so that what is raised over one does not cost the others.
             self._crossing.call_next(self._take, item)
+        if has_more:
+            self._crossing.call_next(self._hand_out)
 
 
 class Server:
