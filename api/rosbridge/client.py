@@ -6,6 +6,7 @@ from collections.abc import Awaitable, Callable, Mapping
 from typing import Any
 
 from api.rosbridge.bridge import Bridge
+from api.rosbridge.inbox import Inbox, is_urgent
 from api.rosbridge.outbox import Outbox
 from api.rosbridge.session import Session
 from api.rosbridge.wire import Wire
@@ -44,20 +45,36 @@ class Client:
                 writing = tasks.create_task(self._write(), name="rosbridge writer")
                 caller = f"rosbridge:{self._address}"
                 session = Session(self._bridge, self._outbox, caller, tasks.create_task)
+                inbox = Inbox()
+                reading = tasks.create_task(self._read(session, inbox, receive))
                 try:
-                    await self._hear(session, receive)
+                    await self._hear(session, inbox)
                 finally:
                     session.end()
+                    reading.cancel()
                     writing.cancel()
         finally:
             self._connection.listen(None)
 
-    async def _hear(
-        self, session: Session, receive: Callable[[], Awaitable[Mapping[str, Any]]]
+    async def _read(
+        self, session: Session, inbox: Inbox, receive: Callable[[], Awaitable[Mapping[str, Any]]]
     ) -> None:
-        """Take one message after the other; the next waits in the client until this one is done."""
+        """Read ahead, so that a reading of the emergency stop waits for nothing said before it."""
         while True:
             message = await receive()
+            if is_urgent(message):
+                self._wire.heard()
+                session.hear(message)
+                await asyncio.sleep(0)
+                continue
+            await inbox.put(message)
+            if message["type"] == "websocket.disconnect":
+                return
+
+    async def _hear(self, session: Session, inbox: Inbox) -> None:
+        """Do what one message after the other asks."""
+        while True:
+            message = await inbox.get()
             if message["type"] == "websocket.disconnect":
                 return
             self._wire.heard()

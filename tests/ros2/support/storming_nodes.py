@@ -2,7 +2,7 @@
 
 python storming_nodes.py NODES ROUNDS, with NODES as of `lifecycle_nodes.py` and ROUNDS as JSON: a
 list of parameters (values by name) that each node reports in turn. Prints `ready` once all nodes
-are there. A line on standard input begins the storm, the next one ends it.
+are there. A line on standard input begins the storm; SIGKILL ends it.
 """
 
 import json
@@ -54,11 +54,7 @@ def main() -> None:
     by_round = list(zip(*(events(spec["name"], rounds) for spec in specs), strict=True))
     print("ready", flush=True)
     sys.stdin.readline()
-    ended = threading.Event()
-    threading.Thread(target=lambda: (sys.stdin.readline(), ended.set()), daemon=True).start()
     for messages in cycle(by_round):
-        if ended.is_set():
-            return
         for message in messages:
             publisher.publish(message)
         # Its own executor has to answer as well.
