@@ -34,8 +34,8 @@ from api.http.routes import (
 from api.http.static_page import page_routes
 from api.streaming import events_route as events
 from api.streaming import route as stream
-from service.jobs import Jobs
 from service.supervisor import Supervisor
+from service.worker import Jobs
 
 _RESOURCES = (
     # Before the parts: the path of a part matches everything below /nodes.

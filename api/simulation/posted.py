@@ -23,8 +23,7 @@ from service.files.model_file import LoadedModel, read_model
 from service.files.robot_file import RobotSettings, robot_settings_of
 from service.onboard_parts import make_onboard
 from service.simulation.from_settings import make_simulated_robot
-from service.simulation.virtual_clock import VirtualClock
-from service.simulation.virtual_robot import VirtualRobot
+from service.simulation.virtual_time import VirtualClock, VirtualService
 
 EPOCH = "simulation"
 BEGIN = datetime(2000, 1, 1, tzinfo=UTC)
@@ -101,7 +100,7 @@ def _read(raw: bytes) -> SimulationBody:
         raise InvalidBodyError(faults_of(placed)) from error
 
 
-def robot_for(body: SimulationBody, model_text: str, live: LiveCopy | None) -> VirtualRobot:
+def robot_for(body: SimulationBody, model_text: str, live: LiveCopy | None) -> VirtualService:
     """Return the robot that a scenario begins with.
 
     Raises:
@@ -121,9 +120,9 @@ def robot_for(body: SimulationBody, model_text: str, live: LiveCopy | None) -> V
     return _new(loaded, robot)
 
 
-def _new(loaded: LoadedModel, robot: RobotSettings) -> VirtualRobot:
+def _new(loaded: LoadedModel, robot: RobotSettings) -> VirtualService:
     mock = robot.mock is True
-    return VirtualRobot(
+    return VirtualService(
         loaded,
         make_onboard(loaded.model, robot, 0),
         make_simulated_robot(loaded.model, robot, 0, mock=mock),
@@ -132,9 +131,9 @@ def _new(loaded: LoadedModel, robot: RobotSettings) -> VirtualRobot:
     )
 
 
-def _copied(model_text: str, live: LiveCopy) -> VirtualRobot:
+def _copied(model_text: str, live: LiveCopy) -> VirtualService:
     onboard, robot = pickle.loads(live.state)
-    return VirtualRobot(
+    return VirtualService(
         read_model(model_text),
         onboard,
         robot,

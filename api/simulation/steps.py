@@ -26,7 +26,7 @@ from domain.lifecycle import Transition
 from domain.simulation.node_settings import Fault
 from domain.state_and_mode import part_name
 from domain.timebase import seconds
-from service.simulation.virtual_robot import VirtualRobot
+from service.simulation.virtual_time import VirtualService
 
 _ACTOR = "simulation"
 
@@ -34,7 +34,7 @@ _ACTOR = "simulation"
 class Actors:
     """Whoever does something in a scenario: sensors, operators, faults."""
 
-    def __init__(self, robot: VirtualRobot, runner: asyncio.Runner) -> None:
+    def __init__(self, robot: VirtualService, runner: asyncio.Runner) -> None:
         self._robot = robot
         self._runner = runner
         self._requests: Requests | None = None

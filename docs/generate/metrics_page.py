@@ -11,7 +11,7 @@ from api.simulation.posted import robot_for
 from api.simulation.simulation import Simulation
 from docs.generate.markdown import code, page, table
 from docs.generate.source_scan import PROJECT, metric_names, require_described
-from service.jobs import InlineJobs
+from service.worker import InlineJobs
 
 _MODEL = PROJECT / "service" / "example" / "actuation.yaml"
 _GOOD = {

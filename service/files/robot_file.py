@@ -66,7 +66,7 @@ class RobotSettings(SettingsBlock):
     ros2: Ros2Block = Ros2Block()
     """Topics of a robot in ROS 2. Without effect where the robot is simulated."""
     start_task: StartTaskBlock | None = None
-    """A task that is served when the service starts. Not in simulations, which name no files."""
+    """A task that is submitted when the service starts. Not in simulations, which name no files."""
 
     def to_signal_settings(self) -> tuple[SignalSettings, ...]:
         """Return all signals: the usual five as they are set here, then the declared ones.

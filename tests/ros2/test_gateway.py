@@ -17,8 +17,8 @@ from domain.inputs import Reading
 from domain.simulation.node_settings import Fault
 from service.clock import MonotonicClock
 from service.ros.gateway import RosGateway
+from service.ros.graph.conversion import fields_of
 from service.ros.graph.graph import Fields, Lane, Qos, RosNode
-from service.ros.graph.messages import fields_of
 from service.ros.interface.interface import RosInterface
 from service.simulation.simulated import SimulatedBackend
 from service.supervisor import Supervisor

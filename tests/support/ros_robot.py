@@ -8,8 +8,8 @@ from typing import Any
 from domain.parts.system_model import SmhModel
 from domain.simulation.node_settings import Fault
 from domain.state_and_mode import PartName
+from service.ros.interface.endpoints import Fields
 from service.ros.interface.interface import RosInterface
-from service.ros.interface.offer import Fields
 from tests.support.live_robot import make_live_robot, running
 from tests.support.manual_clock import ManualClock, settle
 

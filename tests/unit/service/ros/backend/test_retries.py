@@ -5,7 +5,7 @@ from collections.abc import Callable
 
 import pytest
 
-from service.ros.backend.insisting import MAX_CALLS, Seen, insist
+from service.ros.backend.retries import MAX_CALLS, Seen, call_with_retries
 from tests.support.manual_clock import ManualClock
 
 
@@ -36,9 +36,11 @@ class Node:
             raise TimeoutError
         return self._seen.pop(0)
 
-    async def insist(self, for_s: float) -> str | None:
+    async def ask_again(self, for_s: float) -> str | None:
         """Return what was answered within a time; None: nothing."""
-        asking = asyncio.create_task(insist(self.ask, self.see, "it is done", self.clock))
+        asking = asyncio.create_task(
+            call_with_retries(self.ask, self.see, "it is done", self.clock)
+        )
         await self.clock.advance(for_s)
         answer = asking.result() if asking.done() else None
         asking.cancel()
@@ -50,21 +52,21 @@ class Node:
 async def test_who_answers_is_asked_once() -> None:
     node = Node(answers=lambda number: True)
 
-    assert await node.insist(for_s=1) == "answer 1"
+    assert await node.ask_again(for_s=1) == "answer 1"
     assert node.asked_at == [0.0]
 
 
 async def test_a_request_that_was_not_heard_is_asked_again() -> None:
     node = Node(Seen.LOST, answers=lambda number: number == 2)
 
-    assert await node.insist(for_s=1) == "answer 2"
+    assert await node.ask_again(for_s=1) == "answer 2"
     assert node.asked_at == [0.0, 0.6]
 
 
 async def test_a_request_whose_answer_got_lost_is_done() -> None:
     node = Node(Seen.DONE, answers=lambda number: False)
 
-    assert await node.insist(for_s=1) == "it is done"
+    assert await node.ask_again(for_s=1) == "it is done"
     assert node.asked_at == [0.0]
 
 
@@ -72,19 +74,19 @@ async def test_a_request_whose_answer_got_lost_is_done() -> None:
 async def test_who_is_at_it_is_waited_for(seen: tuple[Seen, ...]) -> None:
     node = Node(*seen, answers=lambda number: False)
 
-    assert await node.insist(for_s=5) is None
+    assert await node.ask_again(for_s=5) is None
     assert node.asked_at == [0.0]
 
 
 async def test_it_is_not_asked_for_ever() -> None:
     node = Node(*(Seen.LOST,) * 9, answers=lambda number: False)
 
-    assert await node.insist(for_s=10) is None
+    assert await node.ask_again(for_s=10) is None
     assert len(node.asked_at) == MAX_CALLS
 
 
 async def test_after_a_while_nothing_is_asked_again_though_it_is_seen_to_be_lost() -> None:
     node = Node(Seen.UNCLEAR, Seen.UNCLEAR, Seen.LOST, Seen.LOST, answers=lambda number: False)
 
-    assert await node.insist(for_s=10) is None
+    assert await node.ask_again(for_s=10) is None
     assert node.asked_at == [0.0]

@@ -4,7 +4,7 @@ import pytest
 
 from domain.lifecycle import LifecycleState, Transition
 from domain.timebase import seconds
-from service.ros.interface.messages import header, mode_event, nanoseconds, state, transition
+from service.ros.interface.message_fields import header, mode_event, nanoseconds, state, transition
 from tests.support.manual_clock import ManualClock
 
 

@@ -1,4 +1,4 @@
-"""Requests that got lost: asked again once the node shows that it never took them.
+"""Repeats requests that were lost, once the node shows that it never took them.
 
 DDS connects the ends of a service one after the other. A node that has just appeared may be found
 before it can hear us, or its response may not find its way back, and neither side is told.
@@ -13,37 +13,37 @@ from domain.timebase import Duration, seconds
 from service.clock import Clock
 
 MAX_CALLS = 3
-"""So often the same is asked at most."""
+"""A request is sent at most this often."""
 PATIENCE: Duration = seconds(0.6)
-"""So long an answer may take before the node is looked at."""
+"""After this long without an answer, the node is asked what became of the request."""
 WINDOW: Duration = seconds(1.5)
-"""Later nothing is asked again: whoever asked may have given up by then. The core waits 2 s for
-parameters, and longer for transitions."""
+"""No request is repeated later than this: the sender may have given up by then. The core waits 2 s
+for parameters, and longer for transitions."""
 
 ResultT = TypeVar("ResultT")
 
 
 class Seen(Enum):
-    """What a node shows of a request that it has not answered."""
+    """What became of a request that the node has not answered."""
 
     DONE = "done"
     LOST = "lost"
     UNCLEAR = "unclear"
-    """It is at it, or says nothing at all, or must not be asked again."""
+    """The node is working on it, does not respond, or must not be asked again."""
 
 
-async def insist(
+async def call_with_retries(
     ask: Callable[[], Coroutine[Any, Any, ResultT]],
     see: Callable[[], Awaitable[Seen]],
     done: ResultT,
     clock: Clock,
 ) -> ResultT:
-    """Ask a node for something that does no harm twice, and return its answer.
+    """Send a request that does no harm if it arrives twice, and return the answer.
 
     Args:
-        ask: Asks and returns the answer.
-        see: Looks what became of it; TimeoutError: the node does not say.
-        done: The answer when it is seen to be done.
+        ask: Sends the request and returns the answer.
+        see: Finds out what became of it; TimeoutError: the node does not respond.
+        done: The answer if the request turns out to be done.
         clock: The present.
 
     Raises:
@@ -78,7 +78,7 @@ async def _look(see: Callable[[], Awaitable[Seen]]) -> Seen:
 async def _first_of(
     calls: set[asyncio.Task[ResultT]], clock: Clock
 ) -> asyncio.Task[ResultT] | None:
-    """Return a call that was answered; None: there was none for as long as one is patient."""
+    """Return a call that was answered; None: no answer came within `PATIENCE`."""
     timer = asyncio.ensure_future(clock.sleep_until(clock.now() + PATIENCE))
     try:
         await asyncio.wait({*calls, timer}, return_when=asyncio.FIRST_COMPLETED)

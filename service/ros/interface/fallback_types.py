@@ -1,4 +1,4 @@
-"""What stands in for types that only exist where somebody built them.
+"""Standard types in place of message types that exist only where somebody built them.
 
 `system_modes_msgs` and `gem_state_msgs` come with no distribution of ROS 2. Where one is not
 installed, its services and topics are offered all the same, in types that every installation has. A
@@ -14,14 +14,14 @@ from domain.lifecycle import LifecycleState
 from domain.snapshot import SystemState, TaskStatus
 from domain.state_and_mode import ModeName, StateAndMode
 from service.ros.interface.diagnostics import Level, status
-from service.ros.interface.mode_services import UNKNOWN_MODE
-from service.ros.interface.offer import Fields
+from service.ros.interface.endpoints import Fields
+from service.ros.interface.services import UNKNOWN_MODE
 
 Convert: TypeAlias = Callable[[Fields], Fields]
 
 
 @dataclass(frozen=True, slots=True)
-class ServiceCarrier:
+class ServiceFallback:
     """The type that carries a service, and what becomes of its requests and responses."""
 
     type: str
@@ -32,7 +32,7 @@ class ServiceCarrier:
 
 
 @dataclass(frozen=True, slots=True)
-class TopicCarrier:
+class TopicFallback:
     """The type that carries a topic, and what becomes of its messages."""
 
     type: str
@@ -108,27 +108,27 @@ def _stamp(fields: Mapping[str, Any]) -> str:
     return f"{stamp['sec']}.{stamp['nanosec']:09d}"
 
 
-SERVICE_CARRIERS: Mapping[str, ServiceCarrier] = {
-    "system_modes_msgs/srv/ChangeMode": ServiceCarrier(
+SERVICE_FALLBACKS: Mapping[str, ServiceFallback] = {
+    "system_modes_msgs/srv/ChangeMode": ServiceFallback(
         "lifecycle_msgs/srv/ChangeState", _asked_mode, _as_it_is
     ),
-    "system_modes_msgs/srv/GetMode": ServiceCarrier(
+    "system_modes_msgs/srv/GetMode": ServiceFallback(
         "lifecycle_msgs/srv/GetState", _no_fields, _current_mode
     ),
-    "system_modes_msgs/srv/GetAvailableModes": ServiceCarrier(
+    "system_modes_msgs/srv/GetAvailableModes": ServiceFallback(
         "lifecycle_msgs/srv/GetAvailableStates", _no_fields, _available_modes
     ),
 }
 """By the native type."""
 
-TOPIC_CARRIERS: Mapping[str, TopicCarrier] = {
-    "system_modes_msgs/msg/ModeEvent": TopicCarrier(
+TOPIC_FALLBACKS: Mapping[str, TopicFallback] = {
+    "system_modes_msgs/msg/ModeEvent": TopicFallback(
         "lifecycle_msgs/msg/TransitionEvent", _mode_event
     ),
-    "gem_state_msgs/msg/SystemStateStamped": TopicCarrier(
+    "gem_state_msgs/msg/SystemStateStamped": TopicFallback(
         "diagnostic_msgs/msg/DiagnosticStatus", _system_state
     ),
-    "gem_state_msgs/msg/TaskPlannerStatus": TopicCarrier(
+    "gem_state_msgs/msg/TaskPlannerStatus": TopicFallback(
         "diagnostic_msgs/msg/DiagnosticStatus", _task_status
     ),
 }

@@ -1,4 +1,4 @@
-"""The topics that smart_polaris hears: the five usual signals, each in a message of its own."""
+"""The topics on which smart_polaris receives its five signals, each with a type of its own."""
 
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
@@ -10,8 +10,8 @@ from domain.errors import InvalidValueError
 from domain.inputs import Reading, SignalValue
 from domain.timebase import Instant
 from service.clock import EPOCH, Clock
-from service.ros.interface.offer import Fields, HeardTopic
-from service.ros.interface.shapes import HEADER, Kind, Shape, checked
+from service.ros.interface.endpoints import Fields, SubscribedTopic
+from service.ros.interface.message_check import HEADER, Kind, Shape, checked
 from service.supervisor import Supervisor
 
 _STRENGTHS = ("NOT_CONNECTED", "CONNECTED", "LOW_SIGNAL")
@@ -53,10 +53,10 @@ _INPUTS = (
 )
 
 
-def heard_topics(supervisor: Supervisor) -> Iterable[HeardTopic]:
+def reading_topics(supervisor: Supervisor) -> Iterable[SubscribedTopic]:
     """Return the topics whose messages become readings."""
     return tuple(
-        HeardTopic(
+        SubscribedTopic(
             name=f"/{given.signal}",
             type=f"gem_state_msgs/msg/{given.type}",
             take=partial(_take, supervisor, given),

@@ -4,7 +4,7 @@ from contextlib import suppress
 import pytest
 
 from domain.errors import InvalidValueError
-from service.ros.interface.shapes import CHANGE_STATE, EMPTY, HEADER, Kind, Shape, checked
+from service.ros.interface.message_check import CHANGE_STATE, EMPTY, HEADER, Kind, Shape, checked
 
 READING: Shape = {"header": HEADER, "enabled": Kind.BOOLEAN, "level": Kind.NUMBER}
 

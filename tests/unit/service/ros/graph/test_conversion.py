@@ -9,8 +9,8 @@ import numpy as np
 import pytest
 
 from domain.errors import InvalidValueError
+from service.ros.graph.conversion import fields_of, fill, find_type, require_field
 from service.ros.graph.graph import UnknownFieldError, UnknownTypeError
-from service.ros.graph.messages import fields_of, fill, find_type, require_field
 
 
 class FakeMessage:

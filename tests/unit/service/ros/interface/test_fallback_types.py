@@ -1,15 +1,15 @@
 import pytest
 
-from service.ros.interface.carriers import SERVICE_CARRIERS, TOPIC_CARRIERS
-from service.ros.interface.messages import mode_event
-from service.ros.interface.offer import Fields
+from service.ros.interface.endpoints import Fields
+from service.ros.interface.fallback_types import SERVICE_FALLBACKS, TOPIC_FALLBACKS
+from service.ros.interface.message_fields import mode_event
 
 HEADER = {"stamp": {"sec": 12, "nanosec": 50_000_000}, "frame_id": ""}
 
 
 @pytest.mark.parametrize("label", ["FAST", "active.FAST"])
 def test_a_mode_is_asked_for_as_the_label_of_a_transition(label: str) -> None:
-    carrier = SERVICE_CARRIERS["system_modes_msgs/srv/ChangeMode"]
+    carrier = SERVICE_FALLBACKS["system_modes_msgs/srv/ChangeMode"]
 
     assert carrier.type == "lifecycle_msgs/srv/ChangeState"
     asked = carrier.request({"transition": {"id": 3, "label": label}})
@@ -27,7 +27,7 @@ def test_a_mode_is_asked_for_as_the_label_of_a_transition(label: str) -> None:
     ],
 )
 def test_a_mode_is_read_as_a_state(mode: str, state: Fields) -> None:
-    carrier = SERVICE_CARRIERS["system_modes_msgs/srv/GetMode"]
+    carrier = SERVICE_FALLBACKS["system_modes_msgs/srv/GetMode"]
 
     assert carrier.type == "lifecycle_msgs/srv/GetState"
     assert carrier.request({}) == {}
@@ -35,7 +35,7 @@ def test_a_mode_is_read_as_a_state(mode: str, state: Fields) -> None:
 
 
 def test_modes_are_listed_as_states() -> None:
-    carrier = SERVICE_CARRIERS["system_modes_msgs/srv/GetAvailableModes"]
+    carrier = SERVICE_FALLBACKS["system_modes_msgs/srv/GetAvailableModes"]
 
     assert carrier.type == "lifecycle_msgs/srv/GetAvailableStates"
     assert carrier.response({"available_modes": ["SLOW", "FAST"]}) == {
@@ -47,7 +47,7 @@ def test_modes_are_listed_as_states() -> None:
 
 
 def test_a_mode_event_is_a_transition_between_labels() -> None:
-    carrier = TOPIC_CARRIERS["system_modes_msgs/msg/ModeEvent"]
+    carrier = TOPIC_FALLBACKS["system_modes_msgs/msg/ModeEvent"]
 
     assert carrier.type == "lifecycle_msgs/msg/TransitionEvent"
     assert carrier.message({**mode_event(7, None, None), "goal_mode": {"label": "FAST"}}) == {
@@ -60,7 +60,7 @@ def test_a_mode_event_is_a_transition_between_labels() -> None:
 
 def carried(type_name: str, message: Fields) -> tuple[int, str, str, dict[str, str]]:
     """Return level, name, message and values of what carries a message."""
-    carrier = TOPIC_CARRIERS[type_name]
+    carrier = TOPIC_FALLBACKS[type_name]
     assert carrier.type == "diagnostic_msgs/msg/DiagnosticStatus"
     found = carrier.message({"header": HEADER, **message})
     values = {each["key"]: each["value"] for each in found["values"]}

@@ -1,4 +1,4 @@
-"""ROS messages made of what JSON has, and the other way round.
+"""Converts between ROS messages and plain values as in JSON.
 
 No ROS is known here: a message class itself tells which fields it has and of which types. What is
 given is checked in full, since ROS does not: with a wrong type in a field it ends the process.

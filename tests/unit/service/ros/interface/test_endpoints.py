@@ -1,7 +1,6 @@
 from collections.abc import Callable
 
-from service.ros.interface.listeners import Listeners
-from service.ros.interface.offer import Fields
+from service.ros.interface.endpoints import Fields, Listeners
 
 
 def test_all_who_listen_hear_and_nobody_else() -> None:

@@ -1,4 +1,4 @@
-"""What is on offer: each service, each topic that is published, and each that may be published to.
+"""Services and topics of the interface, and who listens to the topics.
 
 Messages are mappings, as in JSON, and have all fields of their type. Types are the native ones:
 those of `system_modes_msgs` and `gem_state_msgs` where ROS itself has none.
@@ -6,6 +6,7 @@ those of `system_modes_msgs` and `gem_state_msgs` where ROS itself has none.
 
 from collections.abc import Awaitable, Callable, Mapping
 from dataclasses import dataclass
+from functools import partial
 from typing import Any, TypeAlias
 
 Fields: TypeAlias = Mapping[str, Any]
@@ -25,8 +26,7 @@ class OfferedService:
     node: str
     """Name of the ROS node that has it, without the leading slash: the system, or `OWN_NODE`."""
     of_a_node: bool
-    """Whether a real ROS 2 node offers it by itself: then it is offered only where the nodes are
-    none."""
+    """Whether a lifecycle node has it itself: then it is not offered in ROS 2 again."""
     call: Callable[[Fields, str], Awaitable[Fields]]
     """Takes a request and who asks (as `rosbridge:127.0.0.1`), returns the response. A request is a
     success only once its end was verified, and so it may take its time.
@@ -49,11 +49,11 @@ class OfferedTopic:
     of_a_node: bool
     """As of `OfferedService`."""
     latched: bool
-    """Whether who comes late gets the last message."""
+    """Whether a late subscriber gets the last message."""
 
 
 @dataclass(frozen=True, slots=True)
-class HeardTopic:
+class SubscribedTopic:
     """One topic that others may publish to."""
 
     name: str
@@ -66,3 +66,31 @@ class HeardTopic:
     Raises:
         PilothouseError: It is refused; nothing was changed.
     """
+
+
+class Listeners:
+    """The listeners of topics; one that was added twice gets each message twice."""
+
+    def __init__(self) -> None:
+        self._takes: dict[str, dict[object, Callable[[Fields], None]]] = {}
+
+    def add(self, topic: str, take: Callable[[Fields], None]) -> Callable[[], None]:
+        """Add a listener, and return what removes it; it may be called more than once."""
+        token = object()
+        self._takes.setdefault(topic, {})[token] = take
+        return partial(self._remove, topic, token)
+
+    def hears(self, topic: str) -> bool:
+        """Tell whether anybody listens to a topic."""
+        return topic in self._takes
+
+    def send(self, topic: str, message: Fields) -> None:
+        """Hand a message to all who listen to its topic."""
+        for take in tuple(self._takes.get(topic, {}).values()):
+            take(message)
+
+    def _remove(self, topic: str, token: object) -> None:
+        takes = self._takes.get(topic, {})
+        takes.pop(token, None)
+        if not takes:
+            self._takes.pop(topic, None)

@@ -1,4 +1,4 @@
-"""What messages from outside look like, and one check for all of them."""
+"""Checks the fields of incoming messages."""
 
 from collections.abc import Mapping
 from enum import Enum

@@ -4,7 +4,7 @@ from domain.lifecycle import TRANSITIONS, LifecycleState, Transition, rule_for
 from domain.state_and_mode import ModeName
 from domain.timebase import NANOSECONDS_PER_SECOND, Instant
 from service.clock import Clock, since_epoch
-from service.ros.interface.offer import Fields
+from service.ros.interface.endpoints import Fields
 
 
 def nanoseconds(clock: Clock, at: Instant) -> int:
