@@ -6,8 +6,8 @@ from collections.abc import Awaitable, Callable, Mapping
 from typing import Any
 
 from api.rosbridge.bridge import Bridge
-from api.rosbridge.inbox import Inbox, is_urgent
 from api.rosbridge.outbox import Outbox
+from api.rosbridge.read_ahead import ReadAhead, is_urgent
 from api.rosbridge.session import Session
 from api.rosbridge.wire import Wire
 from api.streaming.prepared import Connection
@@ -45,10 +45,10 @@ class Client:
                 writing = tasks.create_task(self._write(), name="rosbridge writer")
                 caller = f"rosbridge:{self._address}"
                 session = Session(self._bridge, self._outbox, caller, tasks.create_task)
-                inbox = Inbox()
-                reading = tasks.create_task(self._read(session, inbox, receive))
+                ahead = ReadAhead()
+                reading = tasks.create_task(self._read(session, ahead, receive))
                 try:
-                    await self._hear(session, inbox)
+                    await self._hear(session, ahead)
                 finally:
                     session.end()
                     reading.cancel()
@@ -57,7 +57,10 @@ class Client:
             self._connection.listen(None)
 
     async def _read(
-        self, session: Session, inbox: Inbox, receive: Callable[[], Awaitable[Mapping[str, Any]]]
+        self,
+        session: Session,
+        ahead: ReadAhead,
+        receive: Callable[[], Awaitable[Mapping[str, Any]]],
     ) -> None:
         """Read ahead, so that a reading of the emergency stop waits for nothing said before it."""
         while True:
@@ -67,14 +70,14 @@ class Client:
                 session.hear(message)
                 await asyncio.sleep(0)
                 continue
-            await inbox.put(message)
+            await ahead.put(message)
             if message["type"] == "websocket.disconnect":
                 return
 
-    async def _hear(self, session: Session, inbox: Inbox) -> None:
+    async def _hear(self, session: Session, ahead: ReadAhead) -> None:
         """Do what one message after the other asks."""
         while True:
-            message = await inbox.get()
+            message = await ahead.get()
             if message["type"] == "websocket.disconnect":
                 return
             self._wire.heard()

@@ -12,7 +12,7 @@ _OVERHEAD = 100
 _URGENT_CHARACTERS = 1_000
 
 
-class Inbox:
+class ReadAhead:
     """Messages in their order; reading stops while there are too many."""
 
     def __init__(self) -> None:

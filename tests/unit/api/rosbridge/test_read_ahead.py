@@ -3,7 +3,7 @@ import json
 
 import pytest
 
-from api.rosbridge.inbox import MAX_CHARACTERS, Inbox, is_urgent
+from api.rosbridge.read_ahead import MAX_CHARACTERS, ReadAhead, is_urgent
 from tests.support.manual_clock import settle
 
 
@@ -16,32 +16,32 @@ LARGE = {"type": "websocket.receive", "text": "x" * MAX_CHARACTERS}
 
 
 async def test_messages_keep_their_order() -> None:
-    inbox = Inbox()
+    ahead = ReadAhead()
     sent = [said("subscribe", topic=f"/topic_{number}") for number in range(5)]
     for message in sent:
-        await inbox.put(message)
+        await ahead.put(message)
 
-    assert [await inbox.get() for _ in sent] == sent
+    assert [await ahead.get() for _ in sent] == sent
 
 
 async def test_who_takes_waits_for_a_message() -> None:
-    inbox = Inbox()
-    taken = asyncio.create_task(inbox.get())
+    ahead = ReadAhead()
+    taken = asyncio.create_task(ahead.get())
     await settle()
     assert not taken.done()
 
-    await inbox.put(PRESSED)
+    await ahead.put(PRESSED)
     assert await taken == PRESSED
 
 
 async def test_no_more_is_read_than_there_is_room_for() -> None:
-    inbox = Inbox()
-    await inbox.put(LARGE)
-    further = asyncio.create_task(inbox.put(PRESSED))
+    ahead = ReadAhead()
+    await ahead.put(LARGE)
+    further = asyncio.create_task(ahead.put(PRESSED))
     await settle()
     assert not further.done()
 
-    await inbox.get()
+    await ahead.get()
     await further
 
 
