@@ -11,8 +11,8 @@ from fastapi.requests import HTTPConnection
 from domain.errors import UnknownPartError
 from domain.parts.system_model import SmhModel
 from domain.state_and_mode import PartName
-from service.jobs import Jobs
 from service.supervisor import Supervisor
+from service.worker import Jobs
 
 
 async def _supervisor(connection: HTTPConnection) -> Supervisor:
@@ -25,15 +25,8 @@ async def _worker(connection: HTTPConnection) -> Jobs:
     return found
 
 
-async def _simulator(connection: HTTPConnection) -> Jobs:
-    found: Jobs = connection.app.state.simulator
-    return found
-
-
 SupervisorDep = Annotated[Supervisor, Depends(_supervisor)]
 WorkerDep = Annotated[Jobs, Depends(_worker)]
-SimulatorDep = Annotated[Jobs, Depends(_simulator)]
-"""Runs simulations, beside the worker."""
 
 
 async def _actor(request: Request) -> str:

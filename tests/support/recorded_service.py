@@ -23,8 +23,8 @@ from tests.support.process import ServiceProcess, connect, service
 _RECORDING = """\
 import json, sys, time
 from importlib.util import find_spec
-from api import command_line
-from domain.inputs import Drive
+from api.cli import command_line
+from domain.commands import Drive
 from service.supervisor import Supervisor
 
 path, found = sys.argv.pop(1), {"asks": [], "drives": [], "ticks": []}
@@ -40,7 +40,7 @@ async def run_recording(supervisor):
             found["drives"].append((time.perf_counter(), command.command.speed_mps))
 
     backend.send = send_recording
-    supervisor.on_tick.append(lambda _: found["ticks"].append(time.perf_counter()))
+    supervisor.publisher.on_tick.append(lambda _: found["ticks"].append(time.perf_counter()))
     await run(supervisor)
 
 Supervisor.run = run_recording

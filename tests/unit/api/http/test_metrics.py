@@ -1,10 +1,7 @@
 """`GET /metrics`: what Prometheus is told."""
 
-from collections.abc import AsyncIterator
-
 import httpx
 import pytest
-from fastapi import FastAPI
 from prometheus_client.parser import text_string_to_metric_families
 
 from api.app import create_app
@@ -17,33 +14,10 @@ from domain.inputs import (
 )
 from domain.state_and_mode import PartName
 from service.supervisor import Supervisor
-from tests.support.driver import straight
 from tests.support.frames import event
 from tests.support.live_robot import make_supervisor, running
 from tests.support.manual_clock import ManualClock
-from tests.support.websocket import WebSocketClient
-
-
-@pytest.fixture
-def clock() -> ManualClock:
-    return ManualClock()
-
-
-@pytest.fixture
-def supervisor(clock: ManualClock) -> Supervisor:
-    return make_supervisor(clock)
-
-
-@pytest.fixture
-def app(supervisor: Supervisor) -> FastAPI:
-    return create_app(supervisor, allowed_hosts=[])
-
-
-@pytest.fixture
-async def http(app: FastAPI) -> AsyncIterator[httpx.AsyncClient]:
-    transport = httpx.ASGITransport(app)
-    async with httpx.AsyncClient(transport=transport, base_url="http://127.0.0.1:8000") as client:
-        yield client
+from tests.support.paths import straight
 
 
 async def metric(http: httpx.AsyncClient, name: str, **labels: str) -> float | None:
@@ -87,7 +61,7 @@ async def test_the_metrics_tell_how_old_a_signal_is(
     http: httpx.AsyncClient, clock: ManualClock, supervisor: Supervisor
 ) -> None:
     assert await metric(http, "pilothouse_signal_age_seconds", signal="temperature") is None
-    supervisor.submit_readings([Reading("temperature", 30.0)])
+    supervisor.readings.submit([Reading("temperature", 30.0)])
 
     await clock.advance(1.5)
 
@@ -133,25 +107,12 @@ async def test_the_metrics_tell_the_period_of_the_tick(
     assert await metric(http, "pilothouse_publish_period_seconds_sum") == pytest.approx(1)
 
 
-async def test_the_metrics_count_the_clients_of_the_stream(
-    http: httpx.AsyncClient, app: FastAPI, supervisor: Supervisor
-) -> None:
-    async with running(supervisor):
-        async with WebSocketClient(app) as client:
-            await client.frame()
-            assert await metric(http, "pilothouse_ws_clients") == 1
-
-        assert await metric(http, "pilothouse_ws_clients") == 0
-        assert await metric(http, "pilothouse_ws_dropped_total") == 0
-        assert await metric(http, "pilothouse_ws_frames_skipped_total") == 0
-
-
 async def test_the_metrics_count_the_ticks_that_were_skipped(
     http: httpx.AsyncClient, supervisor: Supervisor
 ) -> None:
     assert await metric(http, "pilothouse_ticks_late_total") == 0
 
-    supervisor.late_ticks = 3
+    supervisor.publisher.late_ticks = 3
 
     assert await metric(http, "pilothouse_ticks_late_total") == 3
 
@@ -160,7 +121,7 @@ async def test_two_services_in_one_process_do_not_mix_their_metrics(
     http: httpx.AsyncClient, supervisor: Supervisor
 ) -> None:
     other = make_supervisor()
-    other.late_ticks = 7
+    other.publisher.late_ticks = 7
     create_app(other, allowed_hosts=[])
 
     assert await metric(http, "pilothouse_ticks_late_total") == 0

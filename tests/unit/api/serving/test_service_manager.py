@@ -8,7 +8,7 @@ import pytest
 
 from api.serving.service_manager import ServiceManager, UnknownManagerError
 from service.supervisor import Supervisor
-from tests.support.live_robot import make_supervisor, running
+from tests.support.live_robot import running
 from tests.support.manual_clock import ManualClock
 
 ABSTRACT = f"@pilothouse-test-{os.getpid()}"
@@ -41,16 +41,6 @@ def manager_socket(request: pytest.FixtureRequest, tmp_path: Path) -> Iterator[S
     listening = Socket(str(tmp_path / "notify") if request.param == "a path" else ABSTRACT)
     yield listening
     listening.close()
-
-
-@pytest.fixture
-def clock() -> ManualClock:
-    return ManualClock()
-
-
-@pytest.fixture
-def supervisor(clock: ManualClock) -> Supervisor:
-    return make_supervisor(clock)
 
 
 def manager_of(listening: Socket, **more: str) -> ServiceManager:
@@ -129,7 +119,7 @@ def test_without_a_manager_nobody_is_told_and_no_tick_is_watched(supervisor: Sup
     nobody.watch(supervisor)
     nobody.say_stopping()
 
-    assert supervisor.on_tick == []
+    assert supervisor.publisher.on_tick == []
 
 
 async def test_a_manager_that_is_gone_is_complained_of_and_does_not_end_the_tick(
@@ -140,7 +130,7 @@ async def test_a_manager_that_is_gone_is_complained_of_and_does_not_end_the_tick
     with caplog.at_level(logging.WARNING):
         async with running(supervisor):
             await clock.advance(1)
-            assert supervisor.last_tick_at == clock.now()
+            assert supervisor.publisher.last_tick_at == clock.now()
 
     assert "cannot tell READY=1 to the service manager" in caplog.text
 

@@ -1,31 +1,32 @@
 import asyncio
 from collections.abc import Callable, Iterator
-from typing import Any
+from typing import Any, NamedTuple
 
 import pytest
 from starlette.responses import JSONResponse
 from starlette.types import Receive, Scope, Send
 
-from api.http.problems import Problem
+from api.http.schemas.problem import Problem
 from api.http.schemas.simulation import AskedRequest
 from api.simulation.requests import Requests
 from domain.state_and_mode import PartName
 from domain.timebase import seconds
-from service.simulation.virtual_robot import VirtualRobot
+from service.simulation.virtual_time import VirtualService
 from tests.support.scenarios import STRAIGHT, scenario, virtual_robot
+from tests.support.tables import table
 
 Ask = Callable[..., Problem | None]
 
 
 @pytest.fixture
-def robot() -> VirtualRobot:
+def robot() -> VirtualService:
     robot = virtual_robot(scenario())
     robot.advance_to(seconds(0.1))
     return robot
 
 
 @pytest.fixture
-def ask(robot: VirtualRobot) -> Iterator[Ask]:
+def ask(robot: VirtualService) -> Iterator[Ask]:
     with asyncio.Runner() as runner:
         requests = Requests(robot.supervisor, runner)
 
@@ -43,7 +44,7 @@ def test_what_can_be_read_is_answered(path: str, ask: Ask) -> None:
     assert ask("GET", path) is None
 
 
-def test_a_request_acts_on_the_robot_of_the_scenario(robot: VirtualRobot, ask: Ask) -> None:
+def test_a_request_acts_on_the_robot_of_the_scenario(robot: VirtualService, ask: Ask) -> None:
     assert ask("PUT", "/emergency_stop", {"engaged": True, "reason": "test"}) is None
 
     assert "ESTOP" in robot.supervisor.core.system_state().errors
@@ -56,7 +57,7 @@ def test_work_of_the_worker_is_done_at_once(ask: Ask) -> None:
 
 
 def test_who_waits_for_a_change_is_answered_while_it_is_still_running(
-    robot: VirtualRobot, ask: Ask
+    robot: VirtualService, ask: Ask
 ) -> None:
     assert ask("POST", "/nodes/drive_base/mode?wait=60", {"mode": "FAST"}) is None
 
@@ -65,29 +66,36 @@ def test_who_waits_for_a_change_is_answered_while_it_is_still_running(
     assert change.part == PartName("drive_base")
 
 
-@pytest.mark.parametrize(
-    ("method", "path", "body", "status"),
-    [
-        ("GET", "/nowhere", None, 404),
-        ("PUT", "/holds/error", {"reason": "mine"}, 409),
-        ("POST", "/signals/battery_level", {"value": 7}, 422),
-        ("POST", "/signals/battery_level", {"value": float("nan")}, 422),
-        ("PATCH", "/vehicle", None, 405),
-        ("GET", "/\n", None, 400),
-        ("GET", "//elsewhere/vehicle", None, 404),
-    ],
+class Refused(NamedTuple):
+    method: str
+    path: str
+    status: int
+    body: object = None
+
+
+BATTERY = "/signals/battery_level"
+
+
+@table(
+    {
+        "a path that is not there": Refused("GET", "/nowhere", 404),
+        "a hold of Pilothouse": Refused("PUT", "/holds/error", 409, body={"reason": "mine"}),
+        "a value out of range": Refused("POST", BATTERY, 422, body={"value": 7}),
+        "a value that is no number": Refused("POST", BATTERY, 422, body={"value": float("nan")}),
+        "a method that is not there": Refused("PATCH", "/vehicle", 405),
+        "a path that is no path": Refused("GET", "/\n", 400),
+        "the path of another host": Refused("GET", "//elsewhere/vehicle", 404),
+    }
 )
-def test_a_refusal_is_the_document_of_the_interface(
-    method: str, path: str, body: object, status: int, ask: Ask
-) -> None:
-    problem = ask(method, path, body)
+def test_a_refusal_is_the_document_of_the_interface(row: Refused, ask: Ask) -> None:
+    problem = ask(row.method, row.path, row.body)
 
     assert problem is not None
-    assert problem.status == status
+    assert problem.status == row.status
 
 
 def test_a_failure_that_is_no_problem_document_is_told_as_it_is(
-    robot: VirtualRobot, monkeypatch: pytest.MonkeyPatch
+    robot: VirtualService, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     async def fail(scope: Scope, receive: Receive, send: Send) -> None:
         await JSONResponse({"id": "c1", "status": "failed"}, 409)(scope, receive, send)
