@@ -50,7 +50,7 @@ types: $(INSTALLED_DEV) ## mypy, strict
 
 # Not among the development tools: with its own node it takes 280 MB.
 pyright: $(INSTALLED_DEV) ## pyright, standard: a second opinion about types
-	@$(PIP_INSTALL) 'basedpyright>=1.40'
+	@$(call INSTALL,$(VENV),'basedpyright>=1.40')
 	@$(BIN)/basedpyright --pythonpath $(BIN)/python
 
 imports: $(INSTALLED_DEV) ## who may import whom

@@ -141,8 +141,8 @@ def run_task(
         ServiceProblemError: It was refused, and not for the waypoints.
         NoAnswerError: Nobody answered; whether the task was started is not known.
     """
-    complaints = complaints or sys.stderr
-    text = _text_of(asked.file, complaints)
+    err: TextIO = complaints or sys.stderr
+    text = _text_of(asked.file, err)
     if text is None:
         return Outcome.FAILED
     try:
@@ -156,13 +156,13 @@ def run_task(
         if not error.problem.get("findings"):
             raise ServiceProblemError(_in_options(error.problem)) from error
         for line in fault_lines(asked.file, text, error.problem):
-            print(line, file=complaints)
+            print(line, file=err)
         return Outcome.FAILED
     if not asked.wait:
         say(f"task {task['id']} is started: {_state(task)}")
         return Outcome.SUCCEEDED
     try:
-        with TerminalLine(complaints) as progress:
+        with TerminalLine(err) as progress:
             return _follow(client, task, say, progress, pause)
     except KeyboardInterrupt:
         say(f"task {task['id']} goes on; to cancel it: {_cancel_command(client)}")

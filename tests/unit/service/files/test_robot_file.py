@@ -30,7 +30,6 @@ from tests.support.shared import PROJECT
 
 MODEL = actuation_model()
 EXAMPLES = PROJECT / "examples" / "robots"
-SCHEMA = PROJECT / "docs" / "reference" / "robot-file.schema.json"
 
 
 def faults(text: str) -> list[tuple[int | None, int | None, str]]:
@@ -283,14 +282,6 @@ def test_who_sends_settings_names_no_files(start_task: object) -> None:
         robot_settings_of({"start_task": start_task}, MODEL)
 
     assert caught.value.pointer == "/start_task"
-
-
-def test_the_schema_in_the_documentation_is_that_of_the_code() -> None:
-    # To renew it, write what is expected here into the file.
-    schema = RobotSettings.model_json_schema()
-    expected = {"$schema": "https://json-schema.org/draft/2020-12/schema", **schema}
-
-    assert json.loads(SCHEMA.read_text(encoding="utf-8")) == expected
 
 
 def test_limits_are_set_in_a_robot_file_and_do_no_harm_in_a_simulation() -> None:
