@@ -61,7 +61,9 @@ class Outbox:
         self._cause: int | None = None
         self._input_id: int | None = None
 
-    def begin(self, now: Instant, event: Event, actor: Actor = NOBODY, cause: int | None = None) -> None:
+    def begin(
+        self, now: Instant, event: Event, actor: Actor = NOBODY, cause: int | None = None
+    ) -> None:
         """Begin an input, which `event` describes; it is recorded when something follows from it.
 
         Args:

@@ -165,7 +165,9 @@ class _Client:
             self._server.fan_out.resync(client)
             return
         reading = given.reading(given.signal, supervisor.clock)
-        supervisor.submit_readings([reading], given.source, Actor(way="websocket", address=self._address))
+        supervisor.submit_readings(
+            [reading], given.source, Actor(way="websocket", address=self._address)
+        )
 
     async def _answer(self, error: PilothouseError) -> None:
         """Say what is wrong, once the client has taken most of what was written before."""
