@@ -6,6 +6,12 @@ counter-clockwise from the x axis (REP 103).
 
 from dataclasses import dataclass
 
+from domain.timebase import Duration, seconds
+
+COMMAND_VALID_FOR: Duration = seconds(0.5)
+"""So long a vehicle follows a command to drive; then it stands still unless there is a new one, so
+that a dead supervisor stops it."""
+
 
 @dataclass(frozen=True, slots=True)
 class Point:

@@ -1,7 +1,8 @@
-"""The task that a robot file names: served at the start, driven once nothing holds it."""
+"""The task that a robot file names: submitted at the start, driven once nothing holds it."""
 
 from pathlib import Path as FilePath
 
+from domain.actor import Actor
 from domain.errors import PilothouseError
 from domain.inputs import TaskRequest
 from domain.paths.path import Path
@@ -17,8 +18,8 @@ class StartTaskError(PilothouseError):
     code = "INVALID_START_TASK"
 
 
-def serve_start_task(supervisor: Supervisor, task: StartTaskBlock, robot_file: FilePath) -> None:
-    """Serve the task to begin with.
+def submit_start_task(supervisor: Supervisor, task: StartTaskBlock, robot_file: FilePath) -> None:
+    """Submit the task to begin with.
 
     Args:
         supervisor: Of the robot that drives it.
@@ -33,7 +34,7 @@ def serve_start_task(supervisor: Supervisor, task: StartTaskBlock, robot_file: F
     text = read_text_file(file)
     try:
         path = Path(read_waypoints_csv(text))
-        asked = TaskRequest(path, 0, task.controller, task.speed_mps, "robot file")
+        asked = TaskRequest(path, 0, task.controller, task.speed_mps, Actor("robot file"))
         supervisor.submit(asked)
     except PilothouseError as error:
         raise StartTaskError(f"start_task {file}: {error.message}") from error

@@ -7,12 +7,13 @@ from typing import Any, Protocol
 from api.http.gate.rate import TokenBuckets
 from api.rosbridge.replies import PublishedTexts
 from api.rosbridge.rosapi import REQUESTS, RosApi
+from domain.actor import Actor
 from domain.errors import InvalidValueError
 from service.clock import Clock
 from service.frame_feed import FrameFeed
-from service.ros.interface.offer import Fields, HeardTopic, OfferedService, OfferedTopic
-from service.ros.interface.robot_services import CANCEL_TASKS
-from service.ros.interface.shapes import CHANGE_MODE, CHANGE_STATE, Shape
+from service.ros.interface.endpoints import Fields, OfferedService, OfferedTopic, SubscribedTopic
+from service.ros.interface.message_check import CHANGE_MODE, CHANGE_STATE, Shape
+from service.ros.interface.services import CANCEL_TASKS
 
 
 class Interface(Protocol):
@@ -29,7 +30,7 @@ class Interface(Protocol):
         ...
 
     @property
-    def heard(self) -> Mapping[str, HeardTopic]:
+    def heard(self) -> Mapping[str, SubscribedTopic]:
         """By full name."""
         ...
 
@@ -63,7 +64,7 @@ class Bridge:
         self.texts = PublishedTexts()
         self.turn = asyncio.Lock()
         """Held while a message of a client is done: one in each turn of the event loop."""
-        topics: list[HeardTopic | OfferedTopic] = [
+        topics: list[SubscribedTopic | OfferedTopic] = [
             *interface.heard.values(),
             *interface.topics.values(),
         ]
@@ -72,7 +73,7 @@ class Bridge:
         self.calls_per_s = calls_per_s
         self._buckets = TokenBuckets(calls_per_s)
 
-    def may_call(self, service: str, caller: str) -> bool:
+    def may_call(self, service: str, caller: Actor) -> bool:
         """Count a call, and tell whether it may be made.
 
         As over HTTP, what makes the robot safe always may.
@@ -81,7 +82,7 @@ class Bridge:
             service: Full name.
             caller: With the address of the client.
         """
-        return service == CANCEL_TASKS or not self._buckets.take(caller, self.clock.now())
+        return service == CANCEL_TASKS or not self._buckets.take(caller.label, self.clock.now())
 
 
 _REQUESTS: Mapping[str, Shape] = {

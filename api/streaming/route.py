@@ -165,9 +165,8 @@ class _Client:
             self._server.fan_out.resync(client)
             return
         reading = given.reading(given.signal, supervisor.clock)
-        supervisor.submit_readings(
-            [reading], given.source, Actor(way="websocket", address=self._address)
-        )
+        actor = Actor(way="websocket", address=self._address)
+        supervisor.readings.submit([reading], given.source, actor)
 
     async def _answer(self, error: PilothouseError) -> None:
         """Say what is wrong, once the client has taken most of what was written before."""

@@ -68,7 +68,7 @@ Controller: TypeAlias = Annotated[
 
 
 class StartTaskBlock(SettingsBlock):
-    """A task that is served when the service starts; it waits until nothing holds it."""
+    """A task that is submitted when the service starts; it waits until nothing holds it."""
 
     file: str = Field(min_length=1, max_length=1_000)
     """CSV with `x,y,yaw` in m, m and rad; a relative path counts from the robot file."""

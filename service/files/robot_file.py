@@ -16,11 +16,10 @@ from domain.findings import Finding
 from domain.health.signals import SignalSettings
 from domain.navigation import NavigationSettings
 from domain.parts.system_model import SmhModel
-from domain.simulation.node_settings import NodeSettings
-from domain.simulation.vehicle_settings import VehicleSettings
 from domain.state_and_mode import PartName
 from domain.tasks.settings import TaskSettings
 from domain.timebase import seconds
+from domain.vehicle import VehicleLimits
 from service.files.driving_block import DrivingBlock, StartTaskBlock
 from service.files.limits_block import LimitsBlock
 from service.files.parameter_file import scalar_value
@@ -67,7 +66,7 @@ class RobotSettings(SettingsBlock):
     ros2: Ros2Block = Ros2Block()
     """Topics of a robot in ROS 2. Without effect where the robot is simulated."""
     start_task: StartTaskBlock | None = None
-    """A task that is served when the service starts. Not in simulations, which name no files."""
+    """A task that is submitted when the service starts. Not in simulations, which name no files."""
 
     def to_signal_settings(self) -> tuple[SignalSettings, ...]:
         """Return all signals: the usual five as they are set here, then the declared ones.
@@ -77,10 +76,6 @@ class RobotSettings(SettingsBlock):
                 other; `pointer` is `<signal>/<setting>`.
         """
         return self.signals.to_domain()
-
-    def to_node_settings(self) -> dict[PartName, NodeSettings]:
-        """Return the nodes that are named here."""
-        return {PartName(name): node.to_domain() for name, node in self.nodes.items()}
 
     def to_change_settings(self) -> ChangeSettings:
         """Return the deadlines of changes, and which nodes are restored."""
@@ -92,9 +87,9 @@ class RobotSettings(SettingsBlock):
             parameters_deadline=seconds(self.changes.parameters_deadline_s),
         )
 
-    def to_vehicle_settings(self) -> VehicleSettings:
-        """Return what the vehicle is like."""
-        return self.vehicle.to_domain()
+    def to_vehicle_limits(self) -> VehicleLimits:
+        """Return what the vehicle can do."""
+        return self.vehicle.to_limits()
 
     def to_task_settings(self) -> TaskSettings:
         """Return when a task may begin."""

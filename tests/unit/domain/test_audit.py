@@ -12,7 +12,12 @@ def test_a_write_is_recorded_with_who_asked_and_how_it_was_answered() -> None:
     )
 
     (event,) = outbox.take().events
-    assert (event.kind, event.at, event.actor, event.cause) == ("audit.write", 7, "anna", None)
+    assert (event.kind, event.at, event.actor.label, event.cause) == (
+        "audit.write",
+        7,
+        "anna",
+        None,
+    )
     assert event.data == {
         "method": "PUT",
         "path": "/holds/gate",

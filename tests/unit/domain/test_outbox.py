@@ -34,7 +34,7 @@ def test_all_events_of_an_input_have_its_time_and_actor() -> None:
     outbox = Outbox()
     outbox.begin(5, READ, actor=Actor("alice"))
     outbox.emit(RAISED)
-    assert {(event.at, event.actor) for event in outbox.take().events} == {(5, "alice")}
+    assert {(event.at, event.actor.label) for event in outbox.take().events} == {(5, "alice")}
 
 
 def test_an_input_is_recorded_once_however_much_follows_from_it() -> None:
@@ -70,7 +70,7 @@ def test_a_new_input_is_not_mistaken_for_the_one_before() -> None:
     before = outbox.record_input()
     outbox.begin(6, NodeReported(ARM))
     assert outbox.record_input() != before
-    assert [(e.at, e.kind, e.actor) for e in outbox.take().events] == [
+    assert [(e.at, e.kind, e.actor.label) for e in outbox.take().events] == [
         (5, "signal.read", "alice"),
         (6, "node.reported", ""),
     ]

@@ -84,7 +84,9 @@ async def test_a_change_is_on_record_with_who_asked_for_it(
         await clock.advance(1)
 
     asked = [
-        event for event in supervisor.events.oldest_first() if event.actor == "rosbridge:127.0.0.1"
+        event
+        for event in supervisor.events.oldest_first()
+        if event.actor.label == "rosbridge:127.0.0.1"
     ]
     assert [event.kind for event in asked][:1] == ["change.requested"]
 

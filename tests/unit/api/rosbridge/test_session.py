@@ -10,6 +10,7 @@ import pytest
 from api.rosbridge import session as session_module
 from api.rosbridge.send_queue import SendQueue
 from api.rosbridge.session import MAX_CALLS, Session
+from domain.actor import Actor
 from tests.support.manual_clock import settle
 from tests.support.rosbridge import (
     MODE_EVENT,
@@ -30,7 +31,7 @@ class Talk:
         self.session = Session(
             make_bridge(self.interface, calls_per_s=calls_per_s),
             self._queue,
-            "rosbridge:test",
+            Actor("rosbridge:test"),
             self._spawn,
         )
 

@@ -113,7 +113,11 @@ def test_the_change_is_caused_by_the_report_that_the_node_is_back() -> None:
 
     change = core.changes()[0]
     restoring = events[change.cause]
-    assert (restoring.kind, restoring.actor, change.request.actor) == ("node.restoring", "", "")
+    assert (restoring.kind, restoring.actor.label, change.request.actor.label) == (
+        "node.restoring",
+        "",
+        "",
+    )
     assert restoring.cause is not None
     assert events[restoring.cause].kind == "node.reported"
     (started,) = (event for event in events.values() if event.kind == "change.step_started")
@@ -451,4 +455,4 @@ def test_whoever_frees_a_node_is_not_who_left_it_as_it_is() -> None:
     outputs = core.handle(request, seconds(6))
 
     told = [event for event in outputs.events if event.kind == "node.not_restored"]
-    assert [(event.actor, event.data["node"]) for event in told] == [("", BASE)]
+    assert [(event.actor.label, event.data["node"]) for event in told] == [("", BASE)]

@@ -11,7 +11,7 @@ from domain.parts.system_model import NodeModel, SmhModel, SystemModel
 from domain.state_and_mode import DEFAULT_MODE, PartName
 from service.ros.gateway import RosGateway
 from service.ros.graph.graph import Fields, Lane, Qos
-from service.ros.interface.offer import OfferedTopic
+from service.ros.interface.endpoints import OfferedTopic
 from tests.support.live_robot import running
 from tests.support.manual_clock import settle
 from tests.support.models import inactive
@@ -186,7 +186,7 @@ async def test_who_asked_is_on_record(native: Offered) -> None:
     await native.call("/drive_base/change_mode", {"mode_name": "FAST"})
 
     events = native.robot.supervisor.events.oldest_first()
-    assert [e.actor for e in events if e.kind == "change.requested"] == ["ros"]
+    assert [e.actor.label for e in events if e.kind == "change.requested"] == ["ros"]
 
 
 async def test_modes_are_asked_and_told_in_the_types_that_stand_in(carried: Offered) -> None:

@@ -1,0 +1,100 @@
+from typing import Any
+
+import pytest
+
+from domain.actor import Actor
+from domain.errors import InvalidValueError, OutdatedReadingError
+from tests.support.ros_robot import RosRobot
+
+SENDER = Actor(way="rosbridge", address="192.0.2.7")
+
+
+def send(robot: RosRobot, topic: str, fields: dict[str, Any]) -> None:
+    robot.interface.heard[topic].take(fields, SENDER)
+
+
+@pytest.mark.parametrize(
+    ("topic", "type_name", "fields", "value"),
+    [
+        ("/battery_level", "BatteryLevelStamped", {"battery_level": 0.75}, 0.75),
+        ("/battery_level", "BatteryLevelStamped", {"battery_level": 1}, 1.0),
+        ("/estop", "EstopStamped", {"enabled": True}, True),
+        ("/gps_accuracy", "GpsAccuracyStamped", {"accuracy": 42.0}, 42.0),
+        ("/signal_strength", "SignalStrengthStamped", {"strength": 0}, "NOT_CONNECTED"),
+        ("/signal_strength", "SignalStrengthStamped", {"strength": 1}, "CONNECTED"),
+        ("/signal_strength", "SignalStrengthStamped", {"strength": 2}, "LOW_SIGNAL"),
+        ("/temperature", "TemperatureStamped", {"temperature": -3.5}, -3.5),
+    ],
+)
+async def test_a_message_is_a_reading_of_its_signal(
+    robot: RosRobot, topic: str, type_name: str, fields: dict[str, Any], value: object
+) -> None:
+    send(robot, topic, fields)
+
+    assert robot.interface.heard[topic].type == f"gem_state_msgs/msg/{type_name}"
+    view = robot.supervisor.core.signal(topic.removeprefix("/"))
+    assert view.value == value
+    assert view.source == SENDER
+
+
+async def test_a_stamp_is_kept_and_zero_is_none(robot: RosRobot) -> None:
+    stamp = {"sec": 1_767_225_600, "nanosec": 250_000_000}
+    await robot.clock.advance(0.3)
+
+    send(robot, "/temperature", {"header": {"stamp": stamp}, "temperature": 20.0})
+    assert robot.supervisor.core.signal("temperature").stamp == 250_000_000
+
+    zero = {"stamp": {"sec": 0, "nanosec": 0}, "frame_id": "motor"}
+    send(robot, "/temperature", {"header": zero, "temperature": 21.0})
+    assert robot.supervisor.core.signal("temperature").stamp is None
+
+
+async def test_one_sender_cannot_release_what_another_presses(robot: RosRobot) -> None:
+    robot.interface.heard["/estop"].take({"enabled": True}, Actor("panel"))
+
+    robot.interface.heard["/estop"].take({"enabled": False}, Actor("phone"))
+    await robot.clock.advance(1.0)
+
+    assert robot.supervisor.core.system_state().errors == ("ESTOP",)
+
+
+@pytest.mark.parametrize(
+    ("topic", "fields", "pointer"),
+    [
+        ("/battery_level", {"battery_level": 1.5}, "battery_level"),
+        ("/battery_level", {"battery_level": float("nan")}, "battery_level"),
+        ("/battery_level", {"level": 0.5}, "level"),
+        ("/estop", {"enabled": 1}, "enabled"),
+        ("/signal_strength", {"strength": 3}, "strength"),
+        ("/temperature", {"temperature": 1.0, "header": {"stamp": 7}}, "header/stamp"),
+    ],
+)
+async def test_a_message_that_cannot_be_right_is_refused(
+    robot: RosRobot, topic: str, fields: dict[str, Any], pointer: str
+) -> None:
+    signal = topic.removeprefix("/")
+    before = robot.supervisor.core.signal(signal).value
+
+    with pytest.raises(InvalidValueError) as raised:
+        send(robot, topic, fields)
+
+    assert raised.value.pointer == pointer
+    assert robot.supervisor.core.signal(signal).value == before
+
+
+async def test_an_empty_message_does_not_release_an_estop(robot: RosRobot) -> None:
+    send(robot, "/estop", {"enabled": True})
+
+    with pytest.raises(InvalidValueError, match="enabled is missing"):
+        send(robot, "/estop", {})
+
+    assert robot.supervisor.core.signal("estop").value is True
+
+
+async def test_an_older_message_is_refused_by_the_core(robot: RosRobot) -> None:
+    newer = {"header": {"stamp": {"sec": 1_767_225_600}}, "temperature": 20.0}
+    older = {"header": {"stamp": {"sec": 1_767_225_599}}, "temperature": 19.0}
+    send(robot, "/temperature", newer)
+
+    with pytest.raises(OutdatedReadingError):
+        send(robot, "/temperature", older)
