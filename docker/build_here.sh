@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
-# Builds the image on a machine that has no engine and reaches no registry of images: with buildah,
-# on a base that debootstrap makes once. For `make test-image`; docs/how-to/deploy.md says how to
-# build it elsewhere.
+# Builds the image on a machine without a container engine or access to an image registry: with
+# buildah, on a base that debootstrap makes once. Used by `make test-image`; docs/how-to/deploy.md
+# explains how to build it elsewhere.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
@@ -11,19 +11,19 @@ BASE="localhost/pilothouse-base:$SUITE"
 IMAGE=localhost/pilothouse
 
 if [ "$(id -u)" -ne 0 ]; then
-    echo "No image is built: buildah needs root here."
+    echo "Image not built: buildah needs root here."
     exit 0
 fi
 
 if ! { command -v buildah && command -v debootstrap; } >/dev/null; then
     if ! command -v apt-get >/dev/null; then
-        echo "No image is built: buildah and debootstrap are not installed."
+        echo "Image not built: buildah and debootstrap are not installed."
         exit 0
     fi
     echo "Installing buildah and debootstrap ..."
     export DEBIAN_FRONTEND=noninteractive
     { apt-get update -qq && apt-get install -y -qq --no-install-recommends buildah debootstrap; } \
-        </dev/null >/dev/null 2>&1 || { echo "They are not to be had." >&2; exit 1; }
+        </dev/null >/dev/null 2>&1 || { echo "Installation failed." >&2; exit 1; }
 fi
 
 mkdir -p "$CACHE"
@@ -33,7 +33,7 @@ images() { buildah --storage-driver vfs --root "$CACHE/images" --runroot "$CACHE
 WORK=$(mktemp -d)
 trap 'rm -rf "$WORK"' EXIT
 
-# Says what a step is for, and all that it said if it fails.
+# Prints what a step does, and its output if it fails.
 quietly() {
     echo "$1 ..."
     shift
@@ -53,7 +53,7 @@ make_base() {
 
 build() {
     local more=()
-    # For pip, where this machine has certificates of its own.
+    # For pip, if this machine has its own certificates.
     [ ! -d /etc/ssl/certs ] || more+=(--volume /etc/ssl/certs:/etc/ssl/certs:ro)
     images bud --isolation chroot --format docker --build-arg "BASE=$BASE" "${more[@]}" \
         --tag "$IMAGE" --file docker/Dockerfile .
@@ -63,5 +63,5 @@ if ! images inspect --type image "$BASE" >/dev/null 2>&1; then
     quietly "Making the base of the image, once" make_base
 fi
 quietly "Building the image" build
-# The image that had the name before.
+# Removes the previous image of this name.
 images rmi --prune >/dev/null

@@ -1,6 +1,6 @@
-"""Makes the root file system of the image: an interpreter, what it loads, Pilothouse, and no more.
+"""Makes the root file system of the image: a Python interpreter, its libraries, and Pilothouse.
 
-Runs in the build stage, on a base of Debian with Python: `make_root.py ENVIRONMENT ROOT`.
+Runs in the build stage, on a Debian base with Python: `make_root.py ENVIRONMENT ROOT`.
 """
 
 import compileall
@@ -30,7 +30,7 @@ NOT_OF_THE_LIBRARY = shutil.ignore_patterns(
     "tkinter",
     "turtledemo",
     "venv",
-    # Modules in C that nothing here imports: each would bring libraries along.
+    # C extension modules that nothing here imports; each would add libraries.
     "_curses*.so",
     "_dbm*.so",
     "_gdbm*.so",
@@ -63,11 +63,11 @@ OS_RELEASE = Path("/etc/os-release")
 
 
 def main(environment: Path, root: Path) -> None:
-    """Fill `root`, which is not there yet, with all that the environment needs to run."""
+    """Create `root` and fill it with everything that the environment needs to run."""
     library = Path(sysconfig.get_path("stdlib"))
     root.mkdir()
     for folder in ("bin", "lib", "lib64", "sbin"):
-        # Since the merge of /usr these are links, and paths of libraries begin with them.
+        # Since the /usr merge these are links, and paths of libraries start with them.
         if (Path("/") / folder).is_symlink():
             (root / folder).symlink_to(os.readlink(Path("/") / folder))
     copy_tree(library, root, NOT_OF_THE_LIBRARY)
@@ -84,7 +84,7 @@ def main(environment: Path, root: Path) -> None:
         (root / name).write_text(content, encoding="ascii")
     (root / "tmp").mkdir()
     (root / "tmp").chmod(0o1777)
-    # Finds what is not in the folders that the loader knows, such as /usr/local/lib.
+    # For libraries outside the default folders of the loader, such as /usr/local/lib.
     shutil.copytree("/etc/ld.so.conf.d", root / "etc" / "ld.so.conf.d")
     copy_file(Path("/etc/ld.so.conf"), root)
     subprocess.run(["ldconfig", "-r", root], check=True)
@@ -92,7 +92,7 @@ def main(environment: Path, root: Path) -> None:
 
 
 def copy_tree(folder: Path, root: Path, ignore: Callable[[str, list[str]], set[str]]) -> None:
-    """Copy a folder of this system to the same place below `root`."""
+    """Copy a folder of this system to the same path below `root`."""
     shutil.copytree(folder, placed(folder, root), symlinks=True, ignore=ignore, dirs_exist_ok=True)
 
 
@@ -109,16 +109,16 @@ def copy_file(file: Path, root: Path) -> set[Path]:
 
 
 def placed(path: Path, root: Path) -> Path:
-    """Return where something of this system is below `root`."""
+    """Return the path below `root` that corresponds to a path of this system."""
     return root / path.relative_to("/")
 
 
 def strip(library: Path, environment: Path, root: Path) -> None:
-    """Take the symbols for debuggers out of Python and its modules; Debian's have none."""
+    """Strip debug symbols from Python and its modules; those of Debian have none."""
     folders = [placed(library, root)]
     for packages in placed(environment, root).glob("lib/python*/site-packages"):
         for package in packages.iterdir():
-            # The wheel of a package with libraries of its own was patched, which `strip` breaks.
+            # Wheels with bundled libraries were patched in a way that `strip` breaks.
             patched = package.suffix == ".libs" or package.with_suffix(".libs").exists()
             if package.is_dir() and not patched:
                 folders.append(package)
@@ -129,7 +129,7 @@ def strip(library: Path, environment: Path, root: Path) -> None:
 
 
 def elf_files(root: Path) -> Iterator[Path]:
-    """Find programs and libraries."""
+    """Yield all executables and libraries below `root`."""
     for path in root.rglob("*"):
         if path.is_file() and not path.is_symlink():
             with path.open("rb") as file:
@@ -138,7 +138,7 @@ def elf_files(root: Path) -> Iterator[Path]:
 
 
 def libraries_of(binary: Path) -> Iterator[Path]:
-    """Find the libraries that a program or library of this system loads, and its loader."""
+    """Yield the libraries that an executable or library of this system loads, and its loader."""
     listed = subprocess.run(["ldd", binary], capture_output=True, text=True, check=True).stdout
     for line in listed.splitlines():
         name, _, where = line.partition("=>")
@@ -150,8 +150,8 @@ def libraries_of(binary: Path) -> Iterator[Path]:
 
 
 def copy_licenses(files: set[Path], root: Path) -> None:
-    """Copy the licenses of the Debian packages that the files are from."""
-    # By the name alone, since the database says /lib where the file is in /usr/lib.
+    """Copy the licenses of the Debian packages that contain the files."""
+    # By name only, since the database lists /lib for files that are in /usr/lib.
     asked = subprocess.run(
         ["dpkg", "--search", *sorted({f"*/{file.name}" for file in files})],
         capture_output=True,
@@ -166,12 +166,12 @@ def copy_licenses(files: set[Path], root: Path) -> None:
 
 
 def compile_all(root: Path) -> None:
-    """Compile now what could not be written at run time; a file is never compared by its date."""
+    """Compile all modules now, since the image is read-only; never check source timestamps."""
     mode = py_compile.PycInvalidationMode.UNCHECKED_HASH
     if not compileall.compile_dir(
         root, quiet=1, stripdir=str(root), prependdir="/", invalidation_mode=mode, maxlevels=20
     ):
-        raise SystemExit("something cannot be compiled")
+        raise SystemExit("some modules cannot be compiled")
 
 
 if __name__ == "__main__":

@@ -23,7 +23,7 @@
 
 Below the same root, `service` and `api` add what only they can meet: files that cannot be read
 (`service/files/`), a worker that is busy (`service/worker.py`), bodies that are malformed
-(`api/http/bodies.py`). A refused input changes nothing.
+(`api/http/body_parsing.py`). A refused input changes nothing.
 """
 
 from collections.abc import Sequence

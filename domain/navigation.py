@@ -12,8 +12,9 @@ from dataclasses import dataclass, field
 from typing import TypeAlias
 
 from domain.commands import Drive, PreemptGoal, SendGoal
-from domain.inputs import GoalFeedback, GoalResult, VehicleReport
+from domain.inputs import GoalFeedback, GoalResult
 from domain.paths.speed_profile import SpeedLimits, SpeedProfile
+from domain.tasks.vehicle_watch import VehicleWatch
 from domain.timebase import Duration, Instant, seconds, to_seconds
 from domain.tracking.tracker import ControlStep, PathTracker
 from domain.tracking.trackers import TRACKERS
@@ -41,8 +42,6 @@ class NavigationSettings:
     least_progress_m: float = 0.05
     end_tolerance_m: float = 0.3
     """Standing within this of the last waypoint is arriving."""
-    standstill_mps: float = 0.05
-    pose_stale_after: Duration = seconds(0.3)
     speed: SpeedLimits = field(default_factory=SpeedLimits)
 
 
@@ -84,18 +83,22 @@ class Navigation:
         self,
         limits: VehicleLimits,
         settings: NavigationSettings,
+        vehicle: VehicleWatch,
         trackers: Trackers = TRACKERS,
     ) -> None:
+        """Begin without a goal.
+
+        Args:
+            limits: What the vehicle can do.
+            settings: When a goal is given up, and how fast may be driven.
+            vehicle: Where the vehicle is, as the supervision knows it.
+            trackers: Path trackers by name.
+        """
         self._limits = limits
         self.settings = settings
+        self._vehicle = vehicle
         self._trackers = trackers
-        self._state: VehicleState | None = None
-        self._state_at: Instant = 0
         self._run: _Run | None = None
-
-    def take_report(self, report: VehicleReport, now: Instant) -> None:
-        """Learn where the vehicle is; the report was checked by the supervision."""
-        self._state, self._state_at = report.state, now
 
     def handle(self, command: SendGoal | PreemptGoal, now: Instant) -> None:
         """Take a goal, whose first control step is due at once, or drop it."""
@@ -105,7 +108,8 @@ class Navigation:
             self._run = None
 
     def _begin(self, goal: SendGoal, now: Instant) -> None:
-        speed = 0.0 if self._state is None else max(self._state.speed_mps, 0.0)
+        state = self._vehicle.state
+        speed = 0.0 if state is None else max(state.speed_mps, 0.0)
         self._run = _Run(
             goal=goal,
             tracker=self._trackers[goal.controller](self._limits),
@@ -162,10 +166,11 @@ class Navigation:
         return Drive(command), feedback
 
     def _fresh_state(self, now: Instant) -> VehicleState:
-        limit = self.settings.pose_stale_after
-        if self._state is None or now - self._state_at > limit:
-            raise _GivenUpError(f"no pose of the vehicle for {to_seconds(limit):g} s")
-        return self._state
+        state = self._vehicle.fresh_state(now)
+        if state is None:
+            limit_s = to_seconds(self._vehicle.settings.pose_stale_after)
+            raise _GivenUpError(f"no pose of the vehicle for {limit_s:g} s")
+        return state
 
     def _steer(self, run: _Run, state: VehicleState) -> ControlStep:
         """Ask the tracker; whatever is wrong with it or its answer ends the goal."""
@@ -237,5 +242,4 @@ class Navigation:
             return True
         end = path.waypoint(path.count - 1)
         left_m = math.hypot(end.x_m - state.pose.x_m, end.y_m - state.pose.y_m)
-        stands = abs(state.speed_mps) < self.settings.standstill_mps
-        return stands and left_m <= self.settings.end_tolerance_m
+        return self._vehicle.stands and left_m <= self.settings.end_tolerance_m

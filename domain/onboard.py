@@ -8,13 +8,11 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 from domain.commands import Command, Drive, PreemptGoal, SendGoal
-from domain.inputs import Input, TimePassed, VehicleReport
+from domain.inputs import Input, TimePassed
 from domain.navigation import Navigation
-from domain.outbox import Outputs
+from domain.outbox import NOTHING, Outputs
 from domain.supervision import Supervision
 from domain.timebase import Instant
-
-_NOTHING = Outputs()
 
 
 class Onboard:
@@ -31,8 +29,10 @@ class Onboard:
 
     def wake_at(self) -> Instant | None:
         """Return the next instant at which time alone changes something; None: never."""
-        due = [at for at in (self.core.wake_at(), self.navigation.wake_at()) if at is not None]
-        return min(due, default=None)
+        core, navigation = self.core.wake_at(), self.navigation.wake_at()
+        if core is None or navigation is None:
+            return navigation if core is None else core
+        return min(core, navigation)
 
     def handle(self, given: Input, now: Instant) -> Outputs:
         """Take in one input, after letting pass what was due before it, each at its own time.
@@ -48,10 +48,6 @@ class Onboard:
             PilothouseError: The input is refused; nothing was changed by it.
         """
         self._let_pass(now)
-        if isinstance(given, VehicleReport):
-            # Before the core, which may send a goal because of it.
-            self.core.driving.check(given)
-            self.navigation.take_report(given, now)
         self._take(given, now)
         gathered, self._untold = self._untold, []
         return _merged(gathered)
@@ -65,6 +61,9 @@ class Onboard:
 
     def _take(self, given: Input, now: Instant) -> None:
         outputs = self.core.handle(given, now)
+        if not outputs.commands:
+            self._untold.append(outputs)
+            return
         goals = [c for c in outputs.commands if isinstance(c, SendGoal | PreemptGoal)]
         if goals:
             others = tuple(c for c in outputs.commands if not isinstance(c, SendGoal | PreemptGoal))
@@ -78,7 +77,7 @@ class Onboard:
     def _let_navigation_act(self, now: Instant) -> None:
         for message in self.navigation.advance(now):
             if isinstance(message, Drive):
-                self._untold.append(replace(_NOTHING, commands=(message,)))
+                self._untold.append(replace(NOTHING, commands=(message,)))
             else:
                 self._take(message, now)
 

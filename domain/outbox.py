@@ -1,16 +1,13 @@
 """Gathers what one input leads to: events with their cause, commands, and what looks different."""
 
-from collections.abc import Mapping
 from dataclasses import dataclass
-from types import MappingProxyType
 
 from domain.commands import Command
-from domain.events import Event
+from domain.events.event import Event, RecordedEvent
+from domain.events.service import TimeWasDue
 from domain.identifiers import ChangeId, TaskId
 from domain.state_and_mode import PartName
 from domain.timebase import Instant
-
-NO_DATA: Mapping[str, object] = MappingProxyType({})
 
 
 @dataclass(frozen=True, slots=True)
@@ -18,7 +15,7 @@ class Outputs:
     """What one input led to."""
 
     commands: tuple[Command, ...] = ()
-    events: tuple[Event, ...] = ()
+    events: tuple[RecordedEvent, ...] = ()
     change: ChangeId | None = None
     """The change that a request began, or that was already there and is met."""
     parts: frozenset[PartName] = frozenset()
@@ -28,11 +25,14 @@ class Outputs:
     system_state: bool = False
     """Whether the system state changed."""
     task: TaskId | None = None
-    """The task that a request served."""
+    """The task that a request submitted."""
     task_changed: bool = False
     """Whether the view of the current task changed, or there is another one or none."""
     vehicle_changed: bool = False
     """Whether the vehicle moves differently, is told something else, or steers to another point."""
+
+
+NOTHING = Outputs()
 
 
 class Outbox:
@@ -51,38 +51,36 @@ class Outbox:
         self.task_changed = False
         self.vehicle_changed = False
         self._commands: list[Command] = []
-        self._events: list[Event] = []
+        self._events: list[RecordedEvent] = []
         self._next_event = 1
         self._next_request = 1
         self._at: Instant = 0
-        self._kind = ""
+        self._input: Event = TimeWasDue()
         self._actor = ""
-        self._data: Mapping[str, object] = NO_DATA
         self._cause: int | None = None
         self._input_id: int | None = None
 
-    def begin(
-        self,
-        at: Instant,
-        kind: str,
-        data: Mapping[str, object] = NO_DATA,
-        actor: str = "",
-        cause: int | None = None,
-    ) -> None:
-        """Begin an input; it becomes an event of `kind` when something follows from it."""
-        self._at, self._kind, self._data = at, kind, data
-        self._actor, self._cause = actor, cause
+    def begin(self, now: Instant, event: Event, actor: str = "", cause: int | None = None) -> None:
+        """Begin an input, which `event` describes; it is recorded when something follows from it.
+
+        Args:
+            now: When it arrived.
+            event: What arrived.
+            actor: Who sent it; empty: nobody in particular.
+            cause: The event that it is a consequence of, if it is one.
+        """
+        self._at, self._input, self._actor, self._cause = now, event, actor, cause
         self._input_id = None
 
     def record_input(self) -> int:
         """Record the input itself now, if it was not yet; return its id."""
         if self._input_id is None:
-            self._input_id = self._append(self._kind, self._data, self._cause)
+            self._input_id = self._append(self._input, self._cause)
         return self._input_id
 
-    def emit(self, kind: str, data: Mapping[str, object], cause: int | None = None) -> int:
+    def emit(self, event: Event, cause: int | None = None) -> int:
         """Record what follows from the input, or from `cause` if that is nearer; return its id."""
-        return self._append(kind, data, self.record_input() if cause is None else cause)
+        return self._append(event, self.record_input() if cause is None else cause)
 
     def next_request(self) -> int:
         """Return a number for a command, never given before."""
@@ -95,6 +93,9 @@ class Outbox:
 
     def take(self) -> Outputs:
         """Return what was gathered since the last call."""
+        if not self._has_anything():
+            # Most inputs, such as reports of a vehicle at standstill, lead to nothing.
+            return NOTHING
         outputs = Outputs(
             tuple(self._commands),
             tuple(self._events),
@@ -112,8 +113,21 @@ class Outbox:
         self.task, self.task_changed, self.vehicle_changed = None, False, False
         return outputs
 
-    def _append(self, kind: str, data: Mapping[str, object], cause: int | None) -> int:
-        event = Event(self._next_event, self._at, kind, cause, self._actor, data)
+    def _has_anything(self) -> bool:
+        return bool(
+            self._events
+            or self._commands
+            or self.vehicle_changed
+            or self.task_changed
+            or self.parts
+            or self.signals
+            or self.system_state
+            or self.change
+            or self.task
+        )
+
+    def _append(self, event: Event, cause: int | None) -> int:
+        recorded = RecordedEvent(self._next_event, self._at, cause, self._actor, event)
         self._next_event += 1
-        self._events.append(event)
-        return event.id
+        self._events.append(recorded)
+        return recorded.id

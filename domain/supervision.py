@@ -2,55 +2,28 @@
 
 It does no I/O and has no clock. The live service, a simulation and a test hand in the same inputs
 and times, and get the same outputs.
+
+What is decided is decided by its concerns; this module keeps their order.
 """
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
-from itertools import islice
+from typing import Any
 
-from domain.changes.admission import ChangeAdmission
-from domain.changes.operations import Changes
-from domain.changes.plan import ChangeGoal, next_steps, presumed_steps
-from domain.changes.record import ChangeSettings, Step
-from domain.changes.request_check import check_request, describe_request
-from domain.changes.restoring import Restoring
-from domain.errors import BackendUnavailableError
-from domain.findings import Blocker
+from domain.audit import Audit
+from domain.changes.changing import Changing
+from domain.changes.settings import ChangeSettings
+from domain.concern import Concern, settle
+from domain.events.service import TimeWasDue
 from domain.health.emergency_stop import EmergencyStop
-from domain.health.health_events import HealthEvents
+from domain.health.health import Health
 from domain.health.signals import SignalSettings, default_signals
-from domain.health.state_manager import HealthChanges, StateManager
-from domain.identifiers import ChangeId
-from domain.inputs import (
-    AcknowledgeRequest,
-    BackendStatus,
-    CancelRequest,
-    CancelTaskRequest,
-    ChangeRequest,
-    DriveRequest,
-    EmergencyStopRequest,
-    GoalFeedback,
-    GoalResult,
-    HoldRequest,
-    Input,
-    ModeRequest,
-    NodeAnswer,
-    NodeReport,
-    ParametersRequest,
-    Readings,
-    ReleaseRequest,
-    TaskRequest,
-    TimePassed,
-    TransitionRequest,
-    VehicleReport,
-    WriteRecord,
-)
-from domain.lifecycle import LifecycleState, Transition
+from domain.inputs import ChangeRequest, Input, TimePassed
+from domain.lifecycle import Transition
 from domain.outbox import Outbox, Outputs
-from domain.parameters import value_type
-from domain.parts.mode_inference import ModeInference
-from domain.parts.part_views import PartViews
+from domain.parts.parts import Parts
 from domain.parts.system_model import SmhModel
+from domain.robot_state import RobotState
 from domain.snapshot import (
     ChangeView,
     EmergencyStopView,
@@ -62,16 +35,18 @@ from domain.snapshot import (
     SystemStateView,
 )
 from domain.state_and_mode import PartName
-from domain.tasks.drive_words import describe_drive_request
 from domain.tasks.driving import Driving
 from domain.tasks.settings import TaskSettings
 from domain.timebase import Instant
 from domain.vehicle import VehicleLimits
 
+_SPARE_ROUNDS = 100
+"""Of settling, besides one for each part; each restores one node at most."""
+
 
 @dataclass(frozen=True, slots=True)
 class SupervisionSettings:
-    """What can be set about the core."""
+    """Settings of the core."""
 
     signals: tuple[SignalSettings, ...] = field(default_factory=default_signals)
     changes: ChangeSettings = field(default_factory=ChangeSettings)
@@ -80,33 +55,47 @@ class SupervisionSettings:
 
 
 class Supervision:
-    """The supervision of one robot."""
+    """The supervision of one robot: its concerns, and the order in which they act."""
 
     def __init__(self, model: SmhModel, settings: SupervisionSettings, start: Instant) -> None:
         self.model = model
         self._now = start
         self._outbox = Outbox()
-        self._inference = ModeInference(model)
-        self._admission = ChangeAdmission(model, self._inference.facts)
-        self._changes = Changes(self._inference, settings.changes, self._outbox, self._is_stopped)
-        self._restoring = Restoring(
-            self._inference, self._changes, settings.changes, self._outbox, self._admit
-        )
-        self._views = PartViews(self._inference, self._changes, self._outbox)
-        self._health = StateManager(settings.signals, start)
-        self._emergency_stop = EmergencyStop()
-        self._health_events = HealthEvents(self._health, self._outbox)
+        self._parts = Parts(model, self._outbox)
+        self._health = Health(settings.signals, self._outbox, start)
+        self._emergency_stop = EmergencyStop(self._health, self._outbox)
         self.driving = Driving(
-            settings.tasks, settings.vehicle, self._health.reasons, self._outbox, start
+            settings.tasks,
+            settings.vehicle,
+            self._health,
+            self._emergency_stop,
+            self._outbox,
+            start,
         )
-        self._backend = BackendStatus(available=True)
+        self._robot_state = RobotState(self._health, self.driving, self._outbox)
+        self._changing = Changing(self._parts, self._health, settings.changes, self._outbox)
+        # The robot is made safe by driving before its state is told and changes go on.
+        self._concerns: tuple[Concern, ...] = (
+            self._parts,
+            self._health,
+            self._emergency_stop,
+            self.driving,
+            self._robot_state,
+            self._changing,
+            Audit(self._outbox),
+        )
+        self._takers = _takers(self._concerns)
+        self._clocked = [c for c in self._concerns if _overrides(c, "wake_at")]
+        self._settling = [c for c in self._concerns if _overrides(c, "settle")]
+        self._max_rounds = _SPARE_ROUNDS + len(model.parts)
+        self._wake_at = self._next_wake()
+        """Kept: it is asked for several times per input, and only inputs and time change it."""
 
     # --- time and inputs -------------------------------------------------------------------------
 
     def wake_at(self) -> Instant | None:
         """Return the next instant at which time alone changes something; None: never."""
-        owners = (self._health, self._changes, self.driving)
-        return min((at for at in (own.wake_at() for own in owners) if at is not None), default=None)
+        return self._wake_at
 
     def handle(self, given: Input, now: Instant) -> Outputs:
         """Take in one input, after letting pass what was due before it, each at its own time.
@@ -122,221 +111,54 @@ class Supervision:
             PilothouseError: The input is refused; nothing was changed by it.
         """
         self._let_pass(max(now, self._now))
-        match given:
-            case NodeReport():
-                self._take_report(given)
-            case NodeAnswer():
-                self._take_answer(given)
-            case Readings():
-                self._take_readings(given)
-            case ModeRequest() | TransitionRequest() | ParametersRequest():
-                self._take_change_request(given)
-            case CancelRequest():
-                self._begin_input("change.cancel_requested", {"change": given.change}, given.actor)
-                self._restoring.cancel(given.change)
-                self._changes.cancel(given.change, self._now)
-            case EmergencyStopRequest():
-                self._take_emergency_stop(given)
-            case AcknowledgeRequest():
-                self._begin_input("error.acknowledged", {"error": given.error}, given.actor)
-                self._publish(self._health.acknowledge(given.error, self._now))
-            case VehicleReport():
-                self._take_vehicle_report(given)
-            case GoalFeedback() | GoalResult():
-                self._take_from_navigation(given)
-            case TaskRequest() | CancelTaskRequest() | HoldRequest() | ReleaseRequest():
-                self._take_drive_request(given)
-            case BackendStatus():
-                self._take_backend_status(given)
-            case WriteRecord():
-                self._take_write_record(given)
-            case TimePassed():
-                pass
+        for take in self._takers[type(given)]:
+            take(given, self._now)
         self._settle()
         return self._outbox.take()
 
     def _let_pass(self, now: Instant) -> None:
         """Handle what became due up to now, in order; what follows later is due then."""
-        while (due := self.wake_at()) is not None and due <= now:
+        while (due := self._wake_at) is not None and due <= now:
             self._now = max(due, self._now)
-            self._begin_input("time.passed", {})
-            self._publish(self._health.pass_time(self._now))
-            self._changes.pass_time(self._now)
-            self.driving.pass_time(self._now)
-            self._health_events.tell_state(self.driving.status, None)
+            self._outbox.begin(self._now, TimeWasDue())
+            for concern in self._clocked:
+                concern.pass_time(self._now)
             self._settle()
         self._now = now
 
     def _settle(self) -> None:
-        """Conclude an input; what is restored because of it has a cause of its own."""
-        self._views.settle(self._now)
-        while self._restoring.begin_next(self._now):
-            self._views.note_actuals(self._outbox.parts)
-            self._views.settle(self._now)
+        settle(self._settling, self._now, self._max_rounds)
+        self._wake_at = self._next_wake()
 
-    def _begin_input(
-        self,
-        kind: str,
-        data: Mapping[str, object],
-        actor: str = "",
-        cause: int | None = None,
-    ) -> None:
-        self._outbox.begin(self._now, kind, data, actor, cause)
-
-    def _take_report(self, report: NodeReport) -> None:
-        """Infer first, so that a change is judged by what the report made so.
-
-        Raises:
-            InvalidValueError: A parameter has a value of a type that parameters do not have.
-            UnknownPartError: The node is not in the model.
-        """
-        for value in (report.parameters or {}).values():
-            value_type(value)
-        step = self._changes.step_in_flight(report.node)
-        data: dict[str, object] = {"node": report.node}
-        if report.state is not None:
-            data["state"] = str(report.state)
-        if report.mode is not None:
-            data["mode"] = report.mode
-        if report.parameters is not None:
-            data["parameters"] = dict(report.parameters)
-        if report.reachable is not None:
-            data["reachable"] = report.reachable
-        self._begin_input("node.reported", data, cause=step.event if step else None)
-        returns = self._restoring.is_return(report)
-        changed = self._inference.report(report, self._now)
-        self._views.note_reachable(report.node)
-        self._views.note_actuals(changed)
-        self._changes.report(report, self._now)
-        if returns:
-            self._restoring.note_return(report.node, step)
-
-    def _take_answer(self, answer: NodeAnswer) -> None:
-        step = self._changes.step_in_flight(answer.node)
-        awaited = step is not None and step.request == answer.request
-        data = {"node": answer.node, "accepted": answer.accepted, "reason": answer.reason}
-        self._begin_input("node.answered", data, cause=step.event if step and awaited else None)
-        self._changes.answer(answer, self._now)
-
-    def _take_readings(self, readings: Readings) -> None:
-        self._health.check(readings, self._now)
-        values = {reading.signal: reading.value for reading in readings.items}
-        data = {"source": readings.source, "values": values}
-        self._begin_input("signal.read", data, readings.actor)
-        self._publish(self._health.receive(readings, self._now))
-
-    def _take_change_request(self, request: ChangeRequest) -> None:
-        part = check_request(self.model, self._inference.facts, request)
-        goal = self._admit(request)
-        data = {"part": part, **describe_request(request)}
-        self._begin_input("change.requested", data, request.actor)
-        self._outbox.change = self._changes.begin(part, request, goal, self._now)
-        self._restoring.forget(goal.targets)
-        self._views.note_actuals(self._outbox.parts)
-
-    def _admit(self, request: ChangeRequest) -> ChangeGoal:
-        if not self._backend.available:
-            raise BackendUnavailableError(self._backend.reason)
-        return self._admission.admit(request, self._estop())
-
-    def _take_emergency_stop(self, request: EmergencyStopRequest) -> None:
-        latch, now = self._emergency_stop, self._now
-        act = latch.engage if request.engaged else latch.release
-        if act(request.actor, request.reason, now):
-            kind = "emergency_stop.engaged" if request.engaged else "emergency_stop.released"
-            self._begin_input(kind, {"reason": request.reason}, request.actor)
-            self._outbox.record_input()
-            changes = self._health.set_emergency_stop(request.engaged, now)
-            self._publish(changes)
-
-    def _take_backend_status(self, status: BackendStatus) -> None:
-        if status.available is not self._backend.available:
-            kind = "backend.available" if status.available else "backend.unavailable"
-            self._begin_input(kind, {"reason": status.reason})
-            self._outbox.record_input()
-        self._backend = status
-
-    def _take_write_record(self, record: WriteRecord) -> None:
-        data = {
-            "method": record.method,
-            "path": record.path,
-            "status": record.status,
-            "address": record.address,
-        }
-        self._begin_input("audit.write", data, record.actor)
-        self._outbox.record_input()
-
-    def _take_vehicle_report(self, report: VehicleReport) -> None:
-        self.driving.check(report)
-        pose = report.state.pose
-        data = {"x_m": pose.x_m, "y_m": pose.y_m, "speed_mps": report.state.speed_mps}
-        self._begin_input("vehicle.reported", data)
-        self._drive(report)
-        if self.driving.stands and self._emergency_stop.note_standstill(self._now):
-            self._outbox.emit("emergency_stop.standstill", {})
-
-    def _take_from_navigation(self, given: GoalFeedback | GoalResult) -> None:
-        data: dict[str, object] = {"goal": given.goal}
-        if isinstance(given, GoalResult):
-            data |= {"succeeded": given.succeeded, "reason": given.reason}
-        kind = "goal.ended" if isinstance(given, GoalResult) else "goal.feedback"
-        self._begin_input(kind, data)
-        self._drive(given)
-
-    def _take_drive_request(self, request: DriveRequest) -> None:
-        self.driving.check(request)
-        kind, data = describe_drive_request(request)
-        self._begin_input(kind, data, request.actor)
-        self._drive(request)
-
-    def _drive(self, given: DriveRequest | VehicleReport | GoalFeedback | GoalResult) -> None:
-        before = self.driving.status
-        self.driving.take(given, self._now)
-        if self.driving.status is not before:
-            self._health_events.tell_state(self.driving.status, None)
-
-    def _publish(self, changes: HealthChanges) -> None:
-        """Tell what was decided; the robot is made safe before its state is told."""
-        cause = self._health_events.publish(changes)
-        if changes.state_changed:
-            self.driving.follow_errors(self._health.reasons, self._now, cause)
-            self._health_events.tell_state(self.driving.status, cause)
-
-    def _is_stopped(self) -> bool:
-        return "ESTOP" in self._health.errors
-
-    def _estop(self) -> tuple[Blocker, ...]:
-        """Return why ESTOP is on; empty when it is not."""
-        if not self._is_stopped():
-            return ()
-        return tuple(r for r in self.system_state().reasons if r.code == "ESTOP")
+    def _next_wake(self) -> Instant | None:
+        due = None
+        for concern in self._clocked:
+            at = concern.wake_at()
+            if at is not None and (due is None or at < due):
+                due = at
+        return due
 
     # --- what can be seen ------------------------------------------------------------------------
 
     def part(self, name: PartName) -> PartView:
         """Return one part that the model has."""
-        return self._views.get(name)
+        return self._parts.view(name)
 
     def parts(self) -> Mapping[PartName, PartView]:
         """Return all parts, systems first, in the order of the model file."""
-        return self._views.all()
+        return self._parts.views()
 
     def modes(self, part: PartName) -> tuple[ModeView, ...]:
         """Return the modes of a part, and what stands against entering each of them now."""
-        estop = self._estop()
-        views = []
-        for mode in self.model.modes_of(part):
-            blockers = self._admission.blockers(ModeRequest(part, mode), estop)
-            views.append(ModeView(mode, not blockers, blockers))
-        return tuple(views)
+        return self._changing.modes(part)
 
     def parameters(self, node: PartName) -> tuple[ParameterView, ...]:
         """Return the parameters of a node."""
-        return self._views.parameters(node)
+        return self._parts.parameters(node)
 
     def available_transitions(self, part: PartName) -> tuple[Transition, ...]:
         """Return the transitions that would be accepted now and lead somewhere else."""
-        return self._admission.available_transitions(part, self._estop())
+        return self._changing.available_transitions(part)
 
     def plan(self, request: ChangeRequest) -> tuple[StepView, ...]:
         """Return the steps that a request would take now; nothing is changed.
@@ -344,15 +166,7 @@ class Supervision:
         Raises:
             PilothouseError: The request would be refused.
         """
-        check_request(self.model, self._inference.facts, request)
-        goal = self._admit(request)
-        steps = []
-        for node, node_goal in goal.nodes.items():
-            facts = self._inference.facts[node]
-            unknown = facts.known_state is LifecycleState.UNKNOWN
-            actions = presumed_steps(node_goal) if unknown else next_steps(facts, node_goal)
-            steps += [Step(ChangeId(""), node, action).view() for action in actions or ()]
-        return tuple(steps)
+        return self._changing.plan(request)
 
     def change(self, identity: str) -> ChangeView:
         """Return a change.
@@ -360,7 +174,7 @@ class Supervision:
         Raises:
             UnknownChangeError: There is none of that id, or it is forgotten.
         """
-        return self._changes.get(identity).view()
+        return self._changing.change(identity)
 
     def changes(
         self, limit: int | None = None, part: PartName | None = None
@@ -371,8 +185,7 @@ class Supervision:
             limit: At most so many.
             part: Only those that were asked of this part.
         """
-        kept = (c for c in self._changes.all() if part is None or c.part == part)
-        return tuple(change.view() for change in islice(kept, limit))
+        return self._changing.changes(limit, part)
 
     def signal(self, name: str) -> SignalView:
         """Return one signal.
@@ -388,8 +201,24 @@ class Supervision:
 
     def system_state(self) -> SystemStateView:
         """Return the state of the robot."""
-        return self._health.system_state(self.driving.status)
+        return self._robot_state.view()
 
     def emergency_stop(self) -> EmergencyStopView:
-        """Return the emergency stop."""
+        """Return the emergency stop; the same object until it changes."""
         return self._emergency_stop.view()
+
+
+def _takers(
+    concerns: tuple[Concern, ...],
+) -> Mapping[type, tuple[Callable[[Any, Instant], None], ...]]:
+    """Return what takes each class of input: its owner first, then those that follow."""
+    takers: dict[type, tuple[Callable[[Any, Instant], None], ...]] = {TimePassed: ()}
+    for concern in concerns:
+        for kind, take in concern.takes.items():
+            takers[kind] = (*takers.get(kind, ()), take)
+    return takers
+
+
+def _overrides(concern: Concern, method: str) -> bool:
+    """Tell whether a concern does something of its own; asking the others would only cost time."""
+    return getattr(type(concern), method) is not getattr(Concern, method)

@@ -5,16 +5,13 @@ from collections import Counter
 from collections.abc import Iterable
 from contextlib import suppress
 
-from domain.events import Event
+from domain.events.changes import ChangeEnded
+from domain.events.event import RecordedEvent
 from domain.identifiers import ChangeId
 from domain.snapshot import ChangeStatus, ChangeView
 from domain.supervision import Supervision
 from domain.timebase import seconds
 from service.clock import Clock
-
-_STATUS_BY_KIND = {
-    f"change.{status}": status for status in ChangeStatus if status is not ChangeStatus.RUNNING
-}
 
 
 class ChangeEnds:
@@ -28,13 +25,12 @@ class ChangeEnds:
         self._stopped = False
         self._waiting: dict[ChangeId, set[asyncio.Future[None]]] = {}
 
-    def note(self, events: Iterable[Event]) -> None:
+    def note(self, events: Iterable[RecordedEvent]) -> None:
         """Count the changes that ended by these events, and wake those who wait for them."""
         for event in events:
-            status = _STATUS_BY_KIND.get(event.kind)
-            if status is not None:
-                self.counts[status] += 1
-                self._wake(ChangeId(str(event.data["change"])))
+            if isinstance(event.event, ChangeEnded):
+                self.counts[event.event.status] += 1
+                self._wake(event.event.change)
 
     async def wait(self, change: ChangeId, timeout_s: float) -> ChangeView:
         """Return a change once it has ended, or as it is after `timeout_s` seconds.

@@ -5,7 +5,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from itertools import islice
 
-from domain.events import Event
+from domain.events.event import RecordedEvent
 from service.watching import Watched
 
 DEFAULT_CAPACITY = 10_000
@@ -43,7 +43,7 @@ class EventLog(Watched):
         super().__init__()
         self.epoch = epoch or secrets.token_hex(8)
         self._capacity = capacity
-        self._ring: list[Event] = []
+        self._ring: list[RecordedEvent] = []
         self._before = before
         self._newest = before
 
@@ -57,7 +57,7 @@ class EventLog(Watched):
         """Id of the oldest event that is kept, or that will be the first."""
         return max(self._before + 1, self._newest - self._capacity + 1)
 
-    def append(self, event: Event) -> None:
+    def append(self, event: RecordedEvent) -> None:
         """Keep an event, forget the oldest when there are too many, and wake the readers.
 
         Raises:
@@ -72,11 +72,11 @@ class EventLog(Watched):
         self._newest = event.id
         self._wake_watchers()
 
-    def oldest_first(self, after: int = 0) -> Iterator[Event]:
+    def oldest_first(self, after: int = 0) -> Iterator[RecordedEvent]:
         """Yield the events with ids above `after`, as far as they are kept."""
         return self._events(range(max(after + 1, self.oldest), self._newest + 1))
 
-    def newest_first(self) -> Iterator[Event]:
+    def newest_first(self) -> Iterator[RecordedEvent]:
         """Yield the events that are kept, the other way round."""
         return self._events(range(self._newest, self.oldest - 1, -1))
 
@@ -87,7 +87,7 @@ class EventLog(Watched):
     def _slot(self, number: int) -> int:
         return (number - self._before - 1) % self._capacity
 
-    def _events(self, numbers: range) -> Iterator[Event]:
+    def _events(self, numbers: range) -> Iterator[RecordedEvent]:
         return (self._ring[self._slot(number)] for number in numbers)
 
 
@@ -120,9 +120,9 @@ class EventReader:
         """Tell whether there is something to take."""
         return self._at != self._log.newest or self._lost is not None
 
-    def take(self, limit: int) -> list[Event | Gap]:
+    def take(self, limit: int) -> list[RecordedEvent | Gap]:
         """Return what follows: at most `limit` events, and the gap before them."""
-        found: list[Event | Gap] = []
+        found: list[RecordedEvent | Gap] = []
         if self._lost is not None:
             found.append(self._lost)
             self._lost = None

@@ -76,7 +76,8 @@ class FramePublisher:
         """Publish one frame: everything, or what changed since the last one."""
         full = full or self.frames.wants_full
         self.seq += 1
-        core = self._core
+        core, last = self._core, self.frames.newest
+        holds, emergency_stop = core.driving.holds, core.emergency_stop()
         frame = Frame(
             seq=self.seq,
             at=self._clock.now(),
@@ -87,10 +88,17 @@ class FramePublisher:
                 if full
                 else {s: core.signal(s) for s in sorted(self._changed_signals)}
             ),
-            task=core.driving.current_task,
+            task=core.driving.latest_task if last is None or self._task_changed else last.task,
             task_changed=full or self._task_changed,
             vehicle=core.driving.vehicle,
             vehicle_changed=full or self._vehicle_changed,
+            # Both are the same objects as long as nothing about them changes.
+            holds=holds,
+            holds_changed=full or last is None or holds is not last.holds,
+            emergency_stop=emergency_stop,
+            emergency_stop_changed=(
+                full or last is None or emergency_stop is not last.emergency_stop
+            ),
             full=full,
             simulated=self._simulated,
         )

@@ -3,12 +3,14 @@
 import asyncio
 import logging
 
-from domain.events import Event
+from domain.events.changes import NodeNotRestored, NodeRestoring
+from domain.events.event import RecordedEvent
+from domain.events.parts import NodeUnreachable
 from service.event_log import EventLog, EventReader
 
 log = logging.getLogger(__name__)
 
-KINDS = frozenset({"node.unreachable", "node.restoring", "node.not_restored"})
+_LOGGED = (NodeUnreachable, NodeRestoring, NodeNotRestored)
 _AT_ONCE = 100
 
 
@@ -18,14 +20,10 @@ async def log_node_incidents(events: EventLog) -> None:
     with events.watch(changed.set):
         while True:
             for event in reader.take(_AT_ONCE):
-                if isinstance(event, Event) and event.kind in KINDS:
-                    log.warning("%s: %s", event.kind, _words(event))
+                if isinstance(event, RecordedEvent) and isinstance(event.event, _LOGGED):
+                    log.warning("%s: %s", event.kind, event.event.words)
             if reader.is_behind:
                 await asyncio.sleep(0)
                 continue
             await changed.wait()
             changed.clear()
-
-
-def _words(event: Event) -> str:
-    return ", ".join(f"{name} {value}" for name, value in event.data.items())

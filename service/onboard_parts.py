@@ -17,5 +17,6 @@ def make_onboard(model: SmhModel, robot: RobotSettings, start: Instant) -> Onboa
         robot.to_task_settings(),
         limits,
     )
-    navigation = Navigation(limits, robot.to_navigation_settings())
-    return Onboard(Supervision(model, settings, start), navigation)
+    core = Supervision(model, settings, start)
+    navigation = Navigation(limits, robot.to_navigation_settings(), core.driving.watch)
+    return Onboard(core, navigation)

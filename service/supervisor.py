@@ -55,6 +55,8 @@ class Supervisor:
         self.core: Supervision = onboard.core
         """For looking; what happens goes through `submit`."""
         self.clock = clock
+        self.started_at = clock.now()
+        """When this run of the service began, and with it its epoch."""
         self.simulated = tuple(simulated)
         self.events = events or EventLog()
         self.publisher = FramePublisher(onboard.core, clock, self.simulated)

@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import Literal, TypeAlias
 
 from api.http.limits import ServiceLimits
-from api.simulation.posted import SimulatedParts
+from api.simulation.simulation_job import SimulatedParts
 from domain.simulation.mock_signals import MockSignals
 from service.clock import Clock
 from service.composite import CompositeRobot

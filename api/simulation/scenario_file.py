@@ -12,9 +12,9 @@ from typing import Any
 
 from pydantic import ValidationError
 
-from api.http.bodies import InvalidBodyError
+from api.http.body_parsing import InvalidBodyError
 from api.http.schemas.simulation import SimulationBody, place_in_body
-from api.simulation.posted import robot_for
+from api.simulation.simulation_job import robot_for
 from domain.errors import InvalidModelError
 from domain.findings import Finding
 from service.files.parameter_file import scalar_value

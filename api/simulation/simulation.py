@@ -21,7 +21,7 @@ from api.http.schemas.simulation import (
 from api.simulation.expectations import differences
 from api.simulation.samples import Sampler
 from api.simulation.steps import Actors
-from domain.events import Event
+from domain.events.event import RecordedEvent
 from domain.timebase import NANOSECONDS_PER_SECOND, Duration, seconds, to_seconds
 from service.simulation.virtual_time import VirtualService
 
@@ -53,11 +53,11 @@ class Simulation:
         self._progress: Callable[[float], None] = lambda _: None
 
     @property
-    def events(self) -> Sequence[Event]:
+    def events(self) -> Sequence[RecordedEvent]:
         """Return all that happened so far."""
         return self._sampler.events
 
-    def seconds_to(self, event: Event) -> float:
+    def seconds_to(self, event: RecordedEvent) -> float:
         """Return when an event was, in seconds since the begin."""
         return to_seconds(event.at - self._begin)
 

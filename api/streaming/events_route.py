@@ -5,10 +5,11 @@ from typing import Annotated
 
 from fastapi import APIRouter, Query, Response
 
-from api.http.long_lists import joined
+from api.http.list_answers import joined
+from api.http.route_policy import Permission, policy
 from api.http.schemas.stream import EventsJson
-from api.streaming.hub import StreamHubDep
-from domain.events import Event
+from api.streaming.stream_server import StreamServerDep
+from domain.events.event import RecordedEvent
 from service.event_log import EventLog, EventReader, Gap
 
 router = APIRouter(tags=["events"])
@@ -19,8 +20,9 @@ _READ_AT_ONCE = 1_000
 
 
 @router.get("/events", response_model=EventsJson)
+@policy(Permission.OBSERVE)
 async def get_events(
-    hub: StreamHubDep,
+    server: StreamServerDep,
     after: Annotated[
         int | None, Query(ge=0, lt=2**63, description="Id of the last event known")
     ] = None,
@@ -38,13 +40,13 @@ async def get_events(
     Events that were asked for and are not kept any more are told in `gaps`; one without an end
     means that the service was restarted since.
     """
-    log = hub.supervisor.events
+    log = server.supervisor.events
     gaps: list[Gap] = []
     if after is None:
         events = list(islice((e for e in log.newest_first() if _is_of(e, kind)), limit))[::-1]
     else:
         gaps, events = _following(log, after, epoch, limit, kind)
-    encoder = hub.encoder
+    encoder = server.encoder
     head = EventsJson(
         epoch=log.epoch, oldest=log.oldest, newest=log.newest, gaps=[], items=[]
     ).model_dump_json(exclude={"gaps", "items"})
@@ -56,7 +58,7 @@ async def get_events(
 
 def _following(
     log: EventLog, after: int, epoch: str | None, limit: int, kind: str | None
-) -> tuple[list[Gap], list[Event]]:
+) -> tuple[list[Gap], list[RecordedEvent]]:
     """Read on behind a cursor until there are `limit` events of `kind`.
 
     It is one look at the log, without turns for others: it takes 3 ms at most, and `newest` so
@@ -64,12 +66,12 @@ def _following(
     """
     reader = EventReader(log, after, epoch)
     gaps: list[Gap] = []
-    events: list[Event] = []
+    events: list[RecordedEvent] = []
     while len(events) < limit and (found := reader.take(_READ_AT_ONCE)):
         gaps += [item for item in found if isinstance(item, Gap)]
-        events += [item for item in found if isinstance(item, Event) and _is_of(item, kind)]
+        events += [item for item in found if isinstance(item, RecordedEvent) and _is_of(item, kind)]
     return gaps, events[:limit]
 
 
-def _is_of(event: Event, kind: str | None) -> bool:
+def _is_of(event: RecordedEvent, kind: str | None) -> bool:
     return kind is None or event.kind == kind or event.kind.startswith(f"{kind}.")

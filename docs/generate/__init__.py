@@ -1,5 +1,5 @@
-"""Pages of `docs/reference` that follow from the code; `python -m docs.generate` renews them.
+"""Generates the pages of `docs/reference`: `python -m docs.generate`.
 
-Read `pages.py` first. What only people can say (when an event happens, what a code means) stands
-here beside a scan of the source, and a page is refused while the two disagree.
+Read `pages.py` first. What the code cannot say (when an event happens, what a code means) is
+written here and checked against a scan of the source. If the two disagree, no page is generated.
 """

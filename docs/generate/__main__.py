@@ -1,4 +1,4 @@
-"""Write every page that follows from the code: `python -m docs.generate`."""
+"""Write every generated page: `python -m docs.generate`."""
 
 from pathlib import Path
 
@@ -6,7 +6,7 @@ from docs.generate.pages import FOLDER, PAGES
 
 
 def main(folder: Path = FOLDER) -> None:
-    """Write the pages that differ into a folder, and say which."""
+    """Write the pages that changed into a folder, and print their names."""
     for name, make in PAGES.items():
         path = folder / name
         text = make()

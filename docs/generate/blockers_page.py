@@ -1,4 +1,4 @@
-"""Blockers and reasons: why something cannot be done now, or the robot is in ERROR."""
+"""Blockers and reasons: why a change is not possible now, or why the robot is in ERROR."""
 
 from collections.abc import Iterator
 
@@ -19,36 +19,36 @@ from domain.health.signals import (
 from domain.timebase import to_seconds
 
 _OF_CHANGES = {
-    ESTOP: "A node would be activated, and ESTOP is on.",
-    "FINALIZED": "A node is finalized: its process has to be started anew.",
-    "ERROR_PROCESSING": "A node is processing an error; it soon says where it ended.",
-    "UNREACHABLE": "Nothing is heard of a node.",
-    "UNKNOWN_STATE": "A node has never said in which state it is.",
+    ESTOP: "A node would be activated while ESTOP is active.",
+    "FINALIZED": "A node is finalized: its process must be restarted.",
+    "ERROR_PROCESSING": "A node is processing an error; it will soon report its final state.",
+    "UNREACHABLE": "A node is unreachable.",
+    "UNKNOWN_STATE": "A node has never reported its state.",
 }
 _WARNINGS = {
-    "CLOCK_SKEW": "The stamps of a signal differ from our clock by more than a second.",
-    "LATE_TICKS": "Frames were skipped: the machine is too busy.",
-    "NO_AUTHENTICATION": "Everybody who reaches the service may use it.",
-    "NO_POSE": "Nobody says where the vehicle is, so tasks are held.",
+    "CLOCK_SKEW": "The stamps of a signal differ from the local clock by more than a second.",
+    "LATE_TICKS": "Ticks were skipped: the machine is overloaded.",
+    "NO_AUTHENTICATION": "Anyone who can reach the service may use it.",
+    "NO_POSE": "No current pose of the vehicle, so tasks are held.",
 }
 
 _INTRODUCTION = """\
-A blocker says why a mode cannot be entered (`GET .../modes`) or why a change was refused (409). A
+A blocker says why a mode cannot be entered (`GET .../modes`) or why a change was rejected (409). A
 reason says why the robot is in ERROR (`GET /system_state`). Both have the same form:
 
-| member | what it says |
+| member | meaning |
 |---|---|
-| `code` | stable; the tables below |
+| `code` | stable; see the tables below |
 | `message` | the same in words, with numbers and units |
-| `path` | from the part that was asked down to the node where it lies; for an error, the signal |
-| `value`, `threshold` | what is, and what it is compared with; `null` where there is none |
+| `path` | from the requested part down to the node that causes it; for an error, the signal |
+| `value`, `threshold` | the current value, and what it is compared with; `null` if there is none |
 | `since_at` | since when |
-| `root_cause` | whether it is a cause itself, and not what another one led to |"""
+| `root_cause` | whether it is a cause itself rather than the effect of another one |"""
 
 _SIGNALS = """\
-`error_code` is the sum of the bits of all errors that are on. An error ends with its cause, but is
-on for 0.2 s at least. All numbers can be set ([settings](settings.md)).
-*for* counts from the last good reading, or from the start where there was none."""
+`error_code` is the sum of the bits of all active errors. An error clears when its cause does, but
+stays active for at least 0.2 s. All numbers are [settings](settings.md).
+*for* counts from the last good reading, or from the start if there was none."""
 
 
 def blockers_page() -> str:
@@ -69,10 +69,10 @@ def blockers_page() -> str:
         "Blockers, reasons and errors",
         _INTRODUCTION,
         "## Changes",
-        table(("code", "refuses", "cause"), changes),
-        "What refuses nothing is a warning: an absent node may be back before the deadline of the"
-        "\nchange, which otherwise fails and names it.",
-        "## Errors of signals",
+        table(("code", "rejects the change", "cause"), changes),
+        "A blocker that does not reject the change is a warning: an unreachable node may reappear"
+        "\nbefore the deadline. Otherwise the change fails and names it.",
+        "## Signal errors",
         _SIGNALS,
         table(("error", "bit", "signal", "when"), _errors()),
         "## Warnings of `/healthz`",
@@ -85,7 +85,7 @@ def _errors() -> Iterator[tuple[str, str, str, str]]:
         for condition in settings.conditions:
             name = settings.spec.name
             yield code(condition.error), str(condition.bit), code(name), _when(settings, condition)
-    stale = f"older than {to_seconds(default_signals()[0].stale_after):g} s, or never read"
+    stale = f"older than {to_seconds(default_signals()[0].stale_after):g} s, or never received"
     yield code(STALE_DATA), str(STALE_DATA_BIT), "any", stale
     yield "of a declared signal", str(DECLARED_BIT), "its own", "as declared in the robot file"
 

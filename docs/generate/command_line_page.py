@@ -1,4 +1,4 @@
-"""The command line, as `--help` says it."""
+"""The command line, from the output of `--help`."""
 
 import contextlib
 import io
@@ -12,20 +12,20 @@ from docs.generate.markdown import page
 
 _COMMAND = re.compile(r"^    (\w+) {2,}\S", re.MULTILINE)
 _WIDTH = "88"
-"""Columns of the help; argparse takes two off."""
+"""Columns of the help; argparse subtracts two."""
 
 
 def command_line_page() -> str:
     """Return the page `command-line.md`."""
     own = help_of()
-    blocks = ["Command `pilothouse`; in a checkout `.venv/bin/pilothouse`.", _block(own)]
+    blocks = ["The command is `pilothouse`; in a checkout, `.venv/bin/pilothouse`.", _block(own)]
     for name in _COMMAND.findall(own):
         blocks += [f"## {name}", _block(help_of(name))]
     return page("Command line", *blocks)
 
 
 def help_of(*command: str) -> str:
-    """Return what `pilothouse COMMAND --help` prints, whatever the environment says."""
+    """Return what `pilothouse COMMAND --help` prints, independent of the environment."""
     (script,) = entry_points(group="console_scripts", name="pilothouse")
     main: Callable[[list[str]], int] = script.load()
     printed = io.StringIO()

@@ -1,12 +1,12 @@
-"""The little Markdown that the pages are made of."""
+"""The subset of Markdown that the pages use."""
 
 from collections.abc import Iterable, Sequence
 
-NOTE = "<!-- Follows from the code: edit docs/generate, then run `python -m docs.generate`. -->"
+NOTE = "<!-- Generated from the code: edit docs/generate and run `python -m docs.generate`. -->"
 
 
 def page(title: str, *blocks: str) -> str:
-    """Return a whole page of blocks with an empty line between each."""
+    """Return a whole page of blocks, separated by empty lines."""
     return "\n\n".join((f"# {title}", NOTE, *blocks)) + "\n"
 
 
@@ -23,7 +23,7 @@ def code(text: str) -> str:
 
 
 def joined(text: str) -> str:
-    """Return text of several lines on one."""
+    """Return multi-line text as one line."""
     return " ".join(text.split())
 
 

@@ -1,14 +1,13 @@
-"""Metrics: collected from a simulated robot on which all of them have a value."""
+"""Metrics: collected from a simulated robot in which each of them has a value."""
 
 from typing import TypeAlias
 
 from prometheus_client.metrics_core import Metric
 
-from api.http.metrics import metrics
 from api.http.schemas.simulation import SimulationBody
 from api.robot_app import create_robot_app
-from api.simulation.posted import robot_for
 from api.simulation.simulation import Simulation
+from api.simulation.simulation_job import robot_for
 from docs.generate.markdown import code, page, table
 from docs.generate.source_scan import PROJECT, metric_names, require_described
 from service.worker import InlineJobs
@@ -35,14 +34,14 @@ def metrics_page() -> str:
     require_described("metrics", metric_names(), {family.name for family in families})
     return page(
         "Metrics",
-        "`GET /metrics`, in the text format of Prometheus. They are made when they are asked for.",
-        table(("name", "type", "label", "what it says"), (_row(family) for family in families)),
-        "A gauge with a label has a sample for what there is only: no error, no sample.",
+        "`GET /metrics`, in the Prometheus text format, computed on each request.",
+        table(("name", "type", "label", "meaning"), (_row(family) for family in families)),
+        "A gauge with a label has samples only for what exists: no active error, no sample.",
     )
 
 
 def _collected() -> list[Metric]:
-    """Return the metrics of a robot that drove, was stopped, and is on its way to a mode."""
+    """Return the metrics of a robot that drove, was stopped, and is changing to a mode."""
     steps = [
         {"t_s": 0, "reading": _GOOD},
         {"t_s": 1, "task": {"waypoints": _PATH}},
@@ -56,7 +55,9 @@ def _collected() -> list[Metric]:
     Simulation(body, robot).run()
     app = create_robot_app(robot.supervisor, InlineJobs())
     return [
-        family for family in metrics(app).registry.collect() if not family.name.endswith("_created")
+        family
+        for family in app.state.metrics.registry.collect()
+        if not family.name.endswith("_created")
     ]
 
 

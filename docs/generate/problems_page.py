@@ -1,4 +1,4 @@
-"""Problems: every code that an answer can carry, from the error tree and its table of statuses."""
+"""Problems: every code of a response, from the error tree and its table of HTTP statuses."""
 
 from collections.abc import Iterator
 
@@ -6,26 +6,26 @@ from api.http.problems import STATUS_OF
 from docs.generate.markdown import code, joined, page, table
 from docs.generate.source_scan import codes_given_to, require_described
 
-# What has no class of its own, since only HTTP can get it wrong.
+# These errors occur only in HTTP and have no class of their own.
 _ONLY_HTTP = {
-    "FAILED": (409, "Of a request in a scenario: it was answered with an object that failed."),
-    "FOREIGN_ORIGIN": (403, "A write, or a WebSocket, from a page of another origin."),
-    "HOST_NOT_ALLOWED": (403, "The name in `Host` is none of this service."),
-    "INVALID_QUERY": (422, "A parameter in the address has a value that cannot be."),
-    "METHOD_NOT_ALLOWED": (405, "`Allow` says what can be done there."),
+    "FAILED": (409, "A request of a scenario: the operation that it started failed."),
+    "FOREIGN_ORIGIN": (403, "A write request or a WebSocket from a page of another origin."),
+    "HOST_NOT_ALLOWED": (403, "The name in `Host` is not allowed."),
+    "INVALID_QUERY": (422, "A query parameter with an invalid value."),
+    "METHOD_NOT_ALLOWED": (405, "`Allow` lists the allowed methods."),
     "NOT_READY": (503, "`/readyz`: no model, or the core does not tick."),
     "NO_MOCK": (404, "Signals are not mocked."),
-    "TOO_MANY_REQUESTS": (429, "More requests a second than one address may send."),
-    "UNKNOWN_PATH": (404, "There is nothing at this path."),
-    "UNSUPPORTED_TYPE": (415, "A page sends a body that is not JSON, YAML or CSV."),
+    "TOO_MANY_REQUESTS": (429, "More requests per second than one address may send."),
+    "UNKNOWN_PATH": (404, "Nothing exists at this path."),
+    "UNSUPPORTED_TYPE": (415, "A page sent a body that is not JSON, YAML or CSV."),
 }
-# Where the words of a class are for who reads the source.
+# Where the docstring of a class is meant for readers of the source.
 _IN_OTHER_WORDS = {
-    "INTERNAL": "A fault in Pilothouse; its log tells more.",
-    "INVALID_BODY": "A body that can be read, and says something that cannot be; see `errors`.",
-    "INVALID_WAYPOINTS": "A waypoint file with faults; see `findings`.",
+    "INTERNAL": "An internal error in Pilothouse; see its log.",
+    "INVALID_BODY": "A well-formed body with invalid content; see `errors`.",
+    "INVALID_WAYPOINTS": "A waypoint file with errors; see `findings`.",
 }
-# Not written out where they are given: named after the status, or of the framework.
+# Not found by the scan: named after the status, or raised by the framework.
 _NOT_IN_SOURCE = {
     "INVALID_QUERY",
     "METHOD_NOT_ALLOWED",
@@ -34,19 +34,20 @@ _NOT_IN_SOURCE = {
 }
 
 _INTRODUCTION = """\
-What is refused or fails is answered with `application/problem+json` (RFC 9457): `type`, `title`,
-`status`, `detail`, `instance`, and
+Rejected and failed requests are answered with `application/problem+json` (RFC 9457): `type`,
+`title`, `status`, `detail`, `instance`, and
 
-| member | what it says |
+| member | meaning |
 |---|---|
-| `code` | stable; the tables below |
-| `hint` | what to do about it, where that is known |
-| `blockers` | what stands against a change ([blockers](blockers.md)) |
-| `available` | what could be asked instead |
-| `errors` | `pointer`, `code` and `message` of each fault in a body |
-| `findings` | what is wrong with a model or a file of waypoints ([findings](findings.md)) |
+| `code` | stable; see the table below |
+| `hint` | how to fix it, if known |
+| `blockers` | why a change is not possible now ([blockers](blockers.md)) |
+| `available` | what can be requested instead |
+| `errors` | `pointer`, `code` and `message` of each error in a body |
+| `findings` | the errors in a model or waypoint file ([findings](findings.md)) |
 
-A refusal changes nothing. On the stream the same document comes as a frame of type `problem`."""
+A rejected request changes nothing. On the stream, the same document is sent as a frame of type
+`problem`."""
 
 
 def problems_page() -> str:

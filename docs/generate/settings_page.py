@@ -1,4 +1,4 @@
-"""Settings: every key of a robot file, from its JSON Schema and the values that the core uses."""
+"""Settings: every key of a robot file, from its JSON Schema and the defaults of the core."""
 
 from collections.abc import Iterator, Mapping
 from typing import Any, TypeAlias
@@ -12,7 +12,7 @@ from service.files.robot_file import RobotSettings
 Schema: TypeAlias = Mapping[str, Any]
 
 _HEADS = ("key", "type", "unit", "default", "meaning")
-# By the end of a key; the longest that fits.
+# By the suffix of a key; the longest match applies.
 _UNITS = {
     "_mps2": "m/s²",
     "_radps": "rad/s",
@@ -27,13 +27,12 @@ _UNITS = {
 _NAME_OF_ANY = {"nodes": "<node>", "signals": "<other>"}
 
 _INTRODUCTION = """\
-A robot file is YAML: `pilothouse serve MODEL --robot FILE`. Everything in it may be left out. The
-same keys are the `robot` of a simulation. An editor that knows JSON Schema completes them with
-[robot-file.schema.json](robot-file.schema.json); an example is
-[gem_e2.yaml](../../examples/robots/gem_e2.yaml). What is wrong with a file is told with line and
-column ([findings](findings.md)).
+A robot file is YAML: `pilothouse serve MODEL --robot FILE`. All keys are optional. The `robot` of a
+simulation has the same keys. Editors that support JSON Schema can complete them with
+[robot-file.schema.json](robot-file.schema.json); [gem_e2.yaml](../../examples/robots/gem_e2.yaml)
+is an example. Errors are reported with line and column ([findings](findings.md)).
 
-A default in brackets is what is used where the key is left out or `null`."""
+A default in brackets applies if the key is left out or `null`."""
 
 
 class _Document:

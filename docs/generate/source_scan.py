@@ -1,4 +1,4 @@
-"""What the source says by itself: literals that are codes, kinds of events or names of metrics."""
+"""Scan the source for literals that are codes or names of metrics."""
 
 import ast
 import re
@@ -7,17 +7,11 @@ from pathlib import Path
 
 PROJECT = Path(__file__).resolve().parents[2]
 
-_KIND = re.compile(r"[a-z][a-z_]*\.[a-z][a-z_]*")
 _CODE = re.compile(r"[A-Z]+(?:_[A-Z]+)*")
-# Loggers, packages, files, messages of ASGI and a member of a frame are written like kinds.
-_NO_KIND = re.compile(
-    r"(?:api|http|websocket|lifespan|uvicorn|pilothouse)\..*|task\.status|system_state\..*_?status"
-    r"|.*\.(?:csv|css|html|js|json|md|py|svg|txt|ya?ml)"
-)
 
 
 class UndescribedError(Exception):
-    """The source has a name that nobody described, or a description has no name in the source."""
+    """A name in the source has no description, or a description has no name in the source."""
 
     def __init__(self, what: str, unknown: set[str], gone: set[str]) -> None:
         super().__init__(
@@ -26,7 +20,7 @@ class UndescribedError(Exception):
 
 
 def require_described(what: str, in_source: set[str], described: set[str]) -> None:
-    """Compare what the source has with what is described.
+    """Compare the names in the source with those that are described.
 
     Raises:
         UndescribedError: They differ.
@@ -35,33 +29,27 @@ def require_described(what: str, in_source: set[str], described: set[str]) -> No
         raise UndescribedError(what, in_source - described, described - in_source)
 
 
-def event_kinds() -> set[str]:
-    """Return the kinds of events that are written out in domain, service and api."""
-    found = {text for tree in trees("domain", "service", "api") for text in _texts(tree)}
-    return {text for text in found if _KIND.fullmatch(text) and not _NO_KIND.fullmatch(text)}
-
-
 def metric_names() -> set[str]:
-    """Return the names of metrics that are written out in api."""
+    """Return the metric names that occur as literals in api."""
     found = {text for tree in trees("api") for text in _texts(tree)}
     return {text for text in found if re.fullmatch(r"pilothouse_[a-z_]+", text)}
 
 
 def codes_in(module: str) -> set[str]:
-    """Return the codes that are written out in a module.
+    """Return the codes that occur as literals in a module.
 
     Args:
-        module: Its file, as in `domain/changes/admission.py`.
+        module: Its file, such as `domain/changes/admission.py`.
     """
     tree = ast.parse((PROJECT / module).read_text(encoding="utf-8"))
     return {text for text in _texts(tree) if _CODE.fullmatch(text)}
 
 
 def codes_given_to(*callables: str) -> set[str]:
-    """Return the codes that are written out as an argument of a call in api.
+    """Return the codes that are passed as literal arguments to calls in api.
 
     Args:
-        callables: Names of what is called. An argument may also be a constant of the module.
+        callables: Names of the called functions. An argument may also be a constant of the module.
     """
     codes: set[str] = set()
     for tree in trees("api"):
@@ -74,7 +62,7 @@ def codes_given_to(*callables: str) -> set[str]:
 
 
 def trees(*folders: str) -> Iterator[ast.Module]:
-    """Yield the modules of some folders."""
+    """Yield the syntax trees of all modules in some folders."""
     for folder in folders:
         for path in sorted((PROJECT / folder).rglob("*.py")):
             yield ast.parse(path.read_text(encoding="utf-8"))

@@ -5,19 +5,22 @@ go side by side, each with one step in flight. A step in flight is never recalle
 for its node waits for its end or its deadline.
 """
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 
 from domain.changes.plan import ChangeGoal, SetParameters, next_steps, presumed_steps
-from domain.changes.record import Change, ChangeSettings, Pursuit, Step
+from domain.changes.record import Change, Pursuit, Step
+from domain.changes.settings import ChangeSettings
 from domain.changes.step_judgement import judge_report
 from domain.commands import AskFacts, AskParameters, AskTransition
 from domain.deadlines import Deadlines
 from domain.errors import UnknownChangeError
+from domain.events.changes import CHANGE_ENDS, StepEnded, StepStarted
+from domain.health.health import Health
 from domain.identifiers import ChangeId
 from domain.inputs import ChangeRequest, NodeAnswer, NodeReport
 from domain.lifecycle import LifecycleState, Transition
 from domain.outbox import Outbox
-from domain.parts.mode_inference import ModeInference
+from domain.parts.parts import Parts
 from domain.snapshot import ChangeStatus, StepStatus
 from domain.state_and_mode import PartName
 from domain.timebase import Duration, Instant, to_seconds
@@ -36,20 +39,20 @@ class Changes:
 
     def __init__(
         self,
-        inference: ModeInference,
+        parts: Parts,
         settings: ChangeSettings,
         outbox: Outbox,
-        is_stopped: Callable[[], bool],
+        health: Health,
     ) -> None:
-        self._inference = inference
+        self._parts = parts
+        self._inference = parts.inference
         self._settings = settings
         self._outbox = outbox
-        self._is_stopped = is_stopped
+        self._health = health
         self._changes: dict[ChangeId, Change] = {}
         self._running: dict[ChangeId, Change] = {}
         self._pursuits: dict[PartName, Pursuit] = {}
         self._in_flight: dict[PartName, Step] = {}
-        self._change_of: dict[PartName, ChangeId] = {}
         self._deadlines: Deadlines[PartName] = Deadlines()
         self._count = 0
 
@@ -70,10 +73,6 @@ class Changes:
     def all(self) -> tuple[Change, ...]:
         """Return the changes that are kept, the newest first."""
         return tuple(reversed(self._changes.values()))
-
-    def change_of(self, part: PartName) -> ChangeId | None:
-        """Return the running change that a part is under."""
-        return self._change_of.get(part)
 
     def wake_at(self) -> Instant | None:
         """Return the next deadline."""
@@ -96,10 +95,8 @@ class Changes:
         nodes = {*goal.nodes, *self._inference.model.nodes_below(part)}
         self._supersede(nodes, change, now)
         self._changes[identity] = self._running[identity] = change
-        for name in {part, *goal.targets, *goal.nodes}:
-            self._change_of[name] = identity
-            self._outbox.parts.add(name)
-        self._outbox.parts |= self._inference.set_targets(goal.targets)
+        self._parts.put_under(identity, {part, *goal.targets, *goal.nodes})
+        self._parts.ask(goal.targets)
         for node, node_goal in goal.nodes.items():
             self._pursuits[node] = change.pursuits[node] = Pursuit(identity, node, node_goal)
             change.open.add(node)
@@ -174,8 +171,10 @@ class Changes:
         if step is None:
             self._finish(pursuit, StepStatus.SUCCEEDED, None, now)
         elif len(pursuit.steps) > _MAX_STEPS:
-            self._finish(pursuit, StepStatus.FAILED, f"{node} does not stay where it is put", now)
-        elif step.action is Transition.ACTIVATE and self._is_stopped():
+            self._finish(
+                pursuit, StepStatus.FAILED, f"{node} keeps leaving the requested state", now
+            )
+        elif step.action is Transition.ACTIVATE and self._health.is_stopped:
             why = f"{node} is not activated under ESTOP"
             self._finish(pursuit, StepStatus.FAILED, why, now)
         else:
@@ -195,8 +194,8 @@ class Changes:
         step.request = self._outbox.next_request()
         pursuit.waiting = False
         self._in_flight[node] = step
-        data = {"change": step.change, "node": node, "action": step.action_name}
-        step.event = self._outbox.emit("change.step_started", data)
+        step.event = self._outbox.emit(StepStarted(step.change, node, step.action_name))
+        self._parts.expect_report(node, step.event)
         if isinstance(action, SetParameters):
             self._outbox.command(AskParameters(step.request, node, action.values))
         else:
@@ -212,15 +211,9 @@ class Changes:
         """Record the end of a step; its pursuit ends with it unless it succeeded."""
         step.end(status, now, error)
         del self._in_flight[step.node]
+        self._parts.expect_nothing(step.node)
         self._deadlines.clear(step.node)
-        data = {
-            "change": step.change,
-            "node": step.node,
-            "action": step.action_name,
-            "status": str(status),
-            "error": error,
-        }
-        self._outbox.emit("change.step_ended", data)
+        self._outbox.emit(StepEnded(step.change, step.node, step.action_name, status, error))
         pursuit = self._pursuits.get(step.node)
         if pursuit is None or pursuit.change != step.change or status is StepStatus.SUCCEEDED:
             return
@@ -332,17 +325,13 @@ class Changes:
         change.status, change.reason, change.ended_at = status, reason, now
         del self._running[change.id]
         self._let_go(change, {change.part, *change.targets, *change.pursuits})
-        data = {"change": change.id, "part": change.part, "reason": reason}
-        self._outbox.emit(f"change.{status}", data)
+        self._outbox.emit(CHANGE_ENDS[status](change.id, change.part, reason))
 
     def _let_go(self, change: Change, parts: set[PartName]) -> None:
         """Let go of parts of a change that has ended, but for nodes that it still drives."""
         if change.status is ChangeStatus.RUNNING:
             return
-        for name in parts - change.open:
-            if self._change_of.get(name) == change.id:
-                del self._change_of[name]
-                self._outbox.parts.add(name)
+        self._parts.let_go(change.id, parts - change.open)
 
     def _forget_old(self) -> None:
         """Keep the newest changes, and whatever still runs or drives a node."""

@@ -8,19 +8,7 @@ from domain.inputs import ChangeRequest
 from domain.lifecycle import LifecycleState
 from domain.snapshot import ChangeStatus, ChangeView, StepStatus, StepView
 from domain.state_and_mode import PartName, StateAndMode
-from domain.timebase import Duration, Instant, seconds
-
-
-@dataclass(frozen=True, slots=True)
-class ChangeSettings:
-    """How long the steps of a change may take, and for whom changes are begun unasked."""
-
-    transition_deadline: Duration = seconds(10)
-    parameters_deadline: Duration = seconds(2)
-    facts_deadline: Duration = seconds(1)
-    """For the question that is asked before a step is said to have timed out."""
-    restored_nodes: frozenset[PartName] = frozenset()
-    """Nodes that are brought to their target when they return."""
+from domain.timebase import Instant
 
 
 @dataclass(slots=True)

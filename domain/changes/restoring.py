@@ -4,17 +4,19 @@ Only those that the settings name: a node that moves by itself because its proce
 is a surprise, unless somebody wanted it so. Nothing else begins a change that nobody asked for.
 """
 
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable
 
 from domain.changes.operations import Changes
 from domain.changes.plan import ChangeGoal
-from domain.changes.record import ChangeSettings, Step
+from domain.changes.record import Step
+from domain.changes.settings import ChangeSettings
 from domain.errors import BackendUnavailableError, RefusedError
+from domain.events.changes import NodeNotRestored, NodeRestoring
 from domain.identifiers import ChangeId
 from domain.inputs import ChangeRequest, ModeRequest, NodeReport, TransitionRequest
 from domain.lifecycle import LifecycleState, Transition, arrival
 from domain.outbox import Outbox
-from domain.parts.mode_inference import ModeInference
+from domain.parts.parts import Parts
 from domain.state_and_mode import DEFAULT_MODE, PartName, StateAndMode
 from domain.timebase import Instant, seconds, to_seconds
 
@@ -33,13 +35,14 @@ class Restoring:
 
     def __init__(
         self,
-        inference: ModeInference,
+        parts: Parts,
         changes: Changes,
         settings: ChangeSettings,
         outbox: Outbox,
         admit: Callable[[ChangeRequest], ChangeGoal],
     ) -> None:
-        self._inference = inference
+        self._parts = parts
+        self._inference = parts.inference
         self._changes = changes
         self._restored = settings.restored_nodes
         self._outbox = outbox
@@ -49,27 +52,31 @@ class Restoring:
         self._begun: dict[PartName, list[Instant]] = {}
         self._given_up: set[PartName] = set()
 
-    def is_return(self, report: NodeReport) -> bool:
-        """Tell whether a node is back by a report that was not yet taken in.
+    def take_report(self, report: NodeReport, step: Step | None) -> None:
+        """Note that a node reappeared, unless a change takes it up by itself.
 
-        Nothing was known of it until now; or a complete report says that it is unconfigured, and it
-        was not seen on the way there: its process was started anew before it was missed.
+        Args:
+            report: The newest report of the node; parts and changes have taken it in.
+            step: What was in flight before.
+        """
+        if self._is_return(report):
+            self._note_return(report.node, step)
+
+    def _is_return(self, report: NodeReport) -> bool:
+        """Tell whether a node reappeared with the newest report.
+
+        Nothing was known of it until then; or a complete report says that it is unconfigured, and
+        it was not seen on the way there: its process was restarted before it was missed.
         """
         if report.node not in self._restored:
             return False
-        known = self._inference.facts[report.node].known_state
+        known = self._parts.state_before
         if known is LifecycleState.UNKNOWN:
             return report.reachable is not False
         is_fresh = report.reachable is True and report.state is LifecycleState.UNCONFIGURED
         return is_fresh and known not in _SEEN_ON_ITS_WAY
 
-    def note_return(self, node: PartName, step: Step | None) -> None:
-        """Note that a node is back, unless a change takes it up by itself.
-
-        Args:
-            node: Of the report that was a return, and was taken in.
-            step: What was in flight before.
-        """
+    def _note_return(self, node: PartName, step: Step | None) -> None:
         if self._inference.facts[node].known_state is LifecycleState.UNKNOWN:
             return
         begun = self._changes.step_in_flight(node)
@@ -86,14 +93,14 @@ class Restoring:
 
     def cancel(self, change: ChangeId) -> None:
         """Leave nodes alone that wait for the end of a change that somebody cancels."""
-        for node in [n for n in self._returned if self._changes.change_of(n) == change]:
+        for node in [n for n in self._returned if self._parts.change_of(n) == change]:
             del self._returned[node]
 
     def begin_next(self, now: Instant) -> bool:
         """Begin a change of the next node that can be restored; return whether there was one."""
         for node, cause in list(self._returned.items()):
             is_gone = not self._inference.facts[node].reachable
-            if not is_gone and self._changes.change_of(node) is not None:
+            if not is_gone and self._parts.change_of(node) is not None:
                 continue
             del self._returned[node]
             target = self._inference.target(node)
@@ -110,30 +117,27 @@ class Restoring:
     def _begin(self, node: PartName, target: StateAndMode, cause: int, now: Instant) -> bool:
         if node in self._given_up:
             return False
-        data = {"node": node, "target": target.label}
         begun = [at for at in self._begun.get(node, ()) if now - at < WINDOW]
         if len(begun) == MAX_RESTORES:
             self._given_up.add(node)
             often = f"it was restored {MAX_RESTORES} times within {to_seconds(WINDOW):g} s"
             reason = f"{often}, and is left as it is until it is asked for"
-            self._tell_not_restored(data, reason, cause, now)
+            self._tell_not_restored(NodeNotRestored(node, target, reason), cause, now)
             return False
         request = self._request(node, target)
         try:
             goal = self._admit(request)
         except (BackendUnavailableError, RefusedError) as refusal:
-            self._tell_not_restored(data, refusal.message, cause, now)
+            self._tell_not_restored(NodeNotRestored(node, target, refusal.message), cause, now)
             return False
         self._begun[node] = [*begun, now]
-        self._outbox.begin(now, "node.restoring", data, cause=cause)
+        self._outbox.begin(now, NodeRestoring(node, target), cause=cause)
         self._changes.begin(node, request, goal, now)
         return True
 
-    def _tell_not_restored(
-        self, data: Mapping[str, object], reason: str, cause: int, now: Instant
-    ) -> None:
+    def _tell_not_restored(self, told: NodeNotRestored, cause: int, now: Instant) -> None:
         # An input of its own: nobody asked for it, whoever asked for what is being concluded.
-        self._outbox.begin(now, "node.not_restored", {**data, "reason": reason}, cause=cause)
+        self._outbox.begin(now, told, cause=cause)
         self._outbox.record_input()
 
     def _request(self, node: PartName, target: StateAndMode) -> ChangeRequest:

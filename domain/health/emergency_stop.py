@@ -2,11 +2,20 @@
 
 from dataclasses import replace
 
+from domain.concern import Concern, Takers
+from domain.events.health import (
+    EmergencyStopEngaged,
+    EmergencyStopReleased,
+    EmergencyStopStandstill,
+)
+from domain.health.health import Health
+from domain.inputs import EmergencyStopRequest
+from domain.outbox import Outbox
 from domain.snapshot import EmergencyStopView
 from domain.timebase import Instant
 
 
-class EmergencyStop:
+class EmergencyStop(Concern):
     """The latch with who set it, why and since when.
 
     Both acts are idempotent: repeating one keeps who did it first. It starts released, since it is
@@ -15,34 +24,40 @@ class EmergencyStop:
     Source: ISO 13850, which wants a stop to stay until it is reset by hand.
     """
 
-    def __init__(self) -> None:
+    def __init__(self, health: Health, outbox: Outbox) -> None:
+        self._health = health
+        self._outbox = outbox
         self._view = EmergencyStopView(
             engaged=False, by=None, reason=None, since=None, standstill_at=None
         )
 
-    def engage(self, by: str, reason: str, now: Instant) -> bool:
-        """Engage the stop; return whether it was released before."""
-        return self._set(engaged=True, by=by, reason=reason, now=now)
+    @property
+    def takes(self) -> Takers:
+        """Return what takes each class of input."""
+        return {EmergencyStopRequest: self.take_request}
 
-    def release(self, by: str, reason: str, now: Instant) -> bool:
-        """Release the stop; return whether it was engaged before."""
-        return self._set(engaged=False, by=by, reason=reason, now=now)
+    def take_request(self, request: EmergencyStopRequest, now: Instant) -> None:
+        """Engage or release the stop; to repeat it changes nothing."""
+        if request.engaged is self._view.engaged:
+            return
+        self._view = EmergencyStopView(
+            engaged=request.engaged,
+            by=request.actor,
+            reason=request.reason,
+            since=now,
+            standstill_at=None,
+        )
+        kind = EmergencyStopEngaged if request.engaged else EmergencyStopReleased
+        self._outbox.begin(now, kind(request.reason), request.actor)
+        self._outbox.record_input()
+        self._health.press_stop(now, engaged=request.engaged)
 
-    def note_standstill(self, now: Instant) -> bool:
-        """Record that the vehicle stands; return whether that was not known since the stop."""
-        if not self._view.engaged or self._view.standstill_at is not None:
-            return False
-        self._view = replace(self._view, standstill_at=now)
-        return True
+    def note_standstill(self, now: Instant) -> None:
+        """Learn that the vehicle stands, and tell when that is first known since the stop."""
+        if self._view.engaged and self._view.standstill_at is None:
+            self._view = replace(self._view, standstill_at=now)
+            self._outbox.emit(EmergencyStopStandstill())
 
     def view(self) -> EmergencyStopView:
         """Return the latch as it is; the same object as long as nothing changed."""
         return self._view
-
-    def _set(self, *, engaged: bool, by: str, reason: str, now: Instant) -> bool:
-        if engaged is self._view.engaged:
-            return False
-        self._view = EmergencyStopView(
-            engaged=engaged, by=by, reason=reason, since=now, standstill_at=None
-        )
-        return True

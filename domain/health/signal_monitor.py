@@ -1,13 +1,13 @@
 """Watches one signal: what is held of it, for how long it has been bad, and whether it is stale."""
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from types import MappingProxyType
 
 from domain.findings import Blocker, Fact
 from domain.health.error_slot import ErrorSlot
 from domain.health.held_readings import HeldReadings
 from domain.health.signal_reasons import kept_reason, pressed_reason, stale_reason, value_reason
-from domain.health.signals import STALE_DATA, Condition, Recovery, SignalSettings
+from domain.health.signals import STALE_DATA, STALE_DATA_BIT, Condition, Recovery, SignalSettings
 from domain.inputs import Reading
 from domain.snapshot import SignalView
 from domain.timebase import Duration, Instant, to_seconds
@@ -35,6 +35,10 @@ class SignalMonitor:
         self._bad_for: Duration = 0
         self._engaged_since: Instant | None = None
         self._facts = MappingProxyType(settings.facts())
+        self.bits: Mapping[str, int] = MappingProxyType(
+            {STALE_DATA: STALE_DATA_BIT, **{c.error: c.bit for c in settings.conditions}}
+        )
+        """The errors that it may raise, with their bits."""
         self._value_slot = ErrorSlot(settings.min_on, settings.recovery)
         self._stale_slot = ErrorSlot(settings.min_on, Recovery.AUTOMATIC)
         if settings.stale_after:

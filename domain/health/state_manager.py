@@ -16,9 +16,10 @@ from domain.errors import (
     UnknownSignalError,
 )
 from domain.findings import Blocker
+from domain.health.error_registry import ErrorRegistry
 from domain.health.held_readings import HeldReadings
 from domain.health.signal_monitor import SignalMonitor
-from domain.health.signals import ESTOP, ESTOP_SIGNAL, STALE_DATA, STALE_DATA_BIT, SignalSettings
+from domain.health.signals import ESTOP_SIGNAL, STALE_DATA, SignalSettings
 from domain.inputs import Reading, Readings
 from domain.snapshot import SignalView, SystemState, SystemStateView, TaskStatus
 from domain.timebase import Instant, to_seconds
@@ -118,10 +119,11 @@ class StateManager:
             InvalidValueError: A signal or an error is declared twice, or `estop` is missing.
         """
         declared = tuple(settings)
-        self._bits = _error_bits(declared)
+        _check_declared(declared)
         self._monitors = {item.spec.name: SignalMonitor(item, start) for item in declared}
+        self._registry = ErrorRegistry(self._monitors.values())
         self._seen = self._look()
-        self._wake_at = self._next_wake()
+        self._wake_at = self._registry.next_wake()
         """Kept, since it is asked for at every input of the core."""
 
     # --- what happens ----------------------------------------------------------------------------
@@ -166,11 +168,10 @@ class StateManager:
         Raises:
             UnknownErrorNameError: There is no error of this name.
         """
-        if error not in self._bits:
-            raise UnknownErrorNameError("error", error, tuple(self._bits))
+        if error not in self._registry.names:
+            raise UnknownErrorNameError("error", error, self._registry.names)
         with self._gathering(now) as gathered:
-            for monitor in self._monitors.values():
-                monitor.acknowledge(error, now)
+            self._registry.acknowledge(error, now)
         return gathered.build()
 
     def pass_time(self, now: Instant) -> HealthChanges:
@@ -202,9 +203,7 @@ class StateManager:
 
         Source: smart_polaris, `state_manager.cpp`.
         """
-        error_code = 0
-        for error in self.errors:
-            error_code |= self._bits[error]
+        error_code = self._registry.code(self.errors)
         if error_code:
             state = SystemState.ERROR
         elif task_status is TaskStatus.NO_TASK:
@@ -245,15 +244,10 @@ class StateManager:
         """Let time pass up to `now`, then let the body happen, and gather what changes."""
         gathered = _Gathered()
         while (due := self.wake_at()) is not None and due <= now:
-            for monitor in self._monitors.values():
-                monitor.judge(due)
+            self._registry.judge(due)
             self._gather(gathered)
         yield gathered
         self._gather(gathered)
-
-    def _next_wake(self) -> Instant | None:
-        due = (monitor.wake_at() for monitor in self._monitors.values())
-        return min((at for at in due if at is not None), default=None)
 
     def _gather(self, gathered: _Gathered) -> None:
         before = self._seen
@@ -262,41 +256,21 @@ class StateManager:
             # Whoever holds the mapping sees by its identity that it is still the same.
             now = replace(now, views=before.views)
         self._seen = now
-        self._wake_at = self._next_wake()
+        self._wake_at = self._registry.next_wake()
         gathered.add(before, now)
 
     def _look(self) -> _Seen:
-        on = frozenset[str]().union(*(monitor.errors for monitor in self._monitors.values()))
         views = {name: monitor.view for name, monitor in self._monitors.items()}
-        return _Seen(
-            errors=tuple(error for error in self._bits if error in on),
-            reasons=self._reasons(),
-            views=MappingProxyType(views),
-        )
-
-    def _reasons(self) -> tuple[Blocker, ...]:
-        """Tell why errors are on: the stop first, then by bit, and last what is merely kept on."""
-        ranked = []
-        order = {error: position for position, error in enumerate(self._bits)}
-        for monitor in self._monitors.values():
-            for reason in monitor.reasons():
-                is_kept = reason.code not in monitor.present
-                ranked.append(((is_kept, reason.code != ESTOP, order[reason.code]), reason))
-        ranked.sort(key=lambda item: item[0])
-        return tuple(reason for _, reason in ranked)
+        return _Seen(self._registry.errors(), self._registry.reasons(), MappingProxyType(views))
 
 
-def _error_bits(declared: tuple[SignalSettings, ...]) -> Mapping[str, int]:
-    """Return the bit of each error, in the order of bits."""
+def _check_declared(declared: tuple[SignalSettings, ...]) -> None:
+    """Refuse signals that cannot be told apart, or that leave out the e-stop."""
     names = [item.spec.name for item in declared]
-    conditions = [condition for item in declared for condition in item.conditions]
-    errors = [STALE_DATA, *(condition.error for condition in conditions)]
+    errors = [STALE_DATA, *(c.error for item in declared for c in item.conditions)]
     for kind, given in (("signal", names), ("error", errors)):
         twice = sorted({name for name in given if given.count(name) > 1})
         if twice:
             raise InvalidValueError(f"{kind} {twice[0]} is declared twice", twice[0])
     if ESTOP_SIGNAL not in names:
         raise InvalidValueError(f"signal {ESTOP_SIGNAL} is not declared", ESTOP_SIGNAL)
-    bits = [(condition.bit, condition.error) for condition in conditions]
-    ordered = sorted([(STALE_DATA_BIT, STALE_DATA), *bits], key=lambda item: item[0])
-    return {error: bit for bit, error in ordered}

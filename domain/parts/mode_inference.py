@@ -114,9 +114,7 @@ class ModeInference:
         Raises:
             UnknownPartError: The node is not in the model.
         """
-        facts = self._facts.get(report.node)
-        if facts is None:
-            raise UnknownPartError("node", report.node, tuple(self._facts))
+        facts = self.facts_of(report.node)
         is_different = facts.take(report, now)
         (self._plain.discard if facts.has_lifecycle else self._plain.add)(report.node)
         return self._infer((report.node,)) if is_different else set()
@@ -149,6 +147,17 @@ class ModeInference:
     def facts(self) -> Mapping[PartName, NodeFacts]:
         """Return what is known of each node, to be read only."""
         return self._facts
+
+    def facts_of(self, node: PartName) -> NodeFacts:
+        """Return what is known of a node.
+
+        Raises:
+            UnknownPartError: The node is not in the model.
+        """
+        facts = self._facts.get(node)
+        if facts is None:
+            raise UnknownPartError("node", node, tuple(self._facts))
+        return facts
 
     def as_seen(self, part: PartName) -> StateAndMode | None:
         """Return a part as its parents see it, with a mode only when active; None: undecidable."""

@@ -16,6 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from domain.errors import InvalidValueError
+from domain.paths.waypoints import check_waypoints
 from domain.vehicle import Point
 
 SPACING_M = 0.1
@@ -36,7 +37,6 @@ CURVATURE_OVER_M = 1.5
 _END_M = 0.5
 """The path goes on beyond its end as straight as over the last half metre."""
 _LEAST_EXTENT_M = 1e-6
-_MOST_M = 1e8
 
 
 @dataclass(frozen=True, slots=True)
@@ -66,8 +66,8 @@ class Path:
             waypoints: Shape (n, 3): x m, y m, yaw rad.
 
         Raises:
-            InvalidValueError: The shape is another, there are fewer than 2 waypoints, one of them
-                is not finite or further out than 10^8 m, or all are at the same place.
+            InvalidValueError: The shape is another, there are too few or too many waypoints, one of
+                them is not finite or too far out (`check_waypoints`), or all are at one place.
         """
         self.waypoints = _checked(waypoints)
         """Shape (n, 3): x m, y m, yaw rad; read only."""
@@ -244,13 +244,7 @@ def _checked(waypoints: NDArray[np.float64]) -> NDArray[np.float64]:
     if rows.ndim != 2 or rows.shape[1] != 3:
         message = f"waypoints are rows of x, y, yaw; these have the shape {rows.shape}"
         raise InvalidValueError(message, "waypoints")
-    if len(rows) < 2:
-        raise InvalidValueError("a path has at least 2 waypoints", "waypoints")
-    wrong = ~(np.isfinite(rows).all(axis=1) & (np.abs(rows[:, :2]) <= _MOST_M).all(axis=1))
-    if wrong.any():
-        index = int(wrong.argmax())
-        message = f"waypoint {index} is not finite, or further out than {_MOST_M:g} m"
-        raise InvalidValueError(message, f"waypoints.{index}")
+    check_waypoints(rows)
     rows.flags.writeable = False
     return rows
 

@@ -1,4 +1,4 @@
-"""Waypoints as they are given: what can be one, and how many there may be."""
+"""Which waypoints can be a path: how many, and how far out."""
 
 import numpy as np
 from numpy.typing import NDArray
@@ -10,8 +10,8 @@ MAX_COORDINATE_M = 1e6
 COLUMNS = ("x_m", "y_m", "yaw_rad")
 
 
-def checked_waypoints(waypoints: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Return waypoints that can be a path.
+def check_waypoints(waypoints: NDArray[np.float64]) -> None:
+    """Refuse waypoints that cannot be a path.
 
     Args:
         waypoints: Shape (n, 3): x and y in m, yaw in rad.
@@ -28,7 +28,7 @@ def checked_waypoints(waypoints: NDArray[np.float64]) -> NDArray[np.float64]:
     wrong = ~(np.isfinite(waypoints) & (np.abs(waypoints) <= limits))
     if wrong.any():
         row, column = (int(index) for index in np.argwhere(wrong)[0])
-        value = float(waypoints[row, column])
-        message = f"{value:g} is no {COLUMNS[column]} of a waypoint"
-        raise InvalidValueError(message, f"/waypoints/{row}/{COLUMNS[column]}")
-    return waypoints
+        value, name = float(waypoints[row, column]), COLUMNS[column]
+        within = f" and within +-{MAX_COORDINATE_M:,.0f} m" if name != "yaw_rad" else ""
+        message = f"{name} must be finite{within}, not {value:g}"
+        raise InvalidValueError(message, f"/waypoints/{row}/{name}")

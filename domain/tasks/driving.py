@@ -1,11 +1,22 @@
-"""The part of the supervision that is about the vehicle: its pose, its task, and who holds it."""
+"""Driving as a concern of the core: where the vehicle is, its task, and who holds it."""
 
 from collections.abc import Iterator, Mapping
 
+from domain.concern import Concern, Takers
+from domain.events.driving import (
+    GoalEnded,
+    GoalProgressed,
+    HoldReleaseRequested,
+    HoldRequested,
+    TaskCancelRequested,
+    TaskRequested,
+    VehicleReported,
+)
 from domain.findings import Blocker
+from domain.health.emergency_stop import EmergencyStop
+from domain.health.health import Health
 from domain.inputs import (
     CancelTaskRequest,
-    DriveRequest,
     GoalFeedback,
     GoalResult,
     HoldRequest,
@@ -26,108 +37,127 @@ from domain.vehicle import VehicleLimits
 _REASONS_TOLD = 3
 
 
-class Driving:
+class Driving(Concern):
     """Feeds the task planner, and sets the two holds that are Pilothouse's own."""
 
     def __init__(
         self,
         settings: TaskSettings,
         limits: VehicleLimits,
-        errors: tuple[Blocker, ...],
+        health: Health,
+        emergency_stop: EmergencyStop,
         outbox: Outbox,
         start: Instant,
     ) -> None:
         """Begin without a pose, and so held.
 
         Args:
-            settings: When a task may begin.
+            settings: When a task may begin, and when the vehicle counts as lost or at standstill.
             limits: What the vehicle can do.
-            errors: Why the robot is in ERROR already; empty: it is not.
+            health: Whose errors hold the task.
+            emergency_stop: Is told when the vehicle is at standstill.
             outbox: Where commands and events go.
             start: The present.
         """
         self.limits = limits
+        self.watch = VehicleWatch(settings, outbox)
+        """Where the vehicle is; navigation steers by it too."""
         self._settings = settings
+        self._health = health
+        self._emergency_stop = emergency_stop
         self._outbox = outbox
-        self._vehicle = VehicleWatch(settings, outbox)
-        self._planner = TaskPlanner(settings, limits, self._vehicle, outbox)
+        self._planner = TaskPlanner(settings, limits, self.watch, outbox)
+        self._followed = health.reasons
         # How things are at the start is no event.
         self._planner.holds.set(VEHICLE_HOLD, "the vehicle never told where it is", "", start)
-        if errors:
-            self._planner.holds.set(ERROR_HOLD, _words(errors), "", start)
+        if self._followed:
+            self._planner.holds.set(ERROR_HOLD, _words(self._followed), "", start)
 
     # --- what happens ----------------------------------------------------------------------------
 
-    def check(self, given: DriveRequest | VehicleReport) -> None:
-        """Refuse what cannot be taken; nothing is changed.
-
-        Raises:
-            PilothouseError: What stands against it.
-        """
-        match given:
-            case TaskRequest():
-                self._planner.check(given)
-            case HoldRequest():
-                self._planner.holds.check(given.owner)
-                self._planner.holds.check_room(given.owner)
-            case ReleaseRequest():
-                self._planner.holds.check(given.owner)
-            case VehicleReport():
-                self._vehicle.check(given)
-            case CancelTaskRequest():
-                pass
-
-    def take(
-        self, given: DriveRequest | VehicleReport | GoalFeedback | GoalResult, now: Instant
-    ) -> None:
-        """Take in what `check` did not refuse."""
-        match given:
-            case VehicleReport():
-                self._take_report(given, now)
-            case GoalFeedback():
-                self._planner.take_feedback(given)
-            case GoalResult():
-                self._planner.take_result(given, now)
-            case TaskRequest():
-                self._outbox.task = self._planner.serve(given, now)
-            case CancelTaskRequest():
-                self._planner.cancel(now)
-            case HoldRequest():
-                self._planner.hold(given.owner, given.reason, given.actor, now)
-            case ReleaseRequest():
-                self._planner.release(given.owner, now)
-
-    def follow_errors(self, errors: tuple[Blocker, ...], now: Instant, cause: int | None) -> None:
-        """Hold the task while the robot is in ERROR.
-
-        Args:
-            errors: Why it is; empty: it is not.
-            now: The present.
-            cause: Event that decided so.
-        """
-        if errors:
-            self._planner.hold(ERROR_HOLD, _words(errors), "", now, cause)
-        else:
-            self._planner.release(ERROR_HOLD, now, cause)
+    @property
+    def takes(self) -> Takers:
+        """Return what takes each class of input."""
+        return {
+            VehicleReport: self._take_report,
+            GoalFeedback: self._take_feedback,
+            GoalResult: self._take_result,
+            TaskRequest: self._take_task,
+            CancelTaskRequest: self._take_cancel,
+            HoldRequest: self._take_hold,
+            ReleaseRequest: self._take_release,
+        }
 
     def wake_at(self) -> Instant | None:
         """Return when the pose becomes too old."""
-        return self._vehicle.wake_at()
+        return self.watch.wake_at()
 
     def pass_time(self, now: Instant) -> None:
         """Hold the task once the pose is too old."""
-        if self._vehicle.pass_time(now):
+        if self.watch.pass_time(now):
             limit_s = to_seconds(self._settings.pose_stale_after)
             reason = f"no pose of the vehicle for {limit_s:g} s"
             self._planner.hold(VEHICLE_HOLD, reason, "", now)
 
+    def settle(self, now: Instant) -> bool:
+        """Hold the task while the robot is in ERROR."""
+        reasons = self._health.reasons
+        if reasons is self._followed:
+            return False
+        is_same = reasons == self._followed
+        self._followed = reasons
+        if is_same:
+            return False
+        if reasons:
+            self._planner.hold(ERROR_HOLD, _words(reasons), "", now, self._health.decided_by)
+        else:
+            self._planner.release(ERROR_HOLD, now, self._health.decided_by)
+        return True
+
     def _take_report(self, report: VehicleReport, now: Instant) -> None:
-        was_lost = self._vehicle.is_lost
-        self._vehicle.take(report, now)
-        if self._vehicle.stands:
+        self.watch.check(report)
+        pose = report.state.pose
+        self._outbox.begin(now, VehicleReported(pose.x_m, pose.y_m, report.state.speed_mps))
+        was_lost = self.watch.is_lost
+        self.watch.take(report, now)
+        if self.watch.stands:
             self._planner.note_standstill()
         if was_lost:
             self._planner.release(VEHICLE_HOLD, now)
+        if self.watch.stands:
+            self._emergency_stop.note_standstill(now)
+
+    def _take_feedback(self, feedback: GoalFeedback, now: Instant) -> None:
+        self._outbox.begin(now, GoalProgressed(feedback.goal))
+        self._planner.take_feedback(feedback)
+
+    def _take_result(self, result: GoalResult, now: Instant) -> None:
+        self._outbox.begin(now, GoalEnded(result.goal, result.succeeded, result.reason))
+        self._planner.take_result(result, now)
+
+    def _take_task(self, request: TaskRequest, now: Instant) -> None:
+        self._planner.check(request)
+        path = request.path
+        requested = TaskRequested(
+            path.count, path.length_m, request.start_index, request.controller, request.speed_mps
+        )
+        self._outbox.begin(now, requested, request.actor)
+        self._outbox.task = self._planner.submit(request, now)
+
+    def _take_cancel(self, request: CancelTaskRequest, now: Instant) -> None:
+        self._outbox.begin(now, TaskCancelRequested(), request.actor)
+        self._planner.cancel(now)
+
+    def _take_hold(self, request: HoldRequest, now: Instant) -> None:
+        self._planner.holds.check(request.owner)
+        self._planner.holds.check_room(request.owner)
+        self._outbox.begin(now, HoldRequested(request.owner, request.reason), request.actor)
+        self._planner.hold(request.owner, request.reason, request.actor, now)
+
+    def _take_release(self, request: ReleaseRequest, now: Instant) -> None:
+        self._planner.holds.check(request.owner)
+        self._outbox.begin(now, HoldReleaseRequested(request.owner), request.actor)
+        self._planner.release(request.owner, now)
 
     # --- what can be seen ------------------------------------------------------------------------
 
@@ -137,24 +167,24 @@ class Driving:
         return self._planner.status
 
     @property
-    def stands(self) -> bool:
-        """Tell whether the vehicle is known to stand still."""
-        return self._vehicle.stands
-
-    @property
     def vehicle(self) -> VehicleView:
         """Return what is known of the vehicle."""
-        return self._vehicle.view
+        return self.watch.view
 
     @property
     def holds(self) -> Mapping[str, HoldView]:
-        """Return the holds by owner."""
+        """Return the holds by owner; the same object as long as nothing changed."""
         return self._planner.holds.views
 
     @property
     def current_task(self) -> TaskView | None:
         """Return the current task."""
         return self._planner.current
+
+    @property
+    def latest_task(self) -> TaskView | None:
+        """Return the current task, or else the one that ended last; None: there never was one."""
+        return self._planner.latest
 
     def task(self, identity: str) -> TaskView:
         """Return a task.

@@ -1,4 +1,4 @@
-"""What can be set about tasks."""
+"""Settings of tasks."""
 
 from dataclasses import dataclass
 

@@ -1,4 +1,4 @@
-"""Decides whether the vehicle drives its task: serve, replace, hold, resume, cancel, end.
+"""Decides whether the vehicle drives its task: submit, replace, hold, resume, cancel, end.
 
 A task runs only while there are no holds. A hold takes the goal from navigation and stops the
 vehicle in the same step; when the last one goes, one goal is sent that goes on from the first
@@ -13,6 +13,17 @@ import numpy as np
 
 from domain.commands import Drive, PreemptGoal, SendGoal
 from domain.errors import FarStartError, InvalidValueError, UnknownControllerError
+from domain.events.driving import (
+    TASK_ENDS,
+    HoldReleased,
+    HoldSet,
+    TaskPaused,
+    TaskPausing,
+    TaskResumed,
+    TaskServed,
+    TaskStarted,
+)
+from domain.events.event import Event
 from domain.identifiers import GoalId, TaskId
 from domain.inputs import GoalFeedback, GoalResult, TaskRequest
 from domain.outbox import Outbox
@@ -60,7 +71,7 @@ class TaskPlanner:
         self._outbox = outbox
         self._log = TaskLog()
         self._current: Task | None = None
-        self._tasks_served = 0
+        self._tasks_accepted = 0
         self._goals_sent = 0
 
     # --- tasks -----------------------------------------------------------------------------------
@@ -87,11 +98,11 @@ class TaskPlanner:
             limit_m = self._settings.max_start_distance_m
             raise FarStartError(distance, limit_m, self._nearest(path))
 
-    def serve(self, request: TaskRequest, now: Instant) -> TaskId:
+    def submit(self, request: TaskRequest, now: Instant) -> TaskId:
         """Take a checked task in place of the current one, and start it unless it is held."""
-        self._tasks_served += 1
+        self._tasks_accepted += 1
         task = Task(
-            TaskId(f"t{self._tasks_served}"),
+            TaskId(f"t{self._tasks_accepted}"),
             request.path,
             request.controller,
             request.speed_mps,
@@ -105,11 +116,11 @@ class TaskPlanner:
         self._current = task
         self._log.add(task)
         count, length_m = task.path.count, task.length_m
-        served = self._emit(task, "task.served", waypoints=count, length_m=length_m)
+        accepted = self._emit(TaskServed(task.id, count, length_m))
         if self.holds:
-            self._pause(task, served, was_driving=False)
+            self._pause(task, accepted, was_driving=False)
         else:
-            self._start(task, served, now)
+            self._start(task, accepted, now)
         return task.id
 
     def cancel(self, now: Instant) -> None:
@@ -131,8 +142,7 @@ class TaskPlanner:
         task = self._current
         was_driving = task is not None and self._drop_goal(task)
         self._stop()
-        data = {"owner": owner, "reason": reason}
-        held = self._outbox.emit("hold.set", data, cause)
+        held = self._outbox.emit(HoldSet(owner, reason), cause)
         if task is not None and task.phase is TaskPhase.RUNNING:
             self._pause(task, held, was_driving=was_driving)
         self._renew_reason()
@@ -141,7 +151,7 @@ class TaskPlanner:
         """Clear a hold; with the last one the task goes on, also while it is still pausing."""
         if not self.holds.release(owner):
             return
-        released = self._outbox.emit("hold.released", {"owner": owner}, cause)
+        released = self._outbox.emit(HoldReleased(owner), cause)
         self._renew_reason()
         if self._current is not None and not self.holds:
             self._start(self._current, released, now)
@@ -171,7 +181,7 @@ class TaskPlanner:
         task = self._current
         if task is not None and task.phase is TaskPhase.PAUSING:
             task.phase = TaskPhase.PAUSED
-            self._emit(task, "task.paused", reason=task.reason)
+            self._emit(TaskPaused(task.id, task.reason))
 
     # --- what can be seen ------------------------------------------------------------------------
 
@@ -191,6 +201,11 @@ class TaskPlanner:
         """Return the current task."""
         return None if self._current is None else self._current.view()
 
+    @property
+    def latest(self) -> TaskView | None:
+        """Return the current task, or else the one that ended last; None: there never was one."""
+        return next(self.tasks(), None)
+
     def task(self, identity: str) -> Task:
         """Return a task.
 
@@ -208,7 +223,7 @@ class TaskPlanner:
     def _start(self, task: Task, cause: int, now: Instant) -> None:
         """Send one goal.
 
-        Where the vehicle was unknown when the task was served, its start is judged now.
+        Where the vehicle was unknown when the task was submitted, its start is judged now.
         """
         distance = None if task.has_run else self._too_far(task.path.waypoint(task.start_index))
         if distance is not None:
@@ -219,9 +234,9 @@ class TaskPlanner:
         self._goals_sent += 1
         task.goal = GoalId(self._goals_sent)
         task.phase, task.reason = TaskPhase.RUNNING, None
-        kind = "task.resumed" if task.has_run else "task.started"
+        kind = TaskResumed if task.has_run else TaskStarted
         task.has_run = True
-        self._emit(task, kind, cause, goal=task.goal, target_index=task.target_index)
+        self._emit(kind(task.id, task.goal, task.target_index), cause)
         self._outbox.command(
             SendGoal(
                 task.goal,
@@ -240,8 +255,8 @@ class TaskPlanner:
         stands = self._vehicle.stands and not was_driving
         task.phase = TaskPhase.PAUSED if stands else TaskPhase.PAUSING
         task.reason = self.holds.reason
-        kind = "task.paused" if stands else "task.pausing"
-        self._emit(task, kind, cause, reason=task.reason)
+        kind = TaskPaused if stands else TaskPausing
+        self._emit(kind(task.id, task.reason), cause)
 
     def _renew_reason(self) -> None:
         task = self._current
@@ -271,14 +286,13 @@ class TaskPlanner:
         cause: int | None = None,
     ) -> None:
         task.end(phase, reason, now)
-        kind = f"task.{phase.lower()}"
-        self._emit(task, kind, cause, reason=reason, progress=task.view().progress)
+        self._emit(TASK_ENDS[phase](task.id, reason, task.view().progress), cause)
         self._current = None
 
-    def _emit(self, task: Task, kind: str, cause: int | None = None, **data: object) -> int:
+    def _emit(self, event: Event, cause: int | None = None) -> int:
         """Record what became of a task."""
         self._outbox.task_changed = True
-        return self._outbox.emit(kind, {"task": task.id, **data}, cause)
+        return self._outbox.emit(event, cause)
 
     def _nearest(self, path: Path) -> tuple[int, float] | None:
         """Return the waypoint nearest to the vehicle that a task may begin with, and how far."""

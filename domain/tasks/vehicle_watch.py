@@ -17,7 +17,7 @@ class VehicleWatch:
     """Keeps the newest report; a pose that was never told is as one that is too old."""
 
     def __init__(self, settings: TaskSettings, outbox: Outbox) -> None:
-        self._settings = settings
+        self.settings = settings
         self._outbox = outbox
         self._state: VehicleState | None = None
         self._at: Instant | None = None
@@ -56,12 +56,23 @@ class VehicleWatch:
         steering = 0.0 if self._state is None else self._state.steering_angle_rad
         return DriveCommand(0.0, steering)
 
+    def fresh_state(self, now: Instant) -> VehicleState | None:
+        """Return the newest report; None: there is none, or it is too old."""
+        if self._at is None or now - self._at > self.settings.pose_stale_after:
+            return None
+        return self._state
+
+    @property
+    def state(self) -> VehicleState | None:
+        """Return the newest report, however old; None: there was none."""
+        return self._state
+
     @property
     def stands(self) -> bool:
         """Tell whether the vehicle is known to stand still."""
         if self._state is None or self.is_lost:
             return False
-        return abs(self._state.speed_mps) < self._settings.standstill_mps
+        return abs(self._state.speed_mps) < self.settings.standstill_mps
 
     def distance_to(self, point: Point) -> float | None:
         """Return how far away a point is, in m; None: it is not known where the vehicle is."""
@@ -75,7 +86,7 @@ class VehicleWatch:
         if self.is_lost or self._at is None:
             return None
         # "Older than" is strict, and time is counted in whole nanoseconds.
-        return self._at + self._settings.pose_stale_after + 1
+        return self._at + self.settings.pose_stale_after + 1
 
     def pass_time(self, now: Instant) -> bool:
         """Return whether the pose became too old by now."""

@@ -1,11 +1,11 @@
 #!/usr/bin/env bash
-# Builds the packages of interfaces/ without an installation of ROS 2, for trying: with the wheels
-# of ROS 2 Kilted, cmake and a C++ compiler. On a robot, colcon does this; see README.md.
+# Builds the packages in interfaces/ without a ROS 2 installation, for experiments: with the wheels
+# of ROS 2 Kilted, cmake and a C++ compiler. On a robot, use colcon; see README.md.
 #
 #     examples/ros2/build_with_wheels.sh PREFIX
 #
-# PREFIX gets the packages, and a file `setup.sh` to be sourced. PYTHON names the interpreter that
-# will use them (usually python3); what is built is for its version only.
+# The packages and a file `setup.sh` to source are installed into PREFIX. PYTHON is the interpreter
+# that will use them (default: python3); the build works with its version only.
 set -euo pipefail
 
 here="$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)"
@@ -13,8 +13,9 @@ prefix="$(realpath -m "${1:?usage: $0 PREFIX}")"
 work="$(mktemp -d)"
 trap 'rm -rf "$work"' EXIT
 
-# An environment of its own: who uses the packages needs none of this. What the wheels of ament
-# forget to ask for is named here as well. Pinned, since the same names hold other distributions.
+# A separate environment, since users of the packages need none of these tools. Dependencies that
+# the ament wheels fail to declare are listed too. Versions are pinned, since the same package names
+# also serve other distributions.
 "${PYTHON:-python3}" -m venv "$work/venv"
 "$work/venv/bin/python" -m pip install -qq --disable-pip-version-check \
     ros-rosidl-{default-generators==1.7.1,core-generators==0.3.1} ros-std-msgs==5.5.1 \
@@ -23,7 +24,7 @@ trap 'rm -rf "$work"' EXIT
     ros-fastrtps-cmake-module==3.6.2 ros-python-cmake-module==0.11.1 \
     'catkin_pkg>=1' 'empy>=4.2,<5' 'lark>=1.2,<2'
 
-# The exported targets of the wheels name folders of the machine that made them.
+# The exported CMake targets of the wheels contain paths of the machine that built them.
 python="$work/venv/bin/python"
 include="$("$python" -c 'import sysconfig; print(sysconfig.get_path("include"))')"
 numpy="$("$python" -c 'import numpy; print(numpy.get_include())')"
@@ -48,4 +49,4 @@ export AMENT_PREFIX_PATH="$prefix\${AMENT_PREFIX_PATH:+:\$AMENT_PREFIX_PATH}"
 export LD_LIBRARY_PATH="$prefix/lib\${LD_LIBRARY_PATH:+:\$LD_LIBRARY_PATH}"
 export PYTHONPATH="$packages\${PYTHONPATH:+:\$PYTHONPATH}"
 END
-echo "Use them with: . $prefix/setup.sh"
+echo "To use them: . $prefix/setup.sh"

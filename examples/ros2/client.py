@@ -1,10 +1,10 @@
-"""Asks Pilothouse as any ROS 2 client may; nothing here knows of HTTP.
+"""Calls Pilothouse like any ROS 2 client, without HTTP.
 
-    python3 client.py get PART                 like `ros2 lifecycle get`, and the mode
+    python3 client.py get PART                 like `ros2 lifecycle get`, plus the mode
     python3 client.py set SYSTEM TRANSITION    like `ros2 lifecycle set`
     python3 client.py mode PART MODE           like `ros2 service call /PART/change_mode ...`
 
-Ends with 1 if what is asked is refused or fails.
+Exits with 1 if the request is rejected or fails.
 """
 
 import argparse
@@ -20,19 +20,19 @@ from rclpy.node import Node
 THERE_WITHIN_S = 10.0
 DONE_WITHIN_S = 70.0
 NATIVE = "system_modes_msgs/srv/"
-REFUSED = "refused, or failed; why is in Pilothouse's log and its events"
+REFUSED = "rejected or failed; see Pilothouse's log and events"
 
 
 def ask(node: Node, service: str, wanted: str = "") -> tuple[str, Any]:
     """Call a service; return its type and its response.
 
     Args:
-        node: Who asks.
-        service: As `/actuation/get_state`.
-        wanted: The transition or the mode, where one is asked for.
+        node: The client node.
+        service: Its full name, such as `/actuation/get_state`.
+        wanted: The requested transition or mode; empty for queries.
 
     Raises:
-        TimeoutError: There is no such service, or it does not answer.
+        TimeoutError: The service does not exist or does not answer.
     """
     type_name = type_of(node, service)
     package, kind, name = type_name.split("/")
@@ -44,7 +44,7 @@ def ask(node: Node, service: str, wanted: str = "") -> tuple[str, Any]:
     if hasattr(request, "mode_name"):
         request.mode_name = wanted
     elif hasattr(request, "transition"):
-        # A mode as well: where Pilothouse has no system_modes_msgs, it takes ROS 2's own type.
+        # Also for a mode: without system_modes_msgs, Pilothouse uses a standard ROS 2 type.
         request.transition.label = wanted
     future = client.call_async(request)
     rclpy.spin_until_future_complete(node, future, timeout_sec=DONE_WITHIN_S)
@@ -54,7 +54,7 @@ def ask(node: Node, service: str, wanted: str = "") -> tuple[str, Any]:
 
 
 def type_of(node: Node, service: str) -> str:
-    """Return the type of a service, once somebody offers it."""
+    """Return the type of a service as soon as it exists."""
     end = time.monotonic() + THERE_WITHIN_S
     while time.monotonic() < end:
         types = dict(node.get_service_names_and_types()).get(service)
@@ -65,13 +65,13 @@ def type_of(node: Node, service: str) -> str:
 
 
 def nobody_offers(service: str) -> str:
-    """Say that there is no such service, and where it was looked for."""
+    """Return a message that names the missing service and the searched domain."""
     domain = os.environ.get("ROS_DOMAIN_ID") or "0"
     return f"nobody offers {service} in domain {domain}; does Pilothouse run there, with ROS 2?"
 
 
 def shown(node: Node, part: str) -> str:
-    """Return state and mode of a part, as `active.SLOW`."""
+    """Return state and mode of a part, such as `active.SLOW`."""
     state = ask(node, f"/{part}/get_state")[1].current_state.label
     type_name, answer = ask(node, f"/{part}/get_mode")
     if type_name.startswith(NATIVE):
@@ -82,14 +82,14 @@ def shown(node: Node, part: str) -> str:
 
 
 def main() -> int:
-    """Do what the command line says; return the exit code."""
+    """Run the command line; return the exit code."""
     parser = argparse.ArgumentParser(description=__doc__.partition("\n")[0])
     parser.add_argument("action", choices=["get", "set", "mode"])
     parser.add_argument("part")
     parser.add_argument("wanted", nargs="?", help="a transition, or a mode")
     asked = parser.parse_args()
     if (asked.wanted is None) != (asked.action == "get"):
-        parser.error("set and mode need to be told what is wanted, and get does not")
+        parser.error("set and mode need a transition or mode, and get takes none")
     rclpy.init()
     node = rclpy.create_node("client")
     success = True

@@ -1,7 +1,7 @@
-"""Writes the tracks of this folder: `python examples/tracks/make_tracks.py`.
+"""Writes the tracks in this folder: `python examples/tracks/make_tracks.py`.
 
-Each is a CSV as recorded with smart_polaris, `x,y,yaw` in m, m and rad, and begins at the origin
-looking along x, where the example vehicle stands. The loop is also what the program brings along.
+Each is a CSV as recorded with smart_polaris, `x,y,yaw` in m, m and rad. It starts at the origin
+heading along x, like the example vehicle. The loop is also the built-in example track.
 """
 
 from collections.abc import Iterator, Mapping
@@ -16,10 +16,10 @@ HERE = Path(__file__).resolve().parent
 BUILT_IN = HERE.parents[1] / "service" / "example" / "loop.csv"
 
 _FINE_M = 0.01
-"""Step of the integration; its error on 800 m is less than the last digit that is written."""
+"""Integration step; over 800 m, its error is below the last digit written."""
 
 Bend = tuple[float, float]
-"""A piece of way: how long it is, m, and the curvature that is reached at its end, 1/m."""
+"""A segment: its length, m, and the curvature at its end, 1/m."""
 
 
 def straight(length_m: float) -> list[Bend]:
@@ -28,7 +28,7 @@ def straight(length_m: float) -> list[Bend]:
 
 
 def turn(angle_deg: float, radius_m: float, easing_m: float) -> list[Bend]:
-    """Return a curve between straights; its curvature rises and falls evenly, as on a road.
+    """Return a curve between straights; its curvature rises and falls linearly, as on a road.
 
     Args:
         angle_deg: Change of heading, left positive.
@@ -48,7 +48,7 @@ def track(
     Args:
         bends: One after the other; the first begins straight.
         spacing_m: Between waypoints.
-        length_m: Where the track ends, after less than all bends; None: after the last one.
+        length_m: Length of the track, less than that of all bends; None: ends after the last bend.
 
     Returns:
         Shape (n, 3): x m, y m, yaw rad from -pi to pi.
@@ -64,7 +64,7 @@ def track(
 
 
 def corner(*places: tuple[float, float], spacing_m: float) -> NDArray[np.float64]:
-    """Return waypoints along straights between places, without any rounding; shape (n, 3)."""
+    """Return waypoints along straights between points, with sharp corners; shape (n, 3)."""
     pieces = []
     for begin, end in pairwise(np.array(places)):
         length = float(np.hypot(*(end - begin)))
@@ -76,9 +76,9 @@ def corner(*places: tuple[float, float], spacing_m: float) -> NDArray[np.float64
 
 
 def loop() -> NDArray[np.float64]:
-    """Return a lap of 800 m; no curve is tighter than 40 m, and the end is right before the start.
+    """Return a lap of 800 m with radii of at least 40 m that ends just before its start.
 
-    Half of it turns by 180 degrees, and twice the same half leads back to where it began.
+    One half turns by 180 degrees; driving the same half twice leads back to the start.
     """
     curves = (turn(110, 40, 20), turn(-40, 60, 20), turn(110, 45, 20))
     rest_m = 400 - sum(length for curve in curves for length, _ in curve)
@@ -96,27 +96,27 @@ def loop() -> NDArray[np.float64]:
 
 
 def overlap() -> NDArray[np.float64]:
-    """Return a small lap that goes on for 3 m on its own start."""
+    """Return a small lap that overlaps its own start by 3 m."""
     half = [*straight(15), *turn(180, 12, 8), *straight(15)]
     lap_m = 2 * sum(length for length, _ in half)
     return track([*half, *half, *straight(3)], 0.5, lap_m + 3)
 
 
 def out_and_back() -> NDArray[np.float64]:
-    """Return a way out, a turn like a drop, and the way back beside the way out."""
+    """Return a path out, a drop-shaped turn, and the path back next to the path out."""
     drop = [*turn(-60, 6, 2.5), *turn(300, 6, 2.5), *turn(-60, 6, 2.5)]
     return track([*straight(40), *drop, *straight(40)], 0.25)
 
 
 def _csv(waypoints: NDArray[np.float64]) -> str:
-    # Adding 0 makes 0.000 of -0.000.
+    # Adding 0 turns -0.000 into 0.000.
     places, yaws = np.round(waypoints[:, :2], 3) + 0.0, np.round(waypoints[:, 2], 4) + 0.0
     rows = zip(*places.T.tolist(), yaws.tolist(), strict=True)
     return "".join(f"{x:.3f},{y:.3f},{yaw:.4f}\n" for x, y, yaw in rows)
 
 
 def _integral(values: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Return the integral over the way from its begin; shape (n,) as `values`, `_FINE_M` apart."""
+    """Return the integral along the track; shape (n,) as `values`, `_FINE_M` apart."""
     steps = (values[:-1] + values[1:]) * (_FINE_M / 2)
     return np.concatenate(([0.0], np.cumsum(steps)))
 

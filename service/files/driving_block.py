@@ -48,7 +48,6 @@ class DrivingBlock(SettingsBlock):
             max_cross_track_m=self.max_cross_track_m,
             max_cross_track_for=seconds(self.max_cross_track_for_s),
             no_progress_for=seconds(self.no_progress_for_s),
-            pose_stale_after=seconds(self.pose_stale_after_s),
             speed=SpeedLimits(
                 lateral_acceleration_mps2=self.lateral_acceleration_mps2,
                 acceleration_mps2=self.acceleration_mps2,

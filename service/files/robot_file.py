@@ -10,7 +10,7 @@ from typing import Any, Literal
 
 from pydantic import Field, ValidationError
 
-from domain.changes.record import ChangeSettings
+from domain.changes.settings import ChangeSettings
 from domain.errors import InvalidValueError, PilothouseError
 from domain.findings import Finding
 from domain.health.signals import SignalSettings

@@ -35,7 +35,7 @@ SIMULATIONS = 5
 ROBOT = "signals: {estop: {min_on_s: 0}}\n"
 """An error that ends at once, so that more of them fit into a minute."""
 
-ASKED = "p99 of ticks and frames within 5 ms of their period, and the drive goes on undisturbed."
+ASKED = "p99 of ticks and frames within 5 ms of their period, and an undisturbed drive."
 
 
 @asynccontextmanager
@@ -74,8 +74,8 @@ async def test_a_bad_reading_stops_the_vehicle(tmp_path: FilePath) -> None:
     report(
         "drive_stop",
         "From a bad reading to the vehicle",
-        f"{ROUNDS} times an e-stop reading comes by HTTP while the vehicle drives, each at another "
-        "moment between two ticks.",
+        f"{ROUNDS} e-stop readings over HTTP while the vehicle drives, at different times between "
+        "two ticks.",
         rows,
         asked="p99 from the reading to speed 0 at the vehicle within 10 ms.",
     )
@@ -121,9 +121,9 @@ async def test_uploads_disturb_neither_the_frames_nor_the_drive(tmp_path: FilePa
     report(
         "drive_uploads",
         "Uploads during a drive",
-        "How far periods are from 50 ms while the vehicle drives and paths of 100,000 waypoints "
-        "are uploaded, beside a loop in a process of its own that does nothing else; how long an "
-        "upload takes; and how far the vehicle is off its path.",
+        "Deviation of periods from 50 ms while the vehicle drives and paths of 100,000 waypoints "
+        "are uploaded, with an idle loop in a separate process as reference; duration of an "
+        "upload; and cross-track error of the vehicle.",
         rows,
         asked=ASKED,
     )
@@ -155,9 +155,8 @@ async def test_a_simulation_disturbs_neither_the_frames_nor_the_drive(tmp_path: 
     report(
         "drive_simulations",
         "Simulations during a drive",
-        "How far periods are from 50 ms while the vehicle drives and one hour after the other is "
-        "simulated for `POST /simulations`, beside a loop in a process of its own that does "
-        "nothing else.",
+        "Deviation of periods from 50 ms while the vehicle drives and `POST /simulations` "
+        "simulates one hour after another, with an idle loop in a separate process as reference.",
         rows,
         asked=ASKED,
     )

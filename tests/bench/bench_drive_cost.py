@@ -7,7 +7,7 @@ from collections.abc import Callable
 
 import pytest
 
-from api.simulation.posted import simulate_posted
+from api.simulation.simulation_job import simulate_posted
 from domain.paths.path import Path
 from domain.paths.speed_profile import SpeedLimits, SpeedProfile
 from tests.support.bench import Row, quantiles, report
@@ -34,7 +34,7 @@ def test_what_a_long_path_costs() -> None:
     report(
         "drive_long_path",
         "A path of 100,000 waypoints",
-        f"How long it takes to make one and to hand it to another process, {ROUNDS} times each.",
+        f"Time to build a path and to hand it to another process, {ROUNDS} times each.",
         {name: quantiles(_seconds(each, ROUNDS)) for name, each in work.items()},
     )
 
@@ -57,8 +57,8 @@ def test_an_hour_in_virtual_time() -> None:
     report(
         "drive_hour",
         "An hour in virtual time",
-        "How long `POST /simulations` works on an hour of the example robot with a drive of 5 "
-        "minutes in it, and whether two runs give the same bytes.",
+        "Time that `POST /simulations` takes for an hour of the example robot with a drive of 5 "
+        "minutes, and whether two runs give identical bytes.",
         rows,
         asked="less than 5 s.",
     )

@@ -65,18 +65,18 @@ def test_frames_to_very_many_clients() -> None:
     report(
         "fan_out",
         "Frames to very many clients",
-        f"20 frames of {size} bytes a second to each client. The server runs on one core, all its "
-        "clients in one process on another, and servers take turns; figures are medians of two "
-        f"rounds, at {MANY} clients of three. CPU is of one core. `beyond 1` is what the clients "
-        "beyond the first cost: the rest of the robot, which the servers beside it do not have, "
-        f"is not in it. `of {PICOWS}` are the ratios to {PICOWS}. The delay is that behind the "
-        "time in the frame, a whole millisecond; the spread that behind the first client with the "
-        "same frame. Both hold the time in which the clients' process reads one after the other. "
-        "Uvicorn serves an ASGI application that awaits one send after the other; `prepared "
-        "frames alone` is our protocol class under a bare loop over all transports, without robot, "
-        "groups and pings.",
+        f"20 frames of {size} bytes per second to each client. The server runs on one core, all "
+        "its clients in one process on another core; servers are measured in turn. Figures are "
+        f"medians of two rounds, at {MANY} clients of three. CPU is the share of one core. `beyond "
+        "1` is the cost of all clients except the first: it excludes the rest of the robot, which "
+        f"the reference servers do not have. `of {PICOWS}` are the ratios to {PICOWS}. The delay "
+        "is measured from the time in the frame, in whole milliseconds; the spread from the first "
+        "client with the same frame. Both include the time that the clients' process needs to read "
+        "one client after another. Uvicorn serves an ASGI application that awaits one send after "
+        "another. `prepared frames alone` is our protocol class with a bare loop over all "
+        "transports, without robot, groups and pings.",
         rows,
-        asked=f"at {MANY} clients CPU at most that of {PICOWS}; at 2,000 a p99 delay below 50 ms.",
+        asked=f"at {MANY} clients, at most the CPU of {PICOWS}; at 2,000, p99 delay below 50 ms.",
         notes=notes,
     )
     for count in ALL_COUNTS:
@@ -105,17 +105,17 @@ def test_a_client_that_stops_reading_costs_the_others_nothing() -> None:
     report(
         "fan_out_stalled_client",
         "A client that stops reading",
-        f"One of {connected} clients reads no more and answers no ping. Delay and spread are those "
-        "of the others, before and until the server has given up the connection.",
+        f"One of {connected} clients stops reading and answering pings. Delay and spread are those "
+        "of the other clients, before that and until the server drops the connection.",
         rows,
-        asked="dropped within 5 s, and none of the others is late for it.",
+        asked="dropped within 5 s, without delaying any other client.",
     )
     assert dropped
     assert rows["one does not read"]["lost"] == 0
 
 
 def _servers(size: int) -> tuple[dict[str, _Server], list[str]]:
-    """Return what is measured, and why what is not."""
+    """Return the servers to measure, and why some are not measured."""
     package = "tests.support.fan_out"
     servers = {
         OURS: _Server(PILOTHOUSE),

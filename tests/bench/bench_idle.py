@@ -44,10 +44,10 @@ def test_what_an_idle_service_costs() -> None:
     report(
         "idle",
         "At rest",
-        f"The share of a core over {SECONDS:g} s, and memory, of `pilothouse serve` with the "
-        "example robot, without a client and with one that is sent what the page is; beside a "
-        "FastAPI that does nothing else. RSS is that of the service itself; `of all` would include "
-        "a worker process, which there is from the first posted model or path on.",
+        f"CPU over {SECONDS:g} s, as the share of a core, and memory of `pilothouse serve` with "
+        "the example robot, without a client and with one that receives what the page does; an "
+        "idle FastAPI service is the reference. RSS is that of the service process; `of all` would "
+        "include a worker process, which exists from the first posted model or path on.",
         rows,
         asked="less than 90 MB RSS and less than 5 % of a core with one page open.",
     )
@@ -62,8 +62,8 @@ def test_how_soon_it_is_ready() -> None:
     report(
         "idle_start",
         "Start",
-        f"From the start of the process to the first 200 of `/readyz`, {STARTS} times; beside a "
-        "FastAPI that does nothing else, to its first answer.",
+        f"From the start of the process to the first 200 of `/readyz`, {STARTS} times; the "
+        "reference is an idle FastAPI service, to its first response.",
         rows,
     )
 

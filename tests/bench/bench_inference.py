@@ -38,9 +38,9 @@ def test_a_report_and_the_inference_of_all_ancestors() -> None:
     report(
         "inference",
         "Inference",
-        f"One node reports another mode, and what all systems above it are in is inferred; "
-        f"{2 * ROUNDS} reports of one node after the other, in a tree with ten parts per system. "
-        "Once on a robot that is in its target, once on one all of whose systems deviate.",
+        "A node reports another mode, and the states of all systems above it are inferred. "
+        f"{2 * ROUNDS} reports, one node after another, in a tree with ten parts per system; once "
+        "on a robot at its target, once on a robot in which all systems deviate.",
         rows,
         asked=f"a median of at most {bounds} ms at 100, 1,000 and 10,000 nodes.",
         notes=[CPP],

@@ -101,8 +101,8 @@ async def test_an_emergency_stop_is_known_everywhere_at_once(tmp_path: Path) -> 
     report(
         "latency",
         "From a reading to a frame",
-        f"{ROUNDS} times from an e-stop reading by HTTP to the frame that says ERROR at another "
-        "client, in turn with a bare uvicorn that sends on to a WebSocket what is posted to it.",
+        f"From an e-stop reading over HTTP to the frame with ERROR at another client, {ROUNDS} "
+        "times, alternating with a bare uvicorn that forwards posted data to a WebSocket.",
         {name: quantiles(taken) for name, taken in times.items()},
     )
 

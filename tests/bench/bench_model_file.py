@@ -28,7 +28,7 @@ def test_a_model_of_ten_thousand_nodes_is_read_in_seconds() -> None:
     report(
         "model_file",
         "Reading a model",
-        f"From YAML to a model that is checked and linted, {ROUNDS} times.",
+        f"From YAML to a checked and linted model, {ROUNDS} times.",
         rows,
         asked="10,000 nodes in less than 3 s.",
     )

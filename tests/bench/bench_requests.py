@@ -33,9 +33,9 @@ async def test_how_long_requests_take(tmp_path: Path) -> None:
     report(
         "requests",
         "Requests",
-        f"From sending a request to the head of its answer, {ROUNDS} times each in turn over one "
-        f"connection, beside a FastAPI that does nothing else; {CHANGES} changes between two modes "
-        "of a system whose two nodes obey at once, until the change has succeeded.",
+        f"From sending a request to the head of its response, {ROUNDS} times each in turn over one "
+        f"connection, with an idle FastAPI service as reference; {CHANGES} changes between two "
+        "modes of a system whose two nodes respond at once, until the change has succeeded.",
         {name: quantiles(taken) for name, taken in times.items()},
     )
 

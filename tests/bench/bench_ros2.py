@@ -42,8 +42,8 @@ THERE_WITHIN_S = 60.0
 
 COMMAND = "make bench-ros2"
 ASKED = (
-    "all requests out within 100 ms, verified end within 1.5 s; p99 of the tick within 5 ms of its "
-    "period, beside a control; less than 10 % of a core at rest."
+    "all requests out within 100 ms, verified result within 1.5 s; p99 of the tick within 5 ms of "
+    "its period, beside a reference; less than 10 % of a core when idle."
 )
 
 
@@ -88,19 +88,19 @@ async def test_fifty_nodes(tmp_path: Path, *, heartbeat: bool) -> None:
         f"ros2_changes_{label.replace(' ', '_')}",
         f"Changes of {NODES} ROS 2 nodes, {label}",
         f"A system over {NODES} lifecycle nodes in {PROCESSES} processes is changed through HTTP. "
-        "`out` is from the request until the last node was asked, in the first round of steps; "
-        "`end` until the answer says that the end was verified.",
+        "`out` is the time from the HTTP request to the last node request of the first round of "
+        "steps; `end` the time to the response with the verified result.",
         rows,
         asked=ASKED,
         command=COMMAND,
-        notes=[f"All nodes were known {there_s:.1f} s after Pilothouse listened."],
+        notes=[f"All nodes were known {there_s:.1f} s after Pilothouse started to listen."],
     )
     report(
         f"ros2_tick_{label.replace(' ', '_')}",
         f"Tick beside {NODES} ROS 2 nodes, {label}",
-        f"How far periods are from 50 ms: at rest for {SECONDS:g} s, and while the mode of all "
-        f"nodes is changed every {CHANGE_EVERY_S:g} s; beside a loop in a process of its own that "
-        "does nothing else. All of them share the machine.",
+        f"Deviation of periods from 50 ms: idle for {SECONDS:g} s, and while the mode of all nodes "
+        f"changes every {CHANGE_EVERY_S:g} s, with an idle loop in a separate process as "
+        "reference. All of them share the machine.",
         {
             **period_rows({"idle": idle, "changes": busy}, record),
             "Pilothouse at rest": {"CPU_percent": round(percent, 1), **figures},
@@ -108,8 +108,8 @@ async def test_fifty_nodes(tmp_path: Path, *, heartbeat: bool) -> None:
         asked=ASKED,
         command=COMMAND,
         notes=[
-            "In each change the thread of the event loop was ready, and waited for a core, for "
-            f"{1000 * waited_s / CHANGES:.0f} ms in all: the nodes work on the change at that time."
+            "In each change, the event loop's thread was ready and waited for a core for "
+            f"{1000 * waited_s / CHANGES:.0f} ms in total, while the nodes worked on the change."
         ],
     )
 

@@ -31,9 +31,9 @@ from service.supervisor import Supervisor
 from tests.ros2.support.isolation import isolate
 from tests.support.bench import PROJECT, quantiles, report
 from tests.support.big_model import FAST, PARAMETERS, SLOW, big_model
-from tests.support.driver import straight
 from tests.support.live_robot import make_onboard
 from tests.support.manual_clock import ManualClock, settle
+from tests.support.paths import straight
 from tests.support.ros_graph import FakeGraph
 from tests.support.ros_nodes import FakeNode, parameter_event
 

@@ -27,8 +27,8 @@ NODES = 50
 CHANGE_EVERY_S = 0.5
 
 HOW = (
-    "How far periods are from 50 ms: of a loop in a process of its own that does nothing else, of "
-    f"the tick, and of frames at a client, all in the same {SECONDS:g} s. "
+    "Deviation of periods from 50 ms: of an idle loop in a separate process, of the tick, and of "
+    f"frames at a client, all in the same {SECONDS:g} s. "
 )
 
 
@@ -44,7 +44,7 @@ async def test_the_tick_keeps_its_period_with_many_clients(tmp_path: Path) -> No
             busy = await robot.watch(SECONDS)
         record = robot.end()
     rows = period_rows({"idle": idle, f"{connected} clients": busy}, record)
-    about = HOW + "Without any load, and with many further clients that read every frame."
+    about = HOW + "Without load, and with many additional clients that read every frame."
     report("tick_clients", "Period of the tick with many clients", about, rows)
     assert idle.missing == busy.missing == 0
 
@@ -59,8 +59,8 @@ async def test_the_tick_keeps_its_period_while_nodes_change(tmp_path: Path) -> N
         record = robot.end()
     rows = period_rows({"idle": idle, f"{NODES} nodes change": busy}, record)
     about = HOW + (
-        f"Every {CHANGE_EVERY_S:g} s the mode of a system of {NODES} nodes is changed by HTTP, and "
-        "with it the parameters of each of them."
+        f"Every {CHANGE_EVERY_S:g} s, the mode of a system of {NODES} nodes changes over HTTP, and "
+        "with it the parameters of each node."
     )
     report("tick_changes", "Period of the tick while nodes change", about, rows)
     assert idle.missing == busy.missing == 0

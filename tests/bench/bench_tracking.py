@@ -53,8 +53,7 @@ def test_on_the_path() -> None:
         "tracking_on_path",
         "Tracking: on the path",
         "Both trackers on the recorded loop of 835 m at 2.8 m/s, with three vehicles that "
-        "obey at once, late, and slowly; distances are those of the middle of the rear axle "
-        "from the line.",
+        "respond at once, late, and slowly; errors are those of the middle of the rear axle.",
         rows,
         asked="RMS at most 0.010 m and 0.3°, never more than 0.03 m off.",
     )
@@ -75,11 +74,11 @@ def test_from_two_metres_beside() -> None:
     report(
         "tracking_from_beside",
         "Tracking: from 2 m beside the path",
-        "The same from 2 m beside the path; `capture` is driven until within 0.1 m, and RMS "
-        "is what follows.",
+        "The same from 2 m beside the path; `capture` is the distance driven until the error is "
+        "within 0.1 m, and RMS is taken after that.",
         rows,
         asked=(
-            "captured within 15 m, with the slow vehicle 20 m; overshoot at most 0.1 m; RMS then "
+            "capture within 15 m, 20 m with the slow vehicle; overshoot at most 0.1 m; then RMS "
             "at most 0.010 m."
         ),
     )
@@ -103,8 +102,8 @@ def test_with_noise_and_delay(start: Pose | None) -> None:
     report(
         f"tracking_noise_{'beside' if start else 'on_path'}",
         f"Tracking: with noise and delay, {'2 m beside' if start else 'on'} the path",
-        "As without, but the pose is 20 mm and 0.5° noisy and everything comes 100 ms late; the "
-        f"worst of {len(SEEDS)} runs.",
+        "The same with 20 mm and 0.5° of pose noise and 100 ms of delay; the worst of "
+        f"{len(SEEDS)} runs.",
         rows,
         asked="RMS at most 0.015 m, never more than 0.06 m off.",
     )
@@ -129,9 +128,12 @@ def test_a_fast_lap() -> None:
     report(
         "tracking_fast_lap",
         "Tracking: a fast lap",
-        "One lap at up to 7 m/s; the fastest possible one is 126.2 s.",
+        "One lap at up to 7 m/s; the fastest possible lap takes 126.2 s.",
         rows,
-        asked="128 s, RMS at most 0.03 m, at most 2 m/s² sideways and 1 m/s² along, no corner cut.",
+        asked=(
+            "128 s, RMS at most 0.03 m, at most 2 m/s² lateral and 1 m/s² longitudinal "
+            "acceleration, no cut corner."
+        ),
     )
     for row in rows.values():
         assert row["done"]
@@ -160,10 +162,10 @@ def test_all_fixtures_are_driven_to_their_end() -> None:
     report(
         "tracking_fixtures",
         "Tracking: other paths",
-        "All drivable paths of smart_polaris, from the start and 0.5 m on either side of it "
+        "All drivable paths of smart_polaris, from the start and from 0.5 m on either side of it, "
         "with all three vehicles; the worst of each.",
         rows,
-        asked="all driven to their end, within 0.3 m.",
+        asked="all completed, within 0.3 m.",
     )
     for row in rows.values():
         assert row["done"]
@@ -189,8 +191,8 @@ def test_what_a_path_and_a_control_step_cost() -> None:
     report(
         "tracking_cost",
         "Tracking: what a path and a control step cost",
-        "A path is made 11 times; 5,000 control steps are taken all along it, 50 mm beside "
-        "it, projection included.",
+        "A path is built 11 times; 5,000 control steps, including projection, run along it, 50 mm "
+        "beside it.",
         rows,
         asked="a median of 60 ms for a path and of 0.1 ms for a step.",
     )

@@ -1,27 +1,30 @@
 """Pages of the reference that follow from the code are what the code says."""
 
 import re
+from importlib.metadata import version
 from pathlib import Path
 
 import pytest
 import yaml
+from packaging.version import Version
 
 from api.cli.command_line import main
 from api.http.problems import STATUS_OF
 from api.http.schemas.simulation import SimulationBody
-from api.simulation.posted import robot_for
 from api.simulation.simulation import Simulation
+from api.simulation.simulation_job import robot_for
 from docs.generate.__main__ import main as renew
-from docs.generate.events_page import KINDS
 from docs.generate.pages import FOLDER, PAGES
 from docs.generate.source_scan import UndescribedError, codes_given_to, require_described
 from domain.changes.admission import ADVISORY
-from domain.events import Event
+from domain.events.event import RecordedEvent
+from domain.events.kinds import EVENTS
 from domain.inputs import BackendStatus, Input, WriteRecord
 from domain.supervision import Supervision, SupervisionSettings
 from tests.support.good import GOOD
 from tests.support.http_robot import ACTUATION
 from tests.support.models import actuation_model
+from tests.support.shared import PROJECT
 
 STRAIGHT = [{"x_m": float(x), "y_m": 0.0, "yaw_rad": 0.0} for x in range(31)]
 # Nothing follows from feedback, so that it is not recorded.
@@ -30,8 +33,22 @@ NEVER_SEEN_HERE = {"goal.feedback"}
 NOT_BY_SIMULATED_NODES = {"mode"}
 
 
+LOCK = PROJECT / "requirements.lock"
+
+
+def is_older_than_locked(package: str) -> bool:
+    locked = re.search(rf"^{package}==(\S+)", LOCK.read_text(encoding="utf-8"), re.MULTILINE)
+    assert locked is not None
+    return Version(version(package)) < Version(locked[1])
+
+
+IS_OLDER = is_older_than_locked("fastapi") or is_older_than_locked("pydantic")
+
+
 @pytest.mark.parametrize("name", sorted(PAGES))
 def test_a_page_is_what_the_code_says(name: str) -> None:
+    if IS_OLDER and name.endswith(".json"):
+        pytest.skip("an older framework words its part of the documents otherwise")
     checked_in = (FOLDER / name).read_text(encoding="utf-8")
 
     # Without line breaks: argparse of another Python breaks its lines elsewhere.
@@ -84,7 +101,9 @@ def test_codes_are_found_as_arguments_and_as_constants() -> None:
 # --- events --------------------------------------------------------------------------------------
 
 
-def happened(*steps: dict[str, object], until_s: float = 20, **robot: object) -> list[Event]:
+def happened(
+    *steps: dict[str, object], until_s: float = 20, **robot: object
+) -> list[RecordedEvent]:
     """Return the events of a scenario of the robot of Annex 4."""
     settings = {"signals": {"stale_after_s": 0}, **robot}
     first = {"t_s": 0, "reading": dict(GOOD)}
@@ -101,7 +120,7 @@ def request(t_s: float, method: str, path: str, **body: object) -> dict[str, obj
     return {"t_s": t_s, "request": {"method": method, "path": path, "body": body or None}}
 
 
-def a_drive() -> list[Event]:
+def a_drive() -> list[RecordedEvent]:
     """Stops of all kinds, a release, a cancel, and a task that is given up."""
     return happened(
         {"t_s": 1, "task": {"waypoints": STRAIGHT}},
@@ -120,7 +139,7 @@ def a_drive() -> list[Event]:
     )
 
 
-def a_sick_robot() -> list[Event]:
+def a_sick_robot() -> list[RecordedEvent]:
     """Errors that wait, clocks that differ, changes that end in every way."""
     mode = {"part": "actuation", "mode": "PERFORMANCE"}
     return happened(
@@ -148,28 +167,28 @@ def a_sick_robot() -> list[Event]:
     )
 
 
-def a_lost_backend() -> list[Event]:
+def a_lost_backend() -> list[RecordedEvent]:
     return told(BackendStatus(available=False, reason="no network"), BackendStatus(available=True))
 
 
-def a_write() -> list[Event]:
+def a_write() -> list[RecordedEvent]:
     return told(WriteRecord("PUT", "/holds/operator", 200, "10.0.0.7:50000", "http:10.0.0.7"))
 
 
-def told(*inputs: Input) -> list[Event]:
+def told(*inputs: Input) -> list[RecordedEvent]:
     """Return the events of a core that is given what no scenario holds."""
     core = Supervision(actuation_model(), SupervisionSettings(), 0)
     return [event for given in inputs for event in core.handle(given, 1).events]
 
 
-def the_examples() -> list[Event]:
-    events: list[Event] = []
+def the_examples() -> list[RecordedEvent]:
+    events: list[RecordedEvent] = []
     for path in sorted((FOLDER.parents[1] / "examples" / "scenarios").glob("*.yaml")):
         events += _example(path)
     return events
 
 
-def _example(path: Path) -> list[Event]:
+def _example(path: Path) -> list[RecordedEvent]:
     """Play a scenario that names no files."""
     text = yaml.safe_load(path.read_text(encoding="utf-8"))
     steps = [step for step in text["steps"] if not (step.get("task") or {}).get("file")]
@@ -185,12 +204,11 @@ def test_events_that_happen_are_listed_with_what_they_carry() -> None:
     stories = (a_drive, a_sick_robot, a_lost_backend, a_write, the_examples)
     for event in (event for story in stories for event in story()):
         seen.setdefault(event.kind, []).append(set(event.data))
-    listed = {kind.name: kind for kind in KINDS}
 
-    assert set(seen) - set(listed) == set()
+    assert set(seen) - set(EVENTS) == set()
     for name, carried in sorted(seen.items()):
-        always = {key for key in listed[name].keys if not key.endswith("?")}
-        allowed = {key.removesuffix("?") for key in listed[name].keys}
+        allowed = set(EVENTS[name].data_keys())
+        always = allowed - EVENTS[name].optional
         assert all(always <= keys <= allowed for keys in carried), name
         assert allowed - set().union(*carried) <= NOT_BY_SIMULATED_NODES, name
-    assert sorted(set(listed) - set(seen)) == sorted(NEVER_SEEN_HERE)
+    assert sorted(set(EVENTS) - set(seen)) == sorted(NEVER_SEEN_HERE)

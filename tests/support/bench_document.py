@@ -1,6 +1,6 @@
-"""Writes docs/benchmarks.md from the stored results: `python -m tests.support.bench_document`.
+"""Write docs/benchmarks.md from the stored results: `python -m tests.support.bench_document`.
 
-A section without a result in store stays as it is, so that one bench can be run again by itself.
+A section without a stored result stays as it is, so a single bench can be run again.
 """
 
 import json
@@ -14,10 +14,9 @@ DOCUMENT = PROJECT / "docs" / "benchmarks.md"
 _HEAD = """\
 # Benchmarks
 
-Written by `make bench` and `make bench-ros2`; to change a figure, run its bench again. Where
-there is something to compare with, it is measured beside ours in the same run: figures of different
-machines, or of one machine on different days, say little. `p50` is the median, `p99` the 99th
-percentile.
+`make bench` and `make bench-ros2` write this page; to update a figure, run its bench again.
+References are measured in the same run as Pilothouse, since figures of different machines, or of
+one machine on different days, are hard to compare. `p50` is the median, `p99` the 99th percentile.
 """
 
 _UNITS = {
@@ -33,7 +32,7 @@ _UNITS = {
 
 
 def document(results: Iterable[Mapping[str, Any]]) -> str:
-    """Return the document of stored results, one section each."""
+    """Return the document with one section per stored result."""
     ordered = list(results)
     machines = list(dict.fromkeys(_machine(result) for result in ordered))
     sections = [_HEAD, *machines]
@@ -43,11 +42,11 @@ def document(results: Iterable[Mapping[str, Any]]) -> str:
 
 
 def renewed(before: str, after: str) -> str:
-    """Return a document with the sections of a newer one in it, further ones at the end.
+    """Return a document with its sections replaced by those of a newer one, new ones at the end.
 
     Args:
-        before: The document as it was; empty: there was none.
-        after: One that may have fewer sections.
+        before: The old document; empty if there was none.
+        after: The newer document, which may have fewer sections.
     """
     head, new = _parted(after)
     _, kept = _parted(before)
@@ -55,7 +54,7 @@ def renewed(before: str, after: str) -> str:
 
 
 def _parted(text: str) -> tuple[str, dict[str, str]]:
-    """Return what is before the first section, and the sections by title."""
+    """Return the text before the first section, and the sections by title."""
     head, *sections = text.split("\n## ")
     parted = (section.partition("\n") for section in sections)
     return head, {title: rest for title, _, rest in parted}
@@ -65,7 +64,7 @@ def _section(result: Mapping[str, Any], *, several_machines: bool) -> Iterator[s
     yield f"## {result['title']}\n"
     yield f"{result['how']}\n"
     if result["asked"]:
-        yield f"Asked for: {result['asked']}\n"
+        yield f"Required: {result['asked']}\n"
     yield from _table(result["rows"])
     yield ""
     for note in result["notes"]:
@@ -87,7 +86,7 @@ def _table(rows: Mapping[str, Row]) -> Iterator[str]:
 
 
 def _heading(column: str) -> str:
-    """Return the name of a column as words, with its unit behind a comma."""
+    """Return the name of a column as words, with its unit after a comma."""
     words, _, unit = column.rpartition("_")
     if words and unit in _UNITS:
         return f"{words.replace('_', ' ')}, {_UNITS[unit]}"

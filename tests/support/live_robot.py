@@ -60,8 +60,8 @@ def make_onboard(
 ) -> Onboard:
     """Return supervision and navigation with what is usual."""
     settings = settings or SupervisionSettings()
-    navigation = Navigation(settings.vehicle, NavigationSettings())
-    return Onboard(Supervision(model, settings, start), navigation)
+    core = Supervision(model, settings, start)
+    return Onboard(core, Navigation(settings.vehicle, NavigationSettings(), core.driving.watch))
 
 
 @asynccontextmanager

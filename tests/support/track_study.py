@@ -15,9 +15,12 @@ from domain.commands import Drive, SendGoal
 from domain.identifiers import GoalId
 from domain.inputs import GoalFeedback, GoalResult
 from domain.navigation import Navigation, NavigationSettings
+from domain.outbox import Outbox
 from domain.paths.path import Path
 from domain.simulation.vehicle import SimulatedVehicle
 from domain.simulation.vehicle_settings import Noise, Plant, VehicleSettings
+from domain.tasks.settings import TaskSettings
+from domain.tasks.vehicle_watch import VehicleWatch
 from domain.timebase import seconds, to_seconds
 from domain.vehicle import DriveCommand, Pose, VehicleLimits, VehicleState
 from tests.support.shared import shared_folder
@@ -106,12 +109,13 @@ def drive(
         time_limit_s: When to give up.
     """
     vehicle = SimulatedVehicle(VehicleSettings(start or beside_start(path, 0.0), plant, LIMITS), 0)
-    navigation = Navigation(LIMITS, NavigationSettings())
+    watch = VehicleWatch(TaskSettings(), Outbox())
+    navigation = Navigation(LIMITS, NavigationSettings(), watch)
     rows: list[tuple[float, ...]] = []
     result, feedback, driven, before = None, None, 0.0, vehicle.state
     while to_seconds(now := vehicle.wake_at()) <= time_limit_s:
         for report in vehicle.advance(now):
-            navigation.take_report(report, now)
+            watch.take(report, now)
         state = vehicle.state
         driven += hypot(state.pose.x_m - before.pose.x_m, state.pose.y_m - before.pose.y_m)
         before = state

@@ -9,7 +9,7 @@ import pytest
 
 PROJECT = Path(__file__).resolve().parents[2]
 PACKAGES = ("api", "domain", "service", "web")
-MAX_FILE_LINES = 400
+MAX_FILE_LINES = 500
 MAX_FUNCTION_LINES = 50
 NOT_OURS = {"__pycache__", "build", "dist", "mutants", "node_modules"}
 # Escaped, so that this file does not hold the names that it looks for.

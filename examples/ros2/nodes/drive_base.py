@@ -1,7 +1,7 @@
 """The mobile base of the worked example: a lifecycle node with two parameters.
 
-Pilothouse asks such a node for transitions and sets its parameters; what they mean is its own
-affair. This one only says what a real base would do. Run it: `python3 drive_base.py`
+Pilothouse requests transitions of such a node and sets its parameters; the node decides what they
+mean. This one only logs what a real base would do. Run it: `python3 drive_base.py`
 """
 
 import rclpy
@@ -15,43 +15,43 @@ CONTROLLERS = ("PID", "MPC")
 
 
 class DriveBase(LifecycleNode):
-    """Drives, at most as fast as `max_speed` in m/s says, with one of two controllers."""
+    """Drives at up to `max_speed`, in m/s, with one of two controllers."""
 
     def __init__(self) -> None:
         super().__init__("drive_base")
-        # The values of __DEFAULT__ in the model. A parameter keeps the type it is declared with.
+        # The values of __DEFAULT__ in the model. A parameter keeps its declared type.
         self.declare_parameter("max_speed", 0.1)
         self.declare_parameter("controller", "PID")
         self.add_on_set_parameters_callback(self._judge)
         self._heartbeat = offer_heartbeat(self)
 
-    # Each transition calls one of these. SUCCESS: the node gets there. FAILURE: it goes back to
-    # where it was. ERROR, or an exception: on_error is called, and the node is unconfigured or
-    # finalized then.
+    # Each transition calls one of these. SUCCESS: the transition completes. FAILURE: the node
+    # returns to its previous state. ERROR, or an exception: on_error is called, and the node
+    # becomes unconfigured or finalized.
 
     def on_configure(self, previous: LifecycleState) -> TransitionCallbackReturn:
-        """Open what is needed: the motors' bus, topics, memory."""
+        """Acquire resources: the motor bus, topics, memory."""
         self.get_logger().info("motors found")
         return TransitionCallbackReturn.SUCCESS
 
     def on_activate(self, previous: LifecycleState) -> TransitionCallbackReturn:
-        """Begin to work; the parameters of the mode are set by now."""
+        """Start working; the parameters of the mode are already set."""
         max_speed = self.get_parameter("max_speed").value
         self.get_logger().info(f"motors on, at most {max_speed} m/s")
         return super().on_activate(previous)
 
     def on_deactivate(self, previous: LifecycleState) -> TransitionCallbackReturn:
-        """Stop to work, and be ready to go on."""
+        """Stop working, but stay ready to be activated again."""
         self.get_logger().info("motors off")
         return super().on_deactivate(previous)
 
     def on_cleanup(self, previous: LifecycleState) -> TransitionCallbackReturn:
-        """Give back what was opened."""
+        """Release resources."""
         self.get_logger().info("motors given back")
         return TransitionCallbackReturn.SUCCESS
 
     def _judge(self, parameters: list[Parameter]) -> SetParametersResult:
-        """Accept parameters or refuse all of them; Pilothouse shows the reason."""
+        """Accept all parameters or reject all; Pilothouse shows the reason."""
         for parameter in parameters:
             if parameter.name == "max_speed" and not parameter.value >= 0:
                 return SetParametersResult(successful=False, reason="max_speed is negative")

@@ -1,4 +1,4 @@
-"""Lets others notice within a second that a process is gone, without a message ever sent."""
+"""Lets others detect within a second that a process is gone, without sending any message."""
 
 from rclpy.duration import Duration
 from rclpy.node import Node
@@ -10,16 +10,16 @@ LEASE = Duration(seconds=0.5)
 
 
 def offer_heartbeat(node: Node) -> Publisher:
-    """Offer `~/heartbeat`; whoever watches its liveliness is told when this process is gone.
+    """Offer `~/heartbeat`; subscribers to its liveliness are told when this process is gone.
 
-    The middleware says that the process lives, also while a callback runs for long: nothing has to
-    be published. What is seen is the process: a callback that hangs for ever is not noticed here.
+    The middleware asserts the liveliness of the process, even during a long callback, so nothing
+    has to be published. It only covers the process: a callback that hangs is not detected.
 
     Args:
-        node: Whose heartbeat it is.
+        node: The node that gets the heartbeat.
 
     Returns:
-        A publisher to be kept as long as the node.
+        A publisher; keep it as long as the node.
     """
     qos = QoSProfile(
         depth=1, liveliness=LivelinessPolicy.AUTOMATIC, liveliness_lease_duration=LEASE

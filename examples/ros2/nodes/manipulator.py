@@ -1,6 +1,6 @@
 """The arm of the worked example: a lifecycle node with one parameter.
 
-`drive_base.py` explains what is the same in both. Run it: `python3 manipulator.py`
+`drive_base.py` explains what both nodes share. Run it: `python3 manipulator.py`
 """
 
 import rclpy
@@ -12,7 +12,7 @@ from rclpy.parameter import Parameter
 
 
 class Manipulator(LifecycleNode):
-    """Grips, at most with `max_torque` in Nm."""
+    """Grips with at most `max_torque`, in Nm."""
 
     def __init__(self) -> None:
         super().__init__("manipulator")
@@ -21,28 +21,28 @@ class Manipulator(LifecycleNode):
         self._heartbeat = offer_heartbeat(self)
 
     def on_configure(self, previous: LifecycleState) -> TransitionCallbackReturn:
-        """Look for the arm."""
+        """Find the arm."""
         self.get_logger().info("arm found")
         return TransitionCallbackReturn.SUCCESS
 
     def on_activate(self, previous: LifecycleState) -> TransitionCallbackReturn:
-        """Let go of the brakes."""
+        """Release the brakes."""
         max_torque = self.get_parameter("max_torque").value
         self.get_logger().info(f"brakes off, at most {max_torque} Nm")
         return super().on_activate(previous)
 
     def on_deactivate(self, previous: LifecycleState) -> TransitionCallbackReturn:
-        """Hold still."""
+        """Apply the brakes."""
         self.get_logger().info("brakes on")
         return super().on_deactivate(previous)
 
     def on_cleanup(self, previous: LifecycleState) -> TransitionCallbackReturn:
-        """Give the arm back."""
+        """Release the arm."""
         self.get_logger().info("arm given back")
         return TransitionCallbackReturn.SUCCESS
 
     def _judge(self, parameters: list[Parameter]) -> SetParametersResult:
-        """Accept parameters or refuse all of them."""
+        """Accept all parameters or reject all."""
         for parameter in parameters:
             if parameter.name == "max_torque" and not parameter.value >= 0:
                 return SetParametersResult(successful=False, reason="max_torque is negative")

@@ -9,7 +9,9 @@ So of the last message of both, the one with the later timestamp holds.
 from collections.abc import Iterator
 from dataclasses import dataclass
 
-from domain.events import Event
+from domain.events.changes import ChangeRequested
+from domain.events.event import RecordedEvent
+from domain.events.parts import PartActualChanged
 from domain.lifecycle import LifecycleState, Transition, rule_for
 from domain.state_and_mode import ModeName, PartName, StateAndMode
 from domain.timebase import Instant
@@ -70,12 +72,13 @@ class PartTopics:
                     latched=kind in _LATCHED,
                 )
 
-    def take(self, event: Event) -> None:
+    def take(self, event: RecordedEvent) -> None:
         """Tell what an event means for parts, if it means something."""
-        if event.kind == "part.actual_changed":
-            self._tell_actual(event)
-        elif event.kind == "change.requested":
-            self._tell_request(event)
+        match event.event:
+            case PartActualChanged(part, actual, was):
+                self._tell_step(part, was, actual, event.at)
+            case ChangeRequested():
+                self._tell_request(event.event, event.at)
 
     def recall(self, events: EventLog) -> None:
         """Learn from a log what was asked before, for those who come late, and where parts are.
@@ -87,8 +90,9 @@ class PartTopics:
         self._actuals.clear()
         for event in events.newest_first():
             # A newer request, of this part or of one above it, is known already.
-            if event.kind == "change.requested" and event.data["part"] not in self._targets:
-                self._tell_request(event)
+            request = event.event
+            if isinstance(request, ChangeRequested) and request.part not in self._targets:
+                self._tell_request(request, event.at)
         oldest = next(events.oldest_first(), None)
         self._tell_targets(self._supervisor.clock.now() if oldest is None else oldest.at)
         parts = self._supervisor.core.parts()
@@ -110,12 +114,6 @@ class PartTopics:
         request = self._requests.get(topic)
         return None if request is None else self._message(topic, request)
 
-    def _tell_actual(self, event: Event) -> None:
-        part = PartName(str(event.data["part"]))
-        now = StateAndMode.parse(str(event.data["actual"]))
-        was = StateAndMode.parse(str(event.data["was"]))
-        self._tell_step(part, was, now, event.at)
-
     def _tell_step(self, part: PartName, was: StateAndMode, now: StateAndMode, at: Instant) -> None:
         self._actuals[part] = now
         timestamp = nanoseconds(self._supervisor.clock, at)
@@ -127,8 +125,8 @@ class PartTopics:
         if now.mode != was.mode and self._listeners.hears(topic):
             self._listeners.send(topic, mode_event(timestamp, was.mode, now.mode))
 
-    def _tell_request(self, event: Event) -> None:
-        for topic in self._note_request(event):
+    def _tell_request(self, request: ChangeRequested, at: Instant) -> None:
+        for topic in self._note_request(request, at):
             self._send_request(topic)
 
     def _tell_targets(self, at: Instant) -> None:
@@ -142,18 +140,18 @@ class PartTopics:
         if self._listeners.hears(topic):
             self._listeners.send(topic, self._message(topic, self._requests[topic]))
 
-    def _note_request(self, event: Event) -> list[str]:
+    def _note_request(self, request: ChangeRequested, at: Instant) -> list[str]:
         """Keep what is asked of a part and of all parts below it, and return on which topics."""
-        asked = PartName(str(event.data["part"]))
-        goal, transition = _goal(event)
+        asked = request.part
+        goal = _goal(request)
         if goal is None:
             return []
-        topics = [self._note(asked, goal, event.at, transition)]
+        topics = [self._note(asked, goal, at, request.transition)]
         for part in self._below(asked):
             target = self._supervisor.core.part(part).target
             told = self._targets.get(part)
             if target is not None and not (told and target.agrees_with(told)):
-                topics.append(self._note(part, target, event.at))
+                topics.append(self._note(part, target, at))
         return topics
 
     def _note(
@@ -191,15 +189,11 @@ def _topic(part: PartName, kind: str) -> str:
     return f"/{part}/{kind}"
 
 
-def _goal(event: Event) -> tuple[StateAndMode | None, Transition | None]:
+def _goal(request: ChangeRequested) -> StateAndMode | None:
     """Return what a request asks of its part; None: neither a state nor a mode."""
-    mode, transition = event.data.get("mode"), event.data.get("transition")
-    if mode is not None:
-        return StateAndMode(LifecycleState.ACTIVE, ModeName(str(mode))), None
-    if transition is not None:
-        asked = Transition(str(transition))
-        return StateAndMode(asked.goal), asked
-    return None, None
+    if request.mode is not None:
+        return StateAndMode(LifecycleState.ACTIVE, ModeName(request.mode))
+    return None if request.transition is None else StateAndMode(request.transition.goal)
 
 
 def _step(was: LifecycleState, now: LifecycleState) -> Transition | None:

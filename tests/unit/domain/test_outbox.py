@@ -1,71 +1,73 @@
 """What one input leads to, and what caused what."""
 
 from domain.commands import AskFacts
+from domain.events.changes import ChangeRequested
+from domain.events.health import ErrorRaised, SignalPending, SignalRead
+from domain.events.parts import NodeReported
+from domain.events.service import TimeWasDue
 from domain.identifiers import ChangeId
 from domain.outbox import Outbox, Outputs
 from domain.state_and_mode import PartName
 
 ARM = PartName("arm")
+READ = SignalRead("test", {"battery_level": 0.1})
+RAISED = ErrorRaised("BATTERY_LOW", "battery 10 % is below 50 %", 0.1, 0.5)
 
 
 def test_an_input_from_which_nothing_follows_leaves_no_trace() -> None:
     outbox = Outbox()
-    outbox.begin(5, "signal.read", {"value": 1.0}, "alice")
+    outbox.begin(5, READ, "alice")
     assert outbox.take() == Outputs()
 
 
 def test_what_follows_from_an_input_points_at_it() -> None:
     outbox = Outbox()
-    outbox.begin(5, "signal.read", {"value": 0.1}, "alice")
-    outbox.emit("error.raised", {"error": "BATTERY_LOW"})
+    outbox.begin(5, READ, "alice")
+    outbox.emit(RAISED)
     read, raised = outbox.take().events
-    assert (read.kind, read.cause, read.data) == ("signal.read", None, {"value": 0.1})
-    assert (raised.kind, raised.cause, raised.data) == (
-        "error.raised",
-        read.id,
-        {"error": "BATTERY_LOW"},
-    )
+    assert (read.event, read.cause) == (READ, None)
+    assert (raised.event, raised.cause) == (RAISED, read.id)
 
 
 def test_all_events_of_an_input_have_its_time_and_actor() -> None:
     outbox = Outbox()
-    outbox.begin(5, "signal.read", actor="alice")
-    outbox.emit("error.raised", {})
+    outbox.begin(5, READ, actor="alice")
+    outbox.emit(RAISED)
     assert {(event.at, event.actor) for event in outbox.take().events} == {(5, "alice")}
 
 
 def test_an_input_is_recorded_once_however_much_follows_from_it() -> None:
     outbox = Outbox()
-    outbox.begin(5, "signal.read")
+    outbox.begin(5, READ)
     first, second = outbox.record_input(), outbox.record_input()
-    outbox.emit("error.raised", {})
+    outbox.emit(RAISED)
     assert first == second
     assert [event.kind for event in outbox.take().events] == ["signal.read", "error.raised"]
 
 
 def test_a_nearer_cause_is_told_instead_of_the_input_which_then_leaves_no_trace() -> None:
     outbox = Outbox()
-    outbox.begin(5, "signal.read")
-    pending = outbox.emit("signal.pending", {})
+    outbox.begin(5, READ)
+    pending = outbox.emit(SignalPending("gps_accuracy", "GPS_LOST"))
     outbox.take()
-    outbox.begin(20, "time.passed")
-    outbox.emit("error.raised", {}, cause=pending)
+    outbox.begin(20, TimeWasDue())
+    outbox.emit(RAISED, cause=pending)
     (raised,) = outbox.take().events
     assert (raised.kind, raised.cause) == ("error.raised", pending)
 
 
 def test_the_cause_of_an_input_is_kept() -> None:
     outbox = Outbox()
-    outbox.begin(5, "node.reported", cause=3)
+    outbox.begin(5, NodeReported(ARM), cause=3)
     outbox.record_input()
     assert outbox.take().events[0].cause == 3
 
 
 def test_a_new_input_is_not_mistaken_for_the_one_before() -> None:
     outbox = Outbox()
-    outbox.begin(5, "signal.read", actor="alice")
+    outbox.begin(5, READ, actor="alice")
     before = outbox.record_input()
-    outbox.begin(6, "node.reported")
+    outbox.begin(6, NodeReported(ARM))
     assert outbox.record_input() != before
     assert [(e.at, e.kind, e.actor) for e in outbox.take().events] == [
         (5, "signal.read", "alice"),
@@ -77,8 +79,8 @@ def test_ids_rise_by_one_over_all_inputs() -> None:
     outbox = Outbox()
     ids = []
     for at in range(3):
-        outbox.begin(at, "signal.read")
-        outbox.emit("error.raised", {})
+        outbox.begin(at, READ)
+        outbox.emit(RAISED)
         ids += [event.id for event in outbox.take().events]
     assert ids == [1, 2, 3, 4, 5, 6]
 
@@ -92,7 +94,7 @@ def test_numbers_of_commands_are_never_given_twice() -> None:
 
 def test_what_was_taken_is_not_there_a_second_time() -> None:
     outbox = Outbox()
-    outbox.begin(5, "change.requested")
+    outbox.begin(5, ChangeRequested(ARM))
     outbox.record_input()
     outbox.command(AskFacts(1, ARM))
     outbox.change = ChangeId("c1")

@@ -2,7 +2,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from domain.events import Event
+from domain.events.event import RecordedEvent
 from service.event_log import EventLog, EventReader, Gap
 from tests.support.frames import event
 
@@ -14,8 +14,8 @@ def log_of(count: int, capacity: int = 100) -> EventLog:
     return log
 
 
-def ids(found: list[Event | Gap]) -> list[int]:
-    return [item.id for item in found if isinstance(item, Event)]
+def ids(found: list[RecordedEvent | Gap]) -> list[int]:
+    return [item.id for item in found if isinstance(item, RecordedEvent)]
 
 
 def test_an_empty_log_says_so() -> None:

@@ -4,10 +4,14 @@ from collections.abc import AsyncIterator
 
 import pytest
 
-from domain.events import Event
+from domain.events.changes import ChangeRequested, NodeRestoring
+from domain.events.event import RecordedEvent
+from domain.events.parts import NodeUnreachable
+from domain.state_and_mode import PartName
 from service.event_log import EventLog
 from service.node_incidents import log_node_incidents
 from tests.support.manual_clock import settle
+from tests.support.models import active
 
 
 @pytest.fixture
@@ -23,18 +27,20 @@ async def events() -> AsyncIterator[EventLog]:
 async def test_a_node_that_moves_by_itself_is_in_the_log(
     events: EventLog, caplog: pytest.LogCaptureFixture
 ) -> None:
-    data = {"node": "manipulator", "target": "active.STRONG"}
-    events.append(Event(1, 0, "node.restoring", None, "", data))
+    restoring = NodeRestoring(PartName("manipulator"), active("STRONG"))
+    events.append(RecordedEvent(1, 0, None, "", restoring))
     await settle()
 
-    assert caplog.messages == ["node.restoring: node manipulator, target active.STRONG"]
+    assert caplog.messages == [
+        "node.restoring: manipulator reappeared and is restored to active.STRONG"
+    ]
     assert caplog.records[0].levelno == logging.WARNING
 
 
 async def test_what_somebody_asked_for_is_not(
     events: EventLog, caplog: pytest.LogCaptureFixture
 ) -> None:
-    events.append(Event(1, 0, "change.requested", None, "", {"part": "manipulator"}))
+    events.append(RecordedEvent(1, 0, None, "", ChangeRequested(PartName("manipulator"))))
     await settle()
 
     assert caplog.messages == []
@@ -44,7 +50,9 @@ async def test_of_many_events_at_once_none_is_missed(
     events: EventLog, caplog: pytest.LogCaptureFixture
 ) -> None:
     for number in range(1, 251):
-        events.append(Event(number, 0, "node.unreachable", None, "", {"node": f"n{number}"}))
+        events.append(RecordedEvent(number, 0, None, "", NodeUnreachable(PartName(f"n{number}"))))
     await settle()
 
-    assert caplog.messages == [f"node.unreachable: node n{number}" for number in range(1, 251)]
+    assert caplog.messages == [
+        f"node.unreachable: n{number} is unreachable" for number in range(1, 251)
+    ]

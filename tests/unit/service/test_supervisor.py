@@ -17,10 +17,10 @@ from service.files.model_file import LoadedModel
 from service.ports import BackendMessage
 from service.running import TaskFailedError
 from service.supervisor import Supervisor
-from tests.support.driver import straight
 from tests.support.live_robot import make_onboard, make_supervisor, running
 from tests.support.manual_clock import ManualClock
 from tests.support.models import actuation_model
+from tests.support.paths import straight
 
 
 class Backend:

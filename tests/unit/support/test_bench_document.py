@@ -22,7 +22,7 @@ def test_a_result_becomes_a_section_that_says_what_was_measured_how_and_with_whi
 ):
     text = document([_result()])
 
-    assert "## Inference\n\nOne report after the other.\n\nAsked for: 0.1 ms.\n" in text
+    assert "## Inference\n\nOne report after the other.\n\nRequired: 0.1 ms.\n" in text
     assert "Without node.\n\n`make bench ARGS=tests/bench/bench_inference.py`" in text
     assert "2026-11-24 18:00 UTC" in text
 
@@ -58,7 +58,7 @@ def test_several_machines_are_named_at_each_result() -> None:
 
 
 def test_without_a_bound_none_is_named() -> None:
-    assert "Asked for" not in document([_result(asked="")])
+    assert "Required:" not in document([_result(asked="")])
 
 
 def test_a_bench_that_was_run_by_itself_renews_its_section_and_leaves_the_others() -> None:

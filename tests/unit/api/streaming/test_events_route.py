@@ -9,12 +9,12 @@ import pytest
 
 from api.app import create_app
 from api.streaming.encoder import StreamEncoder
-from domain.events import Event
+from domain.events.event import RecordedEvent
 from domain.inputs import ModeRequest
 from domain.state_and_mode import PartName
 from service.event_log import EventReader, Gap
 from service.supervisor import Supervisor
-from tests.support.frames import event
+from tests.support.frames import RareHappened, event
 from tests.support.live_robot import make_supervisor, running
 from tests.support.manual_clock import ManualClock
 from tests.support.websocket import WebSocketClient
@@ -107,11 +107,11 @@ async def test_a_rare_kind_is_found_without_a_look_at_the_log_for_each_event(
     log = supervisor.events
     for number in range(log.newest + 1, 5_000):
         log.append(event(number))
-    log.append(event(5_000, "test.rare"))
+    log.append(event(5_000, RareHappened))
     looks = 0
     take = EventReader.take
 
-    def counted(reader: EventReader, limit: int) -> list[Event | Gap]:
+    def counted(reader: EventReader, limit: int) -> list[RecordedEvent | Gap]:
         nonlocal looks
         looks += 1
         return take(reader, limit)
@@ -134,7 +134,7 @@ async def test_others_get_their_turn_while_a_large_answer_is_made(
     seen_by_another: set[int] = set()
     encode = StreamEncoder.event
 
-    def counted(encoder: StreamEncoder, given: Event) -> str:
+    def counted(encoder: StreamEncoder, given: RecordedEvent) -> str:
         nonlocal encoded
         encoded += 1
         return encode(encoder, given)

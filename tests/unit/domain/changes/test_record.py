@@ -3,7 +3,8 @@
 import pytest
 
 from domain.changes.plan import Action, NodeGoal, SetParameters
-from domain.changes.record import Change, ChangeSettings, Pursuit, Step
+from domain.changes.record import Change, Pursuit, Step
+from domain.changes.settings import ChangeSettings
 from domain.identifiers import ChangeId
 from domain.inputs import ModeRequest
 from domain.lifecycle import LifecycleState, Transition

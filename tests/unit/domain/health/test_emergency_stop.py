@@ -1,71 +1,114 @@
+from domain.events.event import RecordedEvent
 from domain.health.emergency_stop import EmergencyStop
+from domain.health.health import Health
+from domain.health.signals import default_signals
+from domain.inputs import EmergencyStopRequest
+from domain.outbox import Outbox
 from domain.snapshot import EmergencyStopView
 
 RELEASED = EmergencyStopView(engaged=False, by=None, reason=None, since=None, standstill_at=None)
 
 
+class Robot:
+    """A robot of which nothing but its emergency stop is of interest."""
+
+    def __init__(self) -> None:
+        self.outbox = Outbox()
+        self.health = Health(default_signals(), self.outbox, 0)
+        self.stop = EmergencyStop(self.health, self.outbox)
+
+    def engage(self, by: str, reason: str, now: int) -> list[str]:
+        self.stop.take_request(EmergencyStopRequest(True, reason, by), now)
+        return self._told()
+
+    def release(self, by: str, reason: str, now: int) -> list[str]:
+        self.stop.take_request(EmergencyStopRequest(False, reason, by), now)
+        return self._told()
+
+    def stand(self, now: int) -> list[str]:
+        self.stop.note_standstill(now)
+        return self._told()
+
+    def _told(self) -> list[str]:
+        events: tuple[RecordedEvent, ...] = self.outbox.take().events
+        return [event.kind for event in events]
+
+
 def test_it_starts_released_by_nobody() -> None:
-    assert EmergencyStop().view() == RELEASED
+    assert Robot().stop.view() == RELEASED
 
 
 def test_it_shows_who_engaged_it_why_and_when() -> None:
-    stop = EmergencyStop()
+    robot = Robot()
 
-    assert stop.engage("anna", "child on the track", now=7)
-    assert stop.view() == EmergencyStopView(
+    assert robot.engage("anna", "child on the track", 7)[0] == "emergency_stop.engaged"
+    assert robot.stop.view() == EmergencyStopView(
         engaged=True, by="anna", reason="child on the track", since=7, standstill_at=None
     )
 
 
-def test_whoever_engages_it_second_does_not_hide_who_was_first() -> None:
-    stop = EmergencyStop()
-    stop.engage("anna", "child on the track", now=7)
-    before = stop.view()
+def test_it_raises_estop_until_it_is_released() -> None:
+    robot = Robot()
 
-    assert not stop.engage("bert", "me too", now=9)
-    assert stop.view() is before
+    assert "error.raised" in robot.engage("anna", "child on the track", 7)
+    assert robot.health.is_stopped
+    assert [reason.code for reason in robot.health.stop_reasons] == ["ESTOP"]
+
+    robot.release("bert", "track is clear", 20)
+    robot.health.pass_time(10**9)
+    assert not robot.health.is_stopped
+    assert robot.health.stop_reasons == ()
+
+
+def test_whoever_engages_it_second_does_not_hide_who_was_first() -> None:
+    robot = Robot()
+    robot.engage("anna", "child on the track", 7)
+    before = robot.stop.view()
+
+    assert robot.engage("bert", "me too", 9) == []
+    assert robot.stop.view() is before
 
 
 def test_it_shows_who_released_it() -> None:
-    stop = EmergencyStop()
-    stop.engage("anna", "child on the track", now=7)
+    robot = Robot()
+    robot.engage("anna", "child on the track", 7)
 
-    assert stop.release("bert", "track is clear", now=20)
-    assert stop.view() == EmergencyStopView(
+    assert robot.release("bert", "track is clear", 20)[0] == "emergency_stop.released"
+    assert robot.stop.view() == EmergencyStopView(
         engaged=False, by="bert", reason="track is clear", since=20, standstill_at=None
     )
 
 
 def test_releasing_what_is_released_changes_nothing() -> None:
-    stop = EmergencyStop()
+    robot = Robot()
 
-    assert not stop.release("bert", "just in case", now=3)
-    assert stop.view() == RELEASED
+    assert robot.release("bert", "just in case", 3) == []
+    assert robot.stop.view() == RELEASED
 
 
 def test_the_first_standstill_after_the_stop_is_kept() -> None:
-    stop = EmergencyStop()
-    stop.engage("anna", "child on the track", now=7)
+    robot = Robot()
+    robot.engage("anna", "child on the track", 7)
 
-    assert stop.note_standstill(now=9)
-    assert not stop.note_standstill(now=12)
-    assert stop.view() == EmergencyStopView(
+    assert robot.stand(9) == ["emergency_stop.standstill"]
+    assert robot.stand(12) == []
+    assert robot.stop.view() == EmergencyStopView(
         engaged=True, by="anna", reason="child on the track", since=7, standstill_at=9
     )
 
 
 def test_a_vehicle_that_stands_without_a_stop_is_no_news() -> None:
-    stop = EmergencyStop()
+    robot = Robot()
 
-    assert not stop.note_standstill(now=9)
-    assert stop.view() == RELEASED
+    assert robot.stand(9) == []
+    assert robot.stop.view() == RELEASED
 
 
 def test_another_stop_waits_for_a_standstill_of_its_own() -> None:
-    stop = EmergencyStop()
-    stop.engage("anna", "child on the track", now=7)
-    stop.note_standstill(now=9)
-    stop.release("bert", "track is clear", now=20)
-    stop.engage("anna", "another child", now=30)
+    robot = Robot()
+    robot.engage("anna", "child on the track", 7)
+    robot.stand(9)
+    robot.release("bert", "track is clear", 20)
+    robot.engage("anna", "another child", 30)
 
-    assert stop.view().standstill_at is None
+    assert robot.stop.view().standstill_at is None

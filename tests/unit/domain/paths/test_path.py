@@ -40,11 +40,11 @@ BEND = path_of(arc(20, pi))
     [
         (np.zeros((5, 2)), "shape"),
         (np.zeros(3), "shape"),
-        (np.zeros((1, 3)), "at least 2"),
-        (np.zeros((0, 3)), "at least 2"),
-        (np.array([[0, 0, 0], [nan, 0, 0]]), "waypoint 1"),
-        (np.array([[0, 0, nan], [1, 0, 0]]), "waypoint 0"),
-        (np.array([[0, 0, 0], [1e200, 0, 0]]), "waypoint 1"),
+        (np.zeros((1, 3)), "2 to 100000 waypoints, not 1"),
+        (np.zeros((0, 3)), "2 to 100000 waypoints, not 0"),
+        (np.array([[0, 0, 0], [nan, 0, 0]]), "x_m must be finite"),
+        (np.array([[0, 0, nan], [1, 0, 0]]), "yaw_rad must be finite"),
+        (np.array([[0, 0, 0], [1e200, 0, 0]]), r"within \+-1,000,000 m"),
         (np.ones((9, 3)), "same place"),
     ],
 )
@@ -57,7 +57,7 @@ def test_a_waypoint_that_is_not_finite_is_pointed_at() -> None:
     with pytest.raises(InvalidValueError) as caught:
         Path(np.array([[0, 0, 0], [1, 0, 0], [2, nan, 0]]))
 
-    assert caught.value.pointer == "waypoints.2"
+    assert caught.value.pointer == "/waypoints/2/y_m"
 
 
 def test_a_path_does_not_change_with_what_it_was_made_of() -> None:

@@ -35,7 +35,6 @@ def test_everything_that_is_said_holds() -> None:
         max_cross_track_m=1.5,
         max_cross_track_for=seconds(2.5),
         no_progress_for=seconds(30),
-        pose_stale_after=seconds(0.4),
         speed=SpeedLimits(lateral_acceleration_mps2=1.1, acceleration_mps2=1.2, braking_mps2=1.3),
     )
 

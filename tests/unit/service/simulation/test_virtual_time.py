@@ -6,7 +6,7 @@ from typing import Any, Protocol, TypeAlias
 import numpy as np
 import pytest
 
-from domain.events import Event
+from domain.events.event import RecordedEvent
 from domain.inputs import (
     EmergencyStopRequest,
     HoldRequest,
@@ -217,7 +217,7 @@ STORY: list[tuple[float, Act]] = [
 END_S = 40.0
 
 
-def told(log: EventLog) -> list[Event]:
+def told(log: EventLog) -> list[RecordedEvent]:
     return list(log.oldest_first())
 
 

@@ -9,9 +9,9 @@ from domain.lifecycle import Transition
 from domain.simulation.node_settings import Fault
 from domain.snapshot import TaskPhase
 from service.ros.interface.services import carry_out
-from tests.support.driver import straight
 from tests.support.manual_clock import settle
 from tests.support.models import ACTUATION, ARM, BASE
+from tests.support.paths import straight
 from tests.support.ros_robot import OPERATOR, RosRobot
 
 SERVICES = {

@@ -1,0 +1,25 @@
+"""The audit trail: who asked to change something, and how that was answered."""
+
+from domain.concern import Concern, Takers
+from domain.events.service import WriteAnswered
+from domain.inputs import WriteRecord
+from domain.outbox import Outbox
+from domain.timebase import Instant
+
+
+class Audit(Concern):
+    """Records every request that was to change something, whatever came of it."""
+
+    def __init__(self, outbox: Outbox) -> None:
+        self._outbox = outbox
+
+    @property
+    def takes(self) -> Takers:
+        """Return what takes each class of input."""
+        return {WriteRecord: self.take_record}
+
+    def take_record(self, record: WriteRecord, now: Instant) -> None:
+        """Record a request and how it was answered."""
+        written = WriteAnswered(record.method, record.path, record.status, record.address)
+        self._outbox.begin(now, written, record.actor)
+        self._outbox.record_input()

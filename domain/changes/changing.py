@@ -1,0 +1,177 @@
+"""Changes as a concern of the core: requests in, steps and verified ends out."""
+
+from itertools import islice
+
+from domain.changes.admission import ChangeAdmission
+from domain.changes.operations import Changes
+from domain.changes.plan import ChangeGoal, next_steps, presumed_steps
+from domain.changes.record import Step
+from domain.changes.request_check import check_request
+from domain.changes.restoring import Restoring
+from domain.changes.settings import ChangeSettings
+from domain.concern import Concern, Takers
+from domain.errors import BackendUnavailableError
+from domain.events.changes import (
+    BackendAvailable,
+    BackendUnavailable,
+    ChangeCancelRequested,
+    ChangeRequested,
+    NodeAnswered,
+)
+from domain.health.health import Health
+from domain.identifiers import ChangeId
+from domain.inputs import (
+    BackendStatus,
+    CancelRequest,
+    ChangeRequest,
+    ModeRequest,
+    NodeAnswer,
+    NodeReport,
+    ParametersRequest,
+    TransitionRequest,
+)
+from domain.lifecycle import LifecycleState, Transition
+from domain.outbox import Outbox
+from domain.parts.parts import Parts
+from domain.snapshot import ChangeView, ModeView, StepView
+from domain.state_and_mode import PartName
+from domain.timebase import Instant
+
+
+class Changing(Concern):
+    """Admits requests, follows the steps of changes, and restores nodes that reappear."""
+
+    def __init__(
+        self, parts: Parts, health: Health, settings: ChangeSettings, outbox: Outbox
+    ) -> None:
+        self._parts = parts
+        self._health = health
+        self._outbox = outbox
+        self._admission = ChangeAdmission(parts.model, parts.facts)
+        self._changes = Changes(parts, settings, outbox, health)
+        self._restoring = Restoring(parts, self._changes, settings, outbox, self._admit)
+        self._backend = BackendStatus(available=True)
+
+    # --- what happens ----------------------------------------------------------------------------
+
+    @property
+    def takes(self) -> Takers:
+        """Return what takes each class of input."""
+        return {
+            ModeRequest: self._take_request,
+            TransitionRequest: self._take_request,
+            ParametersRequest: self._take_request,
+            CancelRequest: self._take_cancel,
+            NodeReport: self._follow_report,
+            NodeAnswer: self._take_answer,
+            BackendStatus: self._take_backend_status,
+        }
+
+    def wake_at(self) -> Instant | None:
+        """Return the next deadline of a step."""
+        return self._changes.wake_at()
+
+    def pass_time(self, now: Instant) -> None:
+        """Handle every deadline up to now."""
+        self._changes.pass_time(now)
+
+    def settle(self, now: Instant) -> bool:
+        """Begin the next change that restores a node; return whether there was one."""
+        return self._restoring.begin_next(now)
+
+    def _take_request(self, request: ChangeRequest, now: Instant) -> None:
+        part = check_request(self._parts.model, self._parts.facts, request)
+        goal = self._admit(request)
+        self._outbox.begin(now, _described(part, request), request.actor)
+        self._outbox.change = self._changes.begin(part, request, goal, now)
+        self._restoring.forget(goal.targets)
+
+    def _admit(self, request: ChangeRequest) -> ChangeGoal:
+        if not self._backend.available:
+            raise BackendUnavailableError(self._backend.reason)
+        return self._admission.admit(request, self._health.stop_reasons)
+
+    def _take_cancel(self, request: CancelRequest, now: Instant) -> None:
+        self._outbox.begin(now, ChangeCancelRequested(request.change), request.actor)
+        self._restoring.cancel(request.change)
+        self._changes.cancel(request.change, now)
+
+    def _follow_report(self, report: NodeReport, now: Instant) -> None:
+        """Judge the step in flight by what the report made of its node."""
+        step = self._changes.step_in_flight(report.node)
+        self._changes.report(report, now)
+        self._restoring.take_report(report, step)
+
+    def _take_answer(self, answer: NodeAnswer, now: Instant) -> None:
+        step = self._changes.step_in_flight(answer.node)
+        awaited = step is not None and step.request == answer.request
+        answered = NodeAnswered(answer.node, answer.accepted, answer.reason)
+        self._outbox.begin(now, answered, cause=step.event if step and awaited else None)
+        self._changes.answer(answer, now)
+
+    def _take_backend_status(self, status: BackendStatus, now: Instant) -> None:
+        if status.available is not self._backend.available:
+            kind = BackendAvailable if status.available else BackendUnavailable
+            self._outbox.begin(now, kind(status.reason))
+            self._outbox.record_input()
+        self._backend = status
+
+    # --- what can be seen ------------------------------------------------------------------------
+
+    def modes(self, part: PartName) -> tuple[ModeView, ...]:
+        """Return the modes of a part, and what stands against entering each of them now."""
+        stop = self._health.stop_reasons
+        views = []
+        for mode in self._parts.model.modes_of(part):
+            blockers = self._admission.blockers(ModeRequest(part, mode), stop)
+            views.append(ModeView(mode, not blockers, blockers))
+        return tuple(views)
+
+    def available_transitions(self, part: PartName) -> tuple[Transition, ...]:
+        """Return the transitions that would be accepted now and lead somewhere else."""
+        return self._admission.available_transitions(part, self._health.stop_reasons)
+
+    def plan(self, request: ChangeRequest) -> tuple[StepView, ...]:
+        """Return the steps that a request would take now; nothing is changed.
+
+        Raises:
+            PilothouseError: The request would be refused.
+        """
+        check_request(self._parts.model, self._parts.facts, request)
+        goal = self._admit(request)
+        steps = []
+        for node, node_goal in goal.nodes.items():
+            facts = self._parts.facts[node]
+            unknown = facts.known_state is LifecycleState.UNKNOWN
+            actions = presumed_steps(node_goal) if unknown else next_steps(facts, node_goal)
+            steps += [Step(ChangeId(""), node, action).view() for action in actions or ()]
+        return tuple(steps)
+
+    def change(self, identity: str) -> ChangeView:
+        """Return a change.
+
+        Raises:
+            UnknownChangeError: There is none of that id, or it is forgotten.
+        """
+        return self._changes.get(identity).view()
+
+    def changes(
+        self, limit: int | None = None, part: PartName | None = None
+    ) -> tuple[ChangeView, ...]:
+        """Return the changes that are kept, the newest first.
+
+        Args:
+            limit: At most so many.
+            part: Only those that were asked of this part.
+        """
+        kept = (c for c in self._changes.all() if part is None or c.part == part)
+        return tuple(change.view() for change in islice(kept, limit))
+
+
+def _described(part: PartName, request: ChangeRequest) -> ChangeRequested:
+    """Return the event that records a request."""
+    if isinstance(request, ModeRequest):
+        return ChangeRequested(part, mode=request.mode)
+    if isinstance(request, TransitionRequest):
+        return ChangeRequested(part, transition=request.transition)
+    return ChangeRequested(part, parameters=dict(request.values))

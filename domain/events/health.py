@@ -1,0 +1,157 @@
+"""What is told of signals, errors, the emergency stop and the state of the robot."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+from domain.events.event import Event, because
+from domain.inputs import SignalValue
+from domain.snapshot import SystemState
+
+
+@dataclass(frozen=True, slots=True)
+class SignalRead(Event):
+    """One or more readings arrived together."""
+
+    kind = "signal.read"
+    is_input = True
+    is_notable = False
+
+    source: str
+    values: Mapping[str, SignalValue]
+
+    def _words(self) -> str:
+        values = ", ".join(f"{signal} {value}" for signal, value in self.values.items())
+        return f"{values} (source {self.source})"
+
+
+@dataclass(frozen=True, slots=True)
+class SignalPending(Event):
+    """A signal is bad, and becomes an error unless it recovers in time."""
+
+    kind = "signal.pending"
+    is_notable = False
+
+    signal: str
+    error: str
+
+    def _words(self) -> str:
+        return f"{self.signal} is bad; {self.error} follows if it lasts"
+
+
+@dataclass(frozen=True, slots=True)
+class SignalSettled(Event):
+    """A signal recovered before it became an error."""
+
+    kind = "signal.settled"
+    is_notable = False
+
+    signal: str
+    error: str
+
+    def _words(self) -> str:
+        return f"{self.signal} recovered; no {self.error}"
+
+
+@dataclass(frozen=True, slots=True)
+class SignalSkewed(Event):
+    """The clock of a signal's sender differs from ours by more than 1 s."""
+
+    kind = "signal.skewed"
+    is_notable = False
+
+    signal: str
+
+    def _words(self) -> str:
+        return f"the clock of the sender of {self.signal} differs from ours by more than 1 s"
+
+
+@dataclass(frozen=True, slots=True)
+class ErrorRaised(Event):
+    """An error is raised."""
+
+    kind = "error.raised"
+
+    error: str
+    message: str
+    value: object
+    threshold: object
+
+    def _words(self) -> str:
+        return f"{self.error}: {self.message}"
+
+
+@dataclass(frozen=True, slots=True)
+class ErrorCleared(Event):
+    """An error is cleared."""
+
+    kind = "error.cleared"
+
+    error: str
+
+    def _words(self) -> str:
+        return f"{self.error} cleared"
+
+
+@dataclass(frozen=True, slots=True)
+class ErrorAcknowledged(Event):
+    """Somebody acknowledges an error."""
+
+    kind = "error.acknowledged"
+    is_input = True
+
+    error: str
+
+    def _words(self) -> str:
+        return f"{self.error} acknowledged"
+
+
+@dataclass(frozen=True, slots=True)
+class EmergencyStopEngaged(Event):
+    """Somebody engages the emergency stop."""
+
+    kind = "emergency_stop.engaged"
+    is_input = True
+
+    reason: str
+
+    def _words(self) -> str:
+        return because("emergency stop engaged", self.reason)
+
+
+@dataclass(frozen=True, slots=True)
+class EmergencyStopReleased(Event):
+    """Somebody releases the emergency stop."""
+
+    kind = "emergency_stop.released"
+    is_input = True
+
+    reason: str
+
+    def _words(self) -> str:
+        return "emergency stop released"
+
+
+@dataclass(frozen=True, slots=True)
+class EmergencyStopStandstill(Event):
+    """The vehicle was first seen at standstill after the emergency stop."""
+
+    kind = "emergency_stop.standstill"
+
+    def _words(self) -> str:
+        return "the vehicle is at standstill after the emergency stop"
+
+
+@dataclass(frozen=True, slots=True)
+class SystemStateChanged(Event):
+    """The state of the robot or its errors changed."""
+
+    kind = "system_state.changed"
+
+    state: SystemState
+    was: SystemState
+    errors: tuple[str, ...]
+    error_code: int
+
+    def _words(self) -> str:
+        step = self.state if self.state is self.was else f"{self.was} -> {self.state}"
+        return because(str(step), ", ".join(self.errors))

@@ -1,0 +1,20 @@
+"""All kinds of events by name, for the documents of the interface."""
+
+from collections.abc import Iterator, Mapping
+from types import ModuleType
+
+from domain.events import changes, driving, health, parts, service
+from domain.events.event import Event
+
+
+def _kinds(*modules: ModuleType) -> Iterator[type[Event]]:
+    for module in modules:
+        for item in vars(module).values():
+            if isinstance(item, type) and issubclass(item, Event) and hasattr(item, "kind"):
+                yield item
+
+
+EVENTS: Mapping[str, type[Event]] = {
+    kind.kind: kind
+    for kind in sorted(_kinds(parts, changes, health, driving, service), key=lambda item: item.kind)
+}

@@ -1,0 +1,198 @@
+"""The parts as a concern of the core: what nodes report, what follows, and what is wanted."""
+
+from collections.abc import Iterable, Mapping
+
+from domain.concern import Concern, Takers
+from domain.events.parts import (
+    DeviationBegan,
+    DeviationEnded,
+    NodeReachable,
+    NodeReported,
+    NodeUnreachable,
+    PartActualChanged,
+)
+from domain.identifiers import ChangeId
+from domain.inputs import NodeReport
+from domain.lifecycle import LifecycleState
+from domain.outbox import Outbox
+from domain.parameters import value_type
+from domain.parts.deviations import Deviations
+from domain.parts.mode_inference import ModeInference
+from domain.parts.node_facts import NodeFacts
+from domain.parts.reachability import Reachability
+from domain.parts.system_model import SmhModel
+from domain.parts.targets import Targets
+from domain.snapshot import ParameterView, PartView
+from domain.state_and_mode import DEFAULT_MODE, PartName, StateAndMode
+from domain.timebase import Instant
+
+_UNKNOWN = StateAndMode(LifecycleState.UNKNOWN)
+
+
+class Parts(Concern):
+    """All parts: facts, inference, targets and deviations, and what is told of them."""
+
+    def __init__(self, model: SmhModel, outbox: Outbox) -> None:
+        self.model = model
+        self.inference = ModeInference(model)
+        """To be read; what it is told comes from here."""
+        self._targets = Targets(self.inference)
+        self._deviations = Deviations(self.inference)
+        self._reachability = Reachability(model)
+        self._outbox = outbox
+        self._told: dict[PartName, StateAndMode] = {}
+        self._touched: set[PartName] = set()
+        """Parts about which something changed since the last `settle`."""
+        self._views: dict[PartName, PartView] = {}
+        """Kept until something about their part changes."""
+        self._changes: dict[PartName, ChangeId] = {}
+        self._steps: dict[PartName, int] = {}
+        self.state_before = LifecycleState.UNKNOWN
+        """State that the node of the newest report was known to be in before it."""
+
+    # --- what happens ----------------------------------------------------------------------------
+
+    @property
+    def takes(self) -> Takers:
+        """Return what takes each class of input."""
+        return {NodeReport: self.take_report}
+
+    def take_report(self, report: NodeReport, now: Instant) -> None:
+        """Take in what a node reports, and tell what it changed.
+
+        Raises:
+            InvalidValueError: A parameter has a value of a type that parameters do not have.
+            UnknownPartError: The node is not in the model.
+        """
+        for value in (report.parameters or {}).values():
+            value_type(value)
+        facts = self.inference.facts_of(report.node)
+        self._outbox.begin(now, _described(report), cause=self._steps.get(report.node))
+        self.state_before = facts.known_state
+        changed = self.inference.report(report, now)
+        self._note_reachable(report.node, reachable=bool(facts.reachable))
+        self.touch(changed)
+        self._tell_actuals(changed)
+
+    def ask(self, wanted: Mapping[PartName, StateAndMode]) -> None:
+        """Record what somebody asks of parts; it is what is pursued."""
+        self.touch(self._targets.ask(wanted))
+        self.touch(wanted)
+
+    def put_under(self, change: ChangeId, parts: Iterable[PartName]) -> None:
+        """Record that parts are under a change, instead of an earlier one."""
+        for part in parts:
+            self._changes[part] = change
+            self.touch((part,))
+
+    def let_go(self, change: ChangeId, parts: Iterable[PartName]) -> None:
+        """Record that parts are not under a change any more; those under another one stay so."""
+        for part in parts:
+            if self._changes.get(part) == change:
+                del self._changes[part]
+                self.touch((part,))
+
+    def expect_report(self, node: PartName, step: int) -> None:
+        """Record the event of the step that a node is at; its reports are a consequence of that."""
+        self._steps[node] = step
+
+    def expect_nothing(self, node: PartName) -> None:
+        """Record that a node is at no step."""
+        self._steps.pop(node, None)
+
+    def touch(self, parts: Iterable[PartName]) -> None:
+        """Note that something about parts changed."""
+        self._touched.update(parts)
+
+    def settle(self, now: Instant) -> bool:
+        """Tell where touched parts are, and where deviations began or ended."""
+        touched, self._touched = self._touched, set()
+        if not touched:
+            return False
+        self._outbox.parts |= touched
+        self._tell_actuals(touched)
+        for part in sorted(touched):
+            self._views.pop(part, None)
+            began = self._deviations.look(part, now)
+            if began is not None:
+                self._tell_deviation(part, began=began)
+        return True
+
+    # --- what can be seen ------------------------------------------------------------------------
+
+    @property
+    def facts(self) -> Mapping[PartName, NodeFacts]:
+        """Return what is known of each node, to be read only."""
+        return self.inference.facts
+
+    def target(self, part: PartName) -> StateAndMode | None:
+        """Return what is pursued for a part; None: nothing."""
+        return self.inference.target(part)
+
+    def change_of(self, part: PartName) -> ChangeId | None:
+        """Return the change that a part is under."""
+        return self._changes.get(part)
+
+    def view(self, part: PartName) -> PartView:
+        """Return the view of a part that the model has; the same object until it changes."""
+        view = self._views.get(part)
+        if view is None:
+            view = self._views[part] = self._build(part)
+        return view
+
+    def views(self) -> Mapping[PartName, PartView]:
+        """Return the views of all parts, systems first, in the order of the model file."""
+        return {part: self.view(part) for part in self.model.parts}
+
+    def parameters(self, node: PartName) -> tuple[ParameterView, ...]:
+        """Return the parameters of a node, and what its effective target wants of them."""
+        known = self.facts[node].parameters
+        target = self.target(node)
+        modes = self.model.nodes[node].modes
+        active = target is not None and target.state is LifecycleState.ACTIVE
+        wanted = modes.get((target.mode if target else None) or DEFAULT_MODE, {}) if active else {}
+        names = sorted({*known, *wanted, *modes.get(DEFAULT_MODE, {})})
+        return tuple(ParameterView(name, known.get(name), wanted.get(name)) for name in names)
+
+    # --- inside ----------------------------------------------------------------------------------
+
+    def _note_reachable(self, node: PartName, *, reachable: bool) -> None:
+        if self._reachability.note(node, reachable=reachable):
+            self.touch((node, *self.model.ancestors[node]))
+            self._outbox.emit(NodeReachable(node) if reachable else NodeUnreachable(node))
+
+    def _tell_actuals(self, parts: Iterable[PartName]) -> None:
+        """Tell of each part whose actual state or mode is another one than told before."""
+        for part in sorted(parts):
+            actual = self.inference.actual(part)
+            now, was = actual.state_and_mode, self._told.get(part, _UNKNOWN)
+            if now == was:
+                continue
+            self._told[part] = now
+            is_system = part in self.model.systems
+            self._outbox.emit(PartActualChanged(part, now, was, actual.reason, of_system=is_system))
+
+    def _tell_deviation(self, part: PartName, *, began: bool) -> None:
+        actual = self.inference.actual(part)
+        kind = DeviationBegan if began else DeviationEnded
+        self._outbox.emit(kind(part, self.target(part), actual.state_and_mode, actual.reason))
+
+    def _build(self, part: PartName) -> PartView:
+        system = self.model.systems.get(part)
+        return PartView(
+            name=part,
+            kind="system" if system else "node",
+            parts=system.parts if system else (),
+            target=self._targets.asked(part),
+            effective_target=self._targets.effective(part),
+            actual=self.inference.actual(part),
+            converged=self._deviations.since(part) is None,
+            deviation_since=self._deviations.since(part),
+            reachable=self._reachability.reaches(part),
+            change=self.change_of(part),
+        )
+
+
+def _described(report: NodeReport) -> NodeReported:
+    parameters = None if report.parameters is None else dict(report.parameters)
+    return NodeReported(report.node, report.state, report.mode, parameters, report.reachable)

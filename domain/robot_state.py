@@ -1,0 +1,43 @@
+"""The state of the whole robot: IDLE, RUNNING or ERROR, a view of its errors and its task."""
+
+from domain.concern import Concern
+from domain.events.health import SystemStateChanged
+from domain.health.health import Health
+from domain.outbox import Outbox
+from domain.snapshot import SystemStateView, TaskStatus
+from domain.tasks.driving import Driving
+from domain.timebase import Instant
+
+
+class RobotState(Concern):
+    """Tells the state once errors and task have settled, so that the robot is made safe before."""
+
+    def __init__(self, health: Health, driving: Driving, outbox: Outbox) -> None:
+        self._health = health
+        self._driving = driving
+        self._outbox = outbox
+        view = health.system_state(TaskStatus.NO_TASK)
+        self._told = (view.state, view.errors)
+        self._told_status = TaskStatus.NO_TASK
+
+    def settle(self, now: Instant) -> bool:
+        """Tell the state of the robot if it is another one than told before."""
+        status = self._driving.status
+        if status is self._told_status and self._health.errors == self._told[1]:
+            return False
+        view = self._health.system_state(status)
+        if status is not self._told_status:
+            self._told_status = status
+            self._outbox.system_state = True
+        was, errors_before = self._told
+        if (view.state, view.errors) != self._told:
+            self._told = (view.state, view.errors)
+            self._outbox.system_state = True
+            cause = self._health.decided_by if view.errors != errors_before else None
+            changed = SystemStateChanged(view.state, was, view.errors, view.error_code)
+            self._outbox.emit(changed, cause)
+        return True
+
+    def view(self) -> SystemStateView:
+        """Return the state of the robot with its reasons."""
+        return self._health.system_state(self._driving.status)

@@ -1,0 +1,53 @@
+"""What is told of nodes and systems."""
+
+import pytest
+
+from domain.events.event import Event
+from domain.events.parts import (
+    DeviationBegan,
+    DeviationEnded,
+    NodeReachable,
+    NodeReported,
+    NodeUnreachable,
+    PartActualChanged,
+)
+from domain.lifecycle import LifecycleState
+from domain.state_and_mode import PartName
+from tests.support.models import active, inactive
+
+ARM, ACTUATION = PartName("arm"), PartName("actuation")
+
+
+@pytest.mark.parametrize(
+    ("event", "words"),
+    [
+        (
+            NodeReported(ARM, LifecycleState.INACTIVE, parameters={"torque": 1.0}),
+            "arm reports inactive, parameters torque",
+        ),
+        (NodeReported(ARM, reachable=False), "arm reports unreachable"),
+        (NodeReported(ARM, reachable=True), "arm reports that it is reachable"),
+        (NodeReachable(ARM), "arm is reachable"),
+        (NodeUnreachable(ARM), "arm is unreachable"),
+        (
+            PartActualChanged(ACTUATION, active("FAST"), inactive(), None),
+            "actuation: inactive -> active.FAST",
+        ),
+        (
+            DeviationBegan(ARM, active("FAST"), inactive(), "arm is unreachable"),
+            "arm is inactive, target active.FAST: arm is unreachable",
+        ),
+        (
+            DeviationEnded(ARM, None, inactive(), None),
+            "arm is inactive, target nothing in particular",
+        ),
+    ],
+    ids=lambda value: value.kind if isinstance(value, Event) else "",
+)
+def test_an_event_says_in_words_what_happened(event: Event, words: str) -> None:
+    assert event.words == words
+
+
+def test_a_short_list_has_the_steps_of_systems_and_not_those_of_each_node() -> None:
+    assert not PartActualChanged(ARM, active(), inactive(), None).notable
+    assert PartActualChanged(ACTUATION, active(), inactive(), None, of_system=True).notable

@@ -1,0 +1,228 @@
+"""What is told of the robot's health, and what led to it."""
+
+from types import SimpleNamespace
+from typing import cast
+
+import pytest
+
+from domain.events.event import RecordedEvent
+from domain.events.service import TimeWasDue
+from domain.health.health import Health
+from domain.health.signals import default_signals
+from domain.inputs import Reading, Readings, SignalValue
+from domain.outbox import Outbox, Outputs
+from domain.robot_state import RobotState
+from domain.snapshot import TaskStatus
+from domain.tasks.driving import Driving
+from domain.timebase import seconds
+from tests.support.good import GOOD
+
+
+class Robot:
+    """The health of a robot, and its state, with what is told of both."""
+
+    def __init__(self) -> None:
+        self.outbox = Outbox()
+        self.health = Health(default_signals(), self.outbox, 0)
+        self.driving = SimpleNamespace(status=TaskStatus.NO_TASK)
+        self.state = RobotState(self.health, cast("Driving", self.driving), self.outbox)
+        self.events: dict[int, RecordedEvent] = {}
+        self.now = 0
+        self.last = Outputs()
+
+    def read(self, stamp: int | None = None, /, **values: SignalValue) -> list[RecordedEvent]:
+        items = tuple(Reading(name, value, stamp) for name, value in values.items())
+        self.health.take_readings(Readings(items, "test"), self.now)
+        return self._taken()
+
+    def keep_reading(self, duration_s: float, **values: SignalValue) -> list[RecordedEvent]:
+        """Read every 500 ms, so that nothing is stale."""
+        events = []
+        for _ in range(round(duration_s / 0.5)):
+            events += self.pass_time(0.5)
+            events += self.read(**{**GOOD, **values})
+        return events
+
+    def pass_time(self, duration_s: float) -> list[RecordedEvent]:
+        end = self.now + seconds(duration_s)
+        events = []
+        while (due := self.health.wake_at()) is not None and due <= end:
+            self.now = due
+            self.outbox.begin(due, TimeWasDue())
+            self.health.pass_time(due)
+            events += self._taken()
+        self.now = end
+        return events
+
+    def root(self, event: RecordedEvent) -> str:
+        while event.cause is not None:
+            event = self.events[event.cause]
+        return event.kind
+
+    def _taken(self) -> list[RecordedEvent]:
+        self.state.settle(self.now)
+        self.last = self.outbox.take()
+        events = list(self.last.events)
+        self.events |= {event.id: event for event in events}
+        return events
+
+
+@pytest.fixture
+def health() -> Robot:
+    health = Robot()
+    health.read(**GOOD)
+    return health
+
+
+def _kinds(events: list[RecordedEvent]) -> list[str]:
+    return [event.kind for event in events]
+
+
+def _only(events: list[RecordedEvent], kind: str) -> RecordedEvent:
+    (event,) = [event for event in events if event.kind == kind]
+    return event
+
+
+def test_a_reading_that_changes_nothing_leaves_no_trace(health: Robot) -> None:
+    assert health.read(**GOOD) == []
+    assert not health.last.system_state
+
+
+def test_an_error_is_told_with_its_value_its_limit_and_the_reading_that_caused_it(
+    health: Robot,
+) -> None:
+    events = health.read(battery_level=0.42)
+    assert _kinds(events) == ["signal.read", "error.raised", "system_state.changed"]
+    raised = _only(events, "error.raised")
+    assert raised.cause == events[0].id
+    assert raised.data == {
+        "error": "BATTERY_LOW",
+        "message": "battery 42 % is below 50 %",
+        "value": 0.42,
+        "threshold": 0.5,
+    }
+
+
+def test_the_state_is_told_with_all_errors_and_their_code(health: Robot) -> None:
+    health.read(battery_level=0.42)
+    changed = _only(health.read(temperature=60.0), "system_state.changed")
+    assert changed.data == {
+        "state": "ERROR",
+        "was": "ERROR",
+        "errors": ["BATTERY_LOW", "TEMPERATURE_HIGH"],
+        "error_code": 33,
+    }
+
+
+def test_another_reason_for_the_same_errors_is_no_news_of_the_state(health: Robot) -> None:
+    health.read(battery_level=0.42)
+    assert health.read(battery_level=0.41) == []
+    assert not health.last.system_state, "the next tick shows it"
+
+
+def test_the_end_of_an_error_is_told(health: Robot) -> None:
+    health.read(battery_level=0.42)
+    health.pass_time(0.5)
+    events = health.read(**GOOD)
+    assert _only(events, "error.cleared").data == {"error": "BATTERY_LOW"}
+    assert _only(events, "system_state.changed").data["state"] == "IDLE"
+
+
+def test_an_error_that_needs_time_is_told_when_it_begins_to_count(health: Robot) -> None:
+    events = health.read(gps_accuracy=300.0)
+    assert _kinds(events) == ["signal.read", "signal.pending"]
+    assert events[1].data == {"signal": "gps_accuracy", "error": "GPS_LOST"}
+
+
+def test_what_stopped_counting_is_told(health: Robot) -> None:
+    health.read(gps_accuracy=300.0)
+    events = health.read(gps_accuracy=100.0)
+    assert _only(events, "signal.settled").data == {"signal": "gps_accuracy", "error": "GPS_LOST"}
+
+
+def test_an_error_that_time_raised_is_caused_by_the_reading_that_first_was_bad(
+    health: Robot,
+) -> None:
+    first = health.read(gps_accuracy=300.0)
+    raised = _only(health.keep_reading(15, gps_accuracy=300.0), "error.raised")
+    assert raised.cause == first[1].id
+    assert health.root(raised) == "signal.read"
+
+
+def test_a_state_that_time_changed_is_caused_by_the_reading_that_first_was_bad(
+    health: Robot,
+) -> None:
+    health.read(gps_accuracy=300.0)
+    changed = _only(health.keep_reading(15, gps_accuracy=300.0), "system_state.changed")
+    assert health.root(changed) == "signal.read"
+
+
+def test_what_settled_does_not_cause_the_next_error(health: Robot) -> None:
+    health.read(gps_accuracy=300.0)
+    health.keep_reading(1)
+    second = health.read(gps_accuracy=300.0)
+    raised = _only(health.keep_reading(15, gps_accuracy=300.0), "error.raised")
+    assert raised.cause == second[1].id
+
+
+def test_an_error_that_comes_at_once_is_not_laid_to_what_settled_before(health: Robot) -> None:
+    """From NOT_CONNECTED to LOW_SIGNAL there is no gap, and so nothing that began to count."""
+    health.read(signal_strength="LOW_SIGNAL")
+    health.keep_reading(1)
+    health.read(signal_strength="NOT_CONNECTED")
+    health.keep_reading(10, signal_strength="NOT_CONNECTED")
+    low = health.read(signal_strength="LOW_SIGNAL")
+    raised = _only(low, "error.raised")
+    assert raised.data["error"] == "SIGNAL_LOW"
+    assert raised.cause == low[0].id
+
+
+def test_what_led_to_an_error_once_does_not_cause_it_again(health: Robot) -> None:
+    health.read(gps_accuracy=300.0)
+    health.keep_reading(15, gps_accuracy=300.0)
+    health.keep_reading(1)
+    again = health.read(gps_accuracy=300.0)
+    raised = _only(health.keep_reading(15, gps_accuracy=300.0), "error.raised")
+    assert raised.cause == again[1].id
+
+
+def test_silence_has_no_cause_but_time(health: Robot) -> None:
+    raised = _only(health.pass_time(3), "error.raised")
+    assert raised.data["error"] == "STALE_DATA"
+    assert health.root(raised) == "time.passed"
+
+
+def test_a_sender_whose_clock_is_off_is_told_once(health: Robot) -> None:
+    events = health.read(seconds(100), temperature=20.0)
+    assert _only(events, "signal.skewed").data == {"signal": "temperature"}
+    assert health.read(seconds(101), temperature=20.0) == []
+
+
+def test_a_robot_that_is_good_for_the_first_time_is_no_longer_in_error() -> None:
+    """It began in ERROR: nothing was read yet."""
+    changed = _only(Robot().read(**GOOD), "system_state.changed")
+    assert (changed.data["was"], changed.data["state"]) == ("ERROR", "IDLE")
+
+
+def test_signals_whose_view_changed_are_named() -> None:
+    health = Robot()
+    health.read(estop=False)
+    outputs = health.last
+    assert outputs.signals == {"estop"}
+    assert not outputs.system_state, "one reason less, and the same errors"
+
+
+def test_a_task_makes_an_idle_robot_a_running_one(health: Robot) -> None:
+    health.driving.status = TaskStatus.RUNNING_TASK
+    changed = _only(health.read(**GOOD), "system_state.changed")
+
+    assert (changed.data["was"], changed.data["state"]) == ("IDLE", "RUNNING")
+
+
+def test_a_task_that_pauses_is_told_though_the_robot_goes_on_running(health: Robot) -> None:
+    health.driving.status = TaskStatus.RUNNING_TASK
+    health.read(**GOOD)
+    health.driving.status = TaskStatus.PAUSED_TASK
+
+    assert health.read(**GOOD) == []
+    assert health.last.system_state

@@ -1,0 +1,44 @@
+import pytest
+
+from domain.concern import Concern, NotSettledError, settle
+
+
+class Restless(Concern):
+    """A concern that moves a number of times."""
+
+    def __init__(self, moves: int) -> None:
+        self.moves = moves
+
+    def settle(self, now: int) -> bool:
+        self.moves -= 1
+        return self.moves >= 0
+
+
+class Shy(Restless):
+    """Another one."""
+
+
+def test_a_concern_that_says_nothing_takes_nothing_and_never_moves() -> None:
+    concern = Concern()
+
+    concern.pass_time(7)
+
+    assert concern.takes == {}
+    assert concern.wake_at() is None
+    assert not concern.settle(7)
+
+
+def test_concerns_settle_once_none_of_them_moves() -> None:
+    first, second = Restless(2), Shy(5)
+
+    settle([first, second], 0, max_rounds=6)
+
+    assert (first.moves, second.moves) == (-4, -1)
+
+
+def test_concerns_that_never_settle_are_an_error_that_names_them() -> None:
+    with pytest.raises(NotSettledError) as caught:
+        settle([Concern(), Restless(10_000), Shy(10_000)], 0, max_rounds=50)
+
+    assert caught.value.moving == ("Restless", "Shy")
+    assert str(caught.value) == "not settled after 50 rounds; still moving: Restless, Shy"
