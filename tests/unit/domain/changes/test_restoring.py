@@ -4,7 +4,7 @@ from collections.abc import Iterable, Mapping
 
 import pytest
 
-from domain.actor import Actor
+from domain.actor import NOBODY, Actor
 from domain.changes.settings import ChangeSettings
 from domain.inputs import (
     BackendStatus,
@@ -113,11 +113,8 @@ def test_the_change_is_caused_by_the_report_that_the_node_is_back() -> None:
 
     change = core.changes()[0]
     restoring = events[change.cause]
-    assert (restoring.kind, restoring.actor.label, change.request.actor.label) == (
-        "node.restoring",
-        "",
-        "",
-    )
+    assert restoring.kind == "node.restoring"
+    assert (restoring.actor, change.request.actor) == (NOBODY, NOBODY)
     assert restoring.cause is not None
     assert events[restoring.cause].kind == "node.reported"
     (started,) = (event for event in events.values() if event.kind == "change.step_started")

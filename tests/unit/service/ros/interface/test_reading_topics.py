@@ -34,7 +34,7 @@ async def test_a_message_is_a_reading_of_its_signal(
     assert robot.interface.heard[topic].type == f"gem_state_msgs/msg/{type_name}"
     view = robot.supervisor.core.signal(topic.removeprefix("/"))
     assert view.value == value
-    assert view.source == SENDER
+    assert view.source == SENDER.label
 
 
 async def test_a_stamp_is_kept_and_zero_is_none(robot: RosRobot) -> None:

@@ -304,7 +304,7 @@ async def test_the_task_is_canceled(robot: RosRobot) -> None:
     (task,) = robot.supervisor.core.driving.tasks()
     assert task.status is TaskPhase.CANCELED
     requested = [e for e in robot.supervisor.events.oldest_first() if "cancel_req" in e.kind]
-    assert [event.actor.label for event in requested] == [OPERATOR]
+    assert [event.actor for event in requested] == [OPERATOR]
 
 
 async def test_without_a_task_nothing_happens(robot: RosRobot) -> None:
