@@ -1,4 +1,4 @@
-"""What is told of the vehicle, its task and its holds."""
+"""Events of the vehicle, its task and its holds."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -103,7 +103,7 @@ class TaskServed(Event):
 
 @dataclass(frozen=True, slots=True)
 class _TaskDriven(Event):
-    """Navigation was given a goal of the task."""
+    """Navigation received a goal of the task."""
 
     verb: ClassVar[str]
 

@@ -1,4 +1,4 @@
-"""What is told of signals, errors, the emergency stop and the state of the robot."""
+"""Events of signals, errors, the emergency stop and the state of the robot."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -26,7 +26,7 @@ class SignalRead(Event):
 
 @dataclass(frozen=True, slots=True)
 class SignalPending(Event):
-    """A signal is bad, and becomes an error unless it recovers in time."""
+    """A signal is bad; an error follows unless it recovers in time."""
 
     kind = "signal.pending"
     is_notable = False
@@ -40,7 +40,7 @@ class SignalPending(Event):
 
 @dataclass(frozen=True, slots=True)
 class SignalSettled(Event):
-    """A signal recovered before it became an error."""
+    """A signal recovered before an error was raised."""
 
     kind = "signal.settled"
     is_notable = False

@@ -1,4 +1,4 @@
-"""What is told of nodes and systems."""
+"""Events of nodes and systems."""
 
 from dataclasses import dataclass, field
 
@@ -66,7 +66,7 @@ class PartActualChanged(Event):
     was: StateAndMode
     reason: str | None
     of_system: bool = field(default=False, kw_only=True)
-    """The part is a system; what becomes of its nodes one by one is detail."""
+    """Whether the part is a system; changes of single nodes are detail."""
 
     def _words(self) -> str:
         return f"{self.part}: {self.was.label} -> {self.actual.label}"

@@ -175,7 +175,7 @@ def test_a_plain_node_does_not_keep_its_system_from_being_configured() -> None:
         (
             _node(S.FINALIZED),
             "FINALIZED",
-            "drive_base is finalized: it must be started anew",
+            "drive_base is finalized: its process must be restarted",
             "finalized",
         ),
         (

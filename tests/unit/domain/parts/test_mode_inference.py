@@ -247,13 +247,13 @@ def test_what_a_system_is_in(
             None,
             "active.FAST",
             "inactive",
-            "nothing was asked for, and drive_base is active while manipulator is inactive",
+            "there is no target, and drive_base is active while manipulator is inactive",
         ),
         (
             StateAndMode(S.CONFIGURING),
             "inactive",
             "inactive",
-            "configuring is no state that a system can be asked for",
+            "configuring cannot be the target of a system",
         ),
     ],
 )

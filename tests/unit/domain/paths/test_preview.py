@@ -193,12 +193,12 @@ def test_warnings_say_how_much_in_words() -> None:
     words = [warning.message for warning in found.warnings]
 
     assert words[0].startswith("a bend of ")
-    assert words[0].endswith(" m radius; the vehicle needs 2.5 m, and will leave the path there")
+    assert words[0].endswith(" m radius; the vehicle needs 2.5 m and will leave the path there")
     assert words[1:] == [
-        "8.0 m from one waypoint to the next: straight in between",
-        "11 waypoints stand where the one before them does",
-        "it begins 9.0 m from the vehicle",
-        "the vehicle looks away from where the path leads",
+        "8.0 m between two waypoints; the path is straight in between",
+        "11 waypoints are at the position of the one before",
+        "the path begins 9.0 m from the vehicle",
+        "the vehicle faces away from the direction of the path",
     ]
 
 

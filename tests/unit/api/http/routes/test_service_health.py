@@ -136,7 +136,7 @@ async def test_a_service_that_anybody_can_reach_warns_of_it(
 async def test_a_vehicle_that_does_not_tell_where_it_is_is_a_warning(
     http: httpx.AsyncClient, supervisor: Supervisor, clock: ManualClock
 ) -> None:
-    assert (await warnings(http))["NO_POSE"] == "the vehicle never told where it is"
+    assert (await warnings(http))["NO_POSE"] == "the vehicle never reported a pose"
     async with running(supervisor):
         assert "NO_POSE" not in await warnings(http)
         parts = supervisor.simulated_parts
