@@ -160,7 +160,7 @@ def test_the_robot_is_ready_to_go(folder: Folder) -> None:
     [
         ("", "s.yaml:1:1: INVALID_VALUE until_s: this key is missing"),
         ("- 1", "s.yaml:1:1: INVALID_VALUE there must be keys here, until_s among them"),
-        ("until_s: 1\nuntil_s: 2", "s.yaml:2:1: DUPLICATE_KEY 'until_s' is already in line 1"),
+        ("until_s: 1\nuntil_s: 2", "s.yaml:2:1: DUPLICATE_KEY duplicate key 'until_s'; first in line 1"),
         ("until_s: soon", "s.yaml:1:1: INVALID_VALUE until_s: Input should be a valid number"),
         ("until_s: 1\nwings: 2", "s.yaml:2:1: INVALID_VALUE wings: there is no such key"),
         ("until_s: 1\nfrom: live", "s.yaml:2:1: INVALID_VALUE there is no live robot here"),
@@ -224,7 +224,7 @@ def test_faults_of_a_robot_file_are_placed_in_that_file(folder: Folder) -> None:
 
     (finding,) = folder.refused("until_s: 1\nrobot_file: robot.yaml")
 
-    assert finding == "robot.yaml:4:3: INVALID_VALUE robot.vehicle.wings: there is no such key"
+    assert finding == "robot.yaml:4:3: INVALID_VALUE robot.vehicle.wings: unknown key"
 
 
 @pytest.mark.parametrize(
