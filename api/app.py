@@ -7,16 +7,18 @@ from fastapi import FastAPI
 
 from api.documents import route as documents
 from api.documents.asyncapi import stream_document
-from api.http import posted_models, posted_tasks
+from api.http import model_jobs, task_jobs
 from api.http.access import Access
 from api.http.gate.audit import Audit
 from api.http.gate.headers import SecurityHeaders
 from api.http.gate.origin import OriginGate
+from api.http.gate.policies import RoutePolicies
 from api.http.gate.rate import RateGate
 from api.http.gate.token import TokenGate
 from api.http.limits import USUAL_LIMITS, ServiceLimits
 from api.robot_app import create_robot_app
 from api.rosbridge import route as rosbridge
+from api.rosbridge.clients import make_rosbridge_clients
 from api.simulation import route as simulations
 from service.supervisor import Supervisor
 from service.worker import Worker
@@ -44,9 +46,12 @@ def create_app(
         access: Whom it lets in; None: everybody.
         limits: How much may be asked of it.
     """
-    worker = Worker([posted_models.__name__, posted_tasks.__name__])
+    worker = Worker([model_jobs.__name__, task_jobs.__name__])
     app = create_robot_app(supervisor, worker, access=access, limits=limits, lifespan=_lifespan)
     app.state.simulator = Worker(deadline_s=SIMULATION_DEADLINE_S)
+    app.state.rosbridge_clients = make_rosbridge_clients(
+        supervisor, limits.requests_per_s, app.state.stream_server
+    )
     app.include_router(simulations.router)
     app.include_router(documents.router)
     app.include_router(rosbridge.router)
@@ -61,10 +66,11 @@ def _guard(app: FastAPI, supervisor: Supervisor, allowed_hosts: Sequence[str]) -
     """
     state = app.state
     refusals, clock, per_s = state.refusals, supervisor.clock, state.limits.requests_per_s
-    app.add_middleware(Audit, record=supervisor.submit)
-    app.add_middleware(TokenGate, access=state.access, refusals=refusals)
+    policies = RoutePolicies(app.routes)
+    app.add_middleware(Audit, record=supervisor.submit, policies=policies)
+    app.add_middleware(TokenGate, access=state.access, policies=policies, refusals=refusals)
     app.add_middleware(OriginGate, allowed_hosts=allowed_hosts, refusals=refusals)
-    app.add_middleware(RateGate, per_s=per_s, clock=clock, refusals=refusals)
+    app.add_middleware(RateGate, per_s=per_s, clock=clock, policies=policies, refusals=refusals)
     app.add_middleware(SecurityHeaders)
 
 

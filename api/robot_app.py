@@ -10,10 +10,12 @@ from starlette.middleware import Middleware
 
 from api.distribution import installed_version
 from api.documents.openapi import describe
+from api.documents.route import openapi_router
 from api.http.access import Access
 from api.http.gate.faults import UnexpectedErrors
 from api.http.gate.refusals import Refusals
 from api.http.limits import USUAL_LIMITS, ServiceLimits
+from api.http.metrics import Metrics
 from api.http.problem_handlers import add_problem_handlers
 from api.http.routes import (
     changes,
@@ -34,10 +36,13 @@ from api.http.routes import (
 from api.http.static_page import page_routes
 from api.streaming import events_route as events
 from api.streaming import route as stream
+from api.streaming.stream_metrics import StreamCollector
+from api.streaming.stream_server import StreamServer
 from service.jobs import Jobs
 from service.supervisor import Supervisor
 
 _RESOURCES = (
+    openapi_router,
     # Before the parts: the path of a part matches everything below /nodes.
     parameters.router,
     changes.router,
@@ -81,6 +86,8 @@ def create_robot_app(
         title="Pilothouse",
         summary="States and modes of a robot's systems and nodes, its health, and why",
         version=installed_version(),
+        # Its own routes declare no policy; ours are in api.documents.
+        openapi_url=None,
         docs_url=None,
         redoc_url=None,
         redirect_slashes=False,
@@ -89,12 +96,7 @@ def create_robot_app(
         responses={"default": {"description": "A problem"}},
         middleware=[Middleware(UnexpectedErrors)],
     )
-    app.state.supervisor = supervisor
-    app.state.worker = worker
-    app.state.access = access or Access.open()
-    app.state.limits = limits
-    app.state.refusals = Refusals(supervisor.clock)
-    app.state.model_json = model.encode_model(supervisor)
+    _share(app, supervisor, worker, access or Access.open(), limits)
     add_problem_handlers(app, supervisor.clock)
     for router in _RESOURCES:
         app.include_router(router)
@@ -103,3 +105,19 @@ def create_robot_app(
     app.include_router(page_routes())
     app.openapi = partial(describe, app)  # type: ignore[method-assign]
     return app
+
+
+def _share(
+    app: FastAPI, supervisor: Supervisor, worker: Jobs, access: Access, limits: ServiceLimits
+) -> None:
+    """Put what routes and gates have in common where they find it."""
+    state = app.state
+    state.supervisor = supervisor
+    state.worker = worker
+    state.access = access
+    state.limits = limits
+    state.refusals = Refusals(supervisor.clock)
+    state.model_json = model.encode_model(supervisor)
+    state.stream_server = StreamServer(supervisor, limits.stream_clients, access, state.refusals)
+    state.metrics = Metrics(supervisor, state.refusals)
+    state.metrics.registry.register(StreamCollector(state.stream_server))

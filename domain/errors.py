@@ -22,8 +22,8 @@
     +-- BackendUnavailableError       the backend is down: no node can be reached
 
 `service` and `api` add errors below the same root: files that cannot be read (`service/files/`), a
-worker that is busy (`service/worker.py`), malformed bodies (`api/http/bodies.py`). A rejected input
-changes nothing.
+worker that is busy (`service/worker.py`), malformed bodies (`api/http/body_parsing.py`). A rejected
+input changes nothing.
 """
 
 from collections.abc import Sequence

@@ -3,7 +3,15 @@
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 
-from domain.snapshot import PartView, SignalView, SystemStateView, TaskView, VehicleView
+from domain.snapshot import (
+    EmergencyStopView,
+    HoldView,
+    PartView,
+    SignalView,
+    SystemStateView,
+    TaskView,
+    VehicleView,
+)
 from domain.state_and_mode import PartName
 from domain.timebase import Instant
 from service.watching import Watched
@@ -22,10 +30,18 @@ class Frame:
     signals: Mapping[str, SignalView]
     """As `parts`."""
     task: TaskView | None
+    """The current task, or the one that ended last; None: there never was one."""
     task_changed: bool
     """Whether `task` is another one, or differs from the frame before; true in a full frame."""
     vehicle: VehicleView
     vehicle_changed: bool
+    """As `task_changed`."""
+    holds: Mapping[str, HoldView]
+    """All of them, by owner."""
+    holds_changed: bool
+    """As `task_changed`."""
+    emergency_stop: EmergencyStopView
+    emergency_stop_changed: bool
     """As `task_changed`."""
     full: bool
     simulated: tuple[str, ...]
@@ -78,6 +94,8 @@ class FrameFeed(Watched):
                 signals=dict(self._signals),
                 task_changed=True,
                 vehicle_changed=True,
+                holds_changed=True,
+                emergency_stop_changed=True,
                 full=True,
             )
         return self._complete
@@ -94,6 +112,10 @@ class FrameReader:
     def position(self) -> int | None:
         """Return the number of the frame that was taken last; None before the first."""
         return self._seen
+
+    def begin_anew(self) -> None:
+        """Take a complete frame next, also if it is the one that was taken last."""
+        self._seen = None
 
     def take(self) -> tuple[Frame, int] | None:
         """Return the newest frame and how many were missed before it; None when it is known.

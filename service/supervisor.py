@@ -68,6 +68,8 @@ class Supervisor:
         self.core: Supervision = onboard.core
         """For looking; what happens goes through `submit`."""
         self.clock = clock
+        self.started_at = clock.now()
+        """When this run of the service began, and with it its epoch."""
         self.mock = mock
         self.simulated = tuple(simulated)
         self.frames = FrameFeed()
@@ -278,6 +280,8 @@ class Supervisor:
         full = full or self.frames.wants_full
         self._seq += 1
         core = self.core
+        holds, emergency_stop = core.driving.holds, core.emergency_stop()
+        last = self.frames.newest
         frame = Frame(
             seq=self._seq,
             at=self.clock.now(),
@@ -288,10 +292,17 @@ class Supervisor:
                 if full
                 else {s: core.signal(s) for s in sorted(self._changed_signals)}
             ),
-            task=core.driving.current_task,
+            task=core.driving.latest_task if last is None or self._task_changed else last.task,
             task_changed=full or self._task_changed,
             vehicle=core.driving.vehicle,
             vehicle_changed=full or self._vehicle_changed,
+            # Both are the same objects as long as nothing about them changes.
+            holds=holds,
+            holds_changed=full or last is None or holds is not last.holds,
+            emergency_stop=emergency_stop,
+            emergency_stop_changed=(
+                full or last is None or emergency_stop is not last.emergency_stop
+            ),
             full=full,
             simulated=self.simulated,
         )

@@ -9,9 +9,9 @@ import os
 import sys
 from collections.abc import Sequence
 
-from api.cli.commands import check, mode, monitor, serve, simulate, state, task
-from api.cli.commands.command import complain
+from api.cli.commands import change, check, monitor, serve, simulate, task
 from api.distribution import ForeignPackageError, check_packages, installed_version
+from api.terminal_text import complain
 
 FAILED, MISUSED, INTERRUPTED = 1, 2, 130
 
@@ -19,8 +19,8 @@ _COMMANDS = (
     serve.COMMAND,
     monitor.COMMAND,
     check.COMMAND,
-    mode.COMMAND,
-    state.COMMAND,
+    change.MODE,
+    change.STATE,
     task.COMMAND,
     simulate.COMMAND,
 )

@@ -22,6 +22,7 @@ from api.http.schemas.stream import (
     HelloJson,
     ProblemFrame,
     ReadingMessage,
+    ResyncMessage,
     StateFrame,
 )
 
@@ -37,7 +38,7 @@ SENT: Mapping[str, type[BaseModel]] = MappingProxyType(
 """What Pilothouse sends, by the `type` of the message."""
 
 TAKEN: Mapping[str, type[BaseModel]] = MappingProxyType(
-    {"auth": AuthMessage, "reading": ReadingMessage}
+    {"auth": AuthMessage, "reading": ReadingMessage, "resync": ResyncMessage}
 )
 """What a client may send."""
 

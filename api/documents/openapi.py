@@ -10,8 +10,9 @@ from fastapi.openapi.utils import get_openapi
 
 from api.documents.examples import Exchange, key_of, load_examples
 from api.documents.wording import DESCRIPTION, LICENSE, TAGS, TOKEN
-from api.http.problems import MEDIA_TYPE, Problem
+from api.http.problems import MEDIA_TYPE
 from api.http.schemas.inference import InferenceBody
+from api.http.schemas.problem import Problem
 from api.http.schemas.simulation import SimulationBody
 from api.http.schemas.tasks import TaskBody
 

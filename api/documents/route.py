@@ -13,12 +13,15 @@ from pathlib import Path
 from types import MappingProxyType
 
 from fastapi import APIRouter, Request, Response
-from fastapi.responses import FileResponse
+from fastapi.responses import FileResponse, JSONResponse
 
 from api.documents.asyncapi import stream_document
 from api.http.gate.headers import CONTENT_SECURITY_POLICY
+from api.http.route_policy import Permission, policy
 
 router = APIRouter(include_in_schema=False)
+openapi_router = APIRouter(include_in_schema=False)
+"""Also of a robot in a simulation, which has no page."""
 
 # Swagger UI shows its arrows and marks as images inside its style sheet.
 _POLICY = CONTENT_SECURITY_POLICY.replace("img-src 'self'", "img-src 'self' data:")
@@ -30,7 +33,15 @@ _HEADERS: Mapping[str, str] = MappingProxyType(
 )
 
 
+@openapi_router.api_route("/openapi.json", methods=["GET", "HEAD"])
+@policy(Permission.READ_PUBLIC)
+async def get_openapi(request: Request) -> Response:
+    """Return the description of requests and answers."""
+    return JSONResponse(request.app.openapi())
+
+
 @router.get("/docs")
+@policy(Permission.READ_PUBLIC)
 async def get_page() -> Response:
     """Return the page."""
     headers = {"Content-Security-Policy": _POLICY}
@@ -38,18 +49,21 @@ async def get_page() -> Response:
 
 
 @router.get("/docs/swagger-ui-bundle.js")
+@policy(Permission.READ_PUBLIC)
 async def get_script(request: Request) -> Response:
     """Return the program of Swagger UI."""
     return _asset("swagger-ui-bundle.js", "text/javascript", request)
 
 
 @router.get("/docs/swagger-ui.css")
+@policy(Permission.READ_PUBLIC)
 async def get_style(request: Request) -> Response:
     """Return the style sheet of Swagger UI."""
     return _asset("swagger-ui.css", "text/css", request)
 
 
 @router.get("/asyncapi.json")
+@policy(Permission.READ_PUBLIC)
 async def get_asyncapi() -> Response:
     """Return the description of the stream."""
     return Response(stream_document(), media_type="application/json")

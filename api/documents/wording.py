@@ -4,7 +4,7 @@ from collections.abc import Mapping
 from types import MappingProxyType
 from typing import Any
 
-from api.streaming.query import TOPICS
+from api.streaming.client_input import TOPICS
 
 DESCRIPTION = "\n".join(
     (

@@ -25,15 +25,8 @@ async def _worker(connection: HTTPConnection) -> Jobs:
     return found
 
 
-async def _simulator(connection: HTTPConnection) -> Jobs:
-    found: Jobs = connection.app.state.simulator
-    return found
-
-
 SupervisorDep = Annotated[Supervisor, Depends(_supervisor)]
 WorkerDep = Annotated[Jobs, Depends(_worker)]
-SimulatorDep = Annotated[Jobs, Depends(_simulator)]
-"""Runs simulations, beside the worker."""
 
 
 async def _actor(request: Request) -> str:

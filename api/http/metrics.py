@@ -3,14 +3,12 @@
 from collections.abc import Iterable, Iterator
 from itertools import islice
 
-from fastapi import FastAPI
 from prometheus_client import CollectorRegistry, Histogram
 from prometheus_client.core import CounterMetricFamily, GaugeMetricFamily
 from prometheus_client.metrics_core import Metric
 from prometheus_client.registry import Collector
 
 from api.http.gate.refusals import COUNTED, Refusals
-from api.streaming.hub import StreamHub, stream_hub
 from domain.snapshot import ChangeStatus, SystemState
 from domain.timebase import to_seconds
 from service.supervisor import Supervisor
@@ -27,7 +25,8 @@ _PERIODS_S = (0.025, 0.045, 0.049, 0.05, 0.051, 0.055, 0.075, 0.1, 0.2, 1.0)
 class Metrics:
     """The metrics of one service, in a registry of their own."""
 
-    def __init__(self, hub: StreamHub, refusals: Refusals) -> None:
+    def __init__(self, supervisor: Supervisor, refusals: Refusals) -> None:
+        """Begin with those of the robot and of the gate; a room of the edge registers its own."""
         self.registry = CollectorRegistry(auto_describe=False)
         period = Histogram(
             "pilothouse_publish_period_seconds",
@@ -35,18 +34,10 @@ class Metrics:
             buckets=_PERIODS_S,
             registry=self.registry,
         )
-        hub.supervisor.on_tick.append(period.observe)
-        self.registry.register(_RobotCollector(hub.supervisor))
-        self.registry.register(_ServiceCollector(hub))
+        supervisor.on_tick.append(period.observe)
+        self.registry.register(_RobotCollector(supervisor))
+        self.registry.register(_ServiceCollector(supervisor))
         self.registry.register(_GateCollector(refusals))
-
-
-def metrics(app: FastAPI) -> Metrics:
-    """Return the metrics of an application; the first who asks makes them."""
-    known = getattr(app.state, "metrics", None)
-    if not isinstance(known, Metrics):
-        known = app.state.metrics = Metrics(stream_hub(app), app.state.refusals)
-    return known
 
 
 class _RobotCollector(Collector):
@@ -117,30 +108,16 @@ class _RobotCollector(Collector):
 class _ServiceCollector(Collector):
     """How the service fares."""
 
-    def __init__(self, hub: StreamHub) -> None:
-        self._hub = hub
+    def __init__(self, supervisor: Supervisor) -> None:
+        self._supervisor = supervisor
 
     def collect(self) -> Iterator[Metric]:
-        supervisor = self._hub.supervisor
         yield CounterMetricFamily(
-            "pilothouse_ticks_late", "Ticks that were skipped", value=supervisor.late_ticks
-        )
-        yield GaugeMetricFamily(
-            "pilothouse_ws_clients", "Clients of the stream", value=self._hub.clients
-        )
-        yield CounterMetricFamily(
-            "pilothouse_ws_dropped",
-            "Clients cut off because they read too slowly",
-            value=self._hub.fan_out.dropped,
-        )
-        yield CounterMetricFamily(
-            "pilothouse_ws_frames_skipped",
-            "Frames that clients were too slow for",
-            value=self._hub.fan_out.skipped,
+            "pilothouse_ticks_late", "Ticks that were skipped", value=self._supervisor.late_ticks
         )
         changes = CounterMetricFamily("pilothouse_changes", "Changes that ended", labels=["status"])
         for status in _ENDS:
-            changes.add_metric([status], supervisor.ended_changes[status])
+            changes.add_metric([status], self._supervisor.ended_changes[status])
         yield changes
 
 

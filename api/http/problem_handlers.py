@@ -8,7 +8,7 @@ from fastapi.responses import Response
 from starlette.exceptions import HTTPException as StarletteHTTPException
 from starlette.routing import Match
 
-from api.http.bodies import BodyTooLargeError, InvalidBodyError, faults_of
+from api.http.body_parsing import BodyTooLargeError, InvalidBodyError, faults_of
 from api.http.problems import HttpError, make_problem, problem_of, problem_response
 from domain.errors import PilothouseError
 from service.clock import Clock

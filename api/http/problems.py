@@ -8,17 +8,16 @@ from http import HTTPStatus
 
 from fastapi import HTTPException
 from fastapi.responses import Response
-from pydantic import Field
 
 from api.http.access import UnauthorizedError
-from api.http.bodies import (
-    BodyFault,
+from api.http.body_parsing import (
     BodyTooLargeError,
     InvalidBodyError,
     MalformedBodyError,
     as_pointer,
 )
-from api.http.schemas.base import BlockerJson, FindingJson, Json
+from api.http.schemas.base import BlockerJson, FindingJson
+from api.http.schemas.problem import BodyFault, Problem
 from domain.errors import (
     BackendUnavailableError,
     BlockedError,
@@ -85,26 +84,6 @@ STATUS_OF: Mapping[type[PilothouseError], HTTPStatus] = {
 }
 
 MEDIA_TYPE = "application/problem+json"
-
-
-class Problem(Json):
-    """What was refused or went wrong, and why (RFC 9457)."""
-
-    type: str
-    title: str
-    status: int
-    detail: str
-    instance: str
-    code: str = Field(description="Stable")
-    hint: str | None = None
-    blockers: list[BlockerJson] | None = None
-    available: list[str] | None = Field(default=None, description="What could be asked for instead")
-    findings: list[FindingJson] | None = None
-    errors: list[BodyFault] | None = None
-
-    def as_json(self) -> str:
-        """Return the document; members that do not apply are left out."""
-        return self.model_dump_json(exclude_unset=True)
 
 
 class HttpError(HTTPException):

@@ -14,6 +14,8 @@ from pathlib import PurePosixPath
 from fastapi import APIRouter, Request, Response
 from starlette.exceptions import HTTPException
 
+from api.http.route_policy import Permission, policy
+
 MEDIA_TYPES = {
     ".html": "text/html; charset=utf-8",
     ".css": "text/css; charset=utf-8",
@@ -40,10 +42,12 @@ def page_routes() -> APIRouter:
     router = APIRouter(include_in_schema=False)
 
     @router.get("/")
+    @policy(Permission.READ_PUBLIC)
     async def get_index(request: Request) -> Response:
         return _answer(found.get(_INDEX), request)
 
     @router.get("/web/{path:path}")
+    @policy(Permission.READ_PUBLIC)
     async def get_file(path: str, request: Request) -> Response:
         return _answer(found.get(path), request)
 

@@ -6,7 +6,7 @@ from typing import Annotated, Any, Literal, TypeAlias
 
 from pydantic import BaseModel, ConfigDict, Field
 
-from api.http.bodies import check_body, parse_json
+from api.http.body_parsing import check_body, parse_json
 from domain.errors import InvalidValueError
 
 _MAX_CHARACTERS = 256

@@ -10,11 +10,12 @@ from typing import Any
 from fastapi import APIRouter, WebSocket, WebSocketDisconnect
 
 from api.http.access import UnauthorizedError
-from api.rosbridge.client import Client
-from api.rosbridge.hub import RosbridgeHub, RosbridgeHubDep
+from api.http.route_policy import AuditClass, Permission, policy
+from api.rosbridge.clients import RosbridgeClients, RosbridgeClientsDep
 from api.rosbridge.operations import Authenticate, id_of, read_message, read_operation
 from api.rosbridge.replies import status_text
-from api.streaming.prepared import connection_of
+from api.rosbridge.served_client import ServedClient
+from api.streaming.websocket_frames import connection_of
 from domain.errors import PilothouseError
 
 router = APIRouter()
@@ -28,27 +29,29 @@ _TRY_AGAIN_LATER = 1013
 _UNAUTHORIZED = 4401
 
 
+# Not the handshake: each call of a service has an event of its own.
 @router.websocket("/rosbridge")
-async def rosbridge(socket: WebSocket, hub: RosbridgeHubDep) -> None:
+@policy(Permission.OPERATE, AuditClass.NEVER)
+async def rosbridge(socket: WebSocket, clients: RosbridgeClientsDep) -> None:
     """Serve one client until it goes, does not read, or the service ends."""
     await socket.accept()
     address = socket.client.host if socket.client else "unknown"
-    if not await _is_let_in(socket, hub, address):
+    if not await _is_let_in(socket, clients, address):
         return
     connection = connection_of(socket.scope)
-    if hub.is_full:
+    if clients.is_full:
         await _close(socket, _TRY_AGAIN_LATER, "too many clients")
     elif not connection.transport.is_closing():
-        async with hub.serve(connection.transport) as bridge:
-            await Client(bridge, connection, address).serve(socket.receive)
+        async with clients.serve(connection.transport) as bridge:
+            await ServedClient(bridge, connection, address).serve(socket.receive)
 
 
-async def _is_let_in(socket: WebSocket, hub: RosbridgeHub, address: str) -> bool:
+async def _is_let_in(socket: WebSocket, clients: RosbridgeClients, address: str) -> bool:
     """Ask for the token, where one is needed and the handshake did not hold it.
 
     Whoever does not give it is told so, and the connection is closed.
     """
-    lobby = hub.lobby
+    lobby = clients.lobby
     if lobby.access.accepts_header(socket.headers):
         return True
     if lobby.has_many_strangers:
@@ -63,7 +66,7 @@ async def _is_let_in(socket: WebSocket, hub: RosbridgeHub, address: str) -> bool
             return False
         with suppress(PilothouseError):
             said = read_message(message)
-        _check_token(hub, said)
+        _check_token(clients, said)
     except (TimeoutError, UnauthorizedError) as error:
         reason = str(error) or f"no token came within {AUTH_TIMEOUT_S:g} s"
         lobby.refusals.note(HTTPStatus.UNAUTHORIZED, address)
@@ -74,7 +77,7 @@ async def _is_let_in(socket: WebSocket, hub: RosbridgeHub, address: str) -> bool
     return True
 
 
-def _check_token(hub: RosbridgeHub, said: Mapping[str, Any]) -> None:
+def _check_token(clients: RosbridgeClients, said: Mapping[str, Any]) -> None:
     """Look at the first message.
 
     Raises:
@@ -86,7 +89,7 @@ def _check_token(hub: RosbridgeHub, said: Mapping[str, Any]) -> None:
         operation = None
     if not isinstance(operation, Authenticate) or operation.token is None:
         raise UnauthorizedError('the first message has to be {"op": "auth", "token": "..."}')
-    if not hub.lobby.access.accepts(operation.token):
+    if not clients.lobby.access.accepts(operation.token):
         raise UnauthorizedError("this is not the token of the service")
 
 

@@ -22,8 +22,8 @@ from api.rosbridge.operations import (
     read_message,
     read_operation,
 )
-from api.rosbridge.outbox import Outbox
 from api.rosbridge.replies import response_text, sentence, status_text
+from api.rosbridge.send_queue import SendQueue
 from api.rosbridge.subscription import Pace, Subscription
 from domain.errors import InvalidValueError, PilothouseError, UnknownNameError
 from domain.timebase import seconds
@@ -44,17 +44,17 @@ Spawn: TypeAlias = Callable[[Coroutine[Any, Any, None]], asyncio.Task[None]]
 class Session:
     """One client."""
 
-    def __init__(self, bridge: Bridge, outbox: Outbox, caller: str, spawn: Spawn) -> None:
+    def __init__(self, bridge: Bridge, queue: SendQueue, caller: str, spawn: Spawn) -> None:
         """Begin.
 
         Args:
             bridge: What all clients share.
-            outbox: Takes what is to be sent.
+            queue: Takes what is to be sent.
             caller: Who the client is, as events record it.
             spawn: Lets a call run beside the others, and owns it.
         """
         self._bridge = bridge
-        self._outbox = outbox
+        self._queue = queue
         self._caller = caller
         self._spawn = spawn
         self._level = _LEVELS["warning"]
@@ -69,7 +69,7 @@ class Session:
         """After the client went; None: it is there."""
 
     def hear(self, message: Mapping[str, Any]) -> None:
-        """Do what a message asks for; what is wrong with it is put into the outbox.
+        """Do what a message asks for; what is wrong with it is put into the queue.
 
         Args:
             message: As ASGI has it.
@@ -120,7 +120,7 @@ class Session:
 
     def _tell(self, level: str, message: str, id_: str | int | None) -> None:
         if _LEVELS[level] <= self._level:
-            self._outbox.put(status_text(level, message, id_))
+            self._queue.put(status_text(level, message, id_))
 
     # --- topics ----------------------------------------------------------------------------------
 
@@ -145,9 +145,9 @@ class Session:
         if known is not None:
             self._wishes += known[0].want(asked.id, pace)
             return
-        outbox = self._outbox
+        queue = self._queue
         texts = self._bridge.texts
-        subscription = Subscription(topic, asked.topic, texts, outbox.put, outbox.expect)
+        subscription = Subscription(topic, asked.topic, texts, queue.put, queue.expect)
         self._wishes += subscription.want(asked.id, pace)
         unlisten = self._bridge.interface.listen(name, subscription.hear)
         self._subscriptions[asked.topic] = subscription, unlisten
@@ -162,7 +162,7 @@ class Session:
         subscription, unlisten = known
         if not subscription.is_wanted:
             unlisten()
-            self._outbox.remove(subscription)
+            self._queue.remove(subscription)
             del self._subscriptions[asked.topic]
 
     def _advertise(self, asked: Advertise) -> None:
@@ -234,7 +234,7 @@ class Session:
     def _respond(
         self, asked: CallService, values: Mapping[str, Any] | str, *, result: bool
     ) -> None:
-        self._outbox.put(response_text(asked.service, values, result, asked.id))
+        self._queue.put(response_text(asked.service, values, result, asked.id))
 
 
 def _unheard(name: str) -> UnknownNameError:

@@ -2,7 +2,7 @@
 
 from collections.abc import Iterable
 
-from api.streaming.prepared import PING, Connection, text_frame
+from api.streaming.websocket_frames import PING, Connection, text_frame
 from domain.timebase import Duration, Instant, seconds
 from service.clock import Clock
 

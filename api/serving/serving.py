@@ -13,21 +13,14 @@ import sys
 from collections.abc import Iterator, Sequence
 from pathlib import Path
 
+from api.access_token import FILE_VARIABLE, TOKEN_VARIABLE, InvalidTokenError, take_token
 from api.app import create_app, prepare
 from api.distribution import installed_version
-from api.http.access import (
-    FILE_VARIABLE,
-    MIN_GOOD_CHARACTERS,
-    TOKEN_VARIABLE,
-    Access,
-    InvalidTokenError,
-    take_token,
-)
-from api.http.metrics import metrics
-from api.http.model_check import finding_line
+from api.http.access import MIN_GOOD_CHARACTERS, Access
 from api.serving.composition import EXAMPLE, Composition, MisuseError, ServeOptions, compose
 from api.serving.service_manager import ServiceManager, UnknownManagerError
 from api.serving.web_server import ListenError, WebServer, is_loopback, listen, url_of, web_server
+from api.terminal_text import complain, counted, finding_line
 from domain.errors import InvalidModelError
 from domain.findings import Finding
 from service.clock import MonotonicClock
@@ -53,18 +46,17 @@ def serve(options: ServeOptions) -> int:
         composition = compose(options, MonotonicClock())
         sockets = listen(options.host, options.port)
     except (InvalidTokenError, MisuseError, UnknownManagerError) as error:
-        return _complain(str(error), MISUSED)
+        return _end(str(error), MISUSED)
     except InvalidModelError as error:
         return _complain_of(options.model or EXAMPLE, error.findings)
     except InvalidRobotFileError as error:
         return _complain_of(options.robot, error.findings)
     except (ListenError, StartTaskError, *_NOT_IN_ROS, UnreadableFileError) as error:
-        return _complain(str(error), FAILED)
+        return _end(str(error), FAILED)
     supervisor, hosts = composition.supervisor, (options.host, *options.allowed_hosts)
     app = create_app(supervisor, allowed_hosts=hosts, access=access, limits=composition.limits)
     app.state.exposed = options.anonymous and not is_loopback(options.host)
     prepare(app)
-    metrics(app)
     greeting = "\n".join(greet(composition, options, url_of(sockets, options.host), access))
     server = web_server(app, lambda: _say_serving(greeting, manager, supervisor))
     # What was made until now stays: it need not be looked through again by each collection, which
@@ -150,7 +142,7 @@ def greet(
     supervisor = composition.supervisor
     model = supervisor.model
     source = f"{options.model}" if options.model else "the built-in example"
-    counts = f"{_count(len(model.systems), 'system')}, {_count(len(model.nodes), 'node')}"
+    counts = f"{counted(len(model.systems), 'system')}, {counted(len(model.nodes), 'node')}"
     yield f"Pilothouse {installed_version()} supervises {source}: {counts}"
     yield f"  page  {url}/"
     if access.required:
@@ -244,8 +236,8 @@ def _log_to_stderr(level: str) -> None:
         logging.getLogger(name).setLevel("DEBUG" if level == "debug" else "WARNING")
 
 
-def _complain(message: str, code: int) -> int:
-    print(f"pilothouse: {message}", file=sys.stderr)
+def _end(message: str, code: int) -> int:
+    complain(message)
     return code
 
 
@@ -253,7 +245,3 @@ def _complain_of(file: Path | None, findings: Sequence[Finding]) -> int:
     for finding in findings:
         print(finding_line(str(file), finding), file=sys.stderr)
     return FAILED
-
-
-def _count(number: int, what: str) -> str:
-    return f"{number} {what}" + ("" if number == 1 else "s")

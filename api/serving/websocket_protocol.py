@@ -3,7 +3,7 @@
 Three things differ from `WebSocketsSansIOProtocol`, and only these:
 
 * The scope holds the connection, so that prepared frames can be written to its transport, by
-  somebody who learns how it fares (`api.streaming.prepared`).
+  somebody who learns how it fares (`api.streaming.websocket_frames`).
 * The answer to a ping is recognised without the parser, which takes ten times as long.
 * A connection that is ended, ends. `transport.close()` waits until everything was sent; to a client
   that does not read, that is never, and its buffers would stay.
@@ -15,7 +15,7 @@ from typing import cast
 from uvicorn.protocols.websockets.websockets_sansio_impl import WebSocketsSansIOProtocol
 from websockets.frames import Frame, Opcode
 
-from api.streaming.prepared import EXTENSION, Connection, Listener
+from api.streaming.websocket_frames import EXTENSION, Connection, Listener
 
 _LAST_WORDS_S = 1.0
 _PONG_HEAD = bytes((0x80 | Opcode.PONG, 0x80 | 4))

@@ -3,8 +3,8 @@
 from collections.abc import Iterator, Mapping
 from typing import Any
 
+from api.http.schemas.sent_values import split_label
 from api.http.schemas.simulation import DifferenceJson
-from api.http.values import split_label
 
 MISSING = "(not there)"
 """Seen of a member that is not there."""

@@ -6,7 +6,8 @@ from http import HTTPStatus
 
 import httpx
 
-from api.http.problems import MEDIA_TYPE, Problem, make_problem
+from api.http.problems import MEDIA_TYPE, make_problem
+from api.http.schemas.problem import Problem
 from api.http.schemas.simulation import AskedRequest
 from api.robot_app import create_robot_app
 from service.jobs import InlineJobs

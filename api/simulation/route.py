@@ -1,14 +1,28 @@
 """Simulations: the same core, fed with a scenario, in virtual time."""
 
-from fastapi import APIRouter, Request, Response
+from typing import Annotated
 
-from api.http.dependencies import SimulatorDep, SupervisorDep
-from api.http.request_bodies import limits_of, read_body
+from fastapi import APIRouter, Depends, Request, Response
+
+from api.http.dependencies import SupervisorDep
+from api.http.request_body import limits_of, read_body
+from api.http.route_policy import Permission, policy
 from api.http.schemas.simulation import SimulationJson
-from api.simulation.posted import LiveCopy, copy_of, simulate_posted
+from api.simulation.simulation_job import LiveCopy, copy_of, simulate_posted
+from service.jobs import Jobs
 from service.supervisor import Supervisor
 
 router = APIRouter(prefix="/simulations", tags=["simulation"])
+
+
+# A coroutine, since the framework would call a plain function in a thread.
+async def _simulator(request: Request) -> Jobs:
+    found: Jobs = request.app.state.simulator
+    return found
+
+
+SimulatorDep = Annotated[Jobs, Depends(_simulator)]
+"""Runs simulations, beside the worker, so that a task that is posted meanwhile need not wait."""
 
 
 @router.post(
@@ -23,6 +37,7 @@ router = APIRouter(prefix="/simulations", tags=["simulation"])
         }
     },
 )
+@policy(Permission.OBSERVE)
 async def simulate(
     request: Request, supervisor: SupervisorDep, simulator: SimulatorDep
 ) -> Response:

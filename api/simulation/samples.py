@@ -3,13 +3,9 @@
 from collections import Counter
 from collections.abc import Iterator
 
-from api.http.schemas.health import SystemStateJson
-from api.http.schemas.parts import PartJson
-from api.http.schemas.tasks import TaskJson, VehicleJson
-from api.streaming.event_text import event_text
-from api.streaming.members import Members
+from api.streaming.robot_encoder import RobotEncoder
 from domain.events.event import RecordedEvent
-from domain.snapshot import PartView, TaskView
+from domain.snapshot import TaskView
 from service.event_log import EventReader, Gap
 from service.supervisor import Supervisor
 from service.worker import TooComplexError
@@ -24,8 +20,7 @@ class Sampler:
 
     def __init__(self, supervisor: Supervisor) -> None:
         self._supervisor = supervisor
-        clock = self._clock = supervisor.clock
-        self._parts = Members[PartView](lambda view: PartJson.of(view, clock).model_dump_json())
+        self._encoder = RobotEncoder(supervisor)
         self._reader = EventReader(supervisor.events, supervisor.events.newest)
         self._left = MAX_CHARACTERS
         self.events: list[RecordedEvent] = []
@@ -49,24 +44,27 @@ class Sampler:
         return text
 
     def sample(self, t_s: float, number: int) -> str:
-        """Return the robot as it is now, as JSON; arguments as for `kept_sample`."""
-        supervisor, clock = self._supervisor, self._clock
-        core = supervisor.core
+        """Return the robot as it is now, as JSON with all that a complete frame has.
+
+        Only `task` differs: it is the current task, or null. Arguments are as for `kept_sample`.
+        """
+        supervisor, encoder = self._supervisor, self._encoder
+        core, now = supervisor.core, supervisor.clock.now()
         driving = core.driving
-        state = SystemStateJson.of(
-            core.system_state(), number, clock.now(), supervisor.simulated, clock
-        ).model_dump_json()
-        task = driving.current_task
-        task_text = "null" if task is None else self.task_text(task)
-        vehicle = VehicleJson.of(driving.vehicle, driving.limits, clock).model_dump_json()
+        state = encoder.system_state(core.system_state(), number, now, supervisor.simulated)
         return (
-            f'{{"t_s":{t_s!r},"system_state":{state},"parts":{self._parts.text(core.parts())},'
-            f'"task":{task_text},"vehicle":{vehicle}}}'
+            f'{{"t_s":{t_s!r},"system_state":{state},'
+            f'"parts":{encoder.parts.text(core.parts())},'
+            f'"signals":{encoder.signals.text(core.signals())},'
+            f'"task":{encoder.task(driving.current_task)},'
+            f'"vehicle":{encoder.vehicle(driving.vehicle)},'
+            f'"holds":{encoder.holds(driving.holds)},'
+            f'"emergency_stop":{encoder.emergency_stop(core.emergency_stop())}}}'
         )
 
     def task_text(self, task: TaskView) -> str:
         """Return a task as JSON."""
-        return TaskJson.of(task, self._clock).model_dump_json()
+        return self._encoder.task(task)
 
     def counts(self) -> Counter[str]:
         """Return how many events of each kind there were."""
@@ -87,8 +85,7 @@ class Sampler:
 
     def event_texts(self) -> Iterator[str]:
         """Yield all events as JSON."""
-        epoch = self._supervisor.events.epoch
-        return (event_text(event, epoch, self._clock) for event in self.events)
+        return map(self._encoder.event, self.events)
 
 
 _ALL = 1_000_000

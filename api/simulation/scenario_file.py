@@ -12,9 +12,9 @@ from typing import Any
 
 from pydantic import ValidationError
 
-from api.http.bodies import InvalidBodyError
+from api.http.body_parsing import InvalidBodyError
 from api.http.schemas.simulation import SimulationBody, place_in_body
-from api.simulation.posted import robot_for
+from api.simulation.simulation_job import robot_for
 from domain.errors import InvalidModelError
 from domain.findings import Finding
 from service.files.parameter_file import scalar_value
@@ -36,7 +36,7 @@ Keys = tuple[int | str, ...]
 
 _STANDARD_INPUT = Path("/dev/stdin")
 _NOTHING = frozenset(["", "~", "null", "Null", "NULL"])
-_WORDS = {"extra_forbidden": "there is no such key", "missing": "this key is missing"}
+_WORDS = {"extra_forbidden": "unknown key", "missing": "missing key"}
 
 
 class InvalidScenarioError(Exception):

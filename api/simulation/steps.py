@@ -2,9 +2,9 @@
 
 import asyncio
 
-from api.http.posted_tasks import task_of
-from api.http.problems import Problem, problem_of
-from api.http.routes.tasks import serve
+from api.http.problems import problem_of
+from api.http.routes.tasks import submit_task
+from api.http.schemas.problem import Problem
 from api.http.schemas.simulation import (
     AnyStep,
     ChangeStep,
@@ -14,6 +14,7 @@ from api.http.schemas.simulation import (
     TaskStep,
     VehicleStep,
 )
+from api.http.task_jobs import task_of
 from api.simulation.requests import Requests
 from domain.errors import PilothouseError
 from domain.inputs import (
@@ -70,7 +71,7 @@ class Actors:
         if step.task is None:
             self._robot.supervisor.submit(CancelTaskRequest(_ACTOR))
         else:
-            serve(self._robot.supervisor, task_of(step.task), _ACTOR)
+            submit_task(self._robot.supervisor, task_of(step.task), _ACTOR)
 
     def _change(self, step: ChangeStep) -> None:
         asked, part = step.change, part_name(step.change.part)

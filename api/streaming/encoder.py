@@ -1,20 +1,17 @@
 """Make the text of frames and events, once for all clients that get the same."""
 
 import asyncio
+from collections.abc import Iterator
+from typing import TypeAlias
 
 from api.distribution import installed_version
 from api.http.problems import problem_of
 from api.http.schemas.base import timestamp
-from api.http.schemas.health import StreamedSignalJson, SystemStateJson
-from api.http.schemas.parts import PartJson
 from api.http.schemas.stream import GapJson, HelloJson
-from api.http.schemas.tasks import TaskJson, VehicleJson
-from api.streaming.event_text import event_text
-from api.streaming.members import Members
-from api.streaming.query import TOPICS
+from api.streaming.client_input import STATE_TOPICS, TOPICS
+from api.streaming.robot_encoder import RobotEncoder
 from domain.errors import PilothouseError
 from domain.events.event import RecordedEvent
-from domain.snapshot import PartView, SignalView
 from domain.timebase import to_seconds
 from service.event_log import Gap
 from service.frame_feed import Frame
@@ -24,18 +21,18 @@ _EVENTS_KEPT = 1_000
 _MEMBERS_AT_ONCE = 200
 _PATH = "/ws"
 
+_Shape: TypeAlias = tuple[bool, frozenset[str]]
+"""What the texts of one frame differ by: whether it is complete, and for which topics."""
+
 
 class StreamEncoder:
     """Text of what is streamed, kept as long as somebody may still need it."""
 
     def __init__(self, supervisor: Supervisor) -> None:
         self._supervisor = supervisor
-        self._clock = clock = supervisor.clock
-        self._parts = Members[PartView](lambda view: PartJson.of(view, clock).model_dump_json())
-        self._signals = Members[SignalView](
-            lambda view: StreamedSignalJson.of(view, clock).model_dump_json()
-        )
-        self._texts: dict[tuple[bool, ...], tuple[Frame, _StateText]] = {}
+        self._clock = supervisor.clock
+        self._robot = RobotEncoder(supervisor)
+        self._texts: dict[_Shape, tuple[Frame, _StateText]] = {}
         """The newest of each shape; clients that ask for the same share it."""
         self._events: dict[int, str] = {}
 
@@ -43,6 +40,7 @@ class StreamEncoder:
         """Return the first frame of a client."""
         return HelloJson(
             epoch=self._supervisor.epoch,
+            started_at=timestamp(self._clock, self._supervisor.started_at),
             topics=[topic for topic in TOPICS if topic in topics],
             period_s=to_seconds(PERIOD),
             version=installed_version(),
@@ -54,9 +52,10 @@ class StreamEncoder:
         The first frame of a robot with 10,000 parts takes longer than a tick may be late.
         """
         if "parts" in topics and self._known_text(frame, topics) is None:
-            new = list(self._parts.new_ones(frame.parts.items()))
+            parts = self._robot.parts
+            new = list(parts.new_ones(frame.parts.items()))
             for start in range(0, len(new), _MEMBERS_AT_ONCE):
-                self._parts.learn(new[start : start + _MEMBERS_AT_ONCE])
+                parts.learn(new[start : start + _MEMBERS_AT_ONCE])
                 await asyncio.sleep(0)
 
     def frame(self, frame: Frame, skipped: int, topics: frozenset[str]) -> str:
@@ -71,7 +70,7 @@ class StreamEncoder:
         """Return an `event` frame."""
         text = self._events.get(event.id)
         if text is None:
-            text = self._events[event.id] = event_text(event, self._supervisor.epoch, self._clock)
+            text = self._events[event.id] = self._robot.event(event)
             if len(self._events) > _EVENTS_KEPT:
                 del self._events[next(iter(self._events))]
         return text
@@ -91,25 +90,26 @@ class StreamEncoder:
 
     def _encode(self, frame: Frame, topics: frozenset[str]) -> "_StateText":
         at = timestamp(self._clock, frame.at)
-        state = SystemStateJson.of(
-            frame.system_state, frame.seq, frame.at, frame.simulated, self._clock
-        )
-        members = [f'"system_state":{state.model_dump_json()}']
-        if "parts" in topics and (frame.full or frame.parts):
-            members.append(f'"parts":{self._parts.text(frame.parts)}')
-        if "signals" in topics and (frame.full or frame.signals):
-            members.append(f'"signals":{self._signals.text(frame.signals)}')
-        if "task" in topics and frame.task_changed:
-            task = frame.task
-            text = "null" if task is None else TaskJson.of(task, self._clock).model_dump_json()
-            members.append(f'"task":{text}')
-        if "vehicle" in topics and frame.vehicle_changed:
-            limits = self._supervisor.core.driving.limits
-            vehicle = VehicleJson.of(frame.vehicle, limits, self._clock)
-            members.append(f'"vehicle":{vehicle.model_dump_json()}')
+        state = self._robot.system_state(frame.system_state, frame.seq, frame.at, frame.simulated)
+        members = [f'"system_state":{state}', *self._changed_members(frame, topics)]
         return _StateText(
             f'{{"type":"state","seq":{frame.seq},"at":"{at}","skipped":', f",{','.join(members)}}}"
         )
+
+    def _changed_members(self, frame: Frame, topics: frozenset[str]) -> Iterator[str]:
+        robot = self._robot
+        if "parts" in topics and (frame.full or frame.parts):
+            yield f'"parts":{robot.parts.text(frame.parts)}'
+        if "signals" in topics and (frame.full or frame.signals):
+            yield f'"signals":{robot.signals.text(frame.signals)}'
+        if "task" in topics and frame.task_changed:
+            yield f'"task":{robot.task(frame.task)}'
+        if "vehicle" in topics and frame.vehicle_changed:
+            yield f'"vehicle":{robot.vehicle(frame.vehicle)}'
+        if "holds" in topics and frame.holds_changed:
+            yield f'"holds":{robot.holds(frame.holds)}'
+        if "emergency_stop" in topics and frame.emergency_stop_changed:
+            yield f'"emergency_stop":{robot.emergency_stop(frame.emergency_stop)}'
 
 
 class _StateText:
@@ -125,5 +125,5 @@ class _StateText:
         return self._in_step if skipped == 0 else f"{self._head}{skipped}{self._tail}"
 
 
-def _shape(frame: Frame, topics: frozenset[str]) -> tuple[bool, ...]:
-    return (frame.full, *(topic in topics for topic in ("parts", "signals", "task", "vehicle")))
+def _shape(frame: Frame, topics: frozenset[str]) -> _Shape:
+    return frame.full, topics & STATE_TOPICS

@@ -5,9 +5,10 @@ from typing import Annotated
 
 from fastapi import APIRouter, Query, Response
 
-from api.http.long_lists import joined
+from api.http.list_answers import joined
+from api.http.route_policy import Permission, policy
 from api.http.schemas.stream import EventsJson
-from api.streaming.hub import StreamHubDep
+from api.streaming.stream_server import StreamServerDep
 from domain.events.event import RecordedEvent
 from service.event_log import EventLog, EventReader, Gap
 
@@ -19,8 +20,9 @@ _READ_AT_ONCE = 1_000
 
 
 @router.get("/events", response_model=EventsJson)
+@policy(Permission.OBSERVE)
 async def get_events(
-    hub: StreamHubDep,
+    server: StreamServerDep,
     after: Annotated[
         int | None, Query(ge=0, lt=2**63, description="Id of the last event known")
     ] = None,
@@ -38,13 +40,13 @@ async def get_events(
     Events that were asked for and are not kept any more are told in `gaps`; one without an end
     means that the service was restarted since.
     """
-    log = hub.supervisor.events
+    log = server.supervisor.events
     gaps: list[Gap] = []
     if after is None:
         events = list(islice((e for e in log.newest_first() if _is_of(e, kind)), limit))[::-1]
     else:
         gaps, events = _following(log, after, epoch, limit, kind)
-    encoder = hub.encoder
+    encoder = server.encoder
     head = EventsJson(
         epoch=log.epoch, oldest=log.oldest, newest=log.newest, gaps=[], items=[]
     ).model_dump_json(exclude={"gaps", "items"})

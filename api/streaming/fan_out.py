@@ -9,11 +9,11 @@ import logging
 from collections.abc import Iterator
 from contextlib import contextmanager
 
+from api.streaming.client_input import StreamQuery
+from api.streaming.cursor import Cursor, FrameBytes
 from api.streaming.encoder import StreamEncoder
-from api.streaming.place import News, Place
-from api.streaming.prepared import PING, Connection
-from api.streaming.query import StreamQuery
 from api.streaming.stream_client import Group, StreamClient
+from api.streaming.websocket_frames import PING, Connection
 from domain.timebase import seconds
 from service.supervisor import Supervisor
 
@@ -41,7 +41,9 @@ class FanOut:
         self._task: asyncio.Task[None] | None = None
 
     @contextmanager
-    def serve(self, connection: Connection, query: StreamQuery, address: str) -> Iterator[None]:
+    def serve(
+        self, connection: Connection, query: StreamQuery, address: str
+    ) -> Iterator[StreamClient]:
         """Write to a client as long as the context lasts.
 
         Args:
@@ -52,10 +54,10 @@ class FanOut:
         group = self._groups.get(query.topics)
         if group is None:
             from_now_on = StreamQuery(query.topics, None, None)
-            group = Group(Place(self._supervisor, from_now_on))
+            group = Group(Cursor(self._supervisor, from_now_on))
             self._groups[query.topics] = group
-        place = Place(self._supervisor, query)
-        client = StreamClient(group, connection.transport, place, address, self._supervisor.clock)
+        cursor = Cursor(self._supervisor, query)
+        client = StreamClient(group, connection.transport, cursor, address, self._supervisor.clock)
         group.add(client)
         connection.listen(client)
         self._woken.set()
@@ -63,7 +65,7 @@ class FanOut:
             self._task = asyncio.create_task(self._run(), name="stream fan-out")
             self._task.add_done_callback(self._ended)
         try:
-            yield
+            yield client
         finally:
             connection.listen(None)
             group.remove(client)
@@ -72,6 +74,11 @@ class FanOut:
             if not self._groups and self._task is not None:
                 self._task.cancel()
                 self._task = None
+
+    def resync(self, client: StreamClient) -> None:
+        """Write a complete frame to a client next, to it alone."""
+        client.resync()
+        self._woken.set()
 
     def drop(self, transport: asyncio.WriteTransport, address: str) -> None:
         """Cut off a client that does not read."""
@@ -85,12 +92,12 @@ class FanOut:
             while True:
                 await self._woken.wait()
                 self._woken.clear()
-                news = News(self._encoder)
+                encoded = FrameBytes(self._encoder)
                 ping = self._ping()
                 for group in tuple(self._groups.values()):
-                    await self._prepare(group.place.topics)
-                    await self._write_in_step(group, news, ping)
-                    await self._write_apart(group, news, ping)
+                    await self._prepare(group.cursor.topics)
+                    await self._write_in_step(group, encoded, ping)
+                    await self._write_apart(group, encoded, ping)
                 # A transport with room lets nobody else run, and a long history is many rounds.
                 await asyncio.sleep(0)
 
@@ -111,17 +118,17 @@ class FanOut:
         if frame is not None:
             await self._encoder.prepare(frame, topics)
 
-    async def _write_in_step(self, group: Group, news: News, ping: bytes) -> None:
+    async def _write_in_step(self, group: Group, encoded: FrameBytes, ping: bytes) -> None:
         """Write the same bytes to all who have taken everything before.
 
         For each client and frame, the innermost line is all the Python there is. Who cannot take
         all of it parts from the group while it is written to.
         """
-        content, skipped = group.place.take(news)
+        content, skipped = group.cursor.take(encoded)
         if not content and not ping:
             return
         content += ping
-        self._wake_if_more(group.place)
+        self._wake_if_more(group.cursor)
         self.skipped += skipped * len(group.in_step)
         transports = tuple(group.in_step)
         for start in range(0, len(transports), _CLIENTS_AT_ONCE):
@@ -132,16 +139,16 @@ class FanOut:
                 transport.write(content)
             await asyncio.sleep(0)
 
-    async def _write_apart(self, group: Group, news: News, ping: bytes) -> None:
+    async def _write_apart(self, group: Group, encoded: FrameBytes, ping: bytes) -> None:
         """Write to each of the others what it has not got, and take it in once it has it all."""
         now = self._supervisor.clock.now()
         for number, client in enumerate(tuple(group.apart.values()), 1):
             if client.is_ready(now):
-                content, skipped = client.place.take(news)
+                content, skipped = client.cursor.take(encoded)
                 self.skipped += skipped
                 if content or ping:
                     client.transport.write(content + ping)
-                self._wake_if_more(client.place)
+                self._wake_if_more(client.cursor)
                 group.take_in_if_level(client)
             elif client.is_stuck(now):
                 group.remove(client)
@@ -149,8 +156,8 @@ class FanOut:
             if number % _CLIENTS_AT_ONCE == 0:
                 await asyncio.sleep(0)
 
-    def _wake_if_more(self, place: Place) -> None:
-        if place.has_events:
+    def _wake_if_more(self, cursor: Cursor) -> None:
+        if cursor.has_events:
             self._woken.set()
 
     def _ended(self, task: asyncio.Task[None]) -> None:

@@ -14,11 +14,12 @@ from typing import Any
 from fastapi import APIRouter, WebSocket, WebSocketDisconnect
 
 from api.http.access import UnauthorizedError
-from api.http.schemas.stream import AuthMessage
-from api.streaming.hub import StreamHub, StreamHubDep
-from api.streaming.messages import read_client_message
-from api.streaming.prepared import connection_of, text_frame
-from api.streaming.query import read_stream_query
+from api.http.route_policy import Permission, policy
+from api.http.schemas.stream import AuthMessage, ResyncMessage
+from api.streaming.client_input import read_client_message, read_stream_query
+from api.streaming.stream_client import StreamClient
+from api.streaming.stream_server import StreamServer, StreamServerDep
+from api.streaming.websocket_frames import connection_of, text_frame
 from domain.errors import PilothouseError
 
 router = APIRouter()
@@ -36,21 +37,22 @@ _UNAUTHORIZED = 4401
 
 
 @router.websocket("/ws")
-async def stream(socket: WebSocket, hub: StreamHubDep) -> None:
+@policy(Permission.OBSERVE)
+async def stream(socket: WebSocket, server: StreamServerDep) -> None:
     """Serve one client until it goes, is too slow, or the service ends.
 
     What is wrong with the address is told after the handshake, as a `problem` frame and with close
     code 1008, since a browser does not show a page why its handshake was refused.
     """
     await socket.accept()
-    client = _Client(socket, hub)
+    client = _Client(socket, server)
     with suppress(_GoneError):
         if not await client.is_let_in():
             return
-        if hub.is_full:
+        if server.is_full:
             await client.send_away()
             return
-        with hub.count_client():
+        with server.count_client():
             await client.serve()
 
 
@@ -61,10 +63,10 @@ class _GoneError(Exception):
 class _Client:
     """One client, as the interface hears it."""
 
-    def __init__(self, socket: WebSocket, hub: StreamHub) -> None:
+    def __init__(self, socket: WebSocket, server: StreamServer) -> None:
         self._socket = socket
         self._connection = connection_of(socket.scope)
-        self._hub = hub
+        self._server = server
         self._address = socket.client.host if socket.client else "unknown"
 
     async def is_let_in(self) -> bool:
@@ -75,17 +77,17 @@ class _Client:
         Raises:
             _GoneError: The client went.
         """
-        hub = self._hub
-        if hub.access.accepts_header(self._socket.headers):
+        server = self._server
+        if server.access.accepts_header(self._socket.headers):
             return True
-        if hub.has_many_strangers:
+        if server.has_many_strangers:
             await self.send_away()
             return False
         try:
-            with hub.count_stranger():
+            with server.count_stranger():
                 await self._hear_token()
         except UnauthorizedError as error:
-            hub.refusals.note(HTTPStatus.UNAUTHORIZED, self._address)
+            server.refusals.note(HTTPStatus.UNAUTHORIZED, self._address)
             await self._refuse(error, _UNAUTHORIZED)
             return False
         return True
@@ -107,13 +109,13 @@ class _Client:
             return
         if self._connection.transport.is_closing():
             raise _GoneError
-        encoder = self._hub.encoder
+        encoder = self._server.encoder
         self._connection.transport.write(text_frame(encoder.hello(query.topics)))
-        complete = self._hub.supervisor.frames.complete()
+        complete = self._server.supervisor.frames.complete()
         if complete is not None:
             await encoder.prepare(complete, query.topics)
-        with self._hub.fan_out.serve(self._connection, query, self._address):
-            await self._listen()
+        with self._server.fan_out.serve(self._connection, query, self._address) as client:
+            await self._listen(client)
 
     async def _hear_token(self) -> None:
         """Take the first message.
@@ -132,15 +134,15 @@ class _Client:
             said = None
         if not isinstance(said, AuthMessage):
             raise UnauthorizedError("the first message has to be the token")
-        if not self._hub.access.accepts(said.token):
+        if not self._server.access.accepts(said.token):
             raise UnauthorizedError("this is not the token of the service")
 
-    async def _listen(self) -> None:
+    async def _listen(self, client: StreamClient) -> None:
         """Take one message after the other; the next waits in the client until this one is done."""
         while True:
             message = await self._receive()
             try:
-                self._take(message)
+                self._take(message, client)
             except PilothouseError as error:
                 await self._answer(error)
             # Messages that came together are all there at once: others get their turn in between.
@@ -152,11 +154,14 @@ class _Client:
             raise _GoneError
         return message
 
-    def _take(self, message: Mapping[str, Any]) -> None:
-        supervisor = self._hub.supervisor
+    def _take(self, message: Mapping[str, Any], client: StreamClient) -> None:
+        supervisor = self._server.supervisor
         given = read_client_message(message)
         if isinstance(given, AuthMessage):
             # A page that still has a token sends it, whether or not it is needed.
+            return
+        if isinstance(given, ResyncMessage):
+            self._server.fan_out.resync(client)
             return
         reading = given.reading(given.signal, supervisor.clock)
         supervisor.submit_readings([reading], given.source, f"websocket:{self._address}")
@@ -165,9 +170,9 @@ class _Client:
         """Say what is wrong, once the client has taken most of what was written before."""
         try:
             async with asyncio.timeout(ANSWER_TIMEOUT_S):
-                await self._socket.send_text(self._hub.encoder.problem(error))
+                await self._socket.send_text(self._server.encoder.problem(error))
         except TimeoutError as late:
-            self._hub.fan_out.drop(self._connection.transport, self._address)
+            self._server.fan_out.drop(self._connection.transport, self._address)
             raise _GoneError from late
         except (WebSocketDisconnect, RuntimeError) as gone:
             # RuntimeError: the server itself closed the connection just now, as for a message that

@@ -2,7 +2,7 @@
 
 import asyncio
 
-from api.streaming.place import Place
+from api.streaming.cursor import Cursor
 from domain.timebase import Instant, seconds
 from service.clock import Clock
 
@@ -13,8 +13,8 @@ PATIENCE = seconds(4.5)
 class Group:
     """The clients that asked for the same topics."""
 
-    def __init__(self, place: Place) -> None:
-        self.place = place
+    def __init__(self, cursor: Cursor) -> None:
+        self.cursor = cursor
         """Where all are who are in step."""
         self.in_step: dict[asyncio.WriteTransport, StreamClient] = {}
         """Those who have taken everything so far, by what is written to."""
@@ -43,12 +43,12 @@ class Group:
     def part_from(self, client: "StreamClient") -> None:
         """Let a client that cannot take more go on alone, from where all are now."""
         if self.in_step.pop(client.transport, None) is not None:
-            client.place = self.place.copy()
+            client.cursor = self.cursor.copy()
             self.apart[client.transport] = client
 
     def take_in_if_level(self, client: "StreamClient") -> None:
         """Let a client that has got and taken everything go on with the others."""
-        has_all = client.place.position == self.place.position
+        has_all = client.cursor.position == self.cursor.position
         has_taken = not client.transport.get_write_buffer_size()
         # It may have gone just now, while it was written to.
         if has_all and has_taken and self.apart.pop(client.transport, None) is not None:
@@ -75,12 +75,12 @@ class StreamClient:
         self,
         group: Group,
         transport: asyncio.WriteTransport,
-        place: Place,
+        cursor: Cursor,
         address: str,
         clock: Clock,
     ) -> None:
         self.transport = transport
-        self.place = place
+        self.cursor = cursor
         """Its own, while it is apart."""
         self.address = address
         self.owes_answer = False
@@ -94,6 +94,11 @@ class StreamClient:
     def clogged(self) -> None:
         """Go on alone: what was written last has to be taken first."""
         self._group.part_from(self)
+
+    def resync(self) -> None:
+        """Go on alone, with a complete frame."""
+        self._group.part_from(self)
+        self.cursor.begin_frames_anew()
 
     def answered(self) -> None:
         """Learn that the client reads."""

@@ -4,11 +4,10 @@ from typing import TypeAlias
 
 from prometheus_client.metrics_core import Metric
 
-from api.http.metrics import metrics
 from api.http.schemas.simulation import SimulationBody
 from api.robot_app import create_robot_app
-from api.simulation.posted import robot_for
 from api.simulation.simulation import Simulation
+from api.simulation.simulation_job import robot_for
 from docs.generate.markdown import code, page, table
 from docs.generate.source_scan import PROJECT, metric_names, require_described
 from service.jobs import InlineJobs
@@ -56,7 +55,9 @@ def _collected() -> list[Metric]:
     Simulation(body, robot).run()
     app = create_robot_app(robot.supervisor, InlineJobs())
     return [
-        family for family in metrics(app).registry.collect() if not family.name.endswith("_created")
+        family
+        for family in app.state.metrics.registry.collect()
+        if not family.name.endswith("_created")
     ]
 
 

@@ -1,4 +1,4 @@
-"""All generated pages, by the name of their file in `docs/reference`."""
+"""All generated files, by their name in `docs/reference`."""
 
 from collections.abc import Callable, Mapping
 from pathlib import Path
@@ -7,6 +7,7 @@ from types import MappingProxyType
 from docs.generate.blockers_page import blockers_page
 from docs.generate.command_line_page import command_line_page
 from docs.generate.events_page import events_page
+from docs.generate.interface_documents import asyncapi_document, openapi_document
 from docs.generate.metrics_page import metrics_page
 from docs.generate.problems_page import problems_page
 from docs.generate.settings_page import settings_page
@@ -15,10 +16,12 @@ FOLDER = Path(__file__).resolve().parents[1] / "reference"
 
 PAGES: Mapping[str, Callable[[], str]] = MappingProxyType(
     {
+        "asyncapi.json": asyncapi_document,
         "blockers.md": blockers_page,
         "command-line.md": command_line_page,
         "events.md": events_page,
         "metrics.md": metrics_page,
+        "openapi.json": openapi_document,
         "problems.md": problems_page,
         "settings.md": settings_page,
     }

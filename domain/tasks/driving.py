@@ -173,13 +173,18 @@ class Driving(Concern):
 
     @property
     def holds(self) -> Mapping[str, HoldView]:
-        """Return the holds by owner."""
+        """Return the holds by owner; the same object as long as nothing changed."""
         return self._planner.holds.views
 
     @property
     def current_task(self) -> TaskView | None:
         """Return the current task; None: there is none."""
         return self._planner.current
+
+    @property
+    def latest_task(self) -> TaskView | None:
+        """Return the current task, or else the one that ended last; None: there never was one."""
+        return self._planner.latest
 
     def task(self, identity: str) -> TaskView:
         """Return a task.

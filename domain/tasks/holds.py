@@ -1,10 +1,9 @@
 """Holds: named reasons that keep tasks from running, each set and released by its owner.
 
-Described in docs/explanation/semantics.md. smart_polaris has a single one, `allow_run_tasks`.
+Source: smart_polaris, whose only hold is `allow_run_tasks`; see docs/explanation/semantics.md.
 """
 
 from collections.abc import Mapping
-from types import MappingProxyType
 
 from domain.errors import ReservedHoldError, TooManyHoldsError
 from domain.snapshot import HoldView
@@ -23,15 +22,16 @@ class Holds:
     """The holds by owner, in the order in which they were set."""
 
     def __init__(self) -> None:
-        self._holds: dict[str, HoldView] = {}
+        self._holds: Mapping[str, HoldView] = {}
+        """Replaced by each change, and never changed in place."""
 
     def __bool__(self) -> bool:
         return bool(self._holds)
 
     @property
     def views(self) -> Mapping[str, HoldView]:
-        """Return all holds."""
-        return MappingProxyType(self._holds)
+        """Return all holds; the same object as long as nothing changed."""
+        return self._holds
 
     @property
     def reason(self) -> str:
@@ -67,12 +67,16 @@ class Holds:
         """
         known = self._holds.get(owner)
         if known is None:
-            self._holds[owner] = HoldView(owner, reason, by, now)
+            self._holds = {**self._holds, owner: HoldView(owner, reason, by, now)}
             return True
         if known.reason != reason:
-            self._holds[owner] = HoldView(owner, reason, known.by, known.since)
+            renewed = HoldView(owner, reason, known.by, known.since)
+            self._holds = {**self._holds, owner: renewed}
         return False
 
     def release(self, owner: str) -> bool:
         """Release a hold; return whether there was one."""
-        return self._holds.pop(owner, None) is not None
+        if owner not in self._holds:
+            return False
+        self._holds = {name: hold for name, hold in self._holds.items() if name != owner}
+        return True

@@ -215,6 +215,11 @@ class TaskPlanner:
         """Return the current task; None: there is none."""
         return None if self._current is None else self._current.view()
 
+    @property
+    def latest(self) -> TaskView | None:
+        """Return the current task, or else the one that ended last; None: there never was one."""
+        return next(self.tasks(), None)
+
     def task(self, identity: str) -> Task:
         """Return a task.
 

@@ -1,9 +1,10 @@
 """The example robot behind its HTTP interface, for stories that use several resources."""
 
-from collections.abc import AsyncIterator
+from collections.abc import AsyncIterator, Iterator
 
 import pytest
 
+from tests.support.blocking_service import BlockingService
 from tests.support.http_robot import HttpRobot, http_robot
 
 
@@ -11,3 +12,10 @@ from tests.support.http_robot import HttpRobot, http_robot
 async def robot() -> AsyncIterator[HttpRobot]:
     async with http_robot() as running:
         yield running
+
+
+@pytest.fixture(scope="module")
+def service() -> Iterator[BlockingService]:
+    service = BlockingService()
+    yield service
+    service.close()

@@ -5,6 +5,7 @@ import pytest
 from domain.changes.settings import ChangeSettings
 from domain.simulation.node_settings import Fault
 from domain.supervision import SupervisionSettings
+from tests.support.http_operator import HttpOperator
 from tests.support.http_robot import HttpRobot, http_robot
 from tests.support.models import BASE
 from tests.support.scenarios import ALL_GOOD, NEVER_STALE
@@ -15,11 +16,12 @@ LEFT = SupervisionSettings()
 
 async def kill_during_a_mode_change(robot: HttpRobot) -> str:
     """Return the path of the change into PERFORMANCE, of which the base does not see the end."""
-    answer = await robot.http.post("/systems/actuation/mode", json={"mode": "PERFORMANCE"})
-    await robot.pass_time(0.4)
+    operator = HttpOperator(robot)
+    change = await operator.ask_mode("actuation", "PERFORMANCE")
+    await operator.advance(0.4)
     robot.break_node("drive_base", Fault.DIE)
-    await robot.pass_time(12)
-    return str(answer.headers["location"])
+    await operator.advance(12)
+    return change
 
 
 async def start_anew(robot: HttpRobot) -> None:

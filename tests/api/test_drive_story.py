@@ -7,52 +7,37 @@ from typing import Any
 import pytest
 
 from domain.commands import Drive
+from domain.paths.path import Path
 from domain.simulation.vehicle_settings import Plant, VehicleSettings
 from service.example_tracks import track_text
+from service.files.waypoint_file import read_waypoints_csv
+from tests.support.http_operator import HttpOperator
 from tests.support.http_robot import HttpRobot, http_robot
+from tests.support.paths import straight
 from tests.support.websocket import WebSocketClient
 
-CSV = {"Content-Type": "text/csv"}
-LOOP = track_text("loop")
-STRAIGHT = "".join(f"{x},0,0\n" for x in range(31))
-BESIDE = "".join(f"{x},1,0\n" for x in range(31))
+LOOP = Path(read_waypoints_csv(track_text("loop")))
+STRAIGHT = straight(30.0)
+BESIDE = straight(30.0, y_m=1.0)
 CAR = VehicleSettings(plant=Plant(acceleration_mps2=2.0, braking_mps2=2.0, steering_rate_radps=0.5))
 """Needs a second or more to stand still."""
 
 
-class Operator:
+class Operator(HttpOperator):
     """A robot with its operator: what is asked, and what is seen."""
 
     def __init__(self, robot: HttpRobot, stream: WebSocketClient) -> None:
-        self.robot = robot
+        super().__init__(robot)
         self.stream = stream
         self.frames: list[dict[str, Any]] = []
         self.events: list[dict[str, Any]] = []
 
-    async def serve(self, csv: str, **query: float) -> dict[str, Any]:
-        answer = await self.robot.http.post("/tasks", content=csv, headers=CSV, params=query)
-        assert answer.status_code == 201, answer.text
-        assert answer.headers["location"] == f"/tasks/{answer.json()['id']}"
-        return dict(answer.json())
-
-    async def wait(self, by_s: float) -> None:
+    async def advance(self, duration_s: float) -> None:
         """Let time pass a little at a time, as an operator who watches the stream."""
-        for _ in range(round(by_s / 0.05)):
-            await self.robot.pass_time(0.05)
+        for _ in range(round(duration_s / 0.05)):
+            await super().advance(0.05)
             for frame in self.stream.frames():
                 (self.events if frame["type"] == "event" else self.frames).append(frame)
-
-    async def put(self, path: str, **body: object) -> None:
-        answer = await self.robot.http.put(path, json=body)
-        assert answer.status_code == 200, answer.text
-
-    async def delete(self, path: str) -> None:
-        assert (await self.robot.http.delete(path)).status_code == 204
-
-    async def read(self, **values: object) -> dict[str, Any]:
-        answer = await self.robot.http.post("/signals", json=values)
-        assert answer.status_code == 200, answer.text
-        return dict(answer.json())
 
     async def task(self) -> dict[str, Any]:
         """Return the task that was served last."""
@@ -82,9 +67,9 @@ async def driving(vehicle: VehicleSettings | None = CAR) -> AsyncIterator[Operat
 
 
 async def test_the_loop_is_driven_through_an_estop_and_completed(drive: Operator) -> None:
-    served = await drive.serve(LOOP, speed_mps=7)
+    served = await drive.submit_task(LOOP, speed_mps=7)
     assert served["status"] == "RUNNING"
-    await drive.wait(30)
+    await drive.advance(30)
     before = await drive.task()
     told = len(drive.robot.sent)
 
@@ -97,19 +82,19 @@ async def test_the_loop_is_driven_through_an_estop_and_completed(drive: Operator
     assert state["task_status"] == "PAUSED_TASK"
     assert (await drive.task())["status"] == "PAUSING"
 
-    await drive.wait(5)
+    await drive.advance(5)
     paused = await drive.task()
     assert paused["status"] == "PAUSED"
     assert paused["target_index"] >= before["target_index"]
     assert set(drive.drives()[told:]) == {0.0}, "nothing is driven while it is held"
 
     state = await drive.read(estop=False)
-    await drive.wait(0.3)
+    await drive.advance(0.3)
     resumed = await drive.task()
     assert resumed["status"] == "RUNNING"
     assert resumed["target_index"] >= paused["target_index"]
 
-    await drive.wait(130)
+    await drive.advance(130)
     done = await drive.task()
     assert (done["status"], done["progress"]) == ("SUCCEEDED", 1.0)
     assert drive.kinds() == [
@@ -127,11 +112,11 @@ async def test_the_loop_is_driven_through_an_estop_and_completed(drive: Operator
 
 
 async def test_the_frame_of_the_error_shows_the_held_task_as_well(drive: Operator) -> None:
-    await drive.serve(STRAIGHT)
-    await drive.wait(2)
+    await drive.submit_task(STRAIGHT)
+    await drive.advance(2)
     drive.frames.clear()
     await drive.read(estop=True)
-    await drive.wait(0.05)
+    await drive.advance(0.05)
 
     first = drive.frames[0]
     assert first["system_state"]["state"] == "ERROR"
@@ -141,35 +126,35 @@ async def test_the_frame_of_the_error_shows_the_held_task_as_well(drive: Operato
 
 
 async def test_the_emergency_stop_is_told_when_the_vehicle_stands(drive: Operator) -> None:
-    await drive.serve(STRAIGHT)
-    await drive.wait(4)
-    await drive.put("/emergency_stop", engaged=True, reason="child on the path")
+    await drive.submit_task(STRAIGHT)
+    await drive.advance(4)
+    await drive.stop("child on the path")
     assert drive.drives()[-1] == 0.0
     assert (await drive.robot.get("/emergency_stop"))["standstill_at"] is None
 
-    await drive.wait(3)
+    await drive.advance(3)
     stop = await drive.robot.get("/emergency_stop")
     assert stop["standstill_at"] > stop["since_at"]
     assert (await drive.task())["status"] == "PAUSED"
 
-    await drive.put("/emergency_stop", engaged=False, reason="it is gone")
-    await drive.wait(15)
+    await drive.release_stop("it is gone")
+    await drive.advance(15)
     assert (await drive.task())["status"] == "SUCCEEDED"
 
 
 async def test_an_operators_hold_outlives_the_task_that_it_held(drive: Operator) -> None:
-    await drive.serve(STRAIGHT)
-    await drive.wait(2)
-    await drive.put("/holds/operator", reason="loading")
-    await drive.wait(2)
-    replaced = await drive.serve(BESIDE)
+    await drive.submit_task(STRAIGHT)
+    await drive.advance(2)
+    await drive.hold(reason="loading")
+    await drive.advance(2)
+    replaced = await drive.submit_task(BESIDE)
     assert (replaced["status"], replaced["reason"]) == ("PAUSED", "loading")
     assert (await drive.robot.get("/tasks/t1"))["reason"] == "replaced by t2"
 
-    await drive.wait(3)
+    await drive.advance(3)
     assert (await drive.robot.get("/vehicle"))["speed_mps"] == 0.0
-    await drive.delete("/holds/operator")
-    await drive.wait(20)
+    await drive.release()
+    await drive.advance(20)
     done = await drive.task()
     assert (done["id"], done["status"]) == ("t2", "SUCCEEDED")
 
@@ -177,10 +162,10 @@ async def test_an_operators_hold_outlives_the_task_that_it_held(drive: Operator)
 async def test_a_robot_that_loses_its_pose_stops_and_goes_on_when_it_is_back(
     drive: Operator,
 ) -> None:
-    await drive.serve(STRAIGHT)
-    await drive.wait(3)
+    await drive.submit_task(STRAIGHT)
+    await drive.advance(3)
     drive.robot.backend.set_vehicle_reporting(False)
-    await drive.wait(0.4)
+    await drive.advance(0.4)
 
     assert drive.drives()[-1] == 0.0
     holds = (await drive.robot.get("/holds"))["items"]
@@ -190,26 +175,26 @@ async def test_a_robot_that_loses_its_pose_stops_and_goes_on_when_it_is_back(
     assert (await drive.task())["status"] == "PAUSING"
     assert (await drive.robot.get("/system_state"))["state"] == "RUNNING"
 
-    await drive.wait(3)
+    await drive.advance(3)
     assert (await drive.task())["status"] == "PAUSING", "nobody has seen it stand"
     drive.robot.backend.set_vehicle_reporting(True)
-    await drive.wait(15)
+    await drive.advance(15)
     assert (await drive.task())["status"] == "SUCCEEDED"
     assert drive.kinds().count("task.resumed") == 1
 
 
 async def test_a_task_canceled_while_it_pauses_leaves_nothing_behind(drive: Operator) -> None:
-    await drive.serve(STRAIGHT)
-    await drive.wait(4)
+    await drive.submit_task(STRAIGHT)
+    await drive.advance(4)
     await drive.read(estop=True)
     assert (await drive.task())["status"] == "PAUSING"
-    await drive.delete("/tasks/current")
+    await drive.cancel_task()
     canceled = await drive.task()
     assert (canceled["status"], canceled["reason"]) == ("CANCELED", "canceled")
     assert (await drive.robot.get("/system_state"))["task_status"] == "NO_TASK"
 
     await drive.read(estop=False)
-    await drive.wait(3)
+    await drive.advance(3)
     assert (await drive.robot.get("/vehicle"))["speed_mps"] == 0.0
     assert (await drive.robot.http.get("/tasks/current")).status_code == 404
     assert "task.resumed" not in drive.kinds()
@@ -218,9 +203,9 @@ async def test_a_task_canceled_while_it_pauses_leaves_nothing_behind(drive: Oper
 async def test_a_stop_in_the_same_instant_as_the_task_is_served_lets_nothing_move(
     drive: Operator,
 ) -> None:
-    await drive.serve(STRAIGHT)
+    await drive.submit_task(STRAIGHT)
     await drive.read(estop=True)
-    await drive.wait(1)
+    await drive.advance(1)
 
     assert (await drive.robot.get("/vehicle"))["pose"]["x_m"] == pytest.approx(0.0, abs=1e-3)
     assert (await drive.task())["status"] == "PAUSED"
@@ -228,8 +213,8 @@ async def test_a_stop_in_the_same_instant_as_the_task_is_served_lets_nothing_mov
 
 async def test_a_silent_supervisor_lets_the_vehicle_stop_by_itself() -> None:
     async with driving() as drive:
-        await drive.serve(STRAIGHT)
-        await drive.wait(5)
+        await drive.submit_task(STRAIGHT)
+        await drive.advance(5)
         vehicle = drive.robot.backend.simulation.vehicle
         assert vehicle.state.speed_mps > 2.0
         now = drive.robot.clock.now()

@@ -4,47 +4,26 @@ The route is stateless and the vectors are not: what they report adds up here, a
 with each question.
 """
 
-import asyncio
 import json
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping
 from http import HTTPStatus
 from pathlib import Path
 from typing import Any
 
-import httpx
 import pytest
 
-from api.app import create_app
+from tests.support.blocking_service import BlockingService
 from tests.support.inference_vectors import OVERRULED, OVERRULED_FACTS, Case, Parts, run_case
-from tests.support.live_robot import make_supervisor
 from tests.support.shared import json_cases, shared_folder
 
 FOLDER = "conformance/system_modes"
 SUITES = "seed_annex4", "unit_inference", "unit_rules", "inference_semantics", "random"
 
 
-class Service:
-    """The interface, for tests that are no coroutines."""
-
-    def __init__(self) -> None:
-        self._runner = asyncio.Runner()
-        self._app = create_app(make_supervisor(), allowed_hosts=[])
-        transport = httpx.ASGITransport(self._app)
-        self._http = httpx.AsyncClient(transport=transport, base_url="http://localhost")
-
-    def infer(self, body: Mapping[str, Any]) -> httpx.Response:
-        return self._runner.run(self._http.post("/inference", json=body))
-
-    def close(self) -> None:
-        self._runner.run(self._http.aclose())
-        self._runner.run(self._app.state.worker.close())
-        self._runner.close()
-
-
 class Remote:
     """`POST /inference`, in the words of the vectors; asked only when an answer is wanted."""
 
-    def __init__(self, service: Service, model: str) -> None:
+    def __init__(self, service: BlockingService, model: str) -> None:
         self._service = service
         self._body: dict[str, Any] = {"model": model, "targets": {}, "nodes": {}}
         self._answer: dict[str, Any] | None = None
@@ -106,7 +85,7 @@ class Remote:
 
     def _take(self, body: dict[str, Any]) -> bool:
         """Keep what was said, unless it is refused."""
-        answer = self._service.infer(body)
+        answer = self._service.post("/inference", body)
         if answer.status_code == HTTPStatus.UNPROCESSABLE_ENTITY:
             return False
         assert answer.status_code == HTTPStatus.OK, answer.text
@@ -139,15 +118,8 @@ def text_of(case: Case) -> str:
     return path.read_text(encoding="utf-8")
 
 
-@pytest.fixture(scope="module")
-def service() -> Iterator[Service]:
-    made = Service()
-    yield made
-    made.close()
-
-
 @pytest.mark.parametrize("case", [case for suite in SUITES for case in cases(suite)])
-def test_the_interface_infers_what_the_vectors_say(case: Case, service: Service) -> None:
+def test_the_interface_infers_what_the_vectors_say(case: Case, service: BlockingService) -> None:
     remote = Remote(service, text_of(case))
     if case["name"] in OVERRULED:
         reason = OVERRULED[case["name"]]

@@ -5,6 +5,7 @@ that is refused has changed nothing. How many there were is printed in the end.
 """
 
 import os
+import sys
 from collections.abc import Iterator
 from http import HTTPStatus
 from typing import Any
@@ -46,7 +47,8 @@ def storm(request: pytest.FixtureRequest) -> Iterator[Storm]:
     made.close()
     capture = request.config.pluginmanager.getplugin("capturemanager")
     with capture.global_and_fixture_disabled():
-        print(f"\n{made.summary()}")
+        # Not to the standard output, which a worker of pytest-xdist does not pass on.
+        print(f"\n{made.summary()}", file=sys.stderr)
 
 
 @pytest.mark.timeout(600)  # One test is hundreds of requests.

@@ -4,19 +4,16 @@ What a vector expects is looked up in the samples. A vector that scripts the con
 the supervision alone (tests/conformance/test_planner_vectors.py): here the real one drives.
 """
 
-import asyncio
 import math
 from collections.abc import Iterator, Mapping
 from http import HTTPStatus
 from typing import Any
 
-import httpx
 import pytest
 
-from api.app import close_workers, create_app
 from service.files.waypoint_file import InvalidWaypointsError, read_waypoints_csv
 from tests.conformance.test_polaris_vectors import OVERRULED, expectation
-from tests.support.live_robot import make_supervisor
+from tests.support.blocking_service import BlockingService
 from tests.support.planner_vectors import Seen, looks_of, wrong_keys
 from tests.support.polaris import BITS, Vector, sends_of
 from tests.support.shared import json_cases, shared_folder
@@ -25,34 +22,6 @@ VECTORS = json_cases("conformance/polaris/vectors", "*.json", "vectors")
 
 PERIOD_MS = 10
 """Of the samples: every time that a vector looks at is a multiple of it."""
-
-
-class Service:
-    """The interface, for tests that are no coroutines."""
-
-    def __init__(self) -> None:
-        self._runner = asyncio.Runner()
-        self._app = create_app(make_supervisor(), allowed_hosts=[])
-        transport = httpx.ASGITransport(self._app)
-        self._http = httpx.AsyncClient(transport=transport, base_url="http://localhost")
-
-    def simulate(self, body: Mapping[str, Any]) -> dict[str, Any]:
-        answer = self._runner.run(self._http.post("/simulations", json=body, timeout=60))
-        assert answer.status_code == HTTPStatus.OK, answer.text
-        found: dict[str, Any] = answer.json()
-        return found
-
-    def close(self) -> None:
-        self._runner.run(self._http.aclose())
-        self._runner.run(close_workers(self._app))
-        self._runner.close()
-
-
-@pytest.fixture(scope="module")
-def service() -> Iterator[Service]:
-    service = Service()
-    yield service
-    service.close()
 
 
 def waypoints(file: str) -> list[dict[str, float]] | None:
@@ -146,7 +115,7 @@ def _code(seen: Seen) -> int:
 
 @pytest.mark.parametrize("vector", VECTORS)
 def test_a_simulation_shows_what_the_vector_says_unless_it_is_overruled(
-    vector: Vector, service: Service
+    vector: Vector, service: BlockingService
 ) -> None:
     if "controller_stub" in vector["needs"]:
         pytest.skip(
@@ -158,14 +127,15 @@ def test_a_simulation_shows_what_the_vector_says_unless_it_is_overruled(
     ):
         pytest.skip("JSON has no NaN: test_polaris_vectors plays it")
     end_ms = max(at for look in vector[expectation(vector)] for at in looks_of(look))
-    answer = service.simulate(
-        {
-            "robot": {"signals": {"stale_after_s": vector["config"]["state_timeout_ms"] / 1000}},
-            "until_s": end_ms / 1000 + 0.05,
-            "sample_period_s": PERIOD_MS / 1000,
-            "steps": steps,
-        }
-    )
+    body = {
+        "robot": {"signals": {"stale_after_s": vector["config"]["state_timeout_ms"] / 1000}},
+        "until_s": end_ms / 1000 + 0.05,
+        "sample_period_s": PERIOD_MS / 1000,
+        "steps": steps,
+    }
+    simulated = service.post("/simulations", body)
+    assert simulated.status_code == HTTPStatus.OK, simulated.text
+    answer = simulated.json()
     refused = bool(answer["refusals"])
     found = differences(vector, answer["samples"], refused)
 

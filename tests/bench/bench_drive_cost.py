@@ -7,7 +7,7 @@ from collections.abc import Callable
 
 import pytest
 
-from api.simulation.posted import simulate_posted
+from api.simulation.simulation_job import simulate_posted
 from domain.paths.path import Path
 from domain.paths.speed_profile import SpeedLimits, SpeedProfile
 from tests.support.bench import Row, quantiles, report

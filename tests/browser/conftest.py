@@ -1,7 +1,9 @@
 """A real Chromium, and a real service as a process of its own that a test may kill."""
 
+import os
 import socket
 from collections.abc import Iterator
+from contextlib import suppress
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -27,14 +29,28 @@ CHROMIUM_ARGUMENTS = [
 
 @pytest.fixture(scope="module")
 def running_service(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Service]:
-    with socket.socket() as probe:
-        probe.bind(("127.0.0.1", 0))
-        port = probe.getsockname()[1]
+    port = _free_port()
     with (tmp_path_factory.mktemp("service") / "output").open("w+b") as output:
         service = Service(port, output)
         service.start()
         yield service
         service.kill()
+
+
+def _free_port() -> int:
+    """Return a port that stays free while the service is down.
+
+    Those from 32768 on the kernel gives to whoever asks for any; each worker has its own range.
+    """
+    worker = int(os.environ.get("PYTEST_XDIST_WORKER", "gw0").removeprefix("gw"))
+    for port in range(20_000 + 100 * worker, 20_100 + 100 * worker):
+        with socket.socket() as probe:
+            # As the service does, which may follow another one on the same port.
+            probe.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
+            with suppress(OSError):
+                probe.bind(("127.0.0.1", port))
+                return port
+    pytest.fail("no port is free")
 
 
 @pytest.fixture
@@ -43,6 +59,7 @@ def service(running_service: Service) -> Service:
     return running_service
 
 
+# Of a module, not of more: while playwright runs, no coroutine of another test can.
 @pytest.fixture(scope="module")
 def browser() -> Iterator["Browser"]:
     sync_api = pytest.importorskip("playwright.sync_api", reason="playwright is not installed")

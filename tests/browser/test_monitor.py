@@ -90,6 +90,39 @@ def test_the_changes_that_others_ask_for_are_shown_at_few_requests(
     assert complaints.messages == []
 
 
+def test_holds_the_stop_and_the_end_of_a_task_of_others_are_shown_without_a_question(
+    desktop: Page, service: Service, complaints: Complaints
+) -> None:
+    expect(desktop.get_by_role("button", name="MODERATE")).to_be_enabled()
+    asked: list[str] = []
+    desktop.on("request", lambda request: asked.append(urlsplit(request.url).path))
+    service.request("PUT", "/holds/gate", {"reason": "the gate is shut"})
+    expect(desktop.get_by_role("list", name="Holds")).to_contain_text("gate: the gate is shut")
+    service.request("DELETE", "/holds/gate")
+    expect(desktop.get_by_role("list", name="Holds")).to_be_hidden()
+    service.request("PUT", "/emergency_stop", {"engaged": True, "reason": "smoke"})
+    expect(desktop.locator("ph-stop-button")).to_contain_text("smoke")
+    service.request("PUT", "/emergency_stop", {"engaged": False, "reason": "clear"})
+    expect(stop(desktop)).to_have_text("STOP")
+    events = desktop.get_by_role("list", name="Recent events")
+    expect(events).to_contain_text("hold gate set: the gate is shut")
+    known = {"/holds", "/emergency_stop", "/systems", "/nodes", "/tasks", "/events"}
+    assert known.isdisjoint(asked)
+    assert complaints.messages == []
+
+
+def test_details_are_left_out_of_the_events_until_they_are_asked_for(
+    desktop: Page, service: Service
+) -> None:
+    service.request("PUT", "/holds/gate", {"reason": "the gate is shut"})
+    events = desktop.get_by_role("list", name="Recent events")
+    expect(events).to_contain_text("hold gate set: the gate is shut")
+    detail = events.locator('[data-kind="audit.write"]')
+    expect(detail).to_have_count(0)
+    desktop.get_by_role("switch", name="Details too").check()
+    expect(detail).not_to_have_count(0)
+
+
 def test_a_battery_dragged_low_is_an_error_that_says_why_and_ends_when_it_is_full(
     desktop: Page, complaints: Complaints
 ) -> None:
@@ -260,4 +293,8 @@ def test_a_killed_service_leaves_no_contact_and_a_stop_that_is_delivered_when_it
     expect(stop(desktop)).to_contain_text("ENGAGED")
     expect(sentence(desktop)).to_contain_text("ERROR")
     expect(desktop.get_by_role("list", name="Recent events")).to_contain_text("restarted")
+    notice = desktop.locator("ph-state-bar .notice")
+    expect(notice).to_contain_text(re.compile(r"restarted at \d\d:\d\d:\d\d: earlier tasks"))
+    notice.get_by_role("button", name="Dismiss").click()
+    expect(notice).to_be_hidden()
     assert service.request("GET", "/emergency_stop")["engaged"] is True

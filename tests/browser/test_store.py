@@ -15,6 +15,7 @@ pytestmark = pytest.mark.browser
 
 AT = "2026-01-02T03:04:05.000Z"
 ACTIVE = {"target": None, "actual": {"state": "active", "mode": "FAST"}, "converged": True}
+LATER = "2026-01-02T03:04:09.000Z"
 DEVIATING = {**ACTIVE, "converged": False}
 
 
@@ -45,6 +46,11 @@ def fold(page: Page, *messages: dict[str, Any]) -> dict[str, Any]:
     return state
 
 
+def current_task(page: Page, state: dict[str, Any]) -> object:
+    script = 'async (state) => (await import("/web/js/store.js")).currentTask(state)'
+    return page.evaluate(script, state)
+
+
 def frame(at: str = AT, **members: object) -> dict[str, Any]:
     return {"type": "state", "at": at, "seq": 1, "skipped": 0, **members}
 
@@ -61,26 +67,6 @@ def test_parts_that_a_frame_leaves_out_stay_as_they_were(page: Page) -> None:
     state = fold(page, frame(parts={"a": ACTIVE, "b": ACTIVE}), frame(parts={"b": DEVIATING}))
     assert state["parts"]["a"]["converged"] is True
     assert state["parts"]["b"]["converged"] is False
-
-
-def test_an_answer_to_a_request_never_takes_a_part_back_behind_the_stream(page: Page) -> None:
-    old = {"name": "a", "kind": "node", "reachable": False, "change": None, **DEVIATING}
-    new = {"name": "a", "kind": "node", "reachable": True, "change": "c2", **ACTIVE}
-    state = fold(page, frame(parts={"a": new}), {"type": "structure", "items": [old]})
-    streamed = fold(page, frame(parts={"a": new}))
-    assert state["parts"] == streamed["parts"]
-
-
-def test_an_answer_tells_of_parts_that_no_frame_has_told_yet(page: Page) -> None:
-    told = {"name": "b", "kind": "node", "reachable": True, "change": None, **ACTIVE}
-    state = fold(page, {"type": "structure", "items": [told]})
-    assert state["parts"] == {"b": told}
-
-
-def test_a_deviation_is_as_old_as_the_first_frame_that_tells_it(page: Page) -> None:
-    later = "2026-01-02T03:04:09.000Z"
-    state = fold(page, frame(parts={"a": DEVIATING}), frame(later, parts={"a": DEVIATING}))
-    assert state["parts"]["a"]["deviation_since_at"] == AT
 
 
 def test_events_are_kept_once_though_the_log_tells_them_again(page: Page) -> None:
@@ -102,35 +88,45 @@ def test_task_and_vehicle_stay_as_they_were_while_frames_leave_them_out(page: Pa
     assert state["vehicle"] == {"at": AT}
 
 
-def test_a_task_that_is_no_longer_the_current_one_is_the_last(page: Page) -> None:
-    state = fold(page, frame(task=task("t1")), frame(task=task("t2")), frame(task=None))
-    assert state["task"] is None
-    assert state["lastTask"]["id"] == "t2"
-
-
-def test_that_there_is_still_no_task_does_not_make_one_forget_how_the_last_ended(
-    page: Page,
-) -> None:
+def test_a_task_that_ended_stays_until_the_next_and_is_not_the_current_one(page: Page) -> None:
     ended = task("t1", status="SUCCEEDED", ended_at=AT)
-    state = fold(
-        page,
-        frame(task=task("t1")),
-        frame(task=None),
-        {"type": "ended_task", "task": ended},
-        frame(task=None),
-    )
-    assert state["lastTask"] == ended
+    driven = fold(page, frame(task=task("t1")))
+    over = fold(page, frame(task=task("t1")), frame(task=ended), frame())
+    assert over["task"] == ended
+    assert current_task(page, driven) == driven["task"]
+    assert current_task(page, over) is None
+    assert current_task(page, fold(page, frame(task=None))) is None
 
 
-def test_holds_are_those_of_the_last_answer(page: Page) -> None:
+def test_holds_are_those_of_the_last_frame_that_told_them(page: Page) -> None:
     hold = {"owner": "operator", "reason": "", "by": "", "since_at": AT}
-    first, second = {"type": "holds", "items": [hold]}, {"type": "holds", "items": []}
-    assert fold(page, first)["holds"] == [hold]
-    assert fold(page, first, second)["holds"] == []
+    held, free = frame(holds={"operator": hold}), frame(holds={})
+    assert fold(page, held, frame())["holds"] == {"operator": hold}
+    assert fold(page, held, free)["holds"] == {}
+
+
+def test_the_stop_is_that_of_the_last_frame_or_of_the_press_that_was_answered(page: Page) -> None:
+    released = {"engaged": False, "since_at": None}
+    engaged = {"engaged": True, "since_at": LATER}
+    pressed = {"type": "latch", "latch": engaged}
+    assert fold(page, frame(emergency_stop=released), frame())["emergencyStop"] == released
+    assert fold(page, frame(emergency_stop=released), pressed)["emergencyStop"] == engaged
+    # A frame that was on its way tells of the time before the press.
+    assert fold(page, pressed, frame(emergency_stop=released))["emergencyStop"] == engaged
+    later = frame(LATER, emergency_stop=released)
+    assert fold(page, pressed, later)["emergencyStop"] == released
+
+
+def test_when_the_service_was_restarted_is_told_until_it_is_read(page: Page) -> None:
+    first = {"type": "hello", "epoch": "a", "started_at": AT}
+    second = {"type": "hello", "epoch": "b", "started_at": LATER}
+    assert fold(page, first, first)["restartedAt"] is None
+    assert fold(page, first, second)["restartedAt"] == LATER
+    assert fold(page, first, second, {"type": "restart_read"})["restartedAt"] is None
 
 
 def test_after_a_restart_nothing_old_is_shown_but_the_events(page: Page) -> None:
-    first, second = ({"type": "hello", "epoch": epoch} for epoch in "ab")
+    first, second = ({"type": "hello", "epoch": epoch, "started_at": AT} for epoch in "ab")
     state = fold(page, first, frame(parts={"a": ACTIVE}), event(9), second, event(1))
     assert state["parts"] == {}
     assert [kept["id"] for kept in state["events"]] == [9, "restart-b", 1]

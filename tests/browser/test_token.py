@@ -8,7 +8,7 @@ pytest.importorskip("playwright.sync_api", reason="playwright is not installed")
 
 from playwright.sync_api import Browser, Locator, Page, expect
 
-from api.http.access import TOKEN_VARIABLE
+from api.access_token import TOKEN_VARIABLE
 from tests.support.process import ServiceProcess, service
 
 pytestmark = pytest.mark.browser
@@ -84,7 +84,7 @@ def test_the_token_goes_with_what_the_page_asks_for(page: Page, guarded: Service
     expect(page.locator("ph-change")).to_contain_text("succeeded after", timeout=SLOW_MS)
 
 
-def test_a_write_is_told_once_and_by_whom_where_reports_are_wanted(page: Page) -> None:
+def test_a_write_is_told_once_and_by_whom_where_details_are_wanted(page: Page) -> None:
     give(page, TOKEN)
     expect(sentence(page)).to_have_text("IDLE: no task", timeout=SLOW_MS)
     page.get_by_role("button", name="MODERATE").click()
@@ -92,7 +92,7 @@ def test_a_write_is_told_once_and_by_whom_where_reports_are_wanted(page: Page) -
     written = page.locator('ph-event-list [data-kind="audit.write"]')
 
     expect(written).to_have_count(0)
-    page.get_by_role("switch", name="Reports too").check()
+    page.get_by_role("switch", name="Details too").check()
 
     expect(written.first).to_contain_text("POST /systems/actuation/mode from 127.0.0.1:")
     expect(written.first).to_contain_text("answered 202")

@@ -16,9 +16,9 @@ from domain.simulation.nodes import NodeMessage, SimulatedNodes
 from domain.state_and_mode import PartName, StateAndMode
 from domain.timebase import Instant, seconds
 from service.files.model_file import read_model
+from tests.support.core_robot import CoreRobot
 from tests.support.manager_vectors import LATER, OVERRULED, Case, Pair, run_case
 from tests.support.shared import json_cases, shared_folder
-from tests.support.virtual_robot import VirtualRobot
 
 AT_ONCE = NodeSettings(
     configure=0,
@@ -92,7 +92,7 @@ class Core:
         by_kind = {"lifecycle": AT_ONCE, "plain": plain, "fake": NOT_THERE, "absent": NOT_THERE}
         settings = {node: by_kind[kinds.get(node, "absent")] for node in model.nodes}
         fakes = {name for name, kind in kinds.items() if kind == "fake"}
-        self.robot = VirtualRobot(model, nodes={str(node): own for node, own in settings.items()})
+        self.robot = CoreRobot(model, nodes={str(node): own for node, own in settings.items()})
         self.nodes = NodesWithFakes(model, settings, fakes)
         self.robot.nodes = self.robot.robot.nodes = self.nodes
         self._known = {

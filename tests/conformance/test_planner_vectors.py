@@ -19,11 +19,12 @@ from domain.supervision import SupervisionSettings
 from domain.timebase import seconds
 from service.files.robot_settings import SignalsBlock
 from service.files.waypoint_file import read_waypoints_csv
-from tests.support.driver import Driver, straight
+from tests.support.core_robot import CoreRobot
+from tests.support.paths import straight
 from tests.support.planner_vectors import PlannerRobot, Seen, play
 from tests.support.polaris import Vector
+from tests.support.scripted_robot import ScriptedRobot
 from tests.support.shared import json_cases, shared_folder
-from tests.support.virtual_robot import VirtualRobot
 
 VECTORS = json_cases("conformance/polaris/vectors", "09_*.json", "vectors")
 INJECTING = json_cases("conformance/polaris/vectors", "01_*.json", "vectors")
@@ -49,8 +50,8 @@ class OnTheRobot:
     """Everything that runs live, in virtual time."""
 
     def __init__(self, vector: Vector) -> None:
-        self._virtual = VirtualRobot(SmhModel({}, {}), NOT_STALE)
-        self._robot: VirtualRobot | Driver = self._virtual
+        self._virtual = CoreRobot(SmhModel({}, {}), NOT_STALE)
+        self._robot: CoreRobot | ScriptedRobot = self._virtual
         self._files: dict[TaskId, str] = {}
         start_task = vector["config"].get("waypoint_file")
         if start_task is not None:
@@ -64,7 +65,7 @@ class OnTheRobot:
 
     def serve(self, file: str) -> bool:
         try:
-            task = self._robot.serve(read_path(file)).task
+            task = self._robot.submit_task(read_path(file)).task
         except (PilothouseError, FileNotFoundError):
             return False
         assert task is not None
@@ -72,7 +73,7 @@ class OnTheRobot:
         return True
 
     def cancel(self) -> None:
-        self._robot.cancel()
+        self._robot.cancel_task()
 
     def controller(self, step: Mapping[str, Any]) -> None:
         raise NotImplementedError(step)
@@ -97,7 +98,7 @@ class OnTheSupervision(OnTheRobot):
     """The supervision alone: the vector says what navigation does."""
 
     def __init__(self, vector: Vector) -> None:
-        self._driver = Driver(settings=NOT_STALE, good=False)
+        self._driver = ScriptedRobot(settings=NOT_STALE, good=False)
         self._robot = self._driver
         self._files = {}
 
@@ -141,9 +142,9 @@ class WithAnInjectedTask(OnTheRobot):
         if signal != "task_status":
             super().reading(signal, value)
         elif value == "RUNNING_TASK":
-            self._robot.serve(straight(100.0))
+            self._robot.submit_task(straight(100.0))
         elif value == "NO_TASK":
-            self._robot.cancel()
+            self._robot.cancel_task()
 
     def observe(self) -> Seen:
         self._files = {task.id: "" for task in self._robot.core.driving.tasks()}

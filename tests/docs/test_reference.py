@@ -1,16 +1,18 @@
 """Pages of the reference that follow from the code are what the code says."""
 
 import re
+from importlib.metadata import version
 from pathlib import Path
 
 import pytest
 import yaml
+from packaging.version import Version
 
 from api.cli.command_line import main
 from api.http.problems import STATUS_OF
 from api.http.schemas.simulation import SimulationBody
-from api.simulation.posted import robot_for
 from api.simulation.simulation import Simulation
+from api.simulation.simulation_job import robot_for
 from docs.generate.__main__ import main as renew
 from docs.generate.pages import FOLDER, PAGES
 from docs.generate.source_scan import UndescribedError, codes_given_to, require_described
@@ -22,6 +24,7 @@ from domain.supervision import Supervision, SupervisionSettings
 from tests.support.good import GOOD
 from tests.support.http_robot import ACTUATION
 from tests.support.models import actuation_model
+from tests.support.shared import PROJECT
 
 STRAIGHT = [{"x_m": float(x), "y_m": 0.0, "yaw_rad": 0.0} for x in range(31)]
 # Nothing follows from feedback, so that it is not recorded.
@@ -30,8 +33,22 @@ NEVER_SEEN_HERE = {"goal.feedback"}
 NOT_BY_SIMULATED_NODES = {"mode"}
 
 
+LOCK = PROJECT / "requirements.lock"
+
+
+def is_older_than_locked(package: str) -> bool:
+    locked = re.search(rf"^{package}==(\S+)", LOCK.read_text(encoding="utf-8"), re.MULTILINE)
+    assert locked is not None
+    return Version(version(package)) < Version(locked[1])
+
+
+IS_OLDER = is_older_than_locked("fastapi") or is_older_than_locked("pydantic")
+
+
 @pytest.mark.parametrize("name", sorted(PAGES))
 def test_a_page_is_what_the_code_says(name: str) -> None:
+    if IS_OLDER and name.endswith(".json"):
+        pytest.skip("an older framework words its part of the documents otherwise")
     checked_in = (FOLDER / name).read_text(encoding="utf-8")
 
     # Without line breaks: argparse of another Python breaks its lines elsewhere.

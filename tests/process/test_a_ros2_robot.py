@@ -17,7 +17,7 @@ import asyncio
 import sys
 from types import SimpleNamespace
 sys.path.insert(0, {project!r})
-from api import command_line
+from api.cli import command_line
 from service.clock import MonotonicClock
 from service.ros.gateway import RosGateway
 from tests.support.ros_graph import FakeGraph

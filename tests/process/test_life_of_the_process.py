@@ -133,7 +133,7 @@ def test_a_task_that_fails_ends_the_process_and_is_named(tmp_path: Path) -> None
     harness.write_text(
         textwrap.dedent("""
         import asyncio
-        from api import command_line
+        from api.cli import command_line
         from service.simulation.simulated import SimulatedBackend
 
         async def fail(self, deliver):

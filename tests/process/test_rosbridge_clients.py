@@ -16,7 +16,7 @@ from typing import Any
 
 import pytest
 
-from api.http.access import TOKEN_VARIABLE
+from api.access_token import TOKEN_VARIABLE
 from tests.support.process import service
 
 TOKEN = "correct-horse-battery"

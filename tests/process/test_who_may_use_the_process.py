@@ -7,7 +7,7 @@ from pathlib import Path
 import httpx
 import pytest
 
-from api.http.access import FILE_VARIABLE, TOKEN_VARIABLE
+from api.access_token import FILE_VARIABLE, TOKEN_VARIABLE
 from tests.support.process import run, service
 
 TOKEN = "correct-horse-battery"

@@ -13,23 +13,12 @@ from typing import Any
 import hypothesis.strategies as st
 from hypothesis import given, settings
 
-from api.http.posted_tasks import task_of
-from api.http.routes.tasks import serve
 from api.http.schemas.simulation import SimulationBody
 from api.http.schemas.tasks import TaskBody
-from api.simulation.posted import robot_for
+from api.http.task_jobs import task_of
 from api.simulation.simulation import Simulation
+from api.simulation.simulation_job import robot_for
 from domain.errors import PilothouseError
-from domain.inputs import (
-    CancelTaskRequest,
-    EmergencyStopRequest,
-    HoldRequest,
-    ModeRequest,
-    Reading,
-    ReleaseRequest,
-    TransitionRequest,
-)
-from domain.lifecycle import Transition
 from domain.simulation.node_settings import Fault
 from domain.state_and_mode import PartName
 from domain.supervision import SupervisionSettings
@@ -37,6 +26,7 @@ from domain.timebase import seconds, to_seconds
 from service.files.robot_settings import SignalsBlock
 from tests.support.http_robot import ACTUATION, HttpRobot
 from tests.support.live_robot import running
+from tests.support.service_operator import ServiceOperator
 
 EXAMPLES = 1_000 if os.environ.get("PILOTHOUSE_SOAK") == "1" else 50
 END_S = 12.0
@@ -171,33 +161,39 @@ async def live(steps: Sequence[dict[str, Any]], mock: bool) -> Told:
 
 
 def _act(robot: HttpRobot, step: dict[str, Any]) -> None:
-    supervisor = robot.supervisor
-    if "reading" in step:
-        items = [Reading(name, value) for name, value in step["reading"].items()]
-        supervisor.submit_readings(items, "api")
-    elif "task" in step:
-        if step["task"] is None:
-            supervisor.submit(CancelTaskRequest())
-        else:
-            serve(supervisor, task_of(TaskBody.model_validate(step["task"])), "")
-    elif "change" in step:
-        asked = step["change"]
-        part = PartName(asked["part"])
-        supervisor.submit(
-            ModeRequest(part, asked["mode"])
-            if "mode" in asked
-            else TransitionRequest(part, Transition(asked["transition"]))
-        )
-    elif "node" in step:
-        fault = None if step["fault"] == "recover" else Fault(step["fault"])
-        robot.backend.set_fault(PartName(step["node"]), fault)
-    elif "vehicle" in step:
-        robot.backend.set_vehicle_reporting(step["vehicle"] == "recover")
-    elif "hold" in step:
-        given = HoldRequest("operator", "test") if step["hold"] else ReleaseRequest("operator")
-        supervisor.submit(given)
-    else:
-        supervisor.submit(EmergencyStopRequest(step["stop"], "test"))
+    operator = ServiceOperator(robot.supervisor, robot.clock)
+    match step:
+        case {"reading": values}:
+            operator.read(**values)
+        case {"task": None}:
+            operator.cancel_task()
+        case {"task": posted}:
+            task = task_of(TaskBody.model_validate(posted))
+            operator.submit_task(
+                task.path,
+                start_index=task.start_index,
+                controller=task.controller,
+                speed_mps=task.speed_mps,
+            )
+        case {"change": {"part": part, "mode": mode}}:
+            operator.ask_mode(part, mode)
+        case {"change": {"part": part, "transition": transition}}:
+            operator.ask_transition(part, transition)
+        case {"node": node, "fault": fault}:
+            recovers = fault == "recover"
+            robot.backend.set_fault(PartName(node), None if recovers else Fault(fault))
+        case {"vehicle": reporting}:
+            robot.backend.set_vehicle_reporting(reporting == "recover")
+        case {"hold": True}:
+            operator.hold(reason="test")
+        case {"hold": False}:
+            operator.release()
+        case {"stop": True}:
+            operator.stop()
+        case {"stop": False}:
+            operator.release_stop()
+        case _:
+            raise NotImplementedError(step)
 
 
 @settings(max_examples=EXAMPLES)

@@ -24,13 +24,13 @@ from domain.timebase import seconds, to_seconds
 from domain.tracking.trackers import TRACKERS
 from domain.vehicle import Pose, VehicleLimits
 from service.files.robot_settings import SignalsBlock
+from tests.support.core_robot import CoreRobot
 from tests.support.good import GOOD
 from tests.support.random_paths import Walk, evenly, passed_share, walks
 from tests.support.track_study import PLANTS
-from tests.support.virtual_robot import VirtualRobot
 
 SOAK = os.environ.get("PILOTHOUSE_SOAK") == "1"
-EXAMPLES = 10_000 if SOAK else 500
+EXAMPLES = 10_000 if SOAK else 100
 
 LIMITS = VehicleLimits()
 MOST_M = 60.0
@@ -119,9 +119,9 @@ class Outing:
         self.errand = errand
         self.path = Path(errand.waypoints)
         vehicle = VehicleSettings(errand.start, errand.plant, LIMITS)
-        self.robot = VirtualRobot(SmhModel({}, {}), _NEVER_STALE, vehicle=vehicle)
+        self.robot = CoreRobot(SmhModel({}, {}), _NEVER_STALE, vehicle=vehicle)
         self.robot.read(**GOOD)
-        self.robot.serve(self.path, errand.controller, errand.speed_mps)
+        self.robot.submit_task(self.path, controller=errand.controller, speed_mps=errand.speed_mps)
         self.places: list[tuple[float, float]] = []
         self._look()
         for _ in range(round(self.longest_s / _PERIOD_S)):

@@ -27,9 +27,9 @@ from domain.simulation.node_settings import Fault
 from domain.snapshot import ChangeStatus, StepStatus, SystemState
 from domain.state_and_mode import ModeName, PartName
 from domain.supervision import SupervisionSettings
+from tests.support.core_robot import CoreRobot
 from tests.support.good import GOOD
 from tests.support.models import ACTUATION, ARM, BASE, nested_model
-from tests.support.virtual_robot import VirtualRobot
 
 MODEL = nested_model()
 PARTS = st.sampled_from(MODEL.parts)
@@ -56,7 +56,7 @@ class Sequences(RuleBasedStateMachine):
     def __init__(self) -> None:
         super().__init__()
         changes = ChangeSettings(restored_nodes=frozenset({BASE, ARM}))
-        self.robot = VirtualRobot(MODEL, SupervisionSettings(changes=changes))
+        self.robot = CoreRobot(MODEL, SupervisionSettings(changes=changes))
         self.robot.read(**GOOD)
         self.checked = 0
 
@@ -104,7 +104,10 @@ class Sequences(RuleBasedStateMachine):
 
     @rule(engaged=st.booleans())
     def press_or_release_the_emergency_stop(self, *, engaged: bool) -> None:
-        self.robot.stop(engaged=engaged)
+        if engaged:
+            self.robot.stop()
+        else:
+            self.robot.release_stop()
 
     @rule(estop=st.booleans(), battery=st.sampled_from([0.1, 0.9]))
     def read_signals(self, *, estop: bool, battery: float) -> None:
@@ -188,6 +191,6 @@ def _root(event: RecordedEvent, by_id: Mapping[int, RecordedEvent]) -> RecordedE
 
 SOAK = bool(os.environ.get("PILOTHOUSE_SOAK"))
 Sequences.TestCase.settings = settings(
-    max_examples=10_000 if SOAK else 500, stateful_step_count=30, deadline=None
+    max_examples=10_000 if SOAK else 100, stateful_step_count=30, deadline=None
 )
 TestSequences = Sequences.TestCase

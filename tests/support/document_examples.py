@@ -119,6 +119,9 @@ async def _messages(robot: HttpRobot) -> list[StreamExample]:
         StreamExample(message="problem", summary="A reading that is none", payload=problem),
         StreamExample(message="reading", summary="From a named sender", payload=reading),
         StreamExample(
+            message="resync", summary="After a loss of its own", payload={"type": "resync"}
+        ),
+        StreamExample(
             message="auth", summary="First of all", payload={"type": "auth", "token": "a-secret"}
         ),
     ]

@@ -1,6 +1,6 @@
 """Frames, events and views for tests of what is streamed."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from types import MappingProxyType
 
@@ -8,6 +8,8 @@ from domain.events.event import Event, RecordedEvent
 from domain.lifecycle import LifecycleState
 from domain.snapshot import (
     Actual,
+    EmergencyStopView,
+    HoldView,
     PartView,
     SignalView,
     SystemState,
@@ -22,6 +24,8 @@ from domain.vehicle import DriveCommand
 from service.frame_feed import Frame
 
 NOWHERE = VehicleView(None, None, DriveCommand(0.0, 0.0), None)
+NO_HOLDS: Mapping[str, HoldView] = MappingProxyType({})
+RELEASED = EmergencyStopView(engaged=False, by=None, reason=None, since=None, standstill_at=None)
 IDLE = SystemStateView(SystemState.IDLE, 0, (), (), TaskStatus.NO_TASK)
 
 
@@ -72,6 +76,10 @@ def frame(
     task_changed: bool = False,
     vehicle: VehicleView = NOWHERE,
     vehicle_changed: bool = False,
+    holds: Mapping[str, HoldView] = NO_HOLDS,
+    holds_changed: bool = False,
+    emergency_stop: EmergencyStopView = RELEASED,
+    emergency_stop_changed: bool = False,
 ) -> Frame:
     """Make frame number `seq`, of the tick at `seq` * 50 ms."""
     return Frame(
@@ -84,6 +92,10 @@ def frame(
         task_changed=full or task_changed,
         vehicle=vehicle,
         vehicle_changed=full or vehicle_changed,
+        holds=holds,
+        holds_changed=full or holds_changed,
+        emergency_stop=emergency_stop,
+        emergency_stop_changed=full or emergency_stop_changed,
         full=full,
         simulated=("nodes",),
     )

@@ -3,12 +3,14 @@
 import asyncio
 from collections.abc import AsyncIterator, Coroutine, Mapping, Sequence
 from contextlib import asynccontextmanager
+from functools import cache
 from typing import Any, TypeVar
 
 import httpx
 
 from api.app import close_workers, create_app
 from api.http.access import Access
+from api.http.gate.policies import RoutePolicies
 from api.http.limits import USUAL_LIMITS, ServiceLimits
 from domain.commands import Drive, NodeCommand
 from domain.findings import Finding
@@ -20,7 +22,7 @@ from domain.supervision import SupervisionSettings
 from service.files.model_file import LoadedModel, read_model
 from service.simulation.simulated import SimulatedBackend
 from service.supervisor import Supervisor
-from tests.support.live_robot import make_onboard, running
+from tests.support.live_robot import make_onboard, make_supervisor, running
 from tests.support.manual_clock import ManualClock, settle
 
 ACTUATION = """\
@@ -158,3 +160,9 @@ def http_scope(method: str, path: str, query: str = "", **headers: str) -> dict[
         "client": ("10.0.0.1", 50_000),
         "server": ("robot", 80),
     }
+
+
+@cache
+def declared_policies() -> RoutePolicies:
+    """Return what the routes of the service declare, for tests of a gate alone."""
+    return RoutePolicies(create_app(make_supervisor(), allowed_hosts=[]).routes)

@@ -125,23 +125,29 @@ def named(key: str, *items: Json) -> dict[str, Json]:
     return {item[key]: item for item in items}
 
 
-def hello(epoch: str = "one") -> Json:
+def hello(epoch: str = "one", started_at: str = AT) -> Json:
     """Return the first frame of a connection."""
-    return {"type": "hello", "epoch": epoch}
+    return {"type": "hello", "epoch": epoch, "started_at": started_at}
 
 
-def event(number: int, kind: str, actor: str = "", **data: object) -> Json:
+def event(number: int, words: str = "something happened", *, notable: bool = True) -> Json:
     """Return an event that happened at `AT`."""
-    return {"type": "event", "id": number, "at": AT, "kind": kind, "actor": actor, "data": data}
+    about = {"kind": "test.happened", "actor": "", "data": {}}
+    told = {"words": words, "notable": notable}
+    return {"type": "event", "id": number, "at": AT, **about, **told}
 
 
 def robot(*messages: Json, parts: tuple[Json, ...] = (), signals: tuple[Json, ...] = ()) -> Robot:
     """Return a robot of which everything is known, after these messages as well."""
     begin = (
         hello(),
-        frame(parts=named("name", *parts), signals=named("signal", *signals), task=None),
-        {"type": "holds", "items": []},
-        {"type": "emergency_stop", **stop()},
+        frame(
+            parts=named("name", *parts),
+            signals=named("signal", *signals),
+            task=None,
+            holds={},
+            emergency_stop=stop(),
+        ),
     )
     known = Robot()
     for message in (*begin, *messages):

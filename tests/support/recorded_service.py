@@ -23,8 +23,8 @@ from tests.support.process import ServiceProcess, connect, service
 _RECORDING = """\
 import json, sys, time
 from importlib.util import find_spec
-from api import command_line
-from domain.inputs import Drive
+from api.cli import command_line
+from domain.commands import Drive
 from service.supervisor import Supervisor
 
 path, found = sys.argv.pop(1), {"asks": [], "drives": [], "ticks": []}

@@ -8,7 +8,7 @@ from typing import Any
 from starlette.types import ASGIApp
 
 from api.rosbridge.bridge import Bridge
-from api.streaming.prepared import Connection
+from api.streaming.websocket_frames import Connection
 from domain.errors import InvalidValueError
 from service.frame_feed import FrameFeed
 from service.ros.interface.offer import Fields, HeardTopic, OfferedService, OfferedTopic

@@ -5,8 +5,8 @@ from typing import Any
 from pydantic_core import from_json
 
 from api.http.schemas.simulation import SimulationBody
-from api.simulation.posted import robot_for
 from api.simulation.simulation import Simulation
+from api.simulation.simulation_job import robot_for
 from service.simulation.virtual_robot import VirtualRobot
 from tests.support.good import GOOD
 from tests.support.http_robot import ACTUATION

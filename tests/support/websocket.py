@@ -11,7 +11,7 @@ from urllib.parse import urlencode
 
 from starlette.types import ASGIApp
 
-from api.streaming.prepared import EXTENSION, PING, Connection, Listener
+from api.streaming.websocket_frames import EXTENSION, PING, Connection, Listener
 
 Message = MutableMapping[str, Any]
 
@@ -19,7 +19,7 @@ Message = MutableMapping[str, Any]
 class WebSocketClient(asyncio.WriteTransport):
     """Speaks to one route, and keeps what it is sent until it is read.
 
-    It is its own transport, for frames that are prepared (`api.streaming.prepared`), and answers
+    It is its own transport, for frames made once (`api.streaming.websocket_frames`), and answers
     pings as long as it reads.
 
     Args:

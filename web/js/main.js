@@ -3,8 +3,8 @@
 import { request } from "/web/js/api.js";
 import { localNow, ServerClock } from "/web/js/clock.js";
 import { Connection } from "/web/js/connection.js";
+import { PathWatch } from "/web/js/path_watch.js";
 import { emptyState, fold } from "/web/js/store.js";
-import { TaskWatch } from "/web/js/task_watch.js";
 import "/web/js/elements/token_form.js";
 import "/web/js/elements/pills.js";
 import "/web/js/elements/hold_button.js";
@@ -22,14 +22,14 @@ import "/web/js/elements/mock_control.js";
 import "/web/js/elements/signal_list.js";
 import "/web/js/elements/event_list.js";
 
-const SLOW_REFRESH_MS = 5000;
 const REDRAW_MS = 250;
+const MOCK_PAUSE_MS = 1000;
 
 const clock = new ServerClock();
 const connection = new Connection(() =>
   state.epoch === null ? null : { after: state.lastEventId, epoch: state.epoch },
 );
-const taskWatch = new TaskWatch(take);
+const pathWatch = new PathWatch(take);
 const panel = document.querySelector("ph-part-panel");
 const map = document.querySelector("ph-map");
 const taskPanel = document.querySelector("ph-task-panel");
@@ -43,7 +43,7 @@ let mock = {};
 let selected = null;
 let preview = null;
 let drawAsked = false;
-let latchesSet = 0;
+let mockAsked = false;
 
 function take(message) {
   state = fold(state, message);
@@ -78,7 +78,7 @@ function title() {
   if (document.title !== text) document.title = text;
 }
 
-/** Ask for what no frame has told yet; what fails is asked for again with the next contact. */
+/** Ask for what no frame tells; what fails is asked for again with the next contact. */
 async function load(paths, use) {
   try {
     use(await Promise.all(paths.map((path) => request("GET", path))));
@@ -87,26 +87,20 @@ async function load(paths, use) {
   }
 }
 
-function loadStructure() {
-  load(["/systems", "/nodes"], ([systems, nodes]) =>
-    take({ type: "structure", items: [...systems.items, ...nodes.items] }),
-  );
-}
-
-/** What was asked before the last press of STOP would tell of the time before it. */
-function loadLatch() {
-  const asked = latchesSet;
-  load(["/emergency_stop"], ([latch]) => {
-    if (asked === latchesSet) take({ type: "emergency_stop", latch });
-  });
-}
-
 /** The mock is asked for only where signals are simulated; else the page shows values only. */
 function loadMock() {
+  mockAsked = false;
   if (!state.systemState?.simulated?.includes("signals")) return;
   load(["/mock"], ([{ items }]) => {
     mock = Object.fromEntries(items.map((item) => [item.signal, item]));
   });
+}
+
+/** What is set at the mock is no fact of the robot, and so in no frame; each write is an event. */
+function hearMock({ kind, data }) {
+  if (mockAsked || kind !== "audit.write" || !data.path.startsWith("/mock/")) return;
+  mockAsked = true;
+  setTimeout(loadMock, MOCK_PAUSE_MS);
 }
 
 /** A service without examples answers 404, and there is no button then. */
@@ -115,14 +109,11 @@ function loadTracks() {
   load(["/tasks"], ([{ controllers }]) => (taskPanel.controllers = controllers));
 }
 
-function resync({ epoch }) {
-  const isNew = epoch !== state.epoch;
-  loadStructure();
-  loadLatch();
+function greet({ epoch }) {
   loadTracks();
-  taskWatch.loadHolds();
-  if (isNew) taskWatch.loadLast();
-  if (isNew) load(["/events?limit=50"], ([{ items }]) => take({ type: "log", items }));
+  loadMock();
+  if (epoch !== state.epoch)
+    load(["/events?limit=50"], ([{ items }]) => take({ type: "log", items }));
   panel.refresh();
 }
 
@@ -137,17 +128,16 @@ connection.addEventListener("unauthorized", askForToken);
 document.addEventListener("ph-unauthorized", askForToken);
 document.addEventListener("ph-token", () => connection.tryNow());
 connection.addEventListener("frame", ({ detail: frame }) => {
-  if (frame.type === "hello") resync(frame);
-  if (frame.type === "event" && frame.kind.startsWith("emergency_stop")) loadLatch();
+  if (frame.type === "hello") greet(frame);
+  if (frame.type === "event") hearMock(frame);
   panel.hear(frame);
-  taskWatch.hear(frame);
   if (frame.type === "state") clock.observe(frame.at, localNow());
   const isFirst = state.systemState === null;
   take(frame);
   if (isFirst && state.systemState) loadMock();
   if (frame.type === "state") {
     map.hear(state);
-    taskWatch.look(state);
+    pathWatch.look(state);
   }
   title();
 });
@@ -160,20 +150,11 @@ document.addEventListener("ph-preview", ({ detail }) => {
   preview = detail;
   askToDraw();
 });
-document.addEventListener("ph-holds-changed", () => taskWatch.loadHolds());
 document.addEventListener("ph-try-now", () => connection.tryNow());
-document.addEventListener("ph-latch", ({ detail }) => {
-  latchesSet += 1;
-  take({ type: "emergency_stop", latch: detail });
-});
+document.addEventListener("ph-restart-read", () => take({ type: "restart_read" }));
+document.addEventListener("ph-latch", ({ detail }) => take({ type: "latch", latch: detail }));
 setInterval(askToDraw, REDRAW_MS);
 setInterval(title, REDRAW_MS);
-setInterval(() => {
-  if (connection.level() !== "live") return;
-  loadLatch();
-  loadMock();
-  taskWatch.loadHolds();
-}, SLOW_REFRESH_MS);
 connection.tryNow();
 // A service that wants a token says so at once to a request; the stream waits for it first.
 load(["/system_state"], () => {});

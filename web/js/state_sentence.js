@@ -1,5 +1,6 @@
 /** The one sentence that says how the robot is. */
 
+import { currentTask } from "/web/js/store.js";
 import { taskWords } from "/web/js/task_words.js";
 import { timeOfDay, wholeSeconds } from "/web/js/words.js";
 
@@ -14,12 +15,19 @@ export function stateSentence(state, contact) {
   }
   if (systemState === null) return sentence("late", "Connecting", "waiting for the first values");
   const { state: word, reasons, errors, task_status } = systemState;
-  const task = state.task ? taskWords(state.task) : TASKS[task_status];
+  const current = currentTask(state);
+  const task = current ? taskWords(current) : TASKS[task_status];
   if (word !== "ERROR") return sentence(word.toLowerCase(), word, task);
   const [first = errors.join(", "), ...more] = reasons.map((reason) => reason.message);
   // Why it is paused is what the sentence begins with.
-  const paused = state.task ? `, task ${state.task.id} is paused` : "";
+  const paused = current ? `, task ${current.id} is paused` : "";
   return sentence("error", "ERROR", first + paused, more);
+}
+
+/** What a restart of the service has taken away; empty without one. */
+export function restartWords({ restartedAt }) {
+  if (restartedAt === null) return "";
+  return `Service restarted at ${timeOfDay(restartedAt)}: earlier tasks and holds are gone.`;
 }
 
 function sentence(level, word, text, more = []) {

@@ -1,9 +1,8 @@
 /** What is known of the robot, as a pure fold of the frames of the stream.
  *
  * `fold(state, message)` returns the next state and never changes the one given. Besides the frames
- * of the server it takes messages of our own, made from answers to requests: `structure` (`items`
- * of /systems and /nodes), `log` (`items` of /events), `emergency_stop`, `holds` (`items` of
- * /holds), `path` (waypoints of a task) and `ended_task`.
+ * of the server it takes messages of our own: `log` (`items` of /events), `path` (waypoints of a
+ * task), `latch` (the answer to a press of STOP) and `restart_read` (nobody wonders any more).
  */
 
 const EVENTS_KEPT = 200;
@@ -12,15 +11,15 @@ const EVENTS_KEPT = 200;
 export function emptyState() {
   return {
     epoch: null,
+    restartedAt: null,
     at: null,
     systemState: null,
     parts: {},
     signals: {},
     task: null,
-    lastTask: null,
     path: null,
     vehicle: null,
-    holds: [],
+    holds: {},
     emergencyStop: null,
     events: [],
     lastEventId: 0,
@@ -33,23 +32,40 @@ export function fold(state, message) {
   return folder ? folder(state, message) : state;
 }
 
+/** The task that has not ended, or null; `state.task` is also the one that ended last. */
+export function currentTask({ task }) {
+  return task && !task.ended_at ? task : null;
+}
+
 const FOLDERS = {
-  hello(state, { epoch }) {
+  /** After a restart of the service nothing of before is true. */
+  hello(state, { epoch, started_at }) {
     if (epoch === state.epoch) return state;
     if (state.epoch === null) return { ...state, epoch };
-    const note = { note: "The server was restarted; what follows is new.", id: `restart-${epoch}` };
-    return { ...emptyState(), epoch, events: keep([...state.events, note]) };
+    const note = {
+      note: "The service was restarted: earlier tasks and holds are gone. What follows is new.",
+      id: `restart-${epoch}`,
+    };
+    const events = keep([...state.events, note]);
+    return { ...emptyState(), epoch, restartedAt: started_at, events };
   },
 
+  restart_read(state) {
+    return { ...state, restartedAt: null };
+  },
+
+  /** Frames carry what changed; the first one and each after a loss carry everything. */
   state(state, frame) {
     return {
       ...state,
       at: frame.at,
       systemState: frame.system_state ?? state.systemState,
-      parts: frame.parts ? foldParts(state.parts, frame.parts, frame.at) : state.parts,
-      signals: frame.signals ? foldSignals(state.signals, frame.signals, frame.at) : state.signals,
+      parts: frame.parts ? { ...state.parts, ...frame.parts } : state.parts,
+      signals: frame.signals ? { ...state.signals, ...frame.signals } : state.signals,
+      task: frame.task === undefined ? state.task : frame.task,
       vehicle: frame.vehicle ?? state.vehicle,
-      ...(frame.task === undefined ? {} : foldTask(state, frame.task)),
+      holds: frame.holds ?? state.holds,
+      emergencyStop: newerStop(state.emergencyStop, frame),
     };
   },
 
@@ -77,67 +93,21 @@ const FOLDERS = {
     return { ...state, lastEventId, events: keep([...state.events, note]) };
   },
 
-  /** A part that was streamed is newer than any answer, and whole. */
-  structure(state, { items }) {
-    const parts = {};
-    for (const item of items) parts[item.name] = state.parts[item.name] ?? item;
-    return { ...state, parts };
-  },
-
-  emergency_stop(state, { latch }) {
+  latch(state, { latch }) {
     return { ...state, emergencyStop: latch };
-  },
-
-  holds(state, { items }) {
-    return { ...state, holds: items };
   },
 
   path(state, { task, items, indices }) {
     return { ...state, path: { task, items, indices } };
   },
-
-  /** How a task ended is told by no frame. */
-  ended_task(state, { task }) {
-    return { ...state, lastTask: task };
-  },
 };
 
-/** A task that is no longer the current one is the last, known as it was until its end is told. */
-function foldTask(state, task) {
-  const isOther = state.task !== null && state.task.id !== task?.id;
-  return { task, lastTask: isOther ? state.task : state.lastTask };
+/** A frame that was on its way when STOP was answered tells of the time before. */
+function newerStop(known, { at, emergency_stop }) {
+  const isOld = known?.since_at && Date.parse(at) < Date.parse(known.since_at);
+  return !emergency_stop || isOld ? known : emergency_stop;
 }
 
 function keep(events) {
   return events.slice(-EVENTS_KEPT);
-}
-
-/** Frames carry the changed parts only, and may leave out what the structure told once. */
-function foldParts(parts, changed, at) {
-  const next = { ...parts };
-  for (const [name, part] of Object.entries(changed)) {
-    const before = parts[name];
-    const since = part.converged ? null : (before?.deviation_since_at ?? at);
-    next[name] = { name, ...before, deviation_since_at: since, ...part };
-  }
-  return next;
-}
-
-/** A pending error is kept with the time it began, so that it can be counted on between frames. */
-function foldSignals(signals, changed, at) {
-  const next = { ...signals };
-  for (const [name, signal] of Object.entries(changed)) {
-    const pending = signal.pending && {
-      ...signal.pending,
-      since: pendingSince(signal.pending, signals[name]?.pending, at),
-    };
-    next[name] = { ...signal, pending };
-  }
-  return next;
-}
-
-function pendingSince(pending, before, at) {
-  if (pending.since_at) return Date.parse(pending.since_at);
-  const since = Date.parse(at) - 1000 * (pending.for_s ?? 0);
-  return before?.error === pending.error ? Math.min(before.since, since) : since;
 }

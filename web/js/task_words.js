@@ -43,9 +43,8 @@ export function taskWords(task) {
   return `task ${id} ${percent(progress)}, ${waypointWords(task)}`;
 }
 
-/** How a task ended; one whose end is not told yet is over all the same. */
+/** How a task ended. */
 export function endWords({ id, status, reason, created_at, ended_at, distance_m, length_m }) {
-  if (!ended_at) return `Task ${id} is over.`;
   const took = duration(Date.parse(ended_at) - Date.parse(created_at));
   const way = `${metres(distance_m)} of ${metres(length_m)} in ${took}`;
   const how = TASK_STATUS[status].toLowerCase();
@@ -86,7 +85,7 @@ export function poseAge(vehicle, contact, now) {
 }
 
 /** The map in a sentence or two, for those who do not see it. */
-export function mapSentence({ vehicle, task, lastTask }, age) {
+export function mapSentence({ vehicle, task }, age) {
   const said = [];
   if (vehicle?.pose) {
     const { x_m, y_m, yaw_rad } = vehicle.pose;
@@ -95,11 +94,12 @@ export function mapSentence({ vehicle, task, lastTask }, age) {
     said.push(`Vehicle at ${place}, ${heading}, ${speedWords(vehicle.speed_mps)}.`);
   } else said.push("Where the vehicle is, is not known.");
   if (age) said.push(`This is old: ${age}.`);
-  if (task) {
+  if (task?.ended_at) said.push(`${endWords(task)}.`);
+  else if (task) {
     const error = task.cross_track_error_m;
     const beside = typeof error === "number" ? `, ${besidePath(error)}` : "";
     said.push(`Task ${task.id}, ${percent(task.progress)} done, ${waypointWords(task)}${beside}.`);
-  } else if (lastTask) said.push(`${endWords(lastTask)}.`);
+  }
   return said.join(" ");
 }
 

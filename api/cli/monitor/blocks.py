@@ -17,14 +17,20 @@ from api.cli.monitor.rows import (
     SignalRow,
     choose,
 )
-from api.cli.monitor.sentence import Sentence, contact_sentence, state_sentence, stop_sentence
+from api.cli.monitor.sentence import (
+    Sentence,
+    contact_sentence,
+    restart_sentence,
+    state_sentence,
+    stop_sentence,
+)
 from api.cli.monitor.table import Column, printable, table
 from api.cli.monitor.view import Level, View, seconds_of
 
 LEGEND = "(*) inferred   ! not as it should be   > changing or coming   x unreachable"
 
 _MARK_STYLES = {UNREACHABLE: "bold red", WRONG: "bold yellow", CHANGES: "cyan", CALM: ""}
-_WORD_STYLES = {"IDLE": "bold", "RUNNING": "bold green", "CONNECTING": "bold"}
+_WORD_STYLES = {"IDLE": "bold", "RUNNING": "bold green", "CONNECTING": "bold", "RESTARTED": "bold"}
 _ALARM = "bold red"
 _TITLES = "underline"
 _LEAST_LINES = 2
@@ -63,7 +69,12 @@ def head(view: View, width: int) -> list[Text]:
 
 def sentences(view: View, console: Console) -> list[Text]:
     """Return how the robot is and why, and how the contact is where it is not good."""
-    told = (contact_sentence(view), stop_sentence(view), state_sentence(view))
+    told = (
+        contact_sentence(view),
+        stop_sentence(view),
+        state_sentence(view),
+        restart_sentence(view),
+    )
     return [line for said in told if said for line in _sentence_lines(said, console)]
 
 
@@ -163,10 +174,12 @@ def _age(view: View, row: SignalRow) -> str:
 def task(view: View, console: Console) -> list[Text]:
     """Return the task and what holds it."""
     robot = view.robot
-    if robot.task is None:
+    now = robot.current_task
+    if now is None:
         lines = [Text("no task")]
+        if robot.task is not None:
+            lines += _wrapped(f"  {words.end_words(robot.task)}", console, indent=4)
     else:
-        now = robot.task
         way = f"{words.metres(now['distance_m'])} of {words.metres(now['length_m'])}"
         far = f"{words.percent(now['progress'])}, {way}, {words.waypoint_words(now)}"
         lines = _wrapped(f"task {now['id']}  {now['status']}  {far}", console, indent=2)
@@ -174,7 +187,7 @@ def task(view: View, console: Console) -> list[Text]:
         # The holds say the same at more length, where there are any.
         if now["reason"] and not robot.holds:
             lines += _wrapped(f"  {now['reason']}", console, indent=4)
-    for hold in robot.holds or ():
+    for hold in (robot.holds or {}).values():
         why = f": {hold['reason']}" if hold["reason"] else ""
         by = f", by {hold['by']}" if hold["by"] not in ("", hold["owner"]) else ""
         since = words.duration(view.age_s(hold["since_at"]))

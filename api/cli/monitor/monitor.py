@@ -2,22 +2,21 @@
 
 import asyncio
 import io
-import os
 import signal
 import sys
+from collections.abc import Coroutine
 from contextlib import suppress
+from typing import Any
 
 from rich.console import Console
 
-from api.cli.monitor.address import Address
-from api.cli.monitor.link import Link
 from api.cli.monitor.output import ChangeLog, Form, write_picture
 from api.cli.monitor.picture import picture
 from api.cli.monitor.screen import Screen, alternate_screen
-from api.cli.monitor.together import together
 from api.cli.monitor.watch import Watch
-from api.client.service_client import NoAnswerError, Outcome
-from api.http.access import InvalidTokenError, read_token
+from api.client.address import Address
+from api.client.link import Link
+from api.client.outcomes import NoAnswerError, Outcome
 
 REDRAW_S = 0.25
 _PATIENCE_S = 10.0
@@ -36,10 +35,7 @@ def monitor(url: str, form: Form, *, once: bool) -> int:
             answers who is asked once.
         ServiceProblemError: The service refuses us.
     """
-    try:
-        address = Address.of(url, read_token(os.environ))
-    except InvalidTokenError as error:
-        raise NoAnswerError(str(error)) from error
+    address = Address.with_token_of_environment(url)
     console = _console()
     if once:
         asyncio.run(_once(address, form, console))
@@ -68,7 +64,7 @@ async def _once(address: Address, form: Form, console: Console) -> None:
 
     try:
         async with asyncio.timeout(_PATIENCE_S):
-            await together(Link(address, watch).serve(), wait())
+            await until_first_ends(Link(address, watch).serve(), wait())
     except TimeoutError as error:
         message = f"no whole picture from {address.url} within {_PATIENCE_S:g} s"
         raise NoAnswerError(message) from error
@@ -89,7 +85,7 @@ async def _draw(address: Address, console: Console) -> None:
         if hasattr(signal, "SIGCONT"):
             # After Ctrl-Z and `fg` the terminal shows something else.
             asyncio.get_running_loop().add_signal_handler(signal.SIGCONT, screen.forget)
-        await together(Link(address, watch).run(), _redraw(screen, watch, console))
+        await until_first_ends(Link(address, watch).run(), _redraw(screen, watch, console))
 
 
 async def _redraw(screen: Screen, watch: Watch, console: Console) -> None:
@@ -107,3 +103,21 @@ def _end_with_signals() -> None:
         with suppress(AttributeError, NotImplementedError):
             number = getattr(signal, name)
             asyncio.get_running_loop().add_signal_handler(number, lambda: task and task.cancel())
+
+
+async def until_first_ends(*coroutines: Coroutine[Any, Any, None]) -> None:
+    """Run until one ends, and cancel the others.
+
+    Raises:
+        Exception: That of the one that failed, by itself and not in a group.
+    """
+    tasks = [asyncio.create_task(coroutine) for coroutine in coroutines]
+    try:
+        await asyncio.wait(tasks, return_when=asyncio.FIRST_COMPLETED)
+    finally:
+        for task in tasks:
+            task.cancel()
+        ended = await asyncio.gather(*tasks, return_exceptions=True)
+    for error in ended:
+        if isinstance(error, Exception):
+            raise error

@@ -2,12 +2,13 @@
 
 import json
 import sys
+from collections.abc import Hashable
 from typing import Literal, TextIO
 
 from rich.console import Console
 
-from api.cli.monitor.changes import standing
 from api.cli.monitor.picture import picture
+from api.cli.monitor.store import Json, Robot
 from api.cli.monitor.view import Level, View
 
 Form = Literal["text", "json"]
@@ -55,10 +56,29 @@ class ChangeLog:
                 print(f"pilothouse: {contact.why}; trying again", file=self._complaints, flush=True)
         if not view.robot.is_whole or (self._form == "json" and contact.level is not Level.LIVE):
             return
-        now = (contact.level, standing(view.robot))
+        now = (contact.level, what_stands(view.robot))
         if now == self._told:
             return
         if self._told is not None and self._form == "text":
             self._console.print()
         self._told = now
         write_picture(view, self._form, self._console)
+
+
+def what_stands(robot: Robot) -> Hashable:
+    """Return what is equal as long as nothing has happened: values, ages and ways do not count."""
+    state, task, stop = robot.system_state, robot.task, robot.emergency_stop
+    return (
+        robot.epoch,
+        None if state is None else (state["state"], *state["errors"]),
+        tuple(_part(part) for part in (robot.parts or {}).values()),
+        None if task is None else (task["id"], task["status"]),
+        None if stop is None else (stop["engaged"], stop["standstill_at"]),
+        tuple((hold["owner"], hold["reason"]) for hold in (robot.holds or {}).values()),
+    )
+
+
+def _part(part: Json) -> Hashable:
+    pairs = (part["target"], part["effective_target"], part["actual"])
+    labels = tuple(None if pair is None else (pair["state"], pair["mode"]) for pair in pairs)
+    return (part["name"], labels, part["converged"], part.get("reachable"))

@@ -16,6 +16,9 @@ _TASKS = {
 }
 
 
+_RESTART_TOLD_S = 600.0
+
+
 @dataclass(frozen=True, slots=True)
 class Sentence:
     """How the robot is, the most important reason first."""
@@ -43,7 +46,7 @@ def contact_sentence(view: View) -> Sentence | None:
 
 def state_sentence(view: View) -> Sentence | None:
     """Return how the robot is, or was when it was heard of last; None: it never was."""
-    state, task = view.robot.system_state, view.robot.task
+    state, task = view.robot.system_state, view.robot.current_task
     if state is None:
         return None
     word = state["state"] if view.contact.level is Level.LIVE else f"WAS {state['state']}"
@@ -67,6 +70,15 @@ def stop_sentence(view: View) -> Sentence | None:
     since = f"for {words.duration(view.age_s(stop['since_at']))}"
     stands = "the vehicle stands" if stop["standstill_at"] else "no standstill seen yet"
     return Sentence("EMERGENCY STOP", f"engaged{why}, {since}{by}, {stands}")
+
+
+def restart_sentence(view: View) -> Sentence | None:
+    """Return that the service was restarted, for as long as somebody may wonder; else None."""
+    at = view.robot.restarted_at
+    if at is None or view.age_s(at) > _RESTART_TOLD_S:
+        return None
+    when = words.time_of_day(seconds_of(at))
+    return Sentence("RESTARTED", f"at {when}; earlier tasks and holds are gone")
 
 
 def _task_words(task: Json) -> str:

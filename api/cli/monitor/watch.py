@@ -2,13 +2,15 @@
 
 import time
 from collections.abc import Callable
+from math import inf, isfinite
 
-from api.cli.monitor.server_clock import ServerClock
 from api.cli.monitor.store import Json, Robot, fold
 from api.cli.monitor.view import Contact, Level, View, seconds_of
 
 LOST_S = 3.0
 """Frames come many times a second; after such a silence there is no contact."""
+
+_CLOCK_WINDOW_S = 10.0
 
 _BEGAN_S = time.time() - time.monotonic()
 
@@ -31,8 +33,7 @@ class Watch:
 
         Args:
             url: Of the service.
-            news: Called after each `state` frame, which what came before it fits, and with the loss
-                of contact.
+            news: Called after each `state` frame, and with the loss of contact.
             now: Local time that never jumps, in seconds since 1970.
         """
         self.robot = Robot()
@@ -45,12 +46,12 @@ class Watch:
         self._is_connected = False
         self._why = ""
 
-    def take(self, message: Json) -> None:
-        """Take a frame of the stream, or an answer in its form."""
-        self.robot = fold(self.robot, message)
-        if message["type"] == "state":
+    def take(self, frame: Json) -> None:
+        """Take a frame of the stream."""
+        self.robot = fold(self.robot, frame)
+        if frame["type"] == "state":
             now_s = self._now()
-            self._clock.observe(seconds_of(message["at"]), now_s)
+            self._clock.observe(seconds_of(frame["at"]), now_s)
             self._heard_s, self._was_heard = now_s, True
             self._is_connected, self._why = True, ""
             self._news()
@@ -76,3 +77,33 @@ class Watch:
     def view(self) -> View:
         """Return what is to be drawn now."""
         return View(self._url, self.robot, self.contact(), self._clock.at(self._now()))
+
+
+class ServerClock:
+    """Estimates the offset between our clock and the service's from the times in its frames.
+
+    A frame is late by its travel, never early, so the smallest offset of the last 10 to 20 s is the
+    nearest to the truth. Older ones are forgotten, since either clock may be set.
+    """
+
+    def __init__(self) -> None:
+        self._window_start_s = -inf
+        self._smallest_s = inf
+        self._smallest_before_s = inf
+
+    def observe(self, server_s: float, local_s: float) -> None:
+        """Take the time of a frame.
+
+        Args:
+            server_s: What the frame says, in seconds since 1970.
+            local_s: When it came, in seconds since 1970.
+        """
+        if local_s - self._window_start_s > _CLOCK_WINDOW_S:
+            self._smallest_before_s, self._smallest_s = self._smallest_s, inf
+            self._window_start_s = local_s
+        self._smallest_s = min(self._smallest_s, local_s - server_s)
+
+    def at(self, local_s: float) -> float:
+        """Return the service's time, in seconds since 1970; before the first frame our own."""
+        offset_s = min(self._smallest_s, self._smallest_before_s)
+        return local_s - offset_s if isfinite(offset_s) else local_s

@@ -90,6 +90,16 @@ def waypoint_words(task: Json) -> str:
     return f"waypoint {min(task['target_index'] + 1, count)} of {count}"
 
 
+def end_words(task: Json) -> str:
+    """Return "task t1 aborted at 12:03:04: left the path (60 m of 799 m in 1 min 5 s)"."""
+    ended_s = datetime.fromisoformat(task["ended_at"]).timestamp()
+    took_s = ended_s - datetime.fromisoformat(task["created_at"]).timestamp()
+    how = task["status"].lower()
+    why = f": {task['reason']}" if task["reason"] and task["reason"] != how else ""
+    way = f"{metres(task['distance_m'])} of {metres(task['length_m'])} in {duration(took_s)}"
+    return f"task {task['id']} {how} at {time_of_day(ended_s)}{why} ({way})"
+
+
 def drive_words(task: Json, vehicle: Json | None) -> str:
     """Return "2.8 of 2.8 m/s, 0.03 m left of the path": what there is, and what was asked."""
     speed = None if vehicle is None else vehicle["speed_mps"]

@@ -9,7 +9,8 @@ from starlette.datastructures import Headers
 from starlette.types import ASGIApp, Receive, Scope, Send
 
 from api.http.gate.refusals import Refusals, address_of, refuse
-from api.http.problems import Problem, make_problem
+from api.http.problems import make_problem
+from api.http.schemas.problem import Problem
 
 LOOPBACK_NAMES = ("localhost", "127.0.0.1", "[::1]")
 

@@ -5,16 +5,16 @@ from math import ceil
 
 from starlette.types import ASGIApp, Receive, Scope, Send
 
+from api.http.gate.policies import RoutePolicies
 from api.http.gate.refusals import Refusals, address_of, refuse
-from api.http.problems import Problem, make_problem
+from api.http.problems import make_problem
+from api.http.schemas.problem import Problem
 from domain.timebase import NANOSECONDS_PER_SECOND, Duration, Instant, to_seconds
 from service.clock import Clock
 
 MAX_ADDRESSES = 10_000
 _BURST_S = 2
 """A client that was quiet may ask at once what it may ask in so many seconds."""
-
-_PROBES = frozenset({"/livez", "/readyz"})
 
 
 class TokenBuckets:
@@ -69,30 +69,35 @@ class TokenBuckets:
 
 
 class RateGate:
-    """Refuse who asks too often, before anything is done for it.
+    """Refuse who asks too often, before anything is done for it; but never a stop."""
 
-    Never what makes the robot safe: who cannot press the stop because somebody behind the same
-    address asks too much would be worse off than with no limit.
-    """
-
-    def __init__(self, app: ASGIApp, per_s: int, clock: Clock, refusals: Refusals) -> None:
+    def __init__(
+        self,
+        app: ASGIApp,
+        per_s: int,
+        clock: Clock,
+        policies: RoutePolicies,
+        refusals: Refusals,
+    ) -> None:
         """Guard `app`.
 
         Args:
             app: What is behind the gate.
             per_s: Requests per second of one address; twice as many may come at once.
             clock: Tells how often that is.
+            policies: Tells which routes are never limited.
             refusals: Counts who was refused.
         """
         self._app = app
         self._per_s = per_s
         self._clock = clock
+        self._policies = policies
         self._refusals = refusals
         self._buckets = TokenBuckets(per_s)
 
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
         """Pass the request on, or answer 429."""
-        if scope["type"] == "lifespan" or is_never_limited(scope):
+        if scope["type"] == "lifespan" or not self._is_limited(scope):
             await self._app(scope, receive, send)
             return
         missing = self._buckets.take(address_of(scope), self._clock.now())
@@ -103,29 +108,12 @@ class RateGate:
         headers = {"Retry-After": str(max(1, ceil(to_seconds(missing))))}
         await refuse(self._problem(scope["path"]), scope, receive, send, headers)
 
+    def _is_limited(self, scope: Scope) -> bool:
+        declared = self._policies.of(scope)
+        return declared is None or declared.permission.is_limited
+
     def _problem(self, path: str) -> Problem:
         detail = f"more than {self._per_s} requests a second came from this address"
         hint = "`limits.requests_per_s` in the robot file sets how many may; WS /ws tells by itself"
         status = HTTPStatus.TOO_MANY_REQUESTS
         return make_problem(status, status.name, detail, path, more={"hint": hint})
-
-
-def is_never_limited(scope: Scope) -> bool:
-    """Tell whether a request makes the robot safe, or asks on behalf of who restarts the service.
-
-    Args:
-        scope: Of an HTTP request or a WebSocket.
-    """
-    path: str = scope["path"]
-    match scope.get("method"):
-        case "PUT":
-            return path == "/emergency_stop" or path.startswith("/holds/")
-        case "POST":
-            # A reading may be that of a stop button.
-            return path == "/signals" or path.startswith("/signals/")
-        case "DELETE":
-            return path == "/tasks/current"
-        case "GET" | "HEAD":
-            return path in _PROBES
-        case _:
-            return False

@@ -10,7 +10,8 @@ from http import HTTPStatus
 
 from starlette.types import Receive, Scope, Send
 
-from api.http.problems import Problem, problem_response
+from api.http.problems import problem_response
+from api.http.schemas.problem import Problem
 from domain.timebase import Instant, seconds
 from service.clock import Clock
 

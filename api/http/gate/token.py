@@ -1,20 +1,18 @@
-"""The token: demanded of every request but for what says nothing about the robot."""
+"""The token: demanded of every request but for what a route says everybody may ask."""
 
-import re
 from http import HTTPStatus
 
 from starlette.datastructures import Headers
 from starlette.types import ASGIApp, Receive, Scope, Send
 
 from api.http.access import Access, bearer_of
+from api.http.gate.policies import RoutePolicies
 from api.http.gate.refusals import Refusals, address_of, refuse
-from api.http.problems import Problem, make_problem
+from api.http.problems import make_problem
+from api.http.schemas.problem import Problem
 
 _CHALLENGE = 'Bearer realm="pilothouse"'
 _HINT = "send the header `Authorization: Bearer TOKEN` with the token that the service was given"
-
-_OPEN = re.compile(r"/|/web/.*|/docs(/.*)?|/openapi\.json|/asyncapi\.json|/livez|/readyz")
-"""The page and the documents, which are the same for every robot, and what a container asks."""
 
 
 class TokenGate:
@@ -24,21 +22,25 @@ class TokenGate:
     token itself.
     """
 
-    def __init__(self, app: ASGIApp, access: Access, refusals: Refusals) -> None:
+    def __init__(
+        self, app: ASGIApp, access: Access, policies: RoutePolicies, refusals: Refusals
+    ) -> None:
         """Guard `app`.
 
         Args:
             app: What is behind the gate.
             access: Whom the service lets in.
+            policies: Tells which routes need no token; where there is none, it is needed.
             refusals: Counts who was not.
         """
         self._app = app
         self._access = access
+        self._policies = policies
         self._refusals = refusals
 
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
         """Pass the request on, or answer 401."""
-        if scope["type"] != "http" or not self._access.required or _is_open(scope):
+        if scope["type"] != "http" or not self._access.required or self._is_open(scope):
             await self._app(scope, receive, send)
             return
         headers = Headers(scope=scope)
@@ -51,9 +53,9 @@ class TokenGate:
         problem = _problem(scope["path"], is_given=is_given)
         await refuse(problem, scope, receive, send, {"WWW-Authenticate": challenge})
 
-
-def _is_open(scope: Scope) -> bool:
-    return scope["method"] in ("GET", "HEAD") and _OPEN.fullmatch(scope["path"]) is not None
+    def _is_open(self, scope: Scope) -> bool:
+        declared = self._policies.of(scope)
+        return declared is not None and not declared.permission.needs_token
 
 
 def _problem(path: str, *, is_given: bool) -> Problem:

@@ -6,7 +6,8 @@ from typing import Annotated
 from fastapi import APIRouter, Path, Query, Response
 
 from api.http.dependencies import ActorDep, SupervisorDep
-from api.http.long_lists import json_list
+from api.http.list_answers import json_list
+from api.http.route_policy import Permission, policy
 from api.http.schemas.changes import ChangeJson, ChangesJson
 from domain.errors import UnknownPartError
 from domain.identifiers import ChangeId
@@ -22,6 +23,7 @@ ChangePath = Annotated[str, Path(description="Its id, as in `Location` of the re
 
 
 @router.get("", response_model=ChangesJson)
+@policy(Permission.OBSERVE)
 async def list_changes(
     supervisor: SupervisorDep,
     limit: Annotated[
@@ -41,12 +43,14 @@ async def list_changes(
 
 
 @router.get("/{change}")
+@policy(Permission.OBSERVE)
 async def get_change(change: ChangePath, supervisor: SupervisorDep) -> ChangeJson:
     """Show one change with its steps."""
     return ChangeJson.of(supervisor.core.change(change), supervisor.clock)
 
 
 @router.delete("/{change}")
+@policy(Permission.OPERATE)
 async def cancel_change(
     change: ChangePath, supervisor: SupervisorDep, actor: ActorDep
 ) -> ChangeJson:

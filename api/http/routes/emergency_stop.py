@@ -3,7 +3,8 @@
 from fastapi import APIRouter
 
 from api.http.dependencies import ActorDep, SupervisorDep
-from api.http.json_route import JsonRoute
+from api.http.request_body import JsonRoute
+from api.http.route_policy import Permission, policy
 from api.http.schemas.health import EmergencyStopBody, EmergencyStopJson
 from domain.inputs import EmergencyStopRequest
 
@@ -11,12 +12,14 @@ router = APIRouter(prefix="/emergency_stop", tags=["health"], route_class=JsonRo
 
 
 @router.get("")
+@policy(Permission.OBSERVE)
 async def get_emergency_stop(supervisor: SupervisorDep) -> EmergencyStopJson:
     """Show whether the emergency stop is engaged, by whom and why."""
     return EmergencyStopJson.of(supervisor.core.emergency_stop(), supervisor.clock)
 
 
 @router.put("")
+@policy(Permission.STOP)
 async def set_emergency_stop(
     body: EmergencyStopBody, supervisor: SupervisorDep, actor: ActorDep
 ) -> EmergencyStopJson:

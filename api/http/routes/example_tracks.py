@@ -3,9 +3,11 @@
 from typing import Annotated
 
 from fastapi import APIRouter, Path, Response
+from pydantic import Field
 
 from api.http.dependencies import SupervisorDep
-from api.http.schemas.example_tracks import ExampleTrackJson, ExampleTracksJson
+from api.http.route_policy import Permission, policy
+from api.http.schemas.base import Json
 from domain.errors import UnknownNameError
 from service.example_tracks import TRACKS, track_text
 from service.supervisor import Supervisor
@@ -13,7 +15,21 @@ from service.supervisor import Supervisor
 router = APIRouter(prefix="/examples/tracks", tags=["drive"])
 
 
+class ExampleTrackJson(Json):
+    """A track that comes along."""
+
+    name: str = Field(description="As in `GET /examples/tracks/{name}`")
+    title: str
+
+
+class ExampleTracksJson(Json):
+    """Tracks that come along; none where the vehicle is real."""
+
+    items: list[ExampleTrackJson]
+
+
 @router.get("")
+@policy(Permission.OBSERVE)
 async def list_example_tracks(supervisor: SupervisorDep) -> ExampleTracksJson:
     """List the tracks that come along; none where the vehicle is real."""
     return ExampleTracksJson(
@@ -26,6 +42,7 @@ async def list_example_tracks(supervisor: SupervisorDep) -> ExampleTracksJson:
     response_class=Response,
     responses={200: {"content": {"text/csv": {"schema": {"type": "string"}}}}},
 )
+@policy(Permission.OBSERVE)
 async def get_example_track(
     name: Annotated[str, Path(description="As in `GET /examples/tracks`")],
     supervisor: SupervisorDep,

@@ -6,7 +6,8 @@ from typing import Annotated
 from fastapi import APIRouter, Path, Response
 
 from api.http.dependencies import ActorDep, SupervisorDep
-from api.http.json_route import JsonRoute
+from api.http.request_body import JsonRoute
+from api.http.route_policy import Permission, policy
 from api.http.schemas.tasks import HoldBody, HoldJson, HoldsJson
 from domain.inputs import HoldRequest, ReleaseRequest
 
@@ -22,6 +23,7 @@ OwnerPath = Annotated[
 
 
 @router.get("")
+@policy(Permission.OBSERVE)
 async def list_holds(supervisor: SupervisorDep) -> HoldsJson:
     """List the holds, the oldest first; a task runs only without any."""
     clock = supervisor.clock
@@ -30,6 +32,7 @@ async def list_holds(supervisor: SupervisorDep) -> HoldsJson:
 
 
 @router.put("/{owner}")
+@policy(Permission.STOP)
 async def set_hold(
     owner: OwnerPath,
     supervisor: SupervisorDep,
@@ -45,6 +48,7 @@ async def set_hold(
 
 
 @router.delete("/{owner}", status_code=HTTPStatus.NO_CONTENT, response_class=Response)
+@policy(Permission.OPERATE)
 async def release_hold(owner: OwnerPath, supervisor: SupervisorDep, actor: ActorDep) -> None:
     """Release a hold; with the last one the task goes on. Without such a hold nothing happens."""
     supervisor.submit(ReleaseRequest(owner, actor))

@@ -2,10 +2,11 @@
 
 from fastapi import APIRouter, Request, Response
 
-from api.http.bodies import parse_body
+from api.http.body_parsing import parse_body
 from api.http.dependencies import SupervisorDep, WorkerDep
-from api.http.posted_models import infer, infer_posted
-from api.http.request_bodies import limits_of, read_body
+from api.http.model_jobs import infer, infer_posted
+from api.http.request_body import limits_of, read_body
+from api.http.route_policy import Permission, policy
 from api.http.schemas.inference import InferenceBody, InferenceJson
 
 router = APIRouter(tags=["inference"])
@@ -27,6 +28,7 @@ _MAX_PARTS_HERE = 100
         }
     },
 )
+@policy(Permission.OBSERVE)
 async def infer_from_facts(
     request: Request, supervisor: SupervisorDep, worker: WorkerDep
 ) -> Response:

@@ -5,10 +5,11 @@ from typing import Annotated
 
 from fastapi import APIRouter, Path
 
-from api.http.bodies import InvalidBodyError
+from api.http.body_parsing import InvalidBodyError
 from api.http.dependencies import ActorDep, SupervisorDep
-from api.http.json_route import JsonRoute
 from api.http.problems import HttpError
+from api.http.request_body import JsonRoute
+from api.http.route_policy import Permission, policy
 from api.http.schemas.health import MockBody, MockJson, MockSignalJson
 from domain.errors import InvalidValueError, UnknownSignalError
 from service.simulation.mock_source import MockSource
@@ -18,12 +19,14 @@ router = APIRouter(prefix="/mock", tags=["health"], route_class=JsonRoute)
 
 
 @router.get("")
+@policy(Permission.OBSERVE)
 async def get_mock(supervisor: SupervisorDep) -> MockJson:
     """Show what the mock holds and publishes."""
     return MockJson(items=_signals(_mock_of(supervisor)))
 
 
 @router.patch("/{signal}")
+@policy(Permission.OPERATE)
 async def change_mock(
     signal: Annotated[str, Path(description="One of those in `GET /mock`")],
     body: MockBody,

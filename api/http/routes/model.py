@@ -3,8 +3,9 @@
 from fastapi import APIRouter, Request, Response
 
 from api.http.dependencies import SupervisorDep, WorkerDep
-from api.http.posted_models import check_posted
-from api.http.request_bodies import limits_of, read_body
+from api.http.model_jobs import check_posted
+from api.http.request_body import limits_of, read_body
+from api.http.route_policy import Permission, policy
 from api.http.schemas.base import FindingJson
 from api.http.schemas.inference import ModelCheckJson, ModelJson, NodeModelJson, SystemModelJson
 from service.supervisor import Supervisor
@@ -31,6 +32,7 @@ def encode_model(supervisor: Supervisor) -> bytes:
     response_model=ModelJson,
     responses={200: {"content": {_YAML: {"schema": {"type": "string"}}}}},
 )
+@policy(Permission.OBSERVE)
 async def get_model(request: Request, supervisor: SupervisorDep) -> Response:
     """Show the loaded model: the file with `Accept: application/yaml`, else what was read in it."""
     headers = {"Vary": "Accept"}
@@ -46,6 +48,7 @@ async def get_model(request: Request, supervisor: SupervisorDep) -> Response:
     response_model=ModelCheckJson,
     openapi_extra={"requestBody": {"content": {_YAML: {"schema": {}}}}},
 )
+@policy(Permission.OBSERVE)
 async def check_posted_model(request: Request, worker: WorkerDep) -> Response:
     """Check a model (SMH, YAML): everything that is wrong with it, and what is odd, at once."""
     raw = await read_body(request, limits_of(request).model_bytes)

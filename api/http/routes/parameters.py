@@ -4,10 +4,11 @@ from typing import Annotated
 
 from fastapi import APIRouter, Body, Request, Response
 
-from api.http.bodies import InvalidBodyError
+from api.http.body_parsing import InvalidBodyError
 from api.http.change_answers import CHANGE_RESPONSES, ChangeOptionsDep, answer_change
 from api.http.dependencies import ActorDep, PartDep, SupervisorDep
-from api.http.json_route import JsonRoute
+from api.http.request_body import JsonRoute
+from api.http.route_policy import AuditClass, Permission, policy
 from api.http.schemas.parts import ParameterRowJson, ParametersBody, ParametersJson
 from domain.errors import UnknownParameterError
 from domain.inputs import ParametersRequest
@@ -19,6 +20,7 @@ router = APIRouter(prefix="/nodes", tags=["nodes"], route_class=JsonRoute)
 
 
 @router.get("/{part:path}/parameters")
+@policy(Permission.OBSERVE)
 async def list_parameters(part: PartDep, supervisor: SupervisorDep) -> ParametersJson:
     """List the parameters of a node, and what its target mode wants of them."""
     views = supervisor.core.parameters(part)
@@ -26,6 +28,7 @@ async def list_parameters(part: PartDep, supervisor: SupervisorDep) -> Parameter
 
 
 @router.patch("/{part:path}/parameters", status_code=202, responses=CHANGE_RESPONSES)
+@policy(Permission.OPERATE, AuditClass.UNLESS_DRY_RUN)
 async def set_parameters(
     part: PartDep,
     body: Annotated[ParametersBody, Body()],

@@ -5,11 +5,12 @@ The same routes are there for both kinds, below `/systems` and `/nodes`. A name 
 
 from fastapi import APIRouter, Request, Response
 
-from api.http.bodies import InvalidBodyError
+from api.http.body_parsing import InvalidBodyError
 from api.http.change_answers import CHANGE_RESPONSES, ChangeOptionsDep, answer_change
 from api.http.dependencies import ActorDep, PartDep, SupervisorDep
-from api.http.json_route import JsonRoute
-from api.http.long_lists import json_list
+from api.http.list_answers import json_list
+from api.http.request_body import JsonRoute
+from api.http.route_policy import AuditClass, Permission, policy
 from api.http.schemas.parts import (
     EnterableModeJson,
     ModeBody,
@@ -29,6 +30,7 @@ router = APIRouter(route_class=JsonRoute)
 
 
 @router.get("", response_model=PartsJson)
+@policy(Permission.OBSERVE)
 async def list_parts(request: Request, supervisor: SupervisorDep) -> Response:
     """List all systems, or all nodes, in the order of the model file."""
     kind = "system" if request.url.path == "/systems" else "node"
@@ -38,6 +40,7 @@ async def list_parts(request: Request, supervisor: SupervisorDep) -> Response:
 
 
 @router.get("/{part:path}/state")
+@policy(Permission.OBSERVE)
 async def get_state(part: PartDep, supervisor: SupervisorDep) -> StateJson:
     """Show the lifecycle state, and which transitions would be accepted now."""
     core = supervisor.core
@@ -45,6 +48,7 @@ async def get_state(part: PartDep, supervisor: SupervisorDep) -> StateJson:
 
 
 @router.post("/{part:path}/state", status_code=202, responses=CHANGE_RESPONSES)
+@policy(Permission.OPERATE, AuditClass.UNLESS_DRY_RUN)
 async def change_state(
     part: PartDep,
     body: TransitionBody,
@@ -63,18 +67,21 @@ async def change_state(
 
 
 @router.get("/{part:path}/states")
+@policy(Permission.OBSERVE)
 async def list_states(part: PartDep) -> StatesJson:
     """List the states that the part can rest in."""
     return StatesJson(items=[state for state in LifecycleState if state in PRIMARY_STATES])
 
 
 @router.get("/{part:path}/mode")
+@policy(Permission.OBSERVE)
 async def get_mode(part: PartDep, supervisor: SupervisorDep) -> ModeJson:
     """Show the mode; a part has one only while it is active or being activated."""
     return ModeJson.of(supervisor.core.part(part))
 
 
 @router.post("/{part:path}/mode", status_code=202, responses=CHANGE_RESPONSES)
+@policy(Permission.OPERATE, AuditClass.UNLESS_DRY_RUN)
 async def change_mode(
     part: PartDep,
     body: ModeBody,
@@ -92,6 +99,7 @@ async def change_mode(
 
 
 @router.get("/{part:path}/modes")
+@policy(Permission.OBSERVE)
 async def list_modes(part: PartDep, supervisor: SupervisorDep) -> ModesJson:
     """List the modes, and for each what stands against entering it now."""
     clock = supervisor.clock
@@ -101,6 +109,7 @@ async def list_modes(part: PartDep, supervisor: SupervisorDep) -> ModesJson:
 
 # Last, since its path matches those of all others.
 @router.get("/{part:path}")
+@policy(Permission.OBSERVE)
 async def get_part(part: PartDep, supervisor: SupervisorDep) -> PartJson:
     """Show one part: what was asked of it, what is pursued, and what it is in."""
     return PartJson.of(supervisor.core.part(part), supervisor.clock)

@@ -7,10 +7,11 @@ from typing import Annotated, Literal
 from fastapi import APIRouter, Depends, Request, Response
 from prometheus_client import CONTENT_TYPE_LATEST, generate_latest
 
-from api.http.metrics import Metrics, metrics
+from api.http.dependencies import SupervisorDep
+from api.http.metrics import Metrics
 from api.http.problems import make_problem, problem_response
+from api.http.route_policy import Permission, policy
 from api.http.schemas.base import Json
-from api.streaming.hub import StreamHubDep
 from domain.tasks.holds import VEHICLE_HOLD
 from domain.timebase import Duration, seconds, to_seconds
 from service.supervisor import Supervisor
@@ -57,15 +58,17 @@ class HealthJson(Json):
 
 
 @router.get("/livez")
+@policy(Permission.PROBE)
 async def get_livez() -> LiveJson:
     """Tell that the event loop turns."""
     return LiveJson()
 
 
 @router.get("/readyz", response_model=ReadyJson, responses={503: {"description": "It does not"}})
-async def get_readyz(hub: StreamHubDep, request: Request) -> ReadyJson | Response:
+@policy(Permission.PROBE)
+async def get_readyz(supervisor: SupervisorDep, request: Request) -> ReadyJson | Response:
     """Tell whether the model is loaded and the core ticks; 503 if not."""
-    checks = _checks(hub.supervisor)
+    checks = _checks(supervisor)
     failing = [f"{check.name}: {check.message}" for check in checks if not check.ok]
     if failing:
         status = HTTPStatus.SERVICE_UNAVAILABLE
@@ -76,9 +79,9 @@ async def get_readyz(hub: StreamHubDep, request: Request) -> ReadyJson | Respons
 
 
 @router.get("/healthz")
-async def get_healthz(hub: StreamHubDep, request: Request) -> HealthJson:
+@policy(Permission.OBSERVE)
+async def get_healthz(supervisor: SupervisorDep, request: Request) -> HealthJson:
     """Tell how the service fares, and what should be looked at; always 200."""
-    supervisor = hub.supervisor
     checks = _checks(supervisor)
     exposed = bool(getattr(request.app.state, "exposed", False))
     return HealthJson(
@@ -89,7 +92,8 @@ async def get_healthz(hub: StreamHubDep, request: Request) -> HealthJson:
 
 
 async def _metrics(request: Request) -> Metrics:
-    return metrics(request.app)
+    known: Metrics = request.app.state.metrics
+    return known
 
 
 @router.get(
@@ -97,6 +101,7 @@ async def _metrics(request: Request) -> Metrics:
     response_class=Response,
     responses={200: {"content": {"text/plain": {"schema": {"type": "string"}}}}},
 )
+@policy(Permission.OBSERVE)
 async def get_metrics(known: Annotated[Metrics, Depends(_metrics)]) -> Response:
     """Return the metrics in the text format of Prometheus."""
     return Response(generate_latest(known.registry), media_type=CONTENT_TYPE_LATEST)

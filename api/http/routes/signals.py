@@ -4,9 +4,10 @@ from typing import Annotated
 
 from fastapi import APIRouter, Body, Path
 
-from api.http.bodies import InvalidBodyError
+from api.http.body_parsing import InvalidBodyError
 from api.http.dependencies import ActorDep, SupervisorDep
-from api.http.json_route import JsonRoute
+from api.http.request_body import JsonRoute
+from api.http.route_policy import Permission, policy
 from api.http.routes.system_state import current_system_state
 from api.http.schemas.health import (
     MAX_SOURCE,
@@ -15,7 +16,7 @@ from api.http.schemas.health import (
     SignalsJson,
     SystemStateJson,
 )
-from api.http.values import SentSignalValue
+from api.http.schemas.sent_values import SentSignalValue
 from domain.errors import InvalidValueError, UnknownSignalError
 from domain.inputs import Reading
 
@@ -25,6 +26,7 @@ SignalPath = Annotated[str, Path(description="One of those in `GET /signals`")]
 
 
 @router.get("")
+@policy(Permission.OBSERVE)
 async def list_signals(supervisor: SupervisorDep) -> SignalsJson:
     """List all signals: the values held, and what is judged of them."""
     clock, now = supervisor.clock, supervisor.clock.now()
@@ -33,6 +35,7 @@ async def list_signals(supervisor: SupervisorDep) -> SignalsJson:
 
 
 @router.get("/{signal}")
+@policy(Permission.OBSERVE)
 async def get_signal(signal: SignalPath, supervisor: SupervisorDep) -> SignalJson:
     """Show one signal: the value held, and what is judged of it."""
     clock = supervisor.clock
@@ -40,6 +43,7 @@ async def get_signal(signal: SignalPath, supervisor: SupervisorDep) -> SignalJso
 
 
 @router.post("")
+@policy(Permission.REPORT)
 async def post_readings(
     body: Annotated[
         dict[str, SentSignalValue],
@@ -69,6 +73,7 @@ async def post_readings(
 
 
 @router.post("/{signal}")
+@policy(Permission.REPORT)
 async def post_reading(
     signal: SignalPath, body: ReadingBody, supervisor: SupervisorDep, actor: ActorDep
 ) -> SystemStateJson:

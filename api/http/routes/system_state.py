@@ -5,6 +5,7 @@ from typing import Annotated
 from fastapi import APIRouter, Path
 
 from api.http.dependencies import ActorDep, SupervisorDep
+from api.http.route_policy import Permission, policy
 from api.http.schemas.health import SystemStateJson
 from domain.inputs import AcknowledgeRequest
 from service.supervisor import Supervisor
@@ -22,12 +23,14 @@ def current_system_state(supervisor: Supervisor) -> SystemStateJson:
 
 
 @router.get("/system_state")
+@policy(Permission.OBSERVE)
 async def get_system_state(supervisor: SupervisorDep) -> SystemStateJson:
     """Show whether the robot is IDLE, RUNNING or in ERROR, and why."""
     return current_system_state(supervisor)
 
 
 @router.post("/errors/{error}/acknowledge")
+@policy(Permission.OPERATE)
 async def acknowledge_error(
     error: Annotated[str, Path(description="One of `errors` in `GET /system_state`")],
     supervisor: SupervisorDep,

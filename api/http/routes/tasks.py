@@ -5,16 +5,10 @@ from typing import Annotated
 
 from fastapi import APIRouter, Depends, Path, Query, Request, Response
 
-from api.http.bodies import InvalidBodyError
+from api.http.body_parsing import InvalidBodyError
 from api.http.dependencies import ActorDep, SupervisorDep, WorkerDep
-from api.http.posted_tasks import (
-    PostedTask,
-    TaskOptions,
-    encode_waypoints,
-    preview_posted,
-    read_posted_task,
-)
-from api.http.request_bodies import limits_of, read_body
+from api.http.request_body import limits_of, read_body
+from api.http.route_policy import Permission, policy
 from api.http.schemas.path_preview import PathPreviewJson
 from api.http.schemas.tasks import (
     DEFAULT_CONTROLLER,
@@ -23,6 +17,13 @@ from api.http.schemas.tasks import (
     TaskJson,
     TasksJson,
     WaypointsJson,
+)
+from api.http.task_jobs import (
+    PostedTask,
+    TaskOptions,
+    encode_waypoints,
+    preview_posted,
+    read_posted_task,
 )
 from domain.errors import FarStartError, InvalidValueError, UnknownControllerError, UnknownTaskError
 from domain.inputs import CancelTaskRequest, TaskRequest
@@ -90,6 +91,7 @@ CsvOptionsDep = Annotated[TaskOptions | None, Depends(_csv_options)]
 
 
 @router.post("", status_code=HTTPStatus.CREATED, response_model=TaskJson, openapi_extra=_BODY)
+@policy(Permission.OPERATE)
 async def serve_task(
     request: Request,
     csv: CsvOptionsDep,
@@ -104,12 +106,12 @@ async def serve_task(
     """
     raw = await read_body(request, limits_of(request).waypoints_bytes)
     posted = await _read(raw, csv, worker)
-    task = serve(supervisor, posted, actor)
+    task = submit_task(supervisor, posted, actor)
     headers = {"Location": f"/tasks/{task.id}"}
     return Response(task.model_dump_json(), HTTPStatus.CREATED, headers, "application/json")
 
 
-def serve(supervisor: Supervisor, posted: PostedTask, actor: str) -> TaskJson:
+def submit_task(supervisor: Supervisor, posted: PostedTask, actor: str) -> TaskJson:
     """Hand a task to the core and show what became of it.
 
     Raises:
@@ -131,6 +133,7 @@ def serve(supervisor: Supervisor, posted: PostedTask, actor: str) -> TaskJson:
 
 
 @router.post("/preview", response_model=PathPreviewJson, openapi_extra=_BODY)
+@policy(Permission.OBSERVE)
 async def preview_task(
     request: Request, csv: CsvOptionsDep, supervisor: SupervisorDep, worker: WorkerDep
 ) -> Response:
@@ -146,6 +149,7 @@ async def preview_task(
 
 
 @router.get("")
+@policy(Permission.OBSERVE)
 async def list_tasks(supervisor: SupervisorDep) -> TasksJson:
     """List the tasks that are kept, the newest first."""
     tasks = supervisor.core.driving.tasks()
@@ -154,6 +158,7 @@ async def list_tasks(supervisor: SupervisorDep) -> TasksJson:
 
 
 @router.get("/current")
+@policy(Permission.OBSERVE)
 async def get_current_task(supervisor: SupervisorDep) -> TaskJson:
     """Show the task that is driven or held."""
     view = supervisor.core.driving.current_task
@@ -163,18 +168,21 @@ async def get_current_task(supervisor: SupervisorDep) -> TaskJson:
 
 
 @router.delete("/current", status_code=HTTPStatus.NO_CONTENT, response_class=Response)
+@policy(Permission.STOP)
 async def cancel_task(supervisor: SupervisorDep, actor: ActorDep) -> None:
     """End the current task and stand still; also right where there is none."""
     supervisor.submit(CancelTaskRequest(actor))
 
 
 @router.get("/{task}")
+@policy(Permission.OBSERVE)
 async def get_task(task: TaskPath, supervisor: SupervisorDep) -> TaskJson:
     """Show one task, also one that has ended."""
     return TaskJson.of(supervisor.core.driving.task(task), supervisor.clock)
 
 
 @router.get("/{task}/waypoints", response_model=WaypointsJson)
+@policy(Permission.OBSERVE)
 async def get_waypoints(
     task: Annotated[str, Path(description="Its id, or `current`")],
     supervisor: SupervisorDep,

@@ -20,6 +20,9 @@ Timestamp = Annotated[
 ]
 """RFC 3339, UTC, with milliseconds."""
 
+MAX_MODEL_BYTES = 16 * 1024 * 1024
+"""Of a model in a body, whatever the limits of the service are: as of a model file."""
+
 
 class Json(BaseModel):
     """Something that a client reads."""

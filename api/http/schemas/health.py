@@ -6,7 +6,7 @@ from datetime import datetime
 from pydantic import Field
 
 from api.http.schemas.base import BlockerJson, Body, Json, Timestamp, timestamp, timestamp_or_none
-from api.http.values import SentSignalValue
+from api.http.schemas.sent_values import SentSignalValue
 from domain.errors import InvalidValueError
 from domain.findings import Fact
 from domain.inputs import Reading, SignalValue

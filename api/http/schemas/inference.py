@@ -4,10 +4,9 @@ from typing import Any
 
 from pydantic import ConfigDict, Field, model_validator
 
-from api.http.bodies import MAX_MODEL_BYTES
-from api.http.schemas.base import Body, FindingJson, Json, StateAndModeJson
+from api.http.schemas.base import MAX_MODEL_BYTES, Body, FindingJson, Json, StateAndModeJson
 from api.http.schemas.parts import ActualJson
-from api.http.values import SentParameter, split_label
+from api.http.schemas.sent_values import SentParameter, split_label
 from domain.findings import Finding
 from domain.parts.system_model import NodeModel, SystemModel
 

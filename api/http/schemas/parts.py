@@ -12,7 +12,7 @@ from api.http.schemas.base import (
     Timestamp,
     timestamp_or_none,
 )
-from api.http.values import SentParameter
+from api.http.schemas.sent_values import SentParameter
 from domain.lifecycle import LifecycleState, Transition
 from domain.parameters import ParameterValue, value_type
 from domain.snapshot import Actual, EffectiveTarget, ModeView, ParameterView, PartView

@@ -5,11 +5,16 @@ from typing import Any, Literal
 from pydantic import ConfigDict, Field
 from pydantic.json_schema import SkipJsonSchema
 
-from api.http.problems import Problem
 from api.http.schemas.base import Body, Json, Timestamp
-from api.http.schemas.health import ReadingBody, StreamedSignalJson, SystemStateJson
+from api.http.schemas.health import (
+    EmergencyStopJson,
+    ReadingBody,
+    StreamedSignalJson,
+    SystemStateJson,
+)
 from api.http.schemas.parts import PartJson
-from api.http.schemas.tasks import TaskJson, VehicleJson
+from api.http.schemas.problem import Problem
+from api.http.schemas.tasks import HoldJson, TaskJson, VehicleJson
 
 # No member with a value of its own is ever left out.
 _WHOLE = ConfigDict(json_schema_serialization_defaults_required=True)
@@ -22,6 +27,9 @@ class HelloJson(Json):
 
     type: Literal["hello"] = "hello"
     epoch: str = Field(description="Of the event ids; another one after each restart")
+    started_at: Timestamp = Field(
+        description="When this run of the service began; tasks and holds of earlier runs are gone"
+    )
     topics: list[str] = Field(description="What this client gets")
     period_s: float = Field(description="Time between two `state` frames")
     version: str = Field(description="Of Pilothouse")
@@ -56,10 +64,21 @@ class StateFrame(Json):
     )
     task: TaskJson | None = Field(
         default=None,
-        description="The current task; null: there is none; left out: as it was",
+        description=(
+            "The current task, or the one that ended last (then `ended_at` is set); null: there"
+            " never was one; left out: as it was"
+        ),
         json_schema_extra=_left_out,
     )
     vehicle: VehicleJson | SkipJsonSchema[None] = Field(
+        default=None, description="Left out: as it was", json_schema_extra=_left_out
+    )
+    holds: dict[str, HoldJson] | SkipJsonSchema[None] = Field(
+        default=None,
+        description="All holds, by owner, the oldest first; left out: as they were",
+        json_schema_extra=_left_out,
+    )
+    emergency_stop: EmergencyStopJson | SkipJsonSchema[None] = Field(
         default=None, description="Left out: as it was", json_schema_extra=_left_out
     )
 
@@ -109,6 +128,12 @@ class ReadingMessage(ReadingBody):
 
     type: Literal["reading"]
     signal: str = Field(min_length=1, max_length=256)
+
+
+class ResyncMessage(Body):
+    """A client that wants a complete frame next, as after a loss of its own."""
+
+    type: Literal["resync"]
 
 
 class AuthMessage(Body):

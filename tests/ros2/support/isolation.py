@@ -10,9 +10,12 @@ DOMAINS = 101
 def isolate() -> None:
     """Let this process, and those that it starts, meet only each other in the ROS 2 graph.
 
-    Another run on the same machine has another process id, and so another domain as a rule.
+    Another run on the same machine has another process id, and so another domain as a rule. The
+    workers of one run are numbered, and never share one.
     """
-    os.environ["ROS_DOMAIN_ID"] = str(1 + os.getpid() % DOMAINS)
+    worker = os.environ.get("PYTEST_XDIST_WORKER")
+    number = os.getpid() if worker is None else os.getppid() + int(worker.removeprefix("gw"))
+    os.environ["ROS_DOMAIN_ID"] = str(1 + number % DOMAINS)
     os.environ["ROS_AUTOMATIC_DISCOVERY_RANGE"] = "LOCALHOST"
     if "ROS_LOG_DIR" not in os.environ:
         os.environ["ROS_LOG_DIR"] = tempfile.mkdtemp(prefix="pilothouse-ros-")

@@ -6,7 +6,7 @@ from functools import partial
 from uvicorn._types import ASGIReceiveCallable, ASGISendCallable, Scope
 
 from api.serving.websocket_protocol import WebSocketProtocol
-from api.streaming.prepared import connection_of, text_frame
+from api.streaming.websocket_frames import connection_of, text_frame
 from tests.support.fan_out.control import serve_frames
 from tests.support.fan_out.uvicorn_start import start
 

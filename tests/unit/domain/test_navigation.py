@@ -17,7 +17,7 @@ from domain.tasks.vehicle_watch import VehicleWatch
 from domain.timebase import Instant, seconds
 from domain.tracking.tracker import ControlStep
 from domain.vehicle import Point, Pose, VehicleLimits, VehicleState
-from tests.support.driver import straight
+from tests.support.paths import straight
 
 LIMITS = VehicleLimits()
 
@@ -87,29 +87,31 @@ class Drive20Hz:
         return [m.command.speed_mps for m in self.said if isinstance(m, Drive)]
 
 
+@pytest.fixture
+def drive() -> Drive20Hz:
+    return Drive20Hz()
+
+
 def result_of(drive: Drive20Hz) -> GoalResult:
     assert drive.result is not None
     return drive.result
 
 
-def test_the_first_step_is_done_when_the_goal_is_sent() -> None:
-    drive = Drive20Hz()
+def test_the_first_step_is_done_when_the_goal_is_sent(drive: Drive20Hz) -> None:
     drive.report()
     drive.send()
 
     assert [type(message) for message in drive.said] == [Drive, GoalFeedback]
 
 
-def test_the_next_step_is_due_50_ms_later() -> None:
-    drive = Drive20Hz()
+def test_the_next_step_is_due_50_ms_later(drive: Drive20Hz) -> None:
     drive.report()
     drive.send()
 
     assert drive.navigation.wake_at() == drive.now + seconds(0.05)
 
 
-def test_a_late_step_is_done_once_and_keeps_to_the_grid() -> None:
-    drive = Drive20Hz()
+def test_a_late_step_is_done_once_and_keeps_to_the_grid(drive: Drive20Hz) -> None:
     drive.report()
     drive.send()
     start = drive.now
@@ -119,16 +121,14 @@ def test_a_late_step_is_done_once_and_keeps_to_the_grid() -> None:
     assert drive.navigation.wake_at() == start + seconds(0.2)
 
 
-def test_without_a_goal_nothing_is_due() -> None:
-    drive = Drive20Hz()
+def test_without_a_goal_nothing_is_due(drive: Drive20Hz) -> None:
     drive.report()
 
     assert drive.navigation.wake_at() is None
     assert drive.act() == []
 
 
-def test_after_a_preemption_not_one_command_follows() -> None:
-    drive = Drive20Hz()
+def test_after_a_preemption_not_one_command_follows(drive: Drive20Hz) -> None:
     drive.report()
     drive.send()
     drive.said.clear()
@@ -138,8 +138,7 @@ def test_after_a_preemption_not_one_command_follows() -> None:
     assert drive.said == []
 
 
-def test_the_preemption_of_an_older_goal_leaves_the_newer_one() -> None:
-    drive = Drive20Hz()
+def test_the_preemption_of_an_older_goal_leaves_the_newer_one(drive: Drive20Hz) -> None:
     drive.report()
     drive.send(goal=1)
     drive.send(goal=2)
@@ -148,8 +147,7 @@ def test_the_preemption_of_an_older_goal_leaves_the_newer_one() -> None:
     assert [type(message) for message in drive.step(0.1)] == [Drive, GoalFeedback]
 
 
-def test_the_speed_rises_by_the_acceleration_and_no_faster() -> None:
-    drive = Drive20Hz()
+def test_the_speed_rises_by_the_acceleration_and_no_faster(drive: Drive20Hz) -> None:
     drive.report()
     drive.send()
     drive.stay(4, 5.0)
@@ -158,16 +156,14 @@ def test_the_speed_rises_by_the_acceleration_and_no_faster() -> None:
     assert max(drive.speeds) == pytest.approx(2.8)
 
 
-def test_a_goal_sent_to_a_moving_vehicle_goes_on_from_its_speed() -> None:
-    drive = Drive20Hz()
+def test_a_goal_sent_to_a_moving_vehicle_goes_on_from_its_speed(drive: Drive20Hz) -> None:
     drive.report(5.0, speed_mps=2.0)
     drive.send(start_index=5)
 
     assert drive.speeds == pytest.approx([2.05])
 
 
-def test_feedback_tells_what_was_commanded() -> None:
-    drive = Drive20Hz()
+def test_feedback_tells_what_was_commanded(drive: Drive20Hz) -> None:
     drive.report(3.2, y_m=0.1)
     drive.send(start_index=3)
     told, feedback = drive.said
@@ -192,8 +188,7 @@ def test_steering_is_cut_to_what_the_vehicle_can() -> None:
 # --- arriving ------------------------------------------------------------------------------------
 
 
-def test_a_goal_succeeds_once_the_last_waypoint_is_passed() -> None:
-    drive = Drive20Hz()
+def test_a_goal_succeeds_once_the_last_waypoint_is_passed(drive: Drive20Hz) -> None:
     drive.report(19.0)
     drive.send(start_index=19)
     drive.step(19.99)
@@ -204,8 +199,7 @@ def test_a_goal_succeeds_once_the_last_waypoint_is_passed() -> None:
     assert result_of(drive).succeeded
 
 
-def test_a_goal_succeeds_when_the_vehicle_stands_within_30_cm_of_its_end() -> None:
-    drive = Drive20Hz()
+def test_a_goal_succeeds_when_the_vehicle_stands_within_30_cm_of_its_end(drive: Drive20Hz) -> None:
     drive.report(19.0)
     drive.send(start_index=19)
     drive.step(19.71, speed_mps=0.06)
@@ -215,8 +209,7 @@ def test_a_goal_succeeds_when_the_vehicle_stands_within_30_cm_of_its_end() -> No
     assert result_of(drive).succeeded
 
 
-def test_standing_further_from_the_end_is_not_arriving() -> None:
-    drive = Drive20Hz()
+def test_standing_further_from_the_end_is_not_arriving(drive: Drive20Hz) -> None:
     drive.report(19.0)
     drive.send(start_index=19)
     drive.step(19.69, speed_mps=0.0)
@@ -238,8 +231,7 @@ def test_standing_near_the_end_of_a_short_path_is_not_arriving_before_95_percent
 # --- giving up -----------------------------------------------------------------------------------
 
 
-def test_more_than_three_metres_beside_the_path_for_a_second_is_given_up() -> None:
-    drive = Drive20Hz()
+def test_more_than_three_metres_beside_the_path_for_a_second_is_given_up(drive: Drive20Hz) -> None:
     drive.report(5.0, y_m=3.01)
     drive.send(start_index=5)
     drive.stay(0.95, 5.0, y_m=3.01)
@@ -249,8 +241,7 @@ def test_more_than_three_metres_beside_the_path_for_a_second_is_given_up() -> No
     assert result_of(drive) == GoalResult(GoalId(1), False, "3.0 m from the path for 1 s")
 
 
-def test_one_moment_back_within_three_metres_begins_the_second_anew() -> None:
-    drive = Drive20Hz()
+def test_one_moment_back_within_three_metres_begins_the_second_anew(drive: Drive20Hz) -> None:
     drive.report(5.0, y_m=3.5)
     drive.send(start_index=5)
     drive.stay(0.9, 5.0, y_m=3.5)
@@ -260,8 +251,7 @@ def test_one_moment_back_within_three_metres_begins_the_second_anew() -> None:
     assert drive.result is None
 
 
-def test_twenty_seconds_without_progress_are_given_up() -> None:
-    drive = Drive20Hz()
+def test_twenty_seconds_without_progress_are_given_up(drive: Drive20Hz) -> None:
     drive.report(5.0)
     drive.send(start_index=5)
     drive.stay(19.95, 5.04, speed_mps=0.0)
@@ -271,8 +261,7 @@ def test_twenty_seconds_without_progress_are_given_up() -> None:
     assert result_of(drive).reason == "no progress for 20 s"
 
 
-def test_a_slow_vehicle_that_comes_on_is_not_given_up() -> None:
-    drive = Drive20Hz()
+def test_a_slow_vehicle_that_comes_on_is_not_given_up(drive: Drive20Hz) -> None:
     drive.report(5.0)
     drive.send(start_index=5)
     for number in range(60):
@@ -281,8 +270,7 @@ def test_a_slow_vehicle_that_comes_on_is_not_given_up() -> None:
     assert drive.result is None
 
 
-def test_a_pose_that_is_too_old_is_given_up() -> None:
-    drive = Drive20Hz()
+def test_a_pose_that_is_too_old_is_given_up(drive: Drive20Hz) -> None:
     drive.report()
     drive.send()
     drive.now += seconds(0.31)
@@ -291,8 +279,7 @@ def test_a_pose_that_is_too_old_is_given_up() -> None:
     assert result_of(drive).reason == "no pose of the vehicle for 0.3 s"
 
 
-def test_a_goal_without_any_pose_is_given_up_at_once() -> None:
-    drive = Drive20Hz()
+def test_a_goal_without_any_pose_is_given_up_at_once(drive: Drive20Hz) -> None:
     drive.send()
 
     assert not result_of(drive).succeeded
@@ -322,8 +309,9 @@ def test_a_tracker_that_fails_ends_its_goal_with_the_reason(error: Exception) ->
 @pytest.mark.parametrize(
     "end", [lambda drive: drive.stay(30, 5.0, speed_mps=0.0), lambda drive: drive.step(20.5)]
 )
-def test_after_its_end_a_goal_commands_nothing(end: Callable[[Drive20Hz], object]) -> None:
-    drive = Drive20Hz()
+def test_after_its_end_a_goal_commands_nothing(
+    drive: Drive20Hz, end: Callable[[Drive20Hz], object]
+) -> None:
     drive.report(5.0)
     drive.send(start_index=5)
     end(drive)
@@ -337,8 +325,7 @@ def test_after_its_end_a_goal_commands_nothing(end: Callable[[Drive20Hz], object
 # --- what was left out ---------------------------------------------------------------------------
 
 
-def test_an_end_that_is_passed_with_a_part_left_out_is_no_success() -> None:
-    drive = Drive20Hz()
+def test_an_end_that_is_passed_with_a_part_left_out_is_no_success(drive: Drive20Hz) -> None:
     drive.report(5.0)
     drive.send(start_index=5)
     drive.step(12.0)
@@ -348,8 +335,7 @@ def test_an_end_that_is_passed_with_a_part_left_out_is_no_success() -> None:
     assert result_of(drive).reason == "the end is passed, but 9.5 m were skipped"
 
 
-def test_what_an_earlier_goal_of_the_task_left_out_counts() -> None:
-    drive = Drive20Hz()
+def test_what_an_earlier_goal_of_the_task_left_out_counts(drive: Drive20Hz) -> None:
     drive.report(19.0)
     goal = SendGoal(GoalId(1), drive.path, 0, 19, "test", 2.8, reached_m=19.0, left_out_m=1.5)
     drive.navigation.handle(goal, drive.now)
@@ -359,8 +345,9 @@ def test_what_an_earlier_goal_of_the_task_left_out_counts() -> None:
     assert result_of(drive).reason == "the end is passed, but 1.5 m were skipped"
 
 
-def test_a_stretch_within_three_metres_was_not_left_out_however_fast_it_went() -> None:
-    drive = Drive20Hz()
+def test_a_stretch_within_three_metres_was_not_left_out_however_fast_it_went(
+    drive: Drive20Hz,
+) -> None:
     drive.report(15.0)
     drive.send(start_index=15)
     drive.step(17.9)
@@ -369,8 +356,7 @@ def test_a_stretch_within_three_metres_was_not_left_out_however_fast_it_went() -
     assert result_of(drive).succeeded
 
 
-def test_a_goal_sent_before_any_pose_begins_from_rest() -> None:
-    drive = Drive20Hz()
+def test_a_goal_sent_before_any_pose_begins_from_rest(drive: Drive20Hz) -> None:
     drive.navigation.handle(SendGoal(GoalId(1), drive.path, 0, 0, "test", 2.8), drive.now)
     drive.report()
     drive.act()
@@ -378,8 +364,7 @@ def test_a_goal_sent_before_any_pose_begins_from_rest() -> None:
     assert drive.speeds == [0.05]
 
 
-def test_navigation_says_where_it_steers_to_and_what_was_left_out() -> None:
-    drive = Drive20Hz()
+def test_navigation_says_where_it_steers_to_and_what_was_left_out(drive: Drive20Hz) -> None:
     drive.report(x_m=3.0)
     goal = SendGoal(GoalId(1), drive.path, 0, 3, "test", 2.8, reached_m=3.0, left_out_m=0.4)
     drive.navigation.handle(goal, drive.now)
@@ -390,8 +375,7 @@ def test_navigation_says_where_it_steers_to_and_what_was_left_out() -> None:
     assert feedback.left_out_m == 0.4
 
 
-def test_progress_counts_from_when_the_goal_was_sent() -> None:
-    drive = Drive20Hz()
+def test_progress_counts_from_when_the_goal_was_sent(drive: Drive20Hz) -> None:
     drive.report(x_m=-1.0)
     drive.send()
     drive.stay(19.9, -1.0, speed_mps=0.0)
@@ -401,8 +385,7 @@ def test_progress_counts_from_when_the_goal_was_sent() -> None:
     assert result_of(drive).reason == "no progress for 20 s"
 
 
-def test_a_vehicle_beside_the_path_leaves_out_what_it_passes() -> None:
-    drive = Drive20Hz()
+def test_a_vehicle_beside_the_path_leaves_out_what_it_passes(drive: Drive20Hz) -> None:
     drive.report()
     drive.send()
     drive.step(0.5, y_m=3.1)
@@ -414,10 +397,9 @@ def test_a_vehicle_beside_the_path_leaves_out_what_it_passes() -> None:
 
 @pytest.mark.parametrize(("left_out_m", "arrives"), [(0.4, True), (0.6, False)])
 def test_what_was_left_out_counts_against_what_was_to_be_driven(
-    left_out_m: float, arrives: bool
+    drive: Drive20Hz, left_out_m: float, arrives: bool
 ) -> None:
     """95 % of the 10 m from waypoint 10 on, and not of the whole path."""
-    drive = Drive20Hz()
     drive.report(x_m=20.0)
     goal = SendGoal(
         GoalId(1), drive.path, 10, 19, "test", 2.8, reached_m=20.0, left_out_m=left_out_m
@@ -429,8 +411,9 @@ def test_what_was_left_out_counts_against_what_was_to_be_driven(
 
 
 @pytest.mark.parametrize(("y_m", "arrives"), [(0.2, True), (-0.2, True), (0.29, False)])
-def test_standing_beside_the_end_is_arriving_only_near_it(y_m: float, arrives: bool) -> None:
-    drive = Drive20Hz()
+def test_standing_beside_the_end_is_arriving_only_near_it(
+    drive: Drive20Hz, y_m: float, arrives: bool
+) -> None:
     drive.report(x_m=19.8, speed_mps=1.0)
     drive.send(start_index=20)
     assert drive.result is None

@@ -11,40 +11,40 @@ from domain.parts.system_model import SmhModel
 from domain.snapshot import TaskPhase
 from domain.timebase import seconds
 from domain.vehicle import Pose, VehicleState
-from tests.support.driver import straight
+from tests.support.core_robot import CoreRobot
 from tests.support.good import GOOD
 from tests.support.models import BASE, actuation_model
-from tests.support.virtual_robot import VirtualRobot
+from tests.support.paths import straight
 
 
 @pytest.fixture
-def robot() -> VirtualRobot:
-    robot = VirtualRobot(SmhModel({}, {}))
+def robot() -> CoreRobot:
+    robot = CoreRobot(SmhModel({}, {}))
     robot.read(**GOOD)
     robot.commands.clear()
     return robot
 
 
-def drive(robot: VirtualRobot, by_s: float) -> None:
+def drive(robot: CoreRobot, by_s: float) -> None:
     """Let time pass with good readings twice a second."""
     for _ in range(round(by_s / 0.5)):
         robot.advance(0.5)
         robot.read(**GOOD)
 
 
-def speeds(robot: VirtualRobot) -> list[float]:
+def speeds(robot: CoreRobot) -> list[float]:
     return [c.command.speed_mps for c in robot.commands if isinstance(c, Drive)]
 
 
-def test_a_served_task_drives_in_the_same_step(robot: VirtualRobot) -> None:
-    outputs = robot.serve(straight())
+def test_a_served_task_drives_in_the_same_step(robot: CoreRobot) -> None:
+    outputs = robot.submit_task(straight())
 
     assert [type(command) for command in outputs.commands] == [Drive]
     assert speeds(robot) == [0.05]
 
 
-def test_an_estop_while_driving_commands_zero_in_the_same_step(robot: VirtualRobot) -> None:
-    robot.serve(straight())
+def test_an_estop_while_driving_commands_zero_in_the_same_step(robot: CoreRobot) -> None:
+    robot.submit_task(straight())
     drive(robot, 3)
     outputs = robot.read(estop=True)
 
@@ -52,8 +52,8 @@ def test_an_estop_while_driving_commands_zero_in_the_same_step(robot: VirtualRob
     assert outputs.system_state
 
 
-def test_nothing_is_driven_while_the_task_is_held(robot: VirtualRobot) -> None:
-    robot.serve(straight())
+def test_nothing_is_driven_while_the_task_is_held(robot: CoreRobot) -> None:
+    robot.submit_task(straight())
     drive(robot, 3)
     robot.hold()
     told = len(robot.commands)
@@ -62,8 +62,8 @@ def test_nothing_is_driven_while_the_task_is_held(robot: VirtualRobot) -> None:
     assert robot.commands[told:] == []
 
 
-def test_the_whole_path_is_driven_and_the_vehicle_stands_at_its_end(robot: VirtualRobot) -> None:
-    robot.serve(straight())
+def test_the_whole_path_is_driven_and_the_vehicle_stands_at_its_end(robot: CoreRobot) -> None:
+    robot.submit_task(straight())
     drive(robot, 15)
     state = robot.core.driving.vehicle.state
 
@@ -74,9 +74,9 @@ def test_the_whole_path_is_driven_and_the_vehicle_stands_at_its_end(robot: Virtu
 
 
 def test_the_goal_that_follows_a_lost_pose_is_steered_by_the_pose_that_is_back(
-    robot: VirtualRobot,
+    robot: CoreRobot,
 ) -> None:
-    robot.serve(straight())
+    robot.submit_task(straight())
     drive(robot, 3)
     robot.lose_pose()
     drive(robot, 2)
@@ -88,17 +88,17 @@ def test_the_goal_that_follows_a_lost_pose_is_steered_by_the_pose_that_is_back(
 
 
 def test_control_steps_that_are_due_before_an_input_are_done_before_it(
-    robot: VirtualRobot,
+    robot: CoreRobot,
 ) -> None:
-    robot.serve(straight())
+    robot.submit_task(straight())
     robot.commands.clear()
     outputs = robot.onboard.handle(TimePassed(), robot.now + seconds(0.2))
 
     assert len(outputs.commands) == 4
 
 
-def test_a_refused_report_moves_neither_supervision_nor_navigation(robot: VirtualRobot) -> None:
-    robot.serve(straight())
+def test_a_refused_report_moves_neither_supervision_nor_navigation(robot: CoreRobot) -> None:
+    robot.submit_task(straight())
     nowhere = VehicleReport(VehicleState(Pose(0.0, math.inf, 0.0), 0.0, 0.0))
     with pytest.raises(InvalidValueError):
         robot.give(nowhere)
@@ -107,8 +107,8 @@ def test_a_refused_report_moves_neither_supervision_nor_navigation(robot: Virtua
     assert robot.task.status is TaskPhase.RUNNING
 
 
-def test_what_was_driven_before_a_refusal_comes_with_the_next_call(robot: VirtualRobot) -> None:
-    robot.serve(straight())
+def test_what_was_driven_before_a_refusal_comes_with_the_next_call(robot: CoreRobot) -> None:
+    robot.submit_task(straight())
     later = robot.now + seconds(0.12)
     nowhere = VehicleReport(VehicleState(Pose(0.0, math.nan, 0.0), 0.0, 0.0))
     with pytest.raises(InvalidValueError):
@@ -117,18 +117,18 @@ def test_what_was_driven_before_a_refusal_comes_with_the_next_call(robot: Virtua
     assert len(robot.onboard.handle(TimePassed(), later).commands) == 2
 
 
-def test_it_wakes_for_whichever_of_the_two_is_first(robot: VirtualRobot) -> None:
+def test_it_wakes_for_whichever_of_the_two_is_first(robot: CoreRobot) -> None:
     assert robot.onboard.wake_at() == robot.core.wake_at()
-    robot.serve(straight())
+    robot.submit_task(straight())
 
     assert robot.onboard.wake_at() == robot.now + seconds(0.05)
 
 
 def test_holds_between_waypoints_far_apart_leave_nothing_of_the_path_out(
-    robot: VirtualRobot,
+    robot: CoreRobot,
 ) -> None:
     """What was driven before a hold was driven, though its next waypoint is still ahead."""
-    robot.serve(straight(80.0, spacing_m=20.0))
+    robot.submit_task(straight(80.0, spacing_m=20.0))
     for _ in range(3):
         drive(robot, 7)
         robot.hold()
@@ -141,9 +141,9 @@ def test_holds_between_waypoints_far_apart_leave_nothing_of_the_path_out(
 
 def test_what_was_due_before_an_input_is_answered_together_with_it() -> None:
     """Whoever asks learns of all that happened meanwhile, and nothing is lost between."""
-    robot = VirtualRobot(actuation_model())
+    robot = CoreRobot(actuation_model())
     robot.read(**GOOD)
-    robot.serve(straight())
+    robot.submit_task(straight())
     later = robot.now + seconds(0.12)
     request = ModeRequest(BASE, "FAST", actor="alice")
     outputs = robot.onboard.handle(request, later)
@@ -157,9 +157,9 @@ def test_what_was_due_before_an_input_is_answered_together_with_it() -> None:
 
 
 def test_a_task_that_is_served_late_is_told_with_its_id_and_the_state_that_follows() -> None:
-    robot = VirtualRobot(actuation_model())
+    robot = CoreRobot(actuation_model())
     robot.read(**GOOD)
-    robot.serve(straight())
+    robot.submit_task(straight())
     later = robot.now + seconds(0.12)
     outputs = robot.onboard.handle(TaskRequest(straight(), 0, "stanley", 2.8), later)
 
@@ -175,9 +175,9 @@ def test_a_task_that_is_served_late_is_told_with_its_id_and_the_state_that_follo
 
 
 def test_signals_that_changed_meanwhile_are_told_with_the_state_that_follows(
-    robot: VirtualRobot,
+    robot: CoreRobot,
 ) -> None:
-    robot.serve(straight())
+    robot.submit_task(straight())
     outputs = robot.onboard.handle(Readings((Reading("estop", True),), "pad"), seconds(0.12))
 
     assert outputs.signals == {"estop"}
@@ -186,10 +186,10 @@ def test_signals_that_changed_meanwhile_are_told_with_the_state_that_follows(
 
 
 def test_what_the_core_has_due_comes_before_the_control_step_of_the_same_instant(
-    robot: VirtualRobot,
+    robot: CoreRobot,
 ) -> None:
     """A pose that became too old holds the task; a step after it would drive blindly."""
-    robot.serve(straight())
+    robot.submit_task(straight())
     outputs = robot.onboard.handle(TimePassed(), robot.now + seconds(1))
     commands = [c.command.speed_mps for c in outputs.commands if isinstance(c, Drive)]
     pausing = next(event for event in outputs.events if event.kind == "task.pausing")
@@ -199,7 +199,7 @@ def test_what_the_core_has_due_comes_before_the_control_step_of_the_same_instant
     assert commands[6:] == [0.0]
 
 
-def test_a_report_is_checked_before_it_is_taken(robot: VirtualRobot) -> None:
+def test_a_report_is_checked_before_it_is_taken(robot: CoreRobot) -> None:
     before = robot.core.driving.vehicle
     with pytest.raises(InvalidValueError, match="not finite"):
         robot.give(VehicleReport(VehicleState(Pose(0.0, 0.0, 0.0), math.inf, 0.0)))
@@ -208,13 +208,13 @@ def test_a_report_is_checked_before_it_is_taken(robot: VirtualRobot) -> None:
 
 
 def test_an_error_that_is_due_at_the_instant_of_a_control_step_comes_before_it(
-    robot: VirtualRobot,
+    robot: CoreRobot,
 ) -> None:
     others = {name: value for name, value in GOOD.items() if name != "gps_accuracy"}
     for _ in range(149):
         robot.read(gps_accuracy=250.0, **others)
         robot.advance(0.1)
-    robot.serve(straight())
+    robot.submit_task(straight())
     outputs = robot.onboard.handle(TimePassed(), robot.now + seconds(0.2))
 
     assert speeds(robot)[-1:] == [0.05]

@@ -55,10 +55,10 @@ from domain.state_and_mode import ModeName, PartName
 from domain.supervision import Supervision, SupervisionSettings
 from domain.timebase import Instant, seconds
 from domain.vehicle import DriveCommand, Point, Pose, VehicleState
-from tests.support.driver import Driver
+from tests.support.core_robot import CoreRobot
 from tests.support.good import GOOD
 from tests.support.models import ACTUATION, ARM, BASE, actuation_model, nested_model
-from tests.support.virtual_robot import VirtualRobot
+from tests.support.scripted_robot import ScriptedRobot
 
 S, T = LifecycleState, Transition
 GRIPPER = PartName("gripper")
@@ -74,8 +74,8 @@ def _readings(stamp: Instant | None = None, /, **values: SignalValue) -> Reading
 
 
 @pytest.fixture
-def robot() -> VirtualRobot:
-    robot = VirtualRobot(actuation_model())
+def robot() -> CoreRobot:
+    robot = CoreRobot(actuation_model())
     robot.read(**GOOD)
     return robot
 
@@ -113,7 +113,7 @@ REFUSED: list[tuple[Input, type[PilothouseError]]] = [
 
 @pytest.mark.parametrize(("given_", "error"), REFUSED, ids=lambda value: str(value)[:60])
 def test_a_refused_input_changes_nothing_and_leaves_no_trace(
-    robot: VirtualRobot, given_: Input, error: type[PilothouseError]
+    robot: CoreRobot, given_: Input, error: type[PilothouseError]
 ) -> None:
     robot.give(_readings(robot.now, temperature=30.0))
     before = _seen(robot.core)
@@ -125,10 +125,10 @@ def test_a_refused_input_changes_nothing_and_leaves_no_trace(
 
 @pytest.mark.parametrize(("given_", "error"), REFUSED, ids=lambda value: str(value)[:60])
 def test_what_was_due_before_a_refused_input_is_delivered_with_the_next_call(
-    robot: VirtualRobot, given_: Input, error: type[PilothouseError]
+    robot: CoreRobot, given_: Input, error: type[PilothouseError]
 ) -> None:
     robot.give(_readings(robot.now, temperature=30.0))
-    robot.transition("drive_base", "configure")
+    robot.ask_transition("drive_base", "configure")
     with pytest.raises(error):
         robot.core.handle(given_, seconds(10.5))
     outputs = robot.core.handle(TimePassed(), seconds(10.5))
@@ -139,7 +139,7 @@ def test_what_was_due_before_a_refused_input_is_delivered_with_the_next_call(
 
 
 def test_what_follows_after_a_refusal_is_not_laid_to_the_one_who_was_refused(
-    robot: VirtualRobot,
+    robot: CoreRobot,
 ) -> None:
     with pytest.raises(UnknownModeError):
         robot.give(ModeRequest(BASE, "NO_SUCH", actor="mallory"))
@@ -147,7 +147,7 @@ def test_what_follows_after_a_refusal_is_not_laid_to_the_one_who_was_refused(
     assert {event.actor for event in outputs.events} == {""}
 
 
-def test_one_bad_reading_refuses_the_good_one_beside_it(robot: VirtualRobot) -> None:
+def test_one_bad_reading_refuses_the_good_one_beside_it(robot: CoreRobot) -> None:
     with pytest.raises(InvalidValueError):
         robot.read(battery_level=0.1, temperature="hot")
     assert robot.core.signal("battery_level").value == 1.0
@@ -156,14 +156,14 @@ def test_one_bad_reading_refuses_the_good_one_beside_it(robot: VirtualRobot) -> 
 # --- time ----------------------------------------------------------------------------------------
 
 
-def test_nothing_is_due_before_its_time_and_something_is_then(robot: VirtualRobot) -> None:
+def test_nothing_is_due_before_its_time_and_something_is_then(robot: CoreRobot) -> None:
     due = robot.core.wake_at()
     assert due is not None
     assert robot.core.handle(TimePassed(), due - 1) == Outputs()
     assert robot.core.handle(TimePassed(), due) != Outputs()
 
 
-def test_the_nearest_deadline_is_next_whoever_sets_it(robot: VirtualRobot) -> None:
+def test_the_nearest_deadline_is_next_whoever_sets_it(robot: CoreRobot) -> None:
     assert robot.core.wake_at() == seconds(0.3) + 1, "when the pose is too old"
     robot.core.handle(TimePassed(), seconds(0.3) + 1)
     assert robot.core.wake_at() == seconds(2) + 1, "when the readings are"
@@ -177,7 +177,7 @@ def test_without_readings_or_changes_nothing_is_due() -> None:
 
 
 def test_deadlines_pass_in_order_each_at_its_own_time_however_late_the_call(
-    robot: VirtualRobot,
+    robot: CoreRobot,
 ) -> None:
     """The arm is silent after its change; GPS is bad, and then all is silent."""
     robot.core.handle(_readings(gps_accuracy=300.0), 0)
@@ -194,7 +194,7 @@ def test_deadlines_pass_in_order_each_at_its_own_time_however_late_the_call(
     assert outputs.commands == (stop, stop, AskFacts(2, ARM)), "no pose, then no readings"
 
 
-def test_an_input_in_the_past_counts_as_now(robot: VirtualRobot) -> None:
+def test_an_input_in_the_past_counts_as_now(robot: CoreRobot) -> None:
     robot.core.handle(TimePassed(), seconds(1))
     outputs = robot.core.handle(_readings(battery_level=0.1), seconds(0.4))
     assert {event.at for event in outputs.events} == {seconds(1)}
@@ -211,7 +211,7 @@ def _root(events: Iterable[RecordedEvent], event: RecordedEvent) -> RecordedEven
     return event
 
 
-def _last(robot: VirtualRobot, kind: str) -> RecordedEvent:
+def _last(robot: CoreRobot, kind: str) -> RecordedEvent:
     return [event for event in robot.events if event.kind == kind][-1]
 
 
@@ -226,15 +226,15 @@ def _last(robot: VirtualRobot, kind: str) -> RecordedEvent:
     ],
 )
 def test_how_a_change_ended_leads_back_to_who_asked_for_it(
-    robot: VirtualRobot, fault: Fault | None, kind: str, root: str
+    robot: CoreRobot, fault: Fault | None, kind: str, root: str
 ) -> None:
     robot.fault("drive_base", fault)
-    robot.transition("drive_base", "configure")
+    robot.ask_transition("drive_base", "configure")
     robot.advance(1)
     assert _root(robot.events, _last(robot, kind)).kind == root
 
 
-def test_what_a_node_does_on_its_own_has_no_cause(robot: VirtualRobot) -> None:
+def test_what_a_node_does_on_its_own_has_no_cause(robot: CoreRobot) -> None:
     robot.give(NodeReport(BASE, state=S.ACTIVE))
     changed = _last(robot, "part.actual_changed")
     root = _root(robot.events, changed)
@@ -285,13 +285,13 @@ def test_what_a_node_does_on_its_own_has_no_cause(robot: VirtualRobot) -> None:
     ids=["report", "reading", "change", "stop", "backend", "write", "hold"],
 )
 def test_an_input_that_matters_is_recorded_with_what_it_said(
-    robot: VirtualRobot, given_: Input, kind: str, data: Mapping[str, object]
+    robot: CoreRobot, given_: Input, kind: str, data: Mapping[str, object]
 ) -> None:
     first = robot.give(given_).events[0]
     assert (first.kind, first.cause, dict(first.data)) == (kind, None, data)
 
 
-def test_who_asked_is_told_with_everything_that_follows(robot: VirtualRobot) -> None:
+def test_who_asked_is_told_with_everything_that_follows(robot: CoreRobot) -> None:
     outputs = robot.give(ModeRequest(BASE, "FAST", actor="alice"))
     assert len(outputs.events) > 1
     assert {event.actor for event in outputs.events} == {"alice"}
@@ -308,12 +308,12 @@ def test_who_asked_is_told_with_everything_that_follows(robot: VirtualRobot) -> 
     ],
     ids=["stop", "hold", "write", "reading", "parameters"],
 )
-def test_whoever_did_something_is_told_with_it(robot: VirtualRobot, given_: Input) -> None:
+def test_whoever_did_something_is_told_with_it(robot: CoreRobot, given_: Input) -> None:
     assert {event.actor for event in robot.give(given_).events} == {"alice"}
 
 
-def test_who_canceled_a_change_is_told(robot: VirtualRobot) -> None:
-    change = robot.mode("drive_base", "FAST")
+def test_who_canceled_a_change_is_told(robot: CoreRobot) -> None:
+    change = robot.ask_mode("drive_base", "FAST")
     outputs = robot.give(CancelRequest(change, actor="bob"))
     assert [(event.kind, event.actor) for event in outputs.events] == [
         ("change.cancel_requested", "bob"),
@@ -322,7 +322,7 @@ def test_who_canceled_a_change_is_told(robot: VirtualRobot) -> None:
 
 
 def test_a_request_answers_with_its_change_and_the_commands_that_begin_it(
-    robot: VirtualRobot,
+    robot: CoreRobot,
 ) -> None:
     outputs = robot.core.handle(TransitionRequest(BASE, T.CONFIGURE), 0)
     assert outputs.change == "c1"
@@ -331,18 +331,18 @@ def test_a_request_answers_with_its_change_and_the_commands_that_begin_it(
     assert robot.core.changes()[0].status is ChangeStatus.RUNNING
 
 
-def test_a_change_keeps_what_was_asked(robot: VirtualRobot) -> None:
+def test_a_change_keeps_what_was_asked(robot: CoreRobot) -> None:
     request = ModeRequest(BASE, "FAST", "alice")
     robot.give(request)
     assert robot.core.changes()[0].request == request
 
 
-def test_a_report_tells_whose_view_it_changed(robot: VirtualRobot) -> None:
+def test_a_report_tells_whose_view_it_changed(robot: CoreRobot) -> None:
     assert robot.give(NodeReport(BASE, state=S.ACTIVE)).parts == {BASE, ACTUATION}
 
 
 def test_a_refusal_is_recorded_with_what_the_node_said_and_leads_back_to_its_step(
-    robot: VirtualRobot,
+    robot: CoreRobot,
 ) -> None:
     begun = robot.core.handle(TransitionRequest(BASE, T.CONFIGURE), 0)
     step = next(event for event in begun.events if event.kind == "change.step_started")
@@ -355,7 +355,7 @@ def test_a_refusal_is_recorded_with_what_the_node_said_and_leads_back_to_its_ste
     }
 
 
-def test_an_answer_to_something_else_is_of_no_account(robot: VirtualRobot) -> None:
+def test_an_answer_to_something_else_is_of_no_account(robot: CoreRobot) -> None:
     robot.core.handle(TransitionRequest(BASE, T.CONFIGURE), 0)
     assert robot.core.handle(NodeAnswer(99, BASE, False, "no"), 0) == Outputs()
     assert robot.core.handle(NodeAnswer(1, ARM, False, "no"), 0) == Outputs()
@@ -365,7 +365,7 @@ def test_an_answer_to_something_else_is_of_no_account(robot: VirtualRobot) -> No
 # --- emergency stop and ESTOP --------------------------------------------------------------------
 
 
-def test_the_emergency_stop_puts_the_robot_in_error_at_once(robot: VirtualRobot) -> None:
+def test_the_emergency_stop_puts_the_robot_in_error_at_once(robot: CoreRobot) -> None:
     outputs = robot.stop()
     assert outputs.system_state
     assert robot.core.system_state().errors == ("ESTOP",)
@@ -373,7 +373,7 @@ def test_the_emergency_stop_puts_the_robot_in_error_at_once(robot: VirtualRobot)
 
 
 def test_who_engaged_and_who_released_the_stop_can_be_seen_and_is_told(
-    robot: VirtualRobot,
+    robot: CoreRobot,
 ) -> None:
     robot.advance(0.1)
     robot.give(EmergencyStopRequest(True, "smoke", "alice"))
@@ -387,7 +387,7 @@ def test_who_engaged_and_who_released_the_stop_can_be_seen_and_is_told(
     assert (stop.by, stop.reason, stop.since) == ("bob", "all clear", seconds(0.2))
 
 
-def test_engaging_twice_keeps_who_did_it_first_and_tells_it_once(robot: VirtualRobot) -> None:
+def test_engaging_twice_keeps_who_did_it_first_and_tells_it_once(robot: CoreRobot) -> None:
     robot.stop()
     robot.advance(1)
     before = robot.core.emergency_stop()
@@ -396,24 +396,24 @@ def test_engaging_twice_keeps_who_did_it_first_and_tells_it_once(robot: VirtualR
     assert robot.core.emergency_stop() is before
 
 
-def test_releasing_what_is_not_engaged_is_harmless(robot: VirtualRobot) -> None:
-    assert robot.stop(engaged=False) == Outputs()
+def test_releasing_what_is_not_engaged_is_harmless(robot: CoreRobot) -> None:
+    assert robot.release_stop() == Outputs()
 
 
-def test_no_reading_releases_the_emergency_stop(robot: VirtualRobot) -> None:
+def test_no_reading_releases_the_emergency_stop(robot: CoreRobot) -> None:
     robot.stop()
     robot.advance(1)
     robot.read(**GOOD)
     assert robot.core.system_state().errors == ("ESTOP",)
-    robot.stop(engaged=False)
+    robot.release_stop()
     assert robot.core.system_state().state is SystemState.IDLE
 
 
 @pytest.mark.parametrize("by_reading", [True, False])
 def test_under_estop_the_modes_that_are_shown_as_blocked_are_refused_for_that_and_no_others(
-    robot: VirtualRobot, *, by_reading: bool
+    robot: CoreRobot, *, by_reading: bool
 ) -> None:
-    robot.transition("drive_base", "activate")
+    robot.ask_transition("drive_base", "activate")
     robot.advance(1)
     if by_reading:
         robot.read(estop=True)
@@ -443,28 +443,28 @@ def test_under_estop_the_modes_that_are_shown_as_blocked_are_refused_for_that_an
     }
 
 
-def test_when_estop_ends_modes_can_be_entered_again(robot: VirtualRobot) -> None:
+def test_when_estop_ends_modes_can_be_entered_again(robot: CoreRobot) -> None:
     robot.stop()
     robot.advance(1)
     robot.read(**GOOD)
-    robot.stop(engaged=False)
+    robot.release_stop()
     assert all(view.can_enter for view in robot.core.modes(ACTUATION))
 
 
-def test_under_estop_activate_is_not_available(robot: VirtualRobot) -> None:
+def test_under_estop_activate_is_not_available(robot: CoreRobot) -> None:
     assert T.ACTIVATE in robot.core.available_transitions(BASE)
     robot.stop()
     assert T.ACTIVATE not in robot.core.available_transitions(BASE)
 
 
-def test_in_error_without_estop_changes_stay_possible(robot: VirtualRobot) -> None:
+def test_in_error_without_estop_changes_stay_possible(robot: CoreRobot) -> None:
     robot.read(battery_level=0.1)
-    change = robot.mode("drive_base", "FAST")
+    change = robot.ask_mode("drive_base", "FAST")
     robot.advance(1)
     assert robot.change(change).status is ChangeStatus.SUCCEEDED
 
 
-def test_acknowledging_what_is_not_on_changes_nothing(robot: VirtualRobot) -> None:
+def test_acknowledging_what_is_not_on_changes_nothing(robot: CoreRobot) -> None:
     assert robot.give(AcknowledgeRequest("ESTOP")) == Outputs()
 
 
@@ -501,8 +501,8 @@ def test_a_vehicle_that_stands_without_a_stop_tells_nothing_of_one() -> None:
 
 
 def test_what_navigation_says_is_recorded_when_it_ends_the_task() -> None:
-    robot = Driver()
-    robot.serve()
+    robot = ScriptedRobot()
+    robot.submit_task()
     command, ahead = DriveCommand(2.8, 0.0), Point(5.0, 0.0)
     driven = robot.give(GoalFeedback(robot.goals[0].goal, 3, 2.5, 0.0, ahead, command))
     assert driven.events == ()
@@ -522,12 +522,12 @@ def test_what_navigation_says_is_recorded_when_it_ends_the_task() -> None:
 
 
 def test_a_task_that_begins_or_ends_changes_the_state_of_the_robot() -> None:
-    robot = Driver()
-    served = robot.serve()
+    robot = ScriptedRobot()
+    served = robot.submit_task()
     assert served.system_state
     assert served.task == "t1"
     assert robot.happened("system_state.changed")[-1]["state"] == "RUNNING"
-    robot.cancel()
+    robot.cancel_task()
     assert robot.happened("system_state.changed")[-1]["state"] == "IDLE"
 
 
@@ -544,7 +544,7 @@ def test_a_task_that_begins_or_ends_changes_the_state_of_the_robot() -> None:
     ids=str,
 )
 def test_without_a_backend_no_change_begins(
-    robot: VirtualRobot, request_: ModeRequest | TransitionRequest | ParametersRequest
+    robot: CoreRobot, request_: ModeRequest | TransitionRequest | ParametersRequest
 ) -> None:
     robot.give(DOWN)
     before = _seen(robot.core)
@@ -553,33 +553,33 @@ def test_without_a_backend_no_change_begins(
     assert _seen(robot.core) == before
 
 
-def test_without_a_backend_a_dry_run_is_refused_as_the_request_is(robot: VirtualRobot) -> None:
+def test_without_a_backend_a_dry_run_is_refused_as_the_request_is(robot: CoreRobot) -> None:
     robot.give(DOWN)
     with pytest.raises(BackendUnavailableError):
         robot.core.plan(ModeRequest(BASE, "FAST"))
 
 
-def test_without_a_backend_what_does_not_exist_still_does_not_exist(robot: VirtualRobot) -> None:
+def test_without_a_backend_what_does_not_exist_still_does_not_exist(robot: CoreRobot) -> None:
     robot.give(DOWN)
     with pytest.raises(UnknownModeError):
         robot.give(ModeRequest(BASE, "NO_SUCH"))
 
 
-def test_without_a_backend_health_is_still_judged(robot: VirtualRobot) -> None:
+def test_without_a_backend_health_is_still_judged(robot: CoreRobot) -> None:
     robot.give(DOWN)
     robot.read(battery_level=0.1)
     assert robot.core.system_state().errors == ("BATTERY_LOW",)
 
 
-def test_a_backend_that_is_back_is_told_and_takes_requests(robot: VirtualRobot) -> None:
+def test_a_backend_that_is_back_is_told_and_takes_requests(robot: CoreRobot) -> None:
     robot.give(DOWN)
     outputs = robot.give(BackendStatus(available=True))
     assert [event.kind for event in outputs.events] == ["backend.available"]
-    robot.mode("drive_base", "FAST")
+    robot.ask_mode("drive_base", "FAST")
 
 
 def test_a_backend_that_stays_down_is_told_once_and_its_newest_reason_counts(
-    robot: VirtualRobot,
+    robot: CoreRobot,
 ) -> None:
     robot.give(DOWN)
     assert robot.give(BackendStatus(available=False, reason="still no DDS")) == Outputs()
@@ -601,7 +601,7 @@ def test_a_backend_that_stays_down_is_told_once_and_its_newest_reason_counts(
     ids=str,
 )
 def test_a_dry_run_shows_the_steps_that_the_change_takes_and_changes_nothing(
-    robot: VirtualRobot, request_: ModeRequest | TransitionRequest | ParametersRequest
+    robot: CoreRobot, request_: ModeRequest | TransitionRequest | ParametersRequest
 ) -> None:
     before = _seen(robot.core)
     planned = [(step.node, str(step.action)) for step in robot.core.plan(request_)]
@@ -613,7 +613,7 @@ def test_a_dry_run_shows_the_steps_that_the_change_takes_and_changes_nothing(
     assert planned == [(step.node, str(step.action)) for step in robot.change(change).steps]
 
 
-def test_a_dry_run_is_refused_as_the_request_would_be(robot: VirtualRobot) -> None:
+def test_a_dry_run_is_refused_as_the_request_would_be(robot: CoreRobot) -> None:
     with pytest.raises(IllegalTransitionError):
         robot.core.plan(TransitionRequest(BASE, T.DEACTIVATE))
     with pytest.raises(UnknownModeError):
@@ -749,9 +749,9 @@ def test_it_wakes_exactly_when_something_happens(script: list[Given]) -> None:
 @pytest.mark.parametrize("start_s", [0, 5])
 def test_steps_that_are_not_reached_are_canceled_at_any_time_of_the_clock(start_s: float) -> None:
     refusing = {"manipulator": NodeSettings(fault=Fault.REFUSE)}
-    robot = VirtualRobot(actuation_model(), nodes=refusing, start=seconds(start_s))
+    robot = CoreRobot(actuation_model(), nodes=refusing, start=seconds(start_s))
     robot.read(**GOOD)
-    change = robot.mode("manipulator", "STRONG")
+    change = robot.ask_mode("manipulator", "STRONG")
     robot.advance(1)
     assert [status for _, _, status in robot.steps(change)] == ["failed", "canceled", "canceled"]
 
@@ -765,22 +765,22 @@ def test_a_robot_of_which_nothing_was_read_is_in_error() -> None:
     assert (state.state, state.errors) == (SystemState.ERROR, ("STALE_DATA",))
 
 
-def test_what_is_not_there_is_told(robot: VirtualRobot) -> None:
+def test_what_is_not_there_is_told(robot: CoreRobot) -> None:
     with pytest.raises(UnknownChangeError):
         robot.core.change("c99")
     with pytest.raises(UnknownSignalError):
         robot.core.signal("speed")
 
 
-def test_a_part_is_shown_with_the_change_that_it_is_under(robot: VirtualRobot) -> None:
-    change = robot.mode("drive_base", "FAST")
+def test_a_part_is_shown_with_the_change_that_it_is_under(robot: CoreRobot) -> None:
+    change = robot.ask_mode("drive_base", "FAST")
     assert robot.core.part(BASE).change == change
     assert robot.core.part(ARM).change is None
     assert robot.core.part(BASE) is robot.core.parts()[BASE]
 
 
-def test_changes_are_shown_newest_first(robot: VirtualRobot) -> None:
-    older, newer = robot.mode("drive_base", "FAST"), robot.mode("manipulator", "WEAK")
+def test_changes_are_shown_newest_first(robot: CoreRobot) -> None:
+    older, newer = robot.ask_mode("drive_base", "FAST"), robot.ask_mode("manipulator", "WEAK")
     assert [change.id for change in robot.core.changes()] == [newer, older]
 
 
@@ -792,7 +792,7 @@ def test_an_absent_node_is_shown_among_the_blockers_and_refuses_nothing() -> Non
     assert core.handle(ModeRequest(BASE, view.mode), 0).change is not None
 
 
-def test_what_time_alone_leads_to_is_laid_to_time(robot: VirtualRobot) -> None:
+def test_what_time_alone_leads_to_is_laid_to_time(robot: CoreRobot) -> None:
     outputs = robot.core.handle(TimePassed(), seconds(3))
     first = outputs.events[0]
     assert (first.kind, dict(first.data), first.cause) == ("time.passed", {}, None)
@@ -813,12 +813,12 @@ def test_acknowledging_what_is_on_is_recorded_with_who_did_it() -> None:
     assert dict(events[0].data) == {"error": "BATTERY_LOW"}
 
 
-def test_a_deviation_counts_from_the_input_that_began_it(robot: VirtualRobot) -> None:
+def test_a_deviation_counts_from_the_input_that_began_it(robot: CoreRobot) -> None:
     robot.core.handle(ModeRequest(BASE, "FAST"), seconds(0.2))
     assert robot.core.part(BASE).deviation_since == seconds(0.2)
 
 
-def test_the_state_that_follows_an_error_is_laid_to_the_error(robot: VirtualRobot) -> None:
+def test_the_state_that_follows_an_error_is_laid_to_the_error(robot: CoreRobot) -> None:
     events = robot.give(_readings(battery_level=0.1)).events
     (raised,) = (event for event in events if event.kind == "error.raised")
     (changed,) = (event for event in events if event.kind == "system_state.changed")

@@ -10,8 +10,8 @@ import pytest
 from pydantic_core import from_json
 
 from api.http.schemas.simulation import SimulationBody
-from api.simulation.posted import robot_for
 from api.simulation.simulation import Simulation
+from api.simulation.simulation_job import robot_for
 from domain.paths.path import Path
 from domain.vehicle import VehicleLimits
 from service.example_tracks import track_text

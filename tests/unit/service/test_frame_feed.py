@@ -1,5 +1,16 @@
+from domain.inputs import (
+    CancelTaskRequest,
+    EmergencyStopRequest,
+    HoldRequest,
+    ReleaseRequest,
+    TaskRequest,
+)
+from domain.snapshot import TaskPhase
 from service.frame_feed import Frame, FrameFeed, FrameReader
 from tests.support.frames import frame, part_view, signal_view
+from tests.support.live_robot import make_supervisor, running
+from tests.support.manual_clock import ManualClock
+from tests.support.paths import straight
 
 ARM = part_view("arm")
 DRIVE = part_view("drive_base")
@@ -61,6 +72,19 @@ def test_a_slow_reader_gets_the_newest_frame_whole_and_is_told_how_many_it_misse
 
     assert (newest.seq, newest.full, skipped) == (4, True, 2)
     assert newest.parts == {"arm": moved, "drive_base": DRIVE}
+
+
+def test_a_reader_that_begins_anew_gets_everything_also_of_the_frame_that_it_has() -> None:
+    feed = started()
+    reader = FrameReader(feed)
+    reader.take()
+    feed.publish(frame(2))
+    reader.take()
+
+    reader.begin_anew()
+
+    newest, skipped = taken(reader)
+    assert (newest.seq, newest.full, skipped) == (2, True, 0)
 
 
 def test_a_reader_that_caught_up_is_in_step_again() -> None:
@@ -138,3 +162,74 @@ def test_the_feed_says_what_is_newest() -> None:
     feed.publish(frame(1, full=True))
 
     assert feed.newest == frame(1, full=True)
+
+
+class Published:
+    """Every frame of a live robot."""
+
+    def __init__(self, feed: FrameFeed) -> None:
+        self._feed = feed
+        self.frames: list[Frame] = []
+
+    def __call__(self) -> None:
+        assert self._feed.newest is not None
+        self.frames.append(self._feed.newest)
+
+
+async def test_a_hold_is_in_the_next_frame_and_not_told_again_while_it_stays() -> None:
+    clock = ManualClock()
+    supervisor = make_supervisor(clock)
+    published = Published(supervisor.frames)
+    async with running(supervisor):
+        await clock.advance(0.1)
+        with supervisor.frames.watch(published):
+            supervisor.submit(HoldRequest("operator", "lunch", "http:1"))
+            await clock.advance(0.2)
+            supervisor.submit(ReleaseRequest("operator", "http:1"))
+            await clock.advance(0.1)
+
+    told = [f.holds for f in published.frames if f.holds_changed]
+    assert [list(holds) for holds in told] == [["operator"], []]
+    assert published.frames[0].holds_changed
+    assert all("operator" in f.holds for f in published.frames[:4])
+
+
+async def test_the_emergency_stop_is_in_the_frame_that_its_error_publishes_at_once() -> None:
+    clock = ManualClock()
+    supervisor = make_supervisor(clock)
+    async with running(supervisor):
+        await clock.advance(0.1)
+        supervisor.submit(EmergencyStopRequest(engaged=True, reason="smoke", actor="anna"))
+
+        newest = supervisor.frames.newest
+        assert newest is not None
+        assert newest.at == clock.now()
+        assert newest.emergency_stop_changed
+        assert (newest.emergency_stop.engaged, newest.emergency_stop.reason) == (True, "smoke")
+        assert newest.holds_changed
+        assert list(newest.holds) == ["error"]
+
+
+async def test_a_task_that_ended_stays_until_the_next_one() -> None:
+    clock = ManualClock()
+    supervisor = make_supervisor(clock)
+    async with running(supervisor):
+        await clock.advance(0.1)
+        before = supervisor.frames.complete()
+        supervisor.submit(TaskRequest(straight(), 0, "stanley", 2.8))
+        supervisor.submit(CancelTaskRequest("http:1"))
+        await clock.advance(2)
+        ended = supervisor.frames.complete()
+        supervisor.submit(TaskRequest(straight(), 0, "stanley", 2.8))
+        await clock.advance(0.1)
+        following = supervisor.frames.complete()
+
+    assert before is not None
+    assert before.task is None
+    assert ended is not None
+    assert ended.task is not None
+    assert (ended.task.id, ended.task.status) == ("t1", TaskPhase.CANCELED)
+    assert (ended.task.reason, ended.task.ended_at is None) == ("canceled", False)
+    assert following is not None
+    assert following.task is not None
+    assert (following.task.id, following.task.ended_at) == ("t2", None)

@@ -26,10 +26,10 @@ from service.files.model_file import LoadedModel
 from service.frame_feed import Frame
 from service.ports import BackendMessage
 from service.supervisor import Supervisor, TaskFailedError
-from tests.support.driver import straight
 from tests.support.live_robot import make_onboard, make_supervisor, running
 from tests.support.manual_clock import ManualClock
 from tests.support.models import ACTUATION, BASE, PERFORMANCE, actuation_model
+from tests.support.paths import straight
 
 
 @pytest.fixture

@@ -9,7 +9,7 @@ from domain.errors import BlockedError, InvalidValueError
 from domain.findings import Blocker
 from domain.paths.path import Path
 from service.worker_process import ErrorParcel, Reply, do, large, pack, read, serve
-from tests.support.driver import straight
+from tests.support.paths import straight
 
 
 def refuse() -> None:

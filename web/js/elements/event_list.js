@@ -1,39 +1,26 @@
 /** <ph-event-list>: what happened last, newest first; missing events leave a visible line. */
 
 import { el } from "/web/js/dom.js";
-import { eventWords } from "/web/js/event_words.js";
 import { timeOfDay } from "/web/js/words.js";
 
 const SHOWN = 50;
-// What came in, as opposed to what was made of it: many lines, of use when one looks for a cause.
-const REPORTS = new Set([
-  "signal.read",
-  "node.reported",
-  "node.answered",
-  "vehicle.reported",
-  "goal.feedback",
-  "goal.ended",
-  "time.passed",
-  // Beside what the write led to, which has a line of its own.
-  "audit.write",
-]);
 
 class EventList extends HTMLElement {
   #shown = null;
   #lines = new Map();
 
   connectedCallback() {
-    this.reports = el("input", { type: "checkbox", role: "switch" });
+    this.details = el("input", { type: "checkbox", role: "switch" });
     this.list = el("ol", {
       class: "events",
       tabindex: "0",
       "aria-label": "Recent events, newest first",
     });
     this.append(
-      el("label", { class: "switch" }, this.reports, el("span", {}, "Reports too")),
+      el("label", { class: "switch" }, this.details, el("span", {}, "Details too")),
       this.list,
     );
-    this.reports.addEventListener("change", () => this.#render());
+    this.details.addEventListener("change", () => this.#render());
   }
 
   update({ state }) {
@@ -43,7 +30,7 @@ class EventList extends HTMLElement {
   }
 
   #render() {
-    const wanted = this.#shown.filter((event) => this.reports.checked || !REPORTS.has(event.kind));
+    const wanted = this.#shown.filter((event) => this.details.checked || isNotable(event));
     const lines = new Map();
     for (const event of wanted.slice(-SHOWN))
       lines.set(event, this.#lines.get(event) ?? makeLine(event));
@@ -52,14 +39,19 @@ class EventList extends HTMLElement {
   }
 }
 
+/** Details are of use when one looks for a cause; that events are missing is no detail. */
+function isNotable(event) {
+  return Boolean(event.note) || event.notable;
+}
+
 function makeLine(event) {
   if (event.note) return el("li", { class: "gap" }, event.note);
   return el(
     "li",
     { "data-kind": event.kind },
     el("time", { datetime: event.at, title: event.at }, timeOfDay(event.at)),
+    el("span", { class: "event-words" }, event.words),
     el("span", { class: "event-kind" }, event.kind),
-    el("span", { class: "event-words" }, eventWords(event)),
   );
 }
 

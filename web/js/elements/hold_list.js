@@ -6,9 +6,6 @@
 import { el, renderOnce, setAttribute, setText } from "/web/js/dom.js";
 import { wholeSeconds } from "/web/js/words.js";
 
-// Pilothouse sets these itself, and clears them when what they stand for is over.
-const RESERVED = { error: "ends with the error", vehicle: "ends with the next pose" };
-
 class HoldList extends HTMLElement {
   connectedCallback() {
     if (this.list) return;
@@ -31,11 +28,11 @@ class HoldList extends HTMLElement {
     const ask = () =>
       this.dispatchEvent(new CustomEvent("ph-release", { bubbles: true, detail: owner }));
     const name = `Release the hold ${owner}`;
-    const release =
-      owner in RESERVED
-        ? null
-        : el("button", { type: "button", "aria-label": name, onclick: ask }, "Release");
-    const whose = by && by !== owner ? `, by ${by}` : "";
+    // What nobody set, Pilothouse clears itself when what it stands for is over.
+    const release = by
+      ? el("button", { type: "button", "aria-label": name, onclick: ask }, "Release")
+      : null;
+    const whose = by ? (by === owner ? "" : `, by ${by}`) : ", ends by itself";
     const line = el(
       "li",
       {},
@@ -44,7 +41,7 @@ class HoldList extends HTMLElement {
         {},
         el("strong", {}, owner),
         el("span", {}, reason ? `: ${reason}` : ""),
-        el("p", { class: "quiet" }, since, whose, RESERVED[owner] ? `, ${RESERVED[owner]}` : ""),
+        el("p", { class: "quiet" }, since, whose),
       ),
       release,
     );

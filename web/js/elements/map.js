@@ -7,6 +7,7 @@ import { listen, ZOOM_STEP } from "/web/js/map/gestures.js";
 import { PathShape } from "/web/js/map/path_shape.js";
 import { Trail } from "/web/js/map/trail.js";
 import * as looks from "/web/js/map/view.js";
+import { currentTask } from "/web/js/store.js";
 import { mapSentence, offPath, poseAge, speedWords, viewSentence } from "/web/js/task_words.js";
 
 const INKS = ["ground", "grid", "axis", "ahead", "done", "trail", "aim", "vehicle", "outline"];
@@ -57,9 +58,10 @@ class TrackMap extends HTMLElement {
   }
 
   update({ state, contact, preview, serverNow }) {
-    const { task, lastTask, vehicle } = state;
+    const { vehicle } = state;
+    const task = currentTask(state);
     const age = poseAge(vehicle, contact, serverNow);
-    const known = [task, lastTask].find((each) => each && each.id === state.path?.task) ?? null;
+    const known = state.task && state.task.id === state.path?.task ? state.task : null;
     const path = this.#shape("path", known ? state.path : null);
     this.#scene = {
       path,
@@ -179,9 +181,9 @@ class TrackMap extends HTMLElement {
   }
 
   #tell(state, age, now) {
-    const { vehicle, task } = state;
+    const { vehicle } = state;
     setText(this.speed, speedWords(vehicle?.speed_mps));
-    setText(this.error, offPath(task?.cross_track_error_m));
+    setText(this.error, offPath(currentTask(state)?.cross_track_error_m));
     setText(this.age, age);
     setAttribute(this, "data-old", age !== "");
     if (now - this.#spokenAt < SPOKEN_MS) return;

@@ -62,7 +62,7 @@ class SignalCard extends HTMLElement {
       setText(this.verdict, words ? `⚠ ${words}` : "OK");
       return;
     }
-    const done = Math.min((now - pending.since) / 1000, pending.needs_s);
+    const done = Math.min((now - Date.parse(pending.since_at)) / 1000, pending.needs_s);
     this.bar.max = pending.needs_s;
     this.bar.value = done;
     setAttribute(this.bar, "aria-label", `${pending.error} is coming`);

@@ -1,7 +1,8 @@
 /** <ph-state-bar>: one sentence on the robot, the reasons, and how good the contact is. */
 
 import { el, icon, renderOnce, setAttribute, setText } from "/web/js/dom.js";
-import { stateSentence } from "/web/js/state_sentence.js";
+import { restartWords, stateSentence } from "/web/js/state_sentence.js";
+import { currentTask } from "/web/js/store.js";
 import { wholeSeconds } from "/web/js/words.js";
 
 class StateBar extends HTMLElement {
@@ -14,6 +15,10 @@ class StateBar extends HTMLElement {
     this.contact = el("span", { class: "contact" });
     this.tryNow = el("button", { type: "button", class: "small", hidden: true }, "Try now");
     this.tryNow.addEventListener("click", () => this.emit("ph-try-now"));
+    this.restart = el("span");
+    const read = el("button", { type: "button", class: "small" }, "Dismiss");
+    read.addEventListener("click", () => this.emit("ph-restart-read"));
+    this.notice = el("p", { class: "notice", hidden: true }, this.restart, read);
     this.spoken = el("p", { class: "visually-hidden", role: "status", "aria-live": "polite" });
     this.append(
       this.symbol,
@@ -22,6 +27,7 @@ class StateBar extends HTMLElement {
         { class: "said" },
         el("h1", { class: "sentence" }, this.word, this.text),
         this.more,
+        this.notice,
         el("p", { class: "facts" }, this.contact, this.tryNow, this.simulated),
       ),
       this.spoken,
@@ -39,6 +45,9 @@ class StateBar extends HTMLElement {
     setText(this.word, `${said.word}: `);
     setText(this.text, said.text);
     renderOnce(this.more, said.more.join("\n"), () => said.more.map((text) => el("li", {}, text)));
+    const restart = restartWords(state);
+    setAttribute(this.notice, "hidden", restart === "");
+    setText(this.restart, restart);
     this.#updateFacts(state, contact);
     this.#speak(state, said);
   }
@@ -54,12 +63,13 @@ class StateBar extends HTMLElement {
   /** Screen readers hear what the state becomes, and not each figure that moves in it. */
   #speak(state, said) {
     const errors = state.systemState?.errors ?? [];
-    const { id, status, reason } = state.task ?? {};
-    const key = [said.level, said.level === "error" ? errors : [id, status, reason]].join();
+    const { id, status, reason } = currentTask(state) ?? {};
+    const what = said.level === "error" ? errors : [id, status, reason];
+    const key = [said.level, what, state.restartedAt].join();
     if (this.spokenKey === key) return;
     this.spokenKey = key;
     const word = said.level === "lost" ? "No contact" : said.word;
-    setText(this.spoken, [`${word}: ${said.text}`, ...said.more].join("; "));
+    setText(this.spoken, [`${word}: ${said.text}`, ...said.more, restartWords(state)].filter(Boolean).join("; "));
   }
 }
 

@@ -6,6 +6,7 @@
 import { request } from "/web/js/api.js";
 import { el, renderOnce, setAttribute, setText } from "/web/js/dom.js";
 import { problemLines } from "/web/js/problem.js";
+import { currentTask } from "/web/js/store.js";
 import * as words from "/web/js/task_words.js";
 import { timeOfDay } from "/web/js/words.js";
 
@@ -61,18 +62,21 @@ class TaskPanel extends HTMLElement {
   }
 
   update({ state, contact, serverNow }) {
-    const { task, lastTask, holds, vehicle } = state;
+    const { vehicle } = state;
+    const task = currentTask(state);
+    const holds = Object.values(state.holds);
     const enabled = contact.level !== "lost";
     setAttribute(this.current, "hidden", task === null);
-    if (task) this.#show(state, enabled);
-    setText(this.last, lastTask && !task ? words.endWords(lastTask) : "");
-    setAttribute(this.last, "data-status", lastTask?.status);
+    if (task) this.#show(task, holds, state, enabled);
+    const ended = task ? null : state.task;
+    setText(this.last, ended ? words.endWords(ended) : "");
+    setAttribute(this.last, "data-status", ended?.status);
     this.holds.show({ holds, enabled, serverNow });
     this.#foldForm(task);
     this.form.show({ task, vehicle, enabled });
   }
 
-  #show({ task, holds, vehicle, at }, enabled) {
+  #show(task, holds, { vehicle, at }, enabled) {
     const { id, status, controller, progress, distance_m, length_m } = task;
     setText(this.status, words.TASK_STATUS[status]);
     const then = enabled ? "" : `, as of ${timeOfDay(at)}`;
@@ -82,7 +86,7 @@ class TaskPanel extends HTMLElement {
     setText(this.way, `${words.percent(progress)}, ${of}`);
     setText(this.point, words.waypointWords(task).replace("w", "W"));
     setText(this.facts, words.driveWords(task, vehicle));
-    // The list of holds says the same at more length, once it is there.
+    // The list of holds says the same at more length.
     setText(this.reason, holds.length === 0 ? (task.reason ?? "") : "");
     const isHeld = holds.some(({ owner }) => owner === OPERATOR);
     setAttribute(this.pause, "hidden", isHeld);
@@ -118,7 +122,6 @@ class TaskPanel extends HTMLElement {
     }
     renderOnce(this.problem, JSON.stringify(problem), () => (problem ? problemLines(problem) : []));
     setAttribute(this.problem, "hidden", problem === null);
-    this.dispatchEvent(new CustomEvent("ph-holds-changed", { bubbles: true }));
   }
 }
 

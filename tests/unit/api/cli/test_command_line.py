@@ -6,7 +6,7 @@ import pytest
 from api import distribution
 from api.cli import command_line
 from api.cli.command_line import main
-from api.client.service_client import Outcome
+from api.client.outcomes import Outcome
 
 Output = pytest.CaptureFixture[str]
 
@@ -89,7 +89,7 @@ def test_ctrl_c_ends_without_a_trace(monkeypatch: pytest.MonkeyPatch, capsys: Ou
     def change(*_: object) -> Outcome:
         raise KeyboardInterrupt
 
-    monkeypatch.setattr("api.client.service_client.change", change)
+    monkeypatch.setattr("api.cli.commands.change.change", change)
 
     assert main(["mode", "actuation", "PERFORMANCE"]) == 130
     assert capsys.readouterr() == ("", "")

@@ -1,32 +1,16 @@
-from collections.abc import Iterator
-from typing import Any
+import subprocess
+import sys
 
 import httpx
 import pytest
 
-from api.client.service_client import (
-    NoAnswerError,
-    Outcome,
-    ServiceClient,
-    ServiceProblemError,
-    change,
-    refusal_lines,
-    service_at,
-    show_plan,
-)
-from api.http.access import FILE_VARIABLE, TOKEN_VARIABLE
+from api.access_token import FILE_VARIABLE, TOKEN_VARIABLE
+from api.client.address import Address
+from api.client.outcomes import NoAnswerError, ServiceProblemError, refusal_lines
+from api.client.service_client import ServiceClient, service_at
 
 URL = "http://robot:8000"
 Answer = httpx.Response | Exception
-MODE = {"mode": "PERFORMANCE"}
-
-
-def step(node: str, action: str, status: str, error: str | None = None) -> dict[str, Any]:
-    return {"node": node, "action": action, "status": status, "error": error}
-
-
-def view(status: str, *steps: dict[str, Any], reason: str | None = None) -> dict[str, Any]:
-    return {"id": "c1", "status": status, "reason": reason, "steps": list(steps)}
 
 
 class Service:
@@ -34,7 +18,6 @@ class Service:
 
     def __init__(self) -> None:
         self.asked: list[str] = []
-        self.views: Iterator[dict[str, Any]] = iter(())
         self.answers: dict[str, Answer] = {
             "GET /systems/actuation": httpx.Response(200, json={"name": "actuation"}),
             "GET /systems/drive_base": problem(404, "UNKNOWN_PART"),
@@ -42,13 +25,11 @@ class Service:
         }
 
     def client(self) -> ServiceClient:
-        return ServiceClient(URL, httpx.MockTransport(self._answer))
+        return ServiceClient(Address.of(URL), httpx.MockTransport(self._answer))
 
     def _answer(self, request: httpx.Request) -> httpx.Response:
         asked = f"{request.method} {request.url.raw_path.decode()}"
         self.asked.append(asked)
-        if asked.startswith(("POST", "GET /changes")) and asked not in self.answers:
-            return httpx.Response(202, json=next(self.views))
         answer = self.answers[asked]
         if isinstance(answer, Exception):
             raise answer
@@ -63,83 +44,6 @@ def problem(status: int, code: str, **more: object) -> httpx.Response:
 @pytest.fixture
 def service() -> Service:
     return Service()
-
-
-def run(service: Service, *views: dict[str, Any], wait_s: float = 60) -> tuple[Outcome, list[str]]:
-    said: list[str] = []
-    service.views = iter(views)
-    outcome = change(
-        service.client(), "actuation", "mode", MODE, wait_s, said.append, pause=lambda _: None
-    )
-    return outcome, said
-
-
-def test_a_change_is_followed_step_by_step_to_its_end(service: Service) -> None:
-    outcome, said = run(
-        service,
-        view("running", step("arm", "configure", "running"), step("arm", "activate", "pending")),
-        view("running", step("arm", "configure", "succeeded"), step("arm", "activate", "running")),
-        view(
-            "succeeded", step("arm", "configure", "succeeded"), step("arm", "activate", "succeeded")
-        ),
-    )
-
-    assert outcome is Outcome.SUCCEEDED
-    assert said == [
-        "configure arm...",
-        "configure arm: succeeded",
-        "activate arm...",
-        "activate arm: succeeded",
-        "actuation: succeeded",
-    ]
-    assert service.asked[-1] == "GET /changes/c1"
-
-
-def test_a_change_that_was_met_already_ends_at_once(service: Service) -> None:
-    assert run(service, view("succeeded")) == (Outcome.SUCCEEDED, ["actuation: succeeded"])
-
-
-def test_a_failure_is_told_with_the_step_and_the_reason(service: Service) -> None:
-    failed = step("arm", "set_parameters", "failed", "max_torque is read-only")
-
-    outcome, said = run(service, view("failed", failed, reason="arm refused"))
-
-    assert outcome is Outcome.FAILED
-    assert said == [
-        "set parameters arm: failed: max_torque is read-only",
-        "actuation: failed: arm refused",
-    ]
-
-
-@pytest.mark.parametrize(
-    ("status", "outcome"),
-    [
-        ("failed", Outcome.FAILED),
-        ("superseded", Outcome.FAILED),
-        ("canceled", Outcome.FAILED),
-        ("timed_out", Outcome.UNKNOWN),
-    ],
-)
-def test_an_end_other_than_success_is_told_by_the_exit_code(
-    service: Service, status: str, outcome: Outcome
-) -> None:
-    assert run(service, view(status))[0] is outcome
-
-
-def test_a_change_that_takes_too_long_is_unknown_and_goes_on(service: Service) -> None:
-    outcome, said = run(service, view("running"), wait_s=0)
-
-    assert outcome is Outcome.UNKNOWN
-    assert said == ["not ended within 0 s; see http://robot:8000/changes/c1"]
-
-
-def test_the_second_step_of_the_same_kind_is_told_too(service: Service) -> None:
-    _, said = run(
-        service,
-        view("succeeded", *[step("arm", "set_parameters", "succeeded") for _ in range(2)]),
-    )
-
-    assert said[:2] == ["set parameters arm: succeeded"] * 2
 
 
 def test_a_node_is_found_where_there_is_no_system_of_that_name(service: Service) -> None:
@@ -170,57 +74,6 @@ def test_another_problem_than_an_unknown_name_is_not_mistaken_for_one(service: S
     assert refused.value.problem["code"] == "FORBIDDEN_HOST"
 
 
-def test_a_dry_run_says_the_steps_and_changes_nothing(service: Service) -> None:
-    steps = [step("arm", "configure", "pending"), step("arm", "set_parameters", "pending")]
-    asked = "POST /systems/actuation/mode?dry_run=true"
-    service.answers[asked] = httpx.Response(200, json={"part": "actuation", "steps": steps})
-    said: list[str] = []
-
-    outcome = show_plan(service.client(), "actuation", "mode", MODE, said.append)
-
-    assert outcome is Outcome.SUCCEEDED
-    assert said == ["would configure arm", "would set parameters arm"]
-    assert [a for a in service.asked if a.startswith("POST")] == [asked]
-
-
-def test_a_dry_run_without_steps_says_that_all_is_well(service: Service) -> None:
-    answer = httpx.Response(200, json={"part": "actuation", "steps": []})
-    service.answers["POST /systems/actuation/mode?dry_run=true"] = answer
-    said: list[str] = []
-
-    show_plan(service.client(), "actuation", "mode", MODE, said.append)
-
-    assert said == ["actuation is there already: no step is needed"]
-
-
-def test_a_refusal_is_told_with_what_stands_against_it_and_what_helps() -> None:
-    blocker = {"code": "ESTOP", "message": "e-stop is pressed", "path": ["actuation", "estop"]}
-    refused = {"detail": "actuation cannot be changed", "blockers": [blocker], "hint": "release it"}
-
-    assert list(refusal_lines(refused)) == [
-        "refused: actuation cannot be changed",
-        "  ESTOP: e-stop is pressed (actuation > estop)",
-        "  hint: release it",
-    ]
-
-
-def test_a_single_fault_of_a_body_is_told_once() -> None:
-    fault = {"pointer": "/mode", "message": "there is no mode 'WARP'"}
-    refused = {"detail": "/mode: there is no mode 'WARP'", "errors": [fault]}
-
-    assert list(refusal_lines(refused)) == ["refused: /mode: there is no mode 'WARP'"]
-
-
-def test_faults_of_a_body_are_told_with_their_place() -> None:
-    faults = [{"pointer": "/mode", "message": "too long"}, {"pointer": "", "message": "no object"}]
-
-    assert list(refusal_lines({"title": "Invalid", "errors": faults})) == [
-        "refused: Invalid",
-        "  /mode: too long",
-        "  body: no object",
-    ]
-
-
 @pytest.mark.parametrize(
     ("answer", "message"),
     [
@@ -245,7 +98,7 @@ def test_a_csv_is_sent_as_it_is_with_its_query() -> None:
         asked.append(request)
         return httpx.Response(201, json={"id": "t1"})
 
-    client = ServiceClient(URL, httpx.MockTransport(answer))
+    client = ServiceClient(Address.of(URL), httpx.MockTransport(answer))
 
     assert client.call("POST", "/tasks", csv="0,0,0\n", query={"speed_mps": 1.5}) == {"id": "t1"}
     assert asked[0].content == b"0,0,0\n"
@@ -277,7 +130,7 @@ def asked_with(token: str | None) -> httpx.Request:
         asked.append(request)
         return httpx.Response(200, json={})
 
-    ServiceClient(URL, httpx.MockTransport(answer), token).call("GET", "/systems")
+    ServiceClient(Address.of(URL, token), httpx.MockTransport(answer)).call("GET", "/systems")
     return asked[0]
 
 
@@ -295,7 +148,7 @@ def test_the_token_goes_with_each_request_and_nowhere_else() -> None:
 )
 def test_who_has_no_or_another_token_is_told_what_to_do(token: str | None, hint: str) -> None:
     refused = problem(401, "UNAUTHORIZED", hint="send the header `Authorization: Bearer TOKEN`")
-    client = ServiceClient(URL, httpx.MockTransport(lambda _: refused), token)
+    client = ServiceClient(Address.of(URL, token), httpx.MockTransport(lambda _: refused))
 
     with pytest.raises(ServiceProblemError) as caught:
         client.path_of("actuation")
@@ -315,3 +168,14 @@ def test_the_token_of_the_environment_is_taken(monkeypatch: pytest.MonkeyPatch) 
     monkeypatch.setenv(TOKEN_VARIABLE, "correct-horse-battery")
     with service_at(URL) as client:
         assert client.url == URL
+
+
+def test_a_command_starts_quickly_since_a_client_needs_nothing_of_the_service() -> None:
+    code = "import sys, api.cli.commands.change, api.client.service_client; print(*sys.modules)"
+    loaded = subprocess.run(
+        [sys.executable, "-c", code], capture_output=True, text=True, check=True
+    ).stdout.split()
+
+    assert "httpx" in loaded
+    heavy = {"api.http", "domain", "fastapi", "numpy", "pydantic", "starlette", "uvicorn"}
+    assert heavy.isdisjoint(loaded)

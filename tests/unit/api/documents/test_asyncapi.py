@@ -7,7 +7,7 @@ import pytest
 
 from api.documents.asyncapi import SENT, TAKEN, describe_stream, stream_document
 from api.rosbridge.operations import OPERATIONS
-from api.streaming.query import TOPICS
+from api.streaming.client_input import TOPICS
 from tests.support.document_schemas import asyncapi_faults, leads_somewhere, references
 
 

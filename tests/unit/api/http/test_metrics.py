@@ -1,10 +1,7 @@
 """`GET /metrics`: what Prometheus is told."""
 
-from collections.abc import AsyncIterator
-
 import httpx
 import pytest
-from fastapi import FastAPI
 from prometheus_client.parser import text_string_to_metric_families
 
 from api.app import create_app
@@ -17,33 +14,10 @@ from domain.inputs import (
 )
 from domain.state_and_mode import PartName
 from service.supervisor import Supervisor
-from tests.support.driver import straight
 from tests.support.frames import event
 from tests.support.live_robot import make_supervisor, running
 from tests.support.manual_clock import ManualClock
-from tests.support.websocket import WebSocketClient
-
-
-@pytest.fixture
-def clock() -> ManualClock:
-    return ManualClock()
-
-
-@pytest.fixture
-def supervisor(clock: ManualClock) -> Supervisor:
-    return make_supervisor(clock)
-
-
-@pytest.fixture
-def app(supervisor: Supervisor) -> FastAPI:
-    return create_app(supervisor, allowed_hosts=[])
-
-
-@pytest.fixture
-async def http(app: FastAPI) -> AsyncIterator[httpx.AsyncClient]:
-    transport = httpx.ASGITransport(app)
-    async with httpx.AsyncClient(transport=transport, base_url="http://127.0.0.1:8000") as client:
-        yield client
+from tests.support.paths import straight
 
 
 async def metric(http: httpx.AsyncClient, name: str, **labels: str) -> float | None:
@@ -131,19 +105,6 @@ async def test_the_metrics_tell_the_period_of_the_tick(
 
     assert await metric(http, "pilothouse_publish_period_seconds_count") == 20
     assert await metric(http, "pilothouse_publish_period_seconds_sum") == pytest.approx(1)
-
-
-async def test_the_metrics_count_the_clients_of_the_stream(
-    http: httpx.AsyncClient, app: FastAPI, supervisor: Supervisor
-) -> None:
-    async with running(supervisor):
-        async with WebSocketClient(app) as client:
-            await client.frame()
-            assert await metric(http, "pilothouse_ws_clients") == 1
-
-        assert await metric(http, "pilothouse_ws_clients") == 0
-        assert await metric(http, "pilothouse_ws_dropped_total") == 0
-        assert await metric(http, "pilothouse_ws_frames_skipped_total") == 0
 
 
 async def test_the_metrics_count_the_ticks_that_were_skipped(

@@ -11,8 +11,9 @@ import pytest
 import api
 import domain
 import service
-from api.http.bodies import BodyFault, InvalidBodyError
+from api.http.body_parsing import InvalidBodyError
 from api.http.problems import STATUS_OF, make_problem, problem_of, status_of
+from api.http.schemas.problem import BodyFault
 from domain.errors import (
     BlockedError,
     IllegalTransitionError,

@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 
 from api.rosbridge.bridge import Bridge
 from api.rosbridge.operations import OPERATIONS
-from api.rosbridge.outbox import Outbox
+from api.rosbridge.send_queue import SendQueue
 from api.rosbridge.session import Session
 from service.ros.interface.interface import RosInterface
 from tests.support.live_robot import make_supervisor
@@ -62,7 +62,7 @@ def test_whatever_is_said_is_done_or_answered(said: list[dict[str, Any]]) -> Non
 async def _say(texts: list[str]) -> tuple[list[dict[str, Any]], list[Exception]]:
     """Return what was sent back, and what calls raised."""
     supervisor = make_supervisor()
-    outbox = Outbox(lambda: None)
+    queue = SendQueue(lambda: None)
     calls: list[asyncio.Task[None]] = []
 
     def spawn(call: Coroutine[Any, Any, None]) -> asyncio.Task[None]:
@@ -70,11 +70,11 @@ async def _say(texts: list[str]) -> tuple[list[dict[str, Any]], list[Exception]]
         return calls[-1]
 
     bridge = Bridge(RosInterface(supervisor), supervisor.frames, supervisor.clock, 1_000)
-    session = Session(bridge, outbox, "rosbridge:test", spawn)
+    session = Session(bridge, queue, "rosbridge:test", spawn)
     for text in texts:
         session.hear({"text": text})
         await settle()
     session.end()
     ends = await asyncio.gather(*calls, return_exceptions=True)
     faults = [end for end in ends if isinstance(end, Exception)]
-    return [json.loads(text) for text in outbox.take(0)], faults
+    return [json.loads(text) for text in queue.take(0)], faults

@@ -8,10 +8,10 @@ from fastapi import FastAPI
 from api.app import create_app
 from api.http.access import Access
 from api.http.limits import ServiceLimits
-from api.rosbridge import hub as hub_module
+from api.rosbridge import clients as clients_module
 from api.rosbridge import route as rosbridge
-from api.rosbridge.hub import rosbridge_hub
-from api.streaming import hub as stream_hub_module
+from api.rosbridge.clients import rosbridge_clients
+from api.streaming import stream_server as stream_server_module
 from domain.inputs import ModeRequest
 from domain.state_and_mode import PartName
 from service.supervisor import Supervisor
@@ -20,11 +20,6 @@ from tests.support.manual_clock import ManualClock, settle
 from tests.support.rosbridge import RosbridgeClient
 
 TOKEN = "correct horse battery staple"
-
-
-@pytest.fixture
-def clock() -> ManualClock:
-    return ManualClock()
 
 
 @pytest.fixture
@@ -38,7 +33,7 @@ async def supervisor(clock: ManualClock) -> AsyncIterator[Supervisor]:
 async def app(supervisor: Supervisor) -> FastAPI:
     app = create_app(supervisor, allowed_hosts=[])
     # In a thread, for which virtual time does not wait.
-    await rosbridge_hub(app).bridge()
+    await rosbridge_clients(app).bridge()
     return app
 
 
@@ -142,7 +137,7 @@ async def test_a_client_that_does_not_read_is_cut_off_within_five_seconds(
 
         assert client.cut_off
         await client.end()
-    assert rosbridge_hub(app).clients == 0
+    assert rosbridge_clients(app).clients == 0
 
 
 async def test_a_quiet_client_stays_for_as_long_as_it_answers_pings(
@@ -152,13 +147,13 @@ async def test_a_quiet_client_stays_for_as_long_as_it_answers_pings(
         await clock.advance(60)
 
         assert not client.cut_off
-        assert rosbridge_hub(app).clients == 1
+        assert rosbridge_clients(app).clients == 1
 
 
 async def test_one_client_too_many_is_told_to_come_later(
     app: FastAPI, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(hub_module, "MAX_CLIENTS", 1)
+    monkeypatch.setattr(clients_module, "MAX_CLIENTS", 1)
     async with RosbridgeClient(app) as first:
         await settle()
         async with RosbridgeClient(app) as second:
@@ -241,7 +236,7 @@ async def test_a_stranger_that_goes_is_no_refusal(closed_app: FastAPI) -> None:
 async def test_strangers_keep_out_other_strangers_only(
     closed_app: FastAPI, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(stream_hub_module, "MAX_STRANGERS", 1)
+    monkeypatch.setattr(stream_server_module, "MAX_STRANGERS", 1)
     headers = {"authorization": f"Bearer {TOKEN}"}
     async with RosbridgeClient(closed_app):
         await settle()
@@ -255,7 +250,7 @@ async def test_strangers_keep_out_other_strangers_only(
 async def test_calls_may_come_as_often_as_requests(supervisor: Supervisor) -> None:
     limits = ServiceLimits(requests_per_s=1)
     app = create_app(supervisor, allowed_hosts=[], limits=limits)
-    await rosbridge_hub(app).bridge()
+    await rosbridge_clients(app).bridge()
     async with RosbridgeClient(app) as client:
         for _ in range(3):
             client.ask("call_service", service="/actuation/get_mode")

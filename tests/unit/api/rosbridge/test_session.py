@@ -8,7 +8,7 @@ from typing import Any
 import pytest
 
 from api.rosbridge import session as session_module
-from api.rosbridge.outbox import Outbox
+from api.rosbridge.send_queue import SendQueue
 from api.rosbridge.session import MAX_CALLS, Session
 from tests.support.manual_clock import settle
 from tests.support.rosbridge import (
@@ -26,10 +26,10 @@ class Talk:
     def __init__(self, calls_per_s: int = 1_000) -> None:
         self.interface = SmallInterface()
         self.calls: list[asyncio.Task[None]] = []
-        self._outbox = Outbox(lambda: None)
+        self._queue = SendQueue(lambda: None)
         self.session = Session(
             make_bridge(self.interface, calls_per_s=calls_per_s),
-            self._outbox,
+            self._queue,
             "rosbridge:test",
             self._spawn,
         )
@@ -38,7 +38,7 @@ class Talk:
         self.session.hear({"text": json.dumps({"op": op, **members})})
 
     def heard(self) -> list[dict[str, Any]]:
-        return [json.loads(text) for text in self._outbox.take(0)]
+        return [json.loads(text) for text in self._queue.take(0)]
 
     def only(self) -> dict[str, Any]:
         (found,) = self.heard()

@@ -1,15 +1,10 @@
 import pytest
 
 from api.rosbridge.wire import Wire
-from api.streaming.prepared import PING
+from api.streaming.websocket_frames import PING
 from tests.support.manual_clock import ManualClock
 from tests.support.rosbridge import Pipe
 from tests.support.websocket import texts_of
-
-
-@pytest.fixture
-def clock() -> ManualClock:
-    return ManualClock()
 
 
 @pytest.fixture

@@ -8,7 +8,7 @@ import pytest
 
 from api.serving.service_manager import ServiceManager, UnknownManagerError
 from service.supervisor import Supervisor
-from tests.support.live_robot import make_supervisor, running
+from tests.support.live_robot import running
 from tests.support.manual_clock import ManualClock
 
 ABSTRACT = f"@pilothouse-test-{os.getpid()}"
@@ -41,16 +41,6 @@ def manager_socket(request: pytest.FixtureRequest, tmp_path: Path) -> Iterator[S
     listening = Socket(str(tmp_path / "notify") if request.param == "a path" else ABSTRACT)
     yield listening
     listening.close()
-
-
-@pytest.fixture
-def clock() -> ManualClock:
-    return ManualClock()
-
-
-@pytest.fixture
-def supervisor(clock: ManualClock) -> Supervisor:
-    return make_supervisor(clock)
 
 
 def manager_of(listening: Socket, **more: str) -> ServiceManager:

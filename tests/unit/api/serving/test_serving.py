@@ -4,7 +4,8 @@ from types import SimpleNamespace
 
 import pytest
 
-from api.http.access import FILE_VARIABLE, TOKEN_VARIABLE, Access
+from api.access_token import FILE_VARIABLE, TOKEN_VARIABLE
+from api.http.access import Access
 from api.serving.composition import MisuseError, ServeOptions, compose
 from api.serving.serving import access_of, greet, serve
 from tests.support.manual_clock import ManualClock

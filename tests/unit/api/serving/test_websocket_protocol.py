@@ -13,7 +13,7 @@ from websockets.frames import Frame
 from websockets.uri import parse_uri
 
 from api.serving.websocket_protocol import WebSocketProtocol
-from api.streaming.prepared import EXTENSION, PING, Connection, text_frame
+from api.streaming.websocket_frames import EXTENSION, PING, Connection, text_frame
 from tests.support.waiting import until
 
 

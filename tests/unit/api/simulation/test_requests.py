@@ -1,18 +1,19 @@
 import asyncio
 from collections.abc import Callable, Iterator
-from typing import Any
+from typing import Any, NamedTuple
 
 import pytest
 from starlette.responses import JSONResponse
 from starlette.types import Receive, Scope, Send
 
-from api.http.problems import Problem
+from api.http.schemas.problem import Problem
 from api.http.schemas.simulation import AskedRequest
 from api.simulation.requests import Requests
 from domain.state_and_mode import PartName
 from domain.timebase import seconds
 from service.simulation.virtual_robot import VirtualRobot
 from tests.support.scenarios import STRAIGHT, scenario, virtual_robot
+from tests.support.tables import table
 
 Ask = Callable[..., Problem | None]
 
@@ -65,25 +66,32 @@ def test_who_waits_for_a_change_is_answered_while_it_is_still_running(
     assert change.part == PartName("drive_base")
 
 
-@pytest.mark.parametrize(
-    ("method", "path", "body", "status"),
-    [
-        ("GET", "/nowhere", None, 404),
-        ("PUT", "/holds/error", {"reason": "mine"}, 409),
-        ("POST", "/signals/battery_level", {"value": 7}, 422),
-        ("POST", "/signals/battery_level", {"value": float("nan")}, 422),
-        ("PATCH", "/vehicle", None, 405),
-        ("GET", "/\n", None, 400),
-        ("GET", "//elsewhere/vehicle", None, 404),
-    ],
+class Refused(NamedTuple):
+    method: str
+    path: str
+    status: int
+    body: object = None
+
+
+BATTERY = "/signals/battery_level"
+
+
+@table(
+    {
+        "a path that is not there": Refused("GET", "/nowhere", 404),
+        "a hold of Pilothouse": Refused("PUT", "/holds/error", 409, body={"reason": "mine"}),
+        "a value out of range": Refused("POST", BATTERY, 422, body={"value": 7}),
+        "a value that is no number": Refused("POST", BATTERY, 422, body={"value": float("nan")}),
+        "a method that is not there": Refused("PATCH", "/vehicle", 405),
+        "a path that is no path": Refused("GET", "/\n", 400),
+        "the path of another host": Refused("GET", "//elsewhere/vehicle", 404),
+    }
 )
-def test_a_refusal_is_the_document_of_the_interface(
-    method: str, path: str, body: object, status: int, ask: Ask
-) -> None:
-    problem = ask(method, path, body)
+def test_a_refusal_is_the_document_of_the_interface(row: Refused, ask: Ask) -> None:
+    problem = ask(row.method, row.path, row.body)
 
     assert problem is not None
-    assert problem.status == status
+    assert problem.status == row.status
 
 
 def test_a_failure_that_is_no_problem_document_is_told_as_it_is(

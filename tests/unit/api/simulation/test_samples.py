@@ -30,6 +30,29 @@ def test_a_sample_shows_all_there_is(robot: VirtualRobot) -> None:
         "converged",
     }
     assert sample["task"] is None
+    assert sample["signals"]["battery_level"]["unit"] == "ratio"
+    assert sample["emergency_stop"]["engaged"] is False
+
+
+def test_holds_are_shown_by_owner(robot: VirtualRobot) -> None:
+    robot.supervisor.submit(HoldRequest("operator", "lunch", "test"))
+
+    sample = from_json(Sampler(robot.supervisor).sample(0, 0))
+
+    assert sample["holds"]["operator"]["reason"] == "lunch"
+
+
+def test_a_task_that_ended_is_no_current_one_any_more() -> None:
+    told = answer(
+        happened(
+            ALL_GOOD,
+            {"t_s": 1, "task": {"waypoints": STRAIGHT}},
+            {"t_s": 2, "task": None},
+            until_s=3,
+        )
+    )
+
+    assert told["samples"][-1]["task"] is None
 
 
 def test_a_sample_shows_what_has_changed_since_the_one_before(robot: VirtualRobot) -> None:

@@ -158,11 +158,14 @@ def test_the_robot_is_ready_to_go(folder: Folder) -> None:
 @pytest.mark.parametrize(
     ("text", "told"),
     [
-        ("", "s.yaml:1:1: INVALID_VALUE until_s: this key is missing"),
+        ("", "s.yaml:1:1: INVALID_VALUE until_s: missing key"),
         ("- 1", "s.yaml:1:1: INVALID_VALUE there must be keys here, until_s among them"),
-        ("until_s: 1\nuntil_s: 2", "s.yaml:2:1: DUPLICATE_KEY duplicate key 'until_s'; first in line 1"),
+        (
+            "until_s: 1\nuntil_s: 2",
+            "s.yaml:2:1: DUPLICATE_KEY duplicate key 'until_s'; first in line 1",
+        ),
         ("until_s: soon", "s.yaml:1:1: INVALID_VALUE until_s: Input should be a valid number"),
-        ("until_s: 1\nwings: 2", "s.yaml:2:1: INVALID_VALUE wings: there is no such key"),
+        ("until_s: 1\nwings: 2", "s.yaml:2:1: INVALID_VALUE wings: unknown key"),
         ("until_s: 1\nfrom: live", "s.yaml:2:1: INVALID_VALUE there is no live robot here"),
         ("until_s: 1\n--- \na: 1", "s.yaml:3:1: INVALID_VALUE this is one document"),
         ("until_s: 1\nrobot:\n  wings: 2", "s.yaml:3:3: INVALID_VALUE robot.wings: "),

@@ -5,7 +5,7 @@ from typing import Any
 import pytest
 from pydantic import TypeAdapter
 
-from api.http.problems import Problem
+from api.http.schemas.problem import Problem
 from api.http.schemas.simulation import Step as AnyKindOfStep
 from api.simulation.steps import Actors
 from domain.state_and_mode import PartName

@@ -5,13 +5,14 @@ from typing import Any
 
 import pytest
 
+from api.streaming.client_input import STATE_TOPICS
 from api.streaming.encoder import StreamEncoder
 from domain.errors import BlockedError
 from domain.events.event import RecordedEvent
 from domain.events.parts import NodeReported
 from domain.findings import Blocker
 from domain.parameters import Parameters
-from domain.snapshot import PartView
+from domain.snapshot import EmergencyStopView, HoldView, PartView
 from domain.state_and_mode import PartName
 from domain.timebase import seconds
 from service.event_log import Gap
@@ -19,7 +20,7 @@ from service.supervisor import Supervisor
 from tests.support.frames import event, frame, part_view, signal_view
 from tests.support.live_robot import make_supervisor
 
-ALL = frozenset({"system_state", "parts", "signals", "task", "vehicle"})
+ALL = STATE_TOPICS
 ARM = part_view("arm")
 BATTERY = signal_view("battery_level", 0.8)
 
@@ -49,6 +50,7 @@ def test_the_first_frame_says_what_to_expect(
     assert hello == {
         "type": "hello",
         "epoch": supervisor.epoch,
+        "started_at": "2026-01-01T00:00:00.000Z",
         "topics": ["parts", "signals"],
         "period_s": 0.05,
     }
@@ -91,10 +93,40 @@ def test_task_and_vehicle_are_sent_when_they_changed(encoder: StreamEncoder) -> 
     assert "vehicle" not in ended
 
 
+def test_holds_are_sent_whole_and_the_emergency_stop_too_when_they_changed(
+    encoder: StreamEncoder,
+) -> None:
+    hold = HoldView("operator", "lunch", "http:1", seconds(1))
+    held = read(encoder.frame(frame(2, holds={"operator": hold}, holds_changed=True), 0, ALL))
+    stop = EmergencyStopView(
+        engaged=True, by="http:1", reason="smoke", since=seconds(1), standstill_at=None
+    )
+    stopped = read(
+        encoder.frame(frame(3, emergency_stop=stop, emergency_stop_changed=True), 0, ALL)
+    )
+
+    assert held["holds"] == {
+        "operator": {
+            "owner": "operator",
+            "reason": "lunch",
+            "by": "http:1",
+            "since_at": "2026-01-01T00:00:01.000Z",
+        }
+    }
+    assert "emergency_stop" not in held
+    assert (stopped["emergency_stop"]["engaged"], stopped["emergency_stop"]["by"]) == (
+        True,
+        "http:1",
+    )
+    assert "holds" not in stopped
+
+
 def test_a_full_frame_of_a_robot_without_parts_says_so(encoder: StreamEncoder) -> None:
     shown = read(encoder.frame(frame(2, full=True), 0, ALL))
 
     assert (shown["parts"], shown["signals"], shown["task"]) == ({}, {}, None)
+    assert shown["holds"] == {}
+    assert shown["emergency_stop"]["engaged"] is False
 
 
 @pytest.mark.parametrize(
@@ -105,6 +137,8 @@ def test_a_full_frame_of_a_robot_without_parts_says_so(encoder: StreamEncoder) -
         ({"signals", "events"}, {"signals"}),
         ({"task"}, {"task"}),
         ({"vehicle"}, {"vehicle"}),
+        ({"holds"}, {"holds"}),
+        ({"emergency_stop"}, {"emergency_stop"}),
     ],
 )
 def test_only_the_topics_that_were_asked_for_are_sent_beside_the_system_state(
@@ -172,7 +206,7 @@ def test_a_view_that_did_not_change_is_not_encoded_again(
         encoded.append(view.name)
         return "{}"
 
-    members = encoder._parts  # noqa: SLF001 - the point of the class is what it does not do
+    members = encoder._robot.parts  # noqa: SLF001 - the point of the class is what it does not do
     monkeypatch.setattr(members, "_encode", encode)
 
     encoder.frame(frame(2, [views[0], part_view("node_1", "FAST"), views[2]], full=True), 0, ALL)

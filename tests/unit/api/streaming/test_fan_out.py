@@ -8,10 +8,10 @@ from typing import Any
 
 import pytest
 
+from api.streaming.client_input import TOPICS, StreamQuery
 from api.streaming.encoder import StreamEncoder
 from api.streaming.fan_out import FanOut
-from api.streaming.prepared import PING, Connection, Listener
-from api.streaming.query import TOPICS, StreamQuery
+from api.streaming.websocket_frames import PING, Connection, Listener
 from domain.inputs import EmergencyStopRequest
 from service.supervisor import Supervisor
 from tests.support.live_robot import make_supervisor, running

@@ -9,9 +9,9 @@ from fastapi import FastAPI
 from api.app import create_app
 from api.http.access import Access
 from api.http.limits import ServiceLimits
-from api.streaming import hub
 from api.streaming import route as stream
-from api.streaming.hub import stream_hub
+from api.streaming import stream_server as stream_server_module
+from api.streaming.stream_server import stream_server
 from domain.inputs import EmergencyStopRequest, ModeRequest
 from domain.state_and_mode import PartName
 from service.supervisor import Supervisor
@@ -82,6 +82,27 @@ async def test_once_a_second_everything_is_told_again(app: FastAPI, clock: Manua
         complete = [frame for frame in client.frames() if len(frame.get("parts", ())) == 3]
 
     assert len(complete) == 3
+
+
+async def test_a_client_that_asks_for_it_gets_everything_and_is_in_step_again(
+    app: FastAPI, clock: ManualClock
+) -> None:
+    async with WebSocketClient(app) as asking, WebSocketClient(app) as other:
+        await in_step(asking)
+        await in_step(other)
+        await clock.advance(0.1)
+        asking.frames()
+        other.frames()
+
+        asking.send({"type": "resync"})
+        complete = await asking.frame("state")
+        await clock.advance(0.05)
+        following = await asking.frame("state")
+
+        assert {"parts", "signals", "task", "vehicle", "holds", "emergency_stop"} <= set(complete)
+        assert (following["seq"], following["skipped"]) == (complete["seq"] + 1, 0)
+        assert "holds" not in following
+        assert [frame["seq"] for frame in other.frames()] == [following["seq"]]
 
 
 async def test_an_emergency_stop_is_told_at_once_and_not_at_the_next_tick(
@@ -212,15 +233,15 @@ async def test_a_client_that_does_not_read_at_all_is_cut_off_within_five_seconds
 
         assert client.cut_off
         await client.end()
-    assert stream_hub(app).fan_out.dropped == 1
-    assert stream_hub(app).clients == 0
+    assert stream_server(app).fan_out.dropped == 1
+    assert stream_server(app).clients == 0
 
 
 async def test_a_client_that_leaves_by_itself_is_not(app: FastAPI) -> None:
     async with WebSocketClient(app) as client:
         await in_step(client)
 
-    assert stream_hub(app).fan_out.dropped == 0
+    assert stream_server(app).fan_out.dropped == 0
 
 
 async def test_one_client_too_many_is_told_to_come_later(
@@ -247,9 +268,9 @@ async def test_nothing_is_said_to_a_client_that_went_while_it_was_let_in(
 async def test_a_client_that_left_leaves_its_place_to_the_next(app: FastAPI) -> None:
     async with WebSocketClient(app) as client:
         await client.frame()
-        assert stream_hub(app).clients == 1
+        assert stream_server(app).clients == 1
 
-    assert stream_hub(app).clients == 0
+    assert stream_server(app).clients == 0
 
 
 @pytest.mark.parametrize(
@@ -257,7 +278,7 @@ async def test_a_client_that_left_leaves_its_place_to_the_next(app: FastAPI) -> 
     [
         ({"topics": "partz"}, "there is no topic 'partz'"),
         ({"topics": ""}, "no topic is named"),
-        ({"after": "yesterday"}, "no id of an event"),
+        ({"after": "yesterday"}, "invalid event id"),
     ],
 )
 async def test_what_is_wrong_with_the_address_is_told_before_it_is_closed(
@@ -421,7 +442,7 @@ async def test_a_client_that_says_nothing_is_closed_in_the_end(
 async def test_strangers_keep_out_other_strangers_only(
     closed_app: FastAPI, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(hub, "MAX_STRANGERS", 1)
+    monkeypatch.setattr(stream_server_module, "MAX_STRANGERS", 1)
     headers = {"authorization": f"Bearer {TOKEN}"}
     async with WebSocketClient(closed_app) as waits:
         async with WebSocketClient(closed_app) as stranger:

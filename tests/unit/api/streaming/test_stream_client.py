@@ -2,9 +2,9 @@ import asyncio
 
 import pytest
 
+from api.streaming.client_input import StreamQuery
+from api.streaming.cursor import Cursor, FrameBytes
 from api.streaming.encoder import StreamEncoder
-from api.streaming.place import News, Place
-from api.streaming.query import StreamQuery
 from api.streaming.stream_client import Group, StreamClient
 from domain.timebase import seconds
 from service.supervisor import Supervisor
@@ -42,12 +42,12 @@ def supervisor(clock: ManualClock) -> Supervisor:
 
 @pytest.fixture
 def group(supervisor: Supervisor) -> Group:
-    return Group(Place(supervisor, STATE))
+    return Group(Cursor(supervisor, STATE))
 
 
 @pytest.fixture
 def client(group: Group, supervisor: Supervisor, clock: ManualClock) -> StreamClient:
-    client = StreamClient(group, Wire(), Place(supervisor, STATE), "page", clock)
+    client = StreamClient(group, Wire(), Cursor(supervisor, STATE), "page", clock)
     group.add(client)
     return client
 
@@ -60,13 +60,13 @@ def wire_of(client: StreamClient) -> Wire:
 def test_a_new_client_is_apart_until_it_is_level_with_the_group(
     group: Group, client: StreamClient, supervisor: Supervisor
 ) -> None:
-    news = News(StreamEncoder(supervisor))
+    encoded = FrameBytes(StreamEncoder(supervisor))
     supervisor.frames.publish(frame(1, full=True))
-    group.place.take(news)
+    group.cursor.take(encoded)
 
     group.take_in_if_level(client)
     assert not group.in_step
-    client.place.take(news)
+    client.cursor.take(encoded)
     group.take_in_if_level(client)
 
     assert list(group.in_step.values()) == [client]
@@ -86,23 +86,23 @@ def test_a_clogged_client_goes_on_from_where_the_group_is(
 ) -> None:
     group.take_in_if_level(client)
     supervisor.frames.publish(frame(1, full=True))
-    group.place.take(News(StreamEncoder(supervisor)))
+    group.cursor.take(FrameBytes(StreamEncoder(supervisor)))
 
     client.clogged()
 
     assert list(group.apart.values()) == [client]
-    assert client.place.position == group.place.position
-    assert client.place is not group.place
+    assert client.cursor.position == group.cursor.position
+    assert client.cursor is not group.cursor
 
 
 def test_a_client_that_clogs_while_apart_keeps_its_place(
     group: Group, client: StreamClient
 ) -> None:
-    place = client.place
+    cursor = client.cursor
 
     client.clogged()
 
-    assert client.place is place
+    assert client.cursor is cursor
     assert group.clients == (client,)
 
 

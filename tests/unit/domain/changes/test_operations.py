@@ -28,6 +28,7 @@ from domain.snapshot import ChangeStatus, StepStatus
 from domain.state_and_mode import DEFAULT_MODE, PartName
 from domain.supervision import Supervision, SupervisionSettings
 from domain.timebase import seconds
+from tests.support.core_robot import CoreRobot
 from tests.support.good import GOOD
 from tests.support.models import (
     ACTUATION,
@@ -39,36 +40,35 @@ from tests.support.models import (
     inactive,
     nested_model,
 )
-from tests.support.virtual_robot import VirtualRobot
 
 
 @pytest.fixture
-def robot() -> VirtualRobot:
-    robot = VirtualRobot(actuation_model())
+def robot() -> CoreRobot:
+    robot = CoreRobot(actuation_model())
     robot.read(**GOOD)
     return robot
 
 
-def test_the_four_steps_of_annex_4(robot: VirtualRobot) -> None:
+def test_the_four_steps_of_annex_4(robot: CoreRobot) -> None:
     """D4.8, Annex 4: configure, activate, PERFORMANCE, then both parts by hand."""
-    robot.transition("actuation", "configure")
+    robot.ask_transition("actuation", "configure")
     robot.advance(1)
     assert [robot.actual(p) for p in robot.model.parts] == ["inactive", "inactive", "inactive"]
 
-    robot.transition("actuation", "activate")
+    robot.ask_transition("actuation", "activate")
     robot.advance(1)
     assert robot.actual("actuation") == "active.__DEFAULT__"
     assert robot.actual("drive_base") == "active.__DEFAULT__"
     assert robot.actual("manipulator") == "inactive"
 
-    robot.mode("actuation", "PERFORMANCE")
+    robot.ask_mode("actuation", "PERFORMANCE")
     robot.advance(1)
     assert robot.actual("actuation") == "active.PERFORMANCE"
     assert robot.actual("drive_base") == "active.FAST"
     assert robot.actual("manipulator") == "active.STRONG"
 
-    robot.mode("drive_base", "SLOW")
-    robot.mode("manipulator", "WEAK")
+    robot.ask_mode("drive_base", "SLOW")
+    robot.ask_mode("manipulator", "WEAK")
     robot.advance(1)
     assert robot.actual("actuation") == "activating.MODERATE"
     target = robot.core.part(robot.model.parts[0]).target
@@ -77,9 +77,9 @@ def test_the_four_steps_of_annex_4(robot: VirtualRobot) -> None:
 
 
 def test_a_mode_asked_of_unconfigured_nodes_configures_and_activates_them(
-    robot: VirtualRobot,
+    robot: CoreRobot,
 ) -> None:
-    change = robot.mode("actuation", "PERFORMANCE")
+    change = robot.ask_mode("actuation", "PERFORMANCE")
     robot.advance(2)
     assert robot.change(change).status is ChangeStatus.SUCCEEDED
     assert robot.steps(change) == [
@@ -90,33 +90,33 @@ def test_a_mode_asked_of_unconfigured_nodes_configures_and_activates_them(
 
 
 def test_a_mode_change_of_active_nodes_sets_parameters_and_nothing_else(
-    robot: VirtualRobot,
+    robot: CoreRobot,
 ) -> None:
-    robot.mode("actuation", "PERFORMANCE")
+    robot.ask_mode("actuation", "PERFORMANCE")
     robot.advance(2)
-    change = robot.mode("actuation", "MODERATE")
+    change = robot.ask_mode("actuation", "MODERATE")
     robot.advance(1)
     assert {action for _, action, _ in robot.steps(change)} == {"set_parameters"}
 
 
-def test_a_request_that_is_met_succeeds_at_once_without_a_step(robot: VirtualRobot) -> None:
-    robot.mode("actuation", "PERFORMANCE")
+def test_a_request_that_is_met_succeeds_at_once_without_a_step(robot: CoreRobot) -> None:
+    robot.ask_mode("actuation", "PERFORMANCE")
     robot.advance(2)
-    change = robot.mode("actuation", "PERFORMANCE")
+    change = robot.ask_mode("actuation", "PERFORMANCE")
     assert robot.change(change).status is ChangeStatus.SUCCEEDED
     assert robot.steps(change) == []
 
 
-def test_parts_go_side_by_side(robot: VirtualRobot) -> None:
-    change = robot.transition("actuation", "configure")
+def test_parts_go_side_by_side(robot: CoreRobot) -> None:
+    change = robot.ask_transition("actuation", "configure")
     robot.advance(0.1)
     assert [status for _, _, status in robot.steps(change)] == ["running", "running"]
 
 
 def test_a_node_that_refuses_fails_the_change_and_the_other_goes_on() -> None:
-    robot = VirtualRobot(actuation_model(), nodes={"manipulator": NodeSettings(fault=Fault.REFUSE)})
+    robot = CoreRobot(actuation_model(), nodes={"manipulator": NodeSettings(fault=Fault.REFUSE)})
     robot.read(**GOOD)
-    change = robot.mode("actuation", "PERFORMANCE")
+    change = robot.ask_mode("actuation", "PERFORMANCE")
     robot.advance(2)
     view = robot.change(change)
     assert view.status is ChangeStatus.FAILED
@@ -125,17 +125,17 @@ def test_a_node_that_refuses_fails_the_change_and_the_other_goes_on() -> None:
     assert robot.actual("drive_base") == "active.FAST"
 
 
-def test_a_node_whose_callback_fails_is_named(robot: VirtualRobot) -> None:
+def test_a_node_whose_callback_fails_is_named(robot: CoreRobot) -> None:
     robot.fault("drive_base", Fault.FAIL)
-    change = robot.transition("drive_base", "configure")
+    change = robot.ask_transition("drive_base", "configure")
     robot.advance(1)
     reason = "drive_base: configure: the node went back to unconfigured"
     assert robot.change(change).reason == reason
 
 
-def test_an_error_in_a_callback_fails_the_change(robot: VirtualRobot) -> None:
+def test_an_error_in_a_callback_fails_the_change(robot: CoreRobot) -> None:
     robot.fault("drive_base", Fault.ERROR)
-    change = robot.transition("drive_base", "configure")
+    change = robot.ask_transition("drive_base", "configure")
     robot.advance(0.5)
     assert robot.change(change).status is ChangeStatus.FAILED
     assert robot.actual("drive_base") == "errorprocessing"
@@ -143,9 +143,9 @@ def test_an_error_in_a_callback_fails_the_change(robot: VirtualRobot) -> None:
 
 def test_a_slow_node_is_asked_for_its_state_before_it_is_called_late() -> None:
     slow = NodeSettings(configure=seconds(30))
-    robot = VirtualRobot(actuation_model(), nodes={"drive_base": slow})
+    robot = CoreRobot(actuation_model(), nodes={"drive_base": slow})
     robot.read(**GOOD)
-    change = robot.transition("drive_base", "configure")
+    change = robot.ask_transition("drive_base", "configure")
     robot.advance(9.9)
     assert robot.change(change).status is ChangeStatus.RUNNING
     robot.advance(0.2)
@@ -153,8 +153,8 @@ def test_a_slow_node_is_asked_for_its_state_before_it_is_called_late() -> None:
     assert robot.change(change).reason == "drive_base: configure: the node is still configuring"
 
 
-def test_a_node_that_swallowed_its_report_is_found_done_when_asked(robot: VirtualRobot) -> None:
-    change = robot.transition("drive_base", "configure")
+def test_a_node_that_swallowed_its_report_is_found_done_when_asked(robot: CoreRobot) -> None:
+    change = robot.ask_transition("drive_base", "configure")
     robot.fault("drive_base", Fault.SILENT)
     robot.advance(2)
     robot.fault("drive_base", None)
@@ -163,9 +163,9 @@ def test_a_node_that_swallowed_its_report_is_found_done_when_asked(robot: Virtua
 
 
 def test_an_absent_node_refuses_nothing_and_fails_the_change_at_the_deadline() -> None:
-    robot = VirtualRobot(actuation_model(), nodes={"drive_base": NodeSettings(fault=Fault.DIE)})
+    robot = CoreRobot(actuation_model(), nodes={"drive_base": NodeSettings(fault=Fault.DIE)})
     robot.read(**GOOD)
-    change = robot.mode("actuation", "PERFORMANCE")
+    change = robot.ask_mode("actuation", "PERFORMANCE")
     robot.advance(9.9)
     assert robot.change(change).status is ChangeStatus.RUNNING
     assert robot.actual("manipulator") == "active.STRONG"
@@ -175,9 +175,9 @@ def test_an_absent_node_refuses_nothing_and_fails_the_change_at_the_deadline() -
 
 
 def test_an_absent_node_that_comes_before_the_deadline_is_brought_along() -> None:
-    robot = VirtualRobot(actuation_model(), nodes={"drive_base": NodeSettings(fault=Fault.DIE)})
+    robot = CoreRobot(actuation_model(), nodes={"drive_base": NodeSettings(fault=Fault.DIE)})
     robot.read(**GOOD)
-    change = robot.mode("actuation", "PERFORMANCE")
+    change = robot.ask_mode("actuation", "PERFORMANCE")
     robot.advance(5)
     robot.fault("drive_base", None)
     robot.advance(2)
@@ -186,9 +186,9 @@ def test_an_absent_node_that_comes_before_the_deadline_is_brought_along() -> Non
 
 
 def test_a_node_that_dies_during_a_change_fails_it_and_the_system_says_why(
-    robot: VirtualRobot,
+    robot: CoreRobot,
 ) -> None:
-    change = robot.mode("actuation", "PERFORMANCE")
+    change = robot.ask_mode("actuation", "PERFORMANCE")
     robot.advance(0.1)
     robot.fault("drive_base", Fault.DIE)
     robot.advance(12)
@@ -202,11 +202,11 @@ def test_a_node_that_dies_during_a_change_fails_it_and_the_system_says_why(
 
 
 def test_a_newer_request_supersedes_the_older_one_and_waits_for_its_step(
-    robot: VirtualRobot,
+    robot: CoreRobot,
 ) -> None:
-    older = robot.mode("actuation", "PERFORMANCE")
+    older = robot.ask_mode("actuation", "PERFORMANCE")
     robot.advance(0.1)
-    newer = robot.transition("actuation", "cleanup")
+    newer = robot.ask_transition("actuation", "cleanup")
     assert robot.change(older).status is ChangeStatus.SUPERSEDED
     assert [s for _, _, s in robot.steps(older)].count("running") == 2
     robot.advance(2)
@@ -215,11 +215,11 @@ def test_a_newer_request_supersedes_the_older_one_and_waits_for_its_step(
 
 
 def test_a_request_for_a_part_supersedes_its_system_and_the_other_part_arrives(
-    robot: VirtualRobot,
+    robot: CoreRobot,
 ) -> None:
-    older = robot.mode("actuation", "PERFORMANCE")
+    older = robot.ask_mode("actuation", "PERFORMANCE")
     robot.advance(0.1)
-    newer = robot.mode("drive_base", "SLOW")
+    newer = robot.ask_mode("drive_base", "SLOW")
     assert robot.change(older).status is ChangeStatus.SUPERSEDED
     assert robot.change(older).reason == f"superseded by change {newer} of drive_base"
     robot.advance(2)
@@ -229,9 +229,9 @@ def test_a_request_for_a_part_supersedes_its_system_and_the_other_part_arrives(
 
 
 def test_a_canceled_change_begins_no_further_step_and_keeps_its_target(
-    robot: VirtualRobot,
+    robot: CoreRobot,
 ) -> None:
-    change = robot.mode("actuation", "PERFORMANCE")
+    change = robot.ask_mode("actuation", "PERFORMANCE")
     robot.advance(0.1)
     robot.give(CancelRequest(change))
     robot.advance(2)
@@ -245,8 +245,8 @@ def test_a_canceled_change_begins_no_further_step_and_keeps_its_target(
     assert target.label == "active.PERFORMANCE"
 
 
-def test_canceling_twice_is_harmless_and_an_unknown_change_is_told(robot: VirtualRobot) -> None:
-    change = robot.mode("actuation", "PERFORMANCE")
+def test_canceling_twice_is_harmless_and_an_unknown_change_is_told(robot: CoreRobot) -> None:
+    change = robot.ask_mode("actuation", "PERFORMANCE")
     robot.give(CancelRequest(change))
     robot.give(CancelRequest(change))
     with pytest.raises(UnknownChangeError) as unknown:
@@ -256,9 +256,9 @@ def test_canceling_twice_is_harmless_and_an_unknown_change_is_told(robot: Virtua
 
 
 def test_under_an_emergency_stop_a_running_change_activates_nothing_and_fails(
-    robot: VirtualRobot,
+    robot: CoreRobot,
 ) -> None:
-    change = robot.mode("actuation", "PERFORMANCE")
+    change = robot.ask_mode("actuation", "PERFORMANCE")
     robot.advance(0.1)
     robot.stop()
     robot.advance(2)
@@ -272,10 +272,10 @@ def test_under_an_emergency_stop_a_running_change_activates_nothing_and_fails(
     assert robot.actual("manipulator") == "inactive"
 
 
-def test_deactivating_a_system_leaves_its_unconfigured_parts_alone(robot: VirtualRobot) -> None:
-    robot.mode("drive_base", "FAST")
+def test_deactivating_a_system_leaves_its_unconfigured_parts_alone(robot: CoreRobot) -> None:
+    robot.ask_mode("drive_base", "FAST")
     robot.advance(2)
-    change = robot.transition("actuation", "deactivate")
+    change = robot.ask_transition("actuation", "deactivate")
     robot.advance(2)
     assert robot.change(change).status is ChangeStatus.SUCCEEDED
     assert robot.actual("actuation") == "inactive"
@@ -284,13 +284,13 @@ def test_deactivating_a_system_leaves_its_unconfigured_parts_alone(robot: Virtua
 
 
 def test_a_finalized_part_does_not_keep_the_rest_from_being_deactivated(
-    robot: VirtualRobot,
+    robot: CoreRobot,
 ) -> None:
-    robot.mode("actuation", "PERFORMANCE")
+    robot.ask_mode("actuation", "PERFORMANCE")
     robot.advance(2)
-    robot.transition("manipulator", "shutdown")
+    robot.ask_transition("manipulator", "shutdown")
     robot.advance(2)
-    change = robot.transition("actuation", "deactivate")
+    change = robot.ask_transition("actuation", "deactivate")
     robot.advance(2)
     assert robot.actual("drive_base") == "inactive"
     view = robot.change(change)
@@ -299,12 +299,12 @@ def test_a_finalized_part_does_not_keep_the_rest_from_being_deactivated(
 
 
 def test_deactivating_never_configures_even_if_the_node_falls_back_meanwhile(
-    robot: VirtualRobot,
+    robot: CoreRobot,
 ) -> None:
     robot.fault("drive_base", Fault.FAIL)
-    robot.transition("drive_base", "configure")
+    robot.ask_transition("drive_base", "configure")
     robot.advance(0.1)
-    change = robot.transition("drive_base", "deactivate")
+    change = robot.ask_transition("drive_base", "deactivate")
     robot.advance(2)
     view = robot.change(change)
     assert (view.status, view.steps) == (ChangeStatus.FAILED, ())
@@ -312,9 +312,9 @@ def test_deactivating_never_configures_even_if_the_node_falls_back_meanwhile(
 
 
 def test_an_active_node_whose_parameters_match_no_mode_deviates_from_the_default(
-    robot: VirtualRobot,
+    robot: CoreRobot,
 ) -> None:
-    robot.transition("drive_base", "activate")
+    robot.ask_transition("drive_base", "activate")
     robot.advance(1)
     robot.nodes.set_parameters(BASE, {"max_speed": 7.7}, robot.now)
     robot.advance(0)
@@ -323,11 +323,11 @@ def test_an_active_node_whose_parameters_match_no_mode_deviates_from_the_default
 
 
 def test_canceling_a_superseded_change_stops_the_nodes_that_it_still_drives(
-    robot: VirtualRobot,
+    robot: CoreRobot,
 ) -> None:
-    older = robot.mode("actuation", "PERFORMANCE")
+    older = robot.ask_mode("actuation", "PERFORMANCE")
     robot.advance(0.1)
-    robot.mode("drive_base", "SLOW")
+    robot.ask_mode("drive_base", "SLOW")
     robot.give(CancelRequest(older))
     robot.advance(2)
     assert robot.actual("manipulator") == "inactive"
@@ -335,17 +335,17 @@ def test_canceling_a_superseded_change_stops_the_nodes_that_it_still_drives(
 
 
 def test_a_mode_of_a_nested_system_reaches_all_nodes() -> None:
-    robot = VirtualRobot(nested_model())
+    robot = CoreRobot(nested_model())
     robot.read(**GOOD)
-    change = robot.mode("robot", "RACE")
+    change = robot.ask_mode("robot", "RACE")
     robot.advance(2)
     assert robot.change(change).status is ChangeStatus.SUCCEEDED
     assert robot.actual("robot") == "active.RACE"
     assert robot.actual("actuation") == "active.PERFORMANCE"
 
 
-def test_every_event_of_a_change_points_at_what_caused_it(robot: VirtualRobot) -> None:
-    change = robot.transition("drive_base", "configure")
+def test_every_event_of_a_change_points_at_what_caused_it(robot: CoreRobot) -> None:
+    change = robot.ask_transition("drive_base", "configure")
     robot.advance(1)
     by_id = {event.id: event for event in robot.events}
     last = next(e for e in robot.events if e.kind == "change.succeeded")
@@ -361,12 +361,12 @@ def test_every_event_of_a_change_points_at_what_caused_it(robot: VirtualRobot) -
 
 
 def test_a_node_that_reports_its_mode_late_is_asked_once_and_waited_for(
-    robot: VirtualRobot,
+    robot: CoreRobot,
 ) -> None:
-    robot.mode("drive_base", "FAST")
+    robot.ask_mode("drive_base", "FAST")
     robot.advance(2)
     robot.give(NodeReport(BASE, mode=FAST))
-    change = robot.mode("drive_base", "SLOW")
+    change = robot.ask_mode("drive_base", "SLOW")
     robot.advance(0.5)
     assert robot.steps(change) == [("drive_base", "set_parameters", "running")]
     robot.give(NodeReport(BASE, mode=SLOW))
@@ -374,7 +374,7 @@ def test_a_node_that_reports_its_mode_late_is_asked_once_and_waited_for(
 
 
 def test_a_report_with_a_value_that_is_none_of_a_parameter_is_refused_whole(
-    robot: VirtualRobot,
+    robot: CoreRobot,
 ) -> None:
     before = robot.core.part(BASE)
     bad: dict[str, Any] = {"max_speed": 0.9, "controller": None}
@@ -385,21 +385,21 @@ def test_a_report_with_a_value_that_is_none_of_a_parameter_is_refused_whole(
 
 def test_a_mode_with_lists_is_reached_and_verified() -> None:
     limits = NodeModel(BASE, {DEFAULT_MODE: {"limits": (1.0, 2.0)}, FAST: {"limits": (3.0,)}})
-    robot = VirtualRobot(SmhModel({BASE: limits}, {}))
+    robot = CoreRobot(SmhModel({BASE: limits}, {}))
     robot.read(**GOOD)
-    change = robot.mode("drive_base", "FAST")
+    change = robot.ask_mode("drive_base", "FAST")
     robot.advance(2)
     assert robot.change(change).status is ChangeStatus.SUCCEEDED
     assert robot.actual("drive_base") == "active.FAST"
 
 
 def test_changes_are_kept_up_to_a_number_and_the_oldest_are_forgotten(
-    robot: VirtualRobot,
+    robot: CoreRobot,
 ) -> None:
-    first = robot.transition("drive_base", "configure")
+    first = robot.ask_transition("drive_base", "configure")
     robot.advance(1)
     for _ in range(KEPT_CHANGES):
-        newest = robot.transition("drive_base", "configure")
+        newest = robot.ask_transition("drive_base", "configure")
     with pytest.raises(UnknownChangeError):
         robot.change(first)
     assert len(robot.core.changes()) == KEPT_CHANGES
@@ -408,40 +408,38 @@ def test_changes_are_kept_up_to_a_number_and_the_oldest_are_forgotten(
 
 
 def test_a_node_that_a_superseded_change_still_drives_says_so_until_it_is_there(
-    robot: VirtualRobot,
+    robot: CoreRobot,
 ) -> None:
-    older = robot.mode("actuation", "PERFORMANCE")
+    older = robot.ask_mode("actuation", "PERFORMANCE")
     robot.advance(0.1)
-    robot.mode("drive_base", "SLOW")
+    robot.ask_mode("drive_base", "SLOW")
     assert robot.core.part(ARM).change == older
     assert robot.core.part(ACTUATION).change is None
     robot.advance(2)
     assert robot.core.part(ARM).change is None
 
 
-def test_what_waits_for_a_step_in_flight_shows_what_it_will_do(robot: VirtualRobot) -> None:
-    robot.transition("drive_base", "configure")
+def test_what_waits_for_a_step_in_flight_shows_what_it_will_do(robot: CoreRobot) -> None:
+    robot.ask_transition("drive_base", "configure")
     robot.advance(0.1)
-    change = robot.mode("drive_base", "SLOW")
+    change = robot.ask_mode("drive_base", "SLOW")
     assert robot.steps(change)[-1] == ("drive_base", "activate", "pending")
 
 
 def test_a_step_that_was_never_begun_did_not_time_out() -> None:
-    robot = VirtualRobot(
-        actuation_model(), nodes={"drive_base": NodeSettings(configure=seconds(60))}
-    )
+    robot = CoreRobot(actuation_model(), nodes={"drive_base": NodeSettings(configure=seconds(60))})
     robot.read(**GOOD)
-    robot.transition("drive_base", "configure")
+    robot.ask_transition("drive_base", "configure")
     robot.advance(1)
-    change = robot.transition("drive_base", "shutdown")
+    change = robot.ask_transition("drive_base", "shutdown")
     robot.advance(30)
     assert robot.change(change).status is ChangeStatus.FAILED
     assert robot.change(change).reason == "drive_base is still configuring; no step was started"
 
 
-def test_a_blocker_says_since_when(robot: VirtualRobot) -> None:
+def test_a_blocker_says_since_when(robot: CoreRobot) -> None:
     robot.advance(3)
-    robot.transition("drive_base", "shutdown")
+    robot.ask_transition("drive_base", "shutdown")
     robot.advance(5)
     (blocker,) = robot.core.modes(BASE)[0].blockers
     assert (blocker.code, blocker.since) == ("FINALIZED", seconds(3.2))
@@ -518,7 +516,7 @@ def test_a_node_that_turns_out_to_have_no_lifecycle_cannot_be_configured() -> No
 def test_a_plain_node_does_not_keep_its_system_from_going(
     transition: Transition, state: str
 ) -> None:
-    robot = VirtualRobot(actuation_model(), nodes={BASE: NodeSettings(plain=True)})
+    robot = CoreRobot(actuation_model(), nodes={BASE: NodeSettings(plain=True)})
     robot.advance(0.1)
     change = robot.give(TransitionRequest(ACTUATION, transition)).change
     robot.advance(5)
@@ -652,10 +650,10 @@ def test_of_many_errors_twenty_are_told(nodes: int, end: str) -> None:
 
 
 def test_the_life_of_a_change_is_told_step_by_step() -> None:
-    robot = VirtualRobot(actuation_model())
+    robot = CoreRobot(actuation_model())
     robot.read(**GOOD)
     robot.advance(1)
-    change = robot.mode("drive_base", "SLOW")
+    change = robot.ask_mode("drive_base", "SLOW")
     robot.advance(2)
     told = [
         (event.at - seconds(1), event.kind, dict(event.data))
@@ -708,8 +706,8 @@ def test_a_superseded_change_ends_when_the_newer_one_begins() -> None:
     assert core.change("c1").ended_at == seconds(4)
 
 
-def test_only_a_change_that_loses_a_node_is_superseded(robot: VirtualRobot) -> None:
-    base, arm = robot.mode("drive_base", "SLOW"), robot.mode("manipulator", "WEAK")
+def test_only_a_change_that_loses_a_node_is_superseded(robot: CoreRobot) -> None:
+    base, arm = robot.ask_mode("drive_base", "SLOW"), robot.ask_mode("manipulator", "WEAK")
     robot.advance(2)
     assert robot.change(base).status is ChangeStatus.SUCCEEDED
     assert robot.change(arm).status is ChangeStatus.SUCCEEDED
@@ -770,9 +768,9 @@ def test_parameters_are_asked_for_under_a_number_of_their_own() -> None:
 
 def test_as_many_steps_as_are_allowed_are_taken(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("domain.changes.operations._MAX_STEPS", 3)
-    robot = VirtualRobot(actuation_model())
+    robot = CoreRobot(actuation_model())
     robot.read(**GOOD)
-    change = robot.mode("drive_base", "SLOW")
+    change = robot.ask_mode("drive_base", "SLOW")
     robot.advance(2)
     assert robot.change(change).status is ChangeStatus.SUCCEEDED
     assert len(robot.steps(change)) == 3

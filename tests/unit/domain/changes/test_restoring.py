@@ -27,9 +27,9 @@ from domain.snapshot import ChangeStatus
 from domain.state_and_mode import PartName
 from domain.supervision import Supervision, SupervisionSettings
 from domain.timebase import seconds
+from tests.support.core_robot import CoreRobot
 from tests.support.good import GOOD
 from tests.support.models import ACTUATION, ARM, BASE, FAST, PERFORMANCE, SLOW, actuation_model
-from tests.support.virtual_robot import VirtualRobot
 
 S = LifecycleState
 BOTH = frozenset({BASE, ARM})
@@ -42,9 +42,9 @@ STARTED: Mapping[PartName, Parameters] = {
 
 def virtual(
     restored: Iterable[PartName] = BOTH, nodes: dict[str, NodeSettings] | None = None
-) -> VirtualRobot:
+) -> CoreRobot:
     changes = ChangeSettings(restored_nodes=frozenset(restored))
-    robot = VirtualRobot(actuation_model(), SupervisionSettings(changes=changes), nodes)
+    robot = CoreRobot(actuation_model(), SupervisionSettings(changes=changes), nodes)
     robot.read(**GOOD)
     return robot
 
@@ -76,7 +76,7 @@ def kinds(outputs: Outputs, of: str = "node.") -> list[str]:
 
 def test_a_node_that_is_killed_and_comes_back_is_brought_to_its_target() -> None:
     robot = virtual()
-    robot.mode("actuation", "PERFORMANCE")
+    robot.ask_mode("actuation", "PERFORMANCE")
     robot.advance(2)
     robot.fault("drive_base", Fault.DIE)
     robot.advance(2)
@@ -93,7 +93,7 @@ def test_a_node_that_is_killed_and_comes_back_is_brought_to_its_target() -> None
 
 def test_without_that_setting_a_node_that_comes_back_is_left_as_it_is() -> None:
     robot = virtual(restored=())
-    robot.mode("actuation", "PERFORMANCE")
+    robot.ask_mode("actuation", "PERFORMANCE")
     robot.advance(2)
     robot.fault("drive_base", Fault.DIE)
     robot.advance(2)
@@ -121,7 +121,7 @@ def test_the_change_is_caused_by_the_report_that_the_node_is_back() -> None:
 
 def test_a_node_that_appears_for_the_first_time_after_it_was_asked_for_is_restored() -> None:
     robot = virtual(nodes={"drive_base": NodeSettings(fault=Fault.DIE)})
-    asked = robot.mode("drive_base", "SLOW")
+    asked = robot.ask_mode("drive_base", "SLOW")
     robot.advance(12)
     assert robot.change(asked).status is ChangeStatus.FAILED
 
@@ -143,7 +143,7 @@ def test_a_node_of_which_nothing_was_asked_is_left_alone() -> None:
 
 def test_a_node_that_was_only_silent_and_is_where_it_should_be_is_left_alone() -> None:
     robot = virtual()
-    robot.mode("drive_base", "SLOW")
+    robot.ask_mode("drive_base", "SLOW")
     robot.advance(2)
     robot.fault("drive_base", Fault.SILENT)
     robot.advance(5)
@@ -156,7 +156,7 @@ def test_a_node_that_was_only_silent_and_is_where_it_should_be_is_left_alone() -
 
 def test_a_process_that_was_started_anew_before_it_was_missed_is_restored() -> None:
     robot = virtual()
-    robot.mode("drive_base", "SLOW")
+    robot.ask_mode("drive_base", "SLOW")
     robot.advance(2)
     robot.fault("drive_base", Fault.DIE)
     robot.advance(0.5)
@@ -202,9 +202,9 @@ def test_it_is_brought_to_whatever_was_asked_from_wherever_it_is(
 def test_a_node_without_modes_is_activated() -> None:
     lidar = PartName("lidar")
     settings = SupervisionSettings(changes=ChangeSettings(restored_nodes=frozenset({lidar})))
-    robot = VirtualRobot(SmhModel({lidar: NodeModel(lidar)}, {}), settings)
+    robot = CoreRobot(SmhModel({lidar: NodeModel(lidar)}, {}), settings)
     robot.read(**GOOD)
-    robot.transition("lidar", "activate")
+    robot.ask_transition("lidar", "activate")
     robot.advance(1)
     robot.fault("lidar", Fault.DIE)
     robot.advance(2)
@@ -226,7 +226,7 @@ def test_a_node_that_does_not_say_yet_what_it_is_in_is_waited_for() -> None:
 
 def test_a_node_that_was_shut_down_and_is_started_by_hand_is_not_shut_down_again() -> None:
     robot = virtual()
-    robot.transition("drive_base", "shutdown")
+    robot.ask_transition("drive_base", "shutdown")
     robot.advance(1)
     robot.fault("drive_base", Fault.DIE)
     robot.advance(2)
@@ -242,7 +242,7 @@ def test_a_node_that_was_shut_down_and_is_started_by_hand_is_not_shut_down_again
 
 def test_killed_in_a_mode_change_it_fails_the_change_and_is_restored_after_that() -> None:
     robot = virtual(nodes={"manipulator": NodeSettings(activate=seconds(6))})
-    asked = robot.mode("actuation", "PERFORMANCE")
+    asked = robot.ask_mode("actuation", "PERFORMANCE")
     robot.advance(0.4)
     robot.fault("drive_base", Fault.DIE)
     robot.advance(2)
@@ -264,7 +264,7 @@ def test_killed_in_a_mode_change_it_fails_the_change_and_is_restored_after_that(
 
 def test_a_change_that_waits_for_a_node_brings_it_there_by_itself() -> None:
     robot = virtual(nodes={"drive_base": NodeSettings(fault=Fault.DIE)})
-    asked = robot.mode("actuation", "PERFORMANCE")
+    asked = robot.ask_mode("actuation", "PERFORMANCE")
     robot.advance(5)
     robot.fault("drive_base", None)
     robot.advance(2)
@@ -275,7 +275,7 @@ def test_a_change_that_waits_for_a_node_brings_it_there_by_itself() -> None:
 
 def test_what_such_a_change_fails_at_is_not_tried_again() -> None:
     robot = virtual(nodes={"drive_base": NodeSettings(fault=Fault.DIE)})
-    asked = robot.mode("drive_base", "SLOW")
+    asked = robot.ask_mode("drive_base", "SLOW")
     robot.advance(5)
     robot.fault("drive_base", Fault.REFUSE)
     robot.advance(2)
@@ -286,7 +286,7 @@ def test_what_such_a_change_fails_at_is_not_tried_again() -> None:
 
 def test_a_node_whose_change_somebody_cancels_is_left_alone() -> None:
     robot = virtual(nodes={"manipulator": NodeSettings(activate=seconds(6))})
-    asked = robot.mode("actuation", "PERFORMANCE")
+    asked = robot.ask_mode("actuation", "PERFORMANCE")
     robot.advance(0.4)
     robot.fault("drive_base", Fault.DIE)
     robot.advance(2)
@@ -314,7 +314,7 @@ def test_a_change_that_is_canceled_elsewhere_keeps_no_node_from_being_restored()
 
 def test_a_node_that_is_gone_again_waits_for_its_next_return() -> None:
     robot = virtual(nodes={"manipulator": NodeSettings(activate=seconds(6))})
-    robot.mode("actuation", "PERFORMANCE")
+    robot.ask_mode("actuation", "PERFORMANCE")
     robot.advance(0.4)
     robot.fault("drive_base", Fault.DIE)
     robot.advance(2)
@@ -331,12 +331,12 @@ def test_a_node_that_is_gone_again_waits_for_its_next_return() -> None:
 
 def test_who_asks_for_something_else_meanwhile_gets_that() -> None:
     robot = virtual(nodes={"manipulator": NodeSettings(activate=seconds(6))})
-    robot.mode("actuation", "PERFORMANCE")
+    robot.ask_mode("actuation", "PERFORMANCE")
     robot.advance(0.4)
     robot.fault("drive_base", Fault.DIE)
     robot.advance(2)
     robot.fault("drive_base", None)
-    robot.transition("drive_base", "cleanup")
+    robot.ask_transition("drive_base", "cleanup")
     robot.advance(10)
 
     assert robot.actual("drive_base") == "unconfigured"
@@ -348,14 +348,14 @@ def test_who_asks_for_something_else_meanwhile_gets_that() -> None:
 
 def test_under_estop_a_node_is_not_activated_and_that_is_said_once() -> None:
     robot = virtual()
-    robot.mode("drive_base", "SLOW")
+    robot.ask_mode("drive_base", "SLOW")
     robot.advance(1)
     robot.stop()
     robot.fault("drive_base", Fault.DIE)
     robot.advance(2)
     robot.fault("drive_base", None)
     robot.advance(2)
-    robot.stop(engaged=False)
+    robot.release_stop()
     robot.advance(20)
 
     (told,) = robot.happened("node.not_restored")

@@ -1,9 +1,12 @@
+from typing import NamedTuple
+
 import pytest
 
 from domain.health.held_readings import MAX_PRESSING_SOURCES, MAX_QUIET_SOURCES, HeldReadings
 from domain.health.signals import SignalSettings, default_signals
 from domain.inputs import Reading, SignalValue
 from domain.timebase import seconds
+from tests.support.tables import table
 
 SETTINGS = {item.spec.name: item for item in default_signals()}
 NOW = seconds(1000)
@@ -61,24 +64,33 @@ def test_nothing_is_known_before_the_first_reading() -> None:
     assert (estop().value, estop().newest, battery().value) == (None, None, None)
 
 
-@pytest.mark.parametrize(
-    ("held_stamp", "stamp", "behind"),
-    [
-        (0, 0, None),
-        (0, 1, None),
-        (0, -1, 1),
-        (seconds(1), seconds(1) - 1, 1),
-        # More than a second ahead of our clock, a stamp does not count as the newest.
-        (seconds(1) + 1, 0, None),
-    ],
-)
-def test_a_reading_is_outdated_when_its_stamp_is_older_than_the_newest(
-    held_stamp: int, stamp: int, behind: int | None
-) -> None:
-    held = battery()
-    held.take(level(0.9, NOW + held_stamp), "pad", NOW)
+class Stamps(NamedTuple):
+    """Stamps of two readings that arrive one after the other, in ns after now."""
 
-    assert held.behind(level(0.9, NOW + stamp), "pad") == behind
+    first: int
+    second: int
+    behind: int | None = None
+    """How much older the second is than the newest; None: it is taken."""
+
+
+@table(
+    {
+        "the same stamp": Stamps(first=0, second=0),
+        "a newer stamp": Stamps(first=0, second=1),
+        "an older stamp": Stamps(first=0, second=-1, behind=1),
+        "older than a stamp a second ahead of our clock": Stamps(
+            first=seconds(1), second=seconds(1) - 1, behind=1
+        ),
+        "older than a stamp further ahead, which does not count": Stamps(
+            first=seconds(1) + 1, second=0
+        ),
+    }
+)
+def test_a_reading_is_outdated_when_its_stamp_is_older_than_the_newest(row: Stamps) -> None:
+    held = battery()
+    held.take(level(0.9, NOW + row.first), "pad", NOW)
+
+    assert held.behind(level(0.9, NOW + row.second), "pad") == row.behind
 
 
 def test_a_reading_without_a_stamp_is_never_outdated() -> None:
@@ -96,24 +108,31 @@ def test_readings_without_a_stamp_do_not_hide_the_newest_stamp() -> None:
     assert held.behind(level(0.9, NOW - 5), "pad") == 5
 
 
-WORSE = [
-    ("battery_level", 0.8, 0.79, 0.81),
-    ("temperature", 20.0, 20.1, 19.9),
-    ("gps_accuracy", 100.0, 101.0, 99.0),
-    ("signal_strength", "LOW_SIGNAL", "NOT_CONNECTED", "CONNECTED"),
-]
+class LateNews(NamedTuple):
+    """A value that is held, and two with an older stamp."""
+
+    held: SignalValue
+    worse: SignalValue
+    better: SignalValue
 
 
-@pytest.mark.parametrize(("signal", "value", "worse", "better"), WORSE)
-def test_late_news_is_taken_only_when_it_is_worse(
-    signal: str, value: SignalValue, worse: SignalValue, better: SignalValue
-) -> None:
+@pytest.mark.parametrize(
+    ("signal", "values"),
+    [
+        ("battery_level", LateNews(held=0.8, worse=0.79, better=0.81)),
+        ("temperature", LateNews(held=20.0, worse=20.1, better=19.9)),
+        ("gps_accuracy", LateNews(held=100.0, worse=101.0, better=99.0)),
+        ("signal_strength", LateNews(held="LOW_SIGNAL", worse="NOT_CONNECTED", better="CONNECTED")),
+    ],
+    ids=["battery_level", "temperature", "gps_accuracy", "signal_strength"],
+)
+def test_late_news_is_taken_only_when_it_is_worse(signal: str, values: LateNews) -> None:
     held = HeldReadings(SETTINGS[signal])
-    held.take(Reading(signal, value, NOW), "pad", NOW)
+    held.take(Reading(signal, values.held, NOW), "pad", NOW)
 
-    assert held.behind(Reading(signal, worse, NOW - 1), "pad") is None
-    assert held.behind(Reading(signal, value, NOW - 1), "pad") == 1
-    assert held.behind(Reading(signal, better, NOW - 1), "pad") == 1
+    assert held.behind(Reading(signal, values.worse, NOW - 1), "pad") is None
+    assert held.behind(Reading(signal, values.held, NOW - 1), "pad") == 1
+    assert held.behind(Reading(signal, values.better, NOW - 1), "pad") == 1
 
 
 def test_late_news_does_not_make_the_newest_stamp_older() -> None:

@@ -1,3 +1,5 @@
+from typing import NamedTuple
+
 import pytest
 
 from domain.health.error_slot import ErrorSlot
@@ -14,42 +16,64 @@ from domain.health.signals import (
 )
 from domain.inputs import Reading, SignalValue
 from domain.timebase import seconds
+from tests.support.tables import table
 
 DEFAULTS = {item.spec.name: item for item in default_signals()}
 
-WORDS: list[tuple[str, int, SignalValue, float, str]] = [
-    ("battery_level", 0, 0.42, 0, "battery 42 % is below 50 %"),
-    ("battery_level", 0, 0.29, 0, "battery 29 % is below 50 %"),
-    ("battery_level", 0, 0.4999999, 0, "battery 49.99999 % is below 50 %"),
-    ("temperature", 0, 60.0, 0, "temperature 60 °C is above 55 °C"),
-    ("temperature", 0, 1e308, 0, "temperature 1e+308 °C is above 55 °C"),
-    ("gps_accuracy", 0, 250.0, 15, "GPS accuracy 250 mm has been above 200 mm for 15 s"),
-    (
-        "signal_strength",
-        0,
-        "NOT_CONNECTED",
-        10,
-        "signal strength is NOT_CONNECTED, not CONNECTED for 10 s",
-    ),
-    (
-        "signal_strength",
-        1,
-        "LOW_SIGNAL",
-        10,
-        "signal strength is LOW_SIGNAL, not CONNECTED for 10 s",
-    ),
-]
+
+class Judged(NamedTuple):
+    """A value of a signal that causes an error, and what is told of it."""
+
+    signal: str
+    value: SignalValue
+    words: str
+    bad_for_s: float = 0.0
+    condition: int = 0
 
 
-@pytest.mark.parametrize(("signal", "condition", "value", "bad_for_s", "words"), WORDS)
-def test_a_value_is_told_with_its_limit_and_unit(
-    signal: str, condition: int, value: SignalValue, bad_for_s: float, words: str
-) -> None:
-    settings = DEFAULTS[signal]
+@table(
+    {
+        "a battery that is low": Judged(
+            signal="battery_level", value=0.42, words="battery 42 % is below 50 %"
+        ),
+        "a share that no float holds exactly": Judged(
+            signal="battery_level", value=0.29, words="battery 29 % is below 50 %"
+        ),
+        "a battery just below its limit": Judged(
+            signal="battery_level", value=0.4999999, words="battery 49.99999 % is below 50 %"
+        ),
+        "a motor that is hot": Judged(
+            signal="temperature", value=60.0, words="temperature 60 °C is above 55 °C"
+        ),
+        "a number too long to write out": Judged(
+            signal="temperature", value=1e308, words="temperature 1e+308 °C is above 55 °C"
+        ),
+        "an accuracy that has been bad for long": Judged(
+            signal="gps_accuracy",
+            value=250.0,
+            bad_for_s=15,
+            words="GPS accuracy 250 mm has been above 200 mm for 15 s",
+        ),
+        "a lost connection": Judged(
+            signal="signal_strength",
+            value="NOT_CONNECTED",
+            bad_for_s=10,
+            words="signal strength is NOT_CONNECTED, not CONNECTED for 10 s",
+        ),
+        "a weak connection, by its second condition": Judged(
+            signal="signal_strength",
+            condition=1,
+            value="LOW_SIGNAL",
+            bad_for_s=10,
+            words="signal strength is LOW_SIGNAL, not CONNECTED for 10 s",
+        ),
+    }
+)
+def test_a_value_is_told_with_its_limit_and_unit(row: Judged) -> None:
+    settings = DEFAULTS[row.signal]
+    condition = settings.conditions[row.condition]
 
-    said = value_reason(settings, settings.conditions[condition], value, seconds(bad_for_s))
-
-    assert said == words
+    assert value_reason(settings, condition, row.value, seconds(row.bad_for_s)) == row.words
 
 
 def test_a_value_between_the_two_thresholds_is_told_with_the_one_it_has_to_reach() -> None:

@@ -15,11 +15,13 @@ from domain.health.signals import (
 )
 from domain.inputs import SignalValue
 from domain.timebase import seconds
+from tests.support.tables import text_table
 
 DEFAULTS = {item.spec.name: item for item in default_signals()}
 
 # smart_polaris, README and SystemStateStamped.msg
 TABLE = [
+    # signal, error, its bit, comparison, threshold, for how long in s
     ("battery_level", "BATTERY_LOW", 1, "below", 0.5, 0.0),
     ("estop", "ESTOP", 2, "equal", True, 0.0),
     ("gps_accuracy", "GPS_LOST", 4, "above", 200.0, 15.0),
@@ -108,17 +110,21 @@ VOLTAGE = SignalSpec("voltage", SignalKind.NUMBER, "V", minimum=0.0, maximum=60.
 LOW = Condition("VOLTAGE_LOW", Comparison.BELOW, 20.0)
 
 
-@pytest.mark.parametrize(
-    ("value", "while_off", "while_on"),
-    [(19.9, True, True), (20.0, False, True), (21.9, False, True), (22.0, False, False)],
-)
+@text_table("""
+    voltage | an error that is off | an error that is on
+    19.9    | begins               | stays on
+    20.0    | stays off            | stays on
+    21.9    | stays off            | stays on
+    22.0    | stays off            | ends
+""")
 def test_an_error_that_is_on_ends_only_at_the_clear_threshold(
-    value: float, while_off: bool, while_on: bool
+    voltage: str, an_error_that_is_off: str, an_error_that_is_on: str
 ) -> None:
     condition = Condition("VOLTAGE_LOW", Comparison.BELOW, 20.0, clear_threshold=22.0)
+    begins, stays = an_error_that_is_off == "begins", an_error_that_is_on == "stays on"
 
-    assert condition.is_met_by(value) is while_off
-    assert condition.is_met_by(value, error_is_on=True) is while_on
+    assert condition.is_met_by(float(voltage)) is begins
+    assert condition.is_met_by(float(voltage), error_is_on=True) is stays
 
 
 def test_a_declared_error_has_the_bit_that_all_declared_ones_share() -> None:

@@ -14,6 +14,7 @@ from domain.snapshot import Actual
 from domain.state_and_mode import DEFAULT_MODE, ModeName, PartName, StateAndMode
 from tests.support.models import ACTUATION, ARM, BASE, active, actuation_model, nested_model
 from tests.support.random_models import Happening, SetTarget, histories, models
+from tests.support.tables import text_table
 
 S = LifecycleState
 LIDAR, ROBOT = PartName("lidar"), PartName("robot")
@@ -140,130 +141,124 @@ def test_a_mode_with_lists_is_recognised_when_it_was_asked_for_and_not_guessed()
     assert inference.actual(node).mode is None
 
 
-@pytest.mark.parametrize(
-    ("modes", "target", "found"),
-    [
-        # Target first, then `__DEFAULT__`, then byte order: 'A' < 'Z' < '_' < 'a'.
-        (["a", "Z", "__DEFAULT__"], active("a"), "a"),
-        (["a", "Z", "__DEFAULT__"], None, "__DEFAULT__"),
-        (["a", "Z", "__DEFAULT__"], active("NO_SUCH"), "__DEFAULT__"),
-        (["a", "Z", "__DEFAULT__"], StateAndMode(S.INACTIVE), "__DEFAULT__"),
-        (["a", "_B", "Z"], None, "Z"),
-        (["a", "_B"], None, "_B"),
-        (["a", "_B"], active("a"), "a"),
-    ],
-)
+@text_table("""
+    # Target first, then `__DEFAULT__`, then byte order: 'A' < 'Z' < '_' < 'a'.
+    matching        | asked for      | preferred
+    a Z __DEFAULT__ | active.a       | a
+    a Z __DEFAULT__ | -              | __DEFAULT__
+    a Z __DEFAULT__ | active.NO_SUCH | __DEFAULT__
+    a Z __DEFAULT__ | inactive       | __DEFAULT__
+    a _B Z          | -              | Z
+    a _B            | -              | _B
+    a _B            | active.a       | a
+""")
 def test_of_several_modes_that_match_one_is_preferred(
-    modes: list[str], target: StateAndMode | None, found: str
+    matching: str, asked_for: str, preferred: str
 ) -> None:
     node = PartName("n")
-    values = {ModeName(mode): {"p": 1 if mode in modes else 0} for mode in ("a", "_B", "Z")}
-    values[DEFAULT_MODE] = {"p": 1 if DEFAULT_MODE in modes else 0}
+    modes = [ModeName(mode) for mode in ("a", "_B", "Z", DEFAULT_MODE)]
+    values = {mode: {"p": 1 if mode in matching.split() else 0} for mode in modes}
     inference = ModeInference(SmhModel({node: NodeModel(node, values)}, {}))
     inference.report(NodeReport(node, state=S.ACTIVE, parameters={"p": 1}))
-    inference.set_targets({node: target})
-    assert inference.actual(node).mode == found
+    inference.set_targets({node: None if asked_for == "-" else StateAndMode.parse(asked_for)})
+    assert inference.actual(node).mode == preferred
 
 
 # --- systems -------------------------------------------------------------------------------------
 
-UNTOLD = ""
-ACTIVE_PERFORMANCE, ACTIVE_DEFAULT = active("PERFORMANCE"), active()
+
+def _system(asked_for: str, drive_base: str, manipulator: str) -> ModeInference:
+    """Return the example system: its target, and what its nodes report; `-` is nothing."""
+    nodes = {"drive_base": drive_base, "manipulator": manipulator}
+    inference = _inference(**{node: label for node, label in nodes.items() if label != "-"})
+    target = None if asked_for == "-" else StateAndMode.parse(asked_for)
+    inference.set_targets({ACTUATION: target})
+    return inference
 
 
-@pytest.mark.parametrize(
-    ("target", "base", "arm", "expected"),
-    [
-        # Nothing asked: the common state, and never a mode.
-        (None, "inactive", "inactive", "inactive"),
-        (None, "configuring", "configuring", "configuring"),
-        (None, "active.FAST", "active.STRONG", "active"),
-        (None, "active.FAST", "inactive", "unknown"),
-        (None, "errorprocessing", "inactive", "errorprocessing"),
-        (None, "inactive", UNTOLD, "unknown"),
-        # Inactive: unconfigured parts count as inactive.
-        (S.INACTIVE, "inactive", "inactive", "inactive"),
-        (S.INACTIVE, "unconfigured", "inactive", "inactive"),
-        (S.INACTIVE, "unconfigured", "unconfigured", "inactive"),
-        (S.INACTIVE, "active.FAST", "inactive", "deactivating"),
-        (S.INACTIVE, "configuring", "inactive", "deactivating"),
-        (S.INACTIVE, "finalized", "inactive", "deactivating"),
-        (S.INACTIVE, "errorprocessing", "inactive", "errorprocessing"),
-        (S.INACTIVE, "inactive", UNTOLD, "unknown"),
-        # The first part in byte order that tells decides; drive_base is before manipulator.
-        (S.INACTIVE, "active.FAST", UNTOLD, "deactivating"),
-        (S.INACTIVE, "active.FAST", "errorprocessing", "deactivating"),
-        (S.INACTIVE, "errorprocessing", UNTOLD, "errorprocessing"),
-        # Unconfigured and finalized: when all parts are there.
-        (S.UNCONFIGURED, "unconfigured", "unconfigured", "unconfigured"),
-        (S.UNCONFIGURED, "unconfigured", "inactive", "cleaningup"),
-        (S.UNCONFIGURED, "inactive", "inactive", "cleaningup"),
-        (S.UNCONFIGURED, "unconfigured", "errorprocessing", "errorprocessing"),
-        (S.UNCONFIGURED, "inactive", UNTOLD, "unknown"),
-        (S.FINALIZED, "finalized", "finalized", "finalized"),
-        (S.FINALIZED, "finalized", "inactive", "shuttingdown"),
-        # Active: when all parts are as the target mode wants, exactly.
-        (ACTIVE_PERFORMANCE, "active.FAST", "active.STRONG", "active.PERFORMANCE"),
-        (ACTIVE_PERFORMANCE, "active.FAST", "active.WEAK", "activating"),
-        (ACTIVE_PERFORMANCE, "active.FAST", "inactive", "activating"),
-        (ACTIVE_PERFORMANCE, "active.FAST", UNTOLD, "unknown"),
-        (ACTIVE_PERFORMANCE, "active.FAST", "errorprocessing", "errorprocessing"),
-        # Until then the mode that the parts happen to match: D4.8, Annex 4, step 4.
-        (ACTIVE_PERFORMANCE, "active.SLOW", "active.WEAK", "activating.MODERATE"),
-        (ACTIVE_PERFORMANCE, "active.__DEFAULT__", "inactive", "activating.__DEFAULT__"),
-        # A part that shall be inactive may be unconfigured, but only for the target mode.
-        (ACTIVE_DEFAULT, "active.__DEFAULT__", "inactive", "active.__DEFAULT__"),
-        (ACTIVE_DEFAULT, "active.__DEFAULT__", "unconfigured", "active.__DEFAULT__"),
-        (ACTIVE_DEFAULT, "active.__DEFAULT__", "finalized", "activating"),
-        (ACTIVE_PERFORMANCE, "active.__DEFAULT__", "unconfigured", "activating"),
-        # What was asked without a mode, or with one that is not there, is never reached.
-        (StateAndMode(S.ACTIVE), "active.__DEFAULT__", "inactive", "activating.__DEFAULT__"),
-        (active("NO_SUCH"), "active.FAST", "active.STRONG", "activating.PERFORMANCE"),
-        (active("NO_SUCH"), "active.FAST", "errorprocessing", "errorprocessing"),
-        # No state that can be asked for.
-        (S.CONFIGURING, "inactive", "inactive", "unknown"),
-        (S.UNKNOWN, "inactive", "inactive", "unknown"),
-    ],
-)
+@text_table("""
+    asked for | drive_base         | manipulator     | inferred
+
+    # Nothing asked: the common state, and never a mode.
+    -         | inactive           | inactive        | inactive
+    -         | configuring        | configuring     | configuring
+    -         | active.FAST        | active.STRONG   | active
+    -         | active.FAST        | inactive        | unknown
+    -         | errorprocessing    | inactive        | errorprocessing
+    -         | inactive           | -               | unknown
+
+    # Inactive: unconfigured parts count as inactive.
+    inactive  | inactive           | inactive        | inactive
+    inactive  | unconfigured       | inactive        | inactive
+    inactive  | unconfigured       | unconfigured    | inactive
+    inactive  | active.FAST        | inactive        | deactivating
+    inactive  | configuring        | inactive        | deactivating
+    inactive  | finalized          | inactive        | deactivating
+    inactive  | errorprocessing    | inactive        | errorprocessing
+    inactive  | inactive           | -               | unknown
+
+    # The first part in byte order that tells decides; drive_base is before manipulator.
+    inactive  | active.FAST        | -               | deactivating
+    inactive  | active.FAST        | errorprocessing | deactivating
+    inactive  | errorprocessing    | -               | errorprocessing
+
+    # Unconfigured and finalized: when all parts are there.
+    unconfigured | unconfigured    | unconfigured    | unconfigured
+    unconfigured | unconfigured    | inactive        | cleaningup
+    unconfigured | inactive        | inactive        | cleaningup
+    unconfigured | unconfigured    | errorprocessing | errorprocessing
+    unconfigured | inactive        | -               | unknown
+    finalized    | finalized       | finalized       | finalized
+    finalized    | finalized       | inactive        | shuttingdown
+
+    # Active: when all parts are as the target mode wants, exactly.
+    active.PERFORMANCE | active.FAST | active.STRONG   | active.PERFORMANCE
+    active.PERFORMANCE | active.FAST | active.WEAK     | activating
+    active.PERFORMANCE | active.FAST | inactive        | activating
+    active.PERFORMANCE | active.FAST | -               | unknown
+    active.PERFORMANCE | active.FAST | errorprocessing | errorprocessing
+
+    # Until then the mode that the parts happen to match: D4.8, Annex 4, step 4.
+    active.PERFORMANCE | active.SLOW        | active.WEAK  | activating.MODERATE
+    active.PERFORMANCE | active.__DEFAULT__ | inactive     | activating.__DEFAULT__
+
+    # A part that shall be inactive may be unconfigured, but only for the target mode.
+    active.__DEFAULT__ | active.__DEFAULT__ | inactive     | active.__DEFAULT__
+    active.__DEFAULT__ | active.__DEFAULT__ | unconfigured | active.__DEFAULT__
+    active.__DEFAULT__ | active.__DEFAULT__ | finalized    | activating
+    active.PERFORMANCE | active.__DEFAULT__ | unconfigured | activating
+
+    # What was asked without a mode, or with one that is not there, is never reached.
+    active         | active.__DEFAULT__ | inactive        | activating.__DEFAULT__
+    active.NO_SUCH | active.FAST        | active.STRONG   | activating.PERFORMANCE
+    active.NO_SUCH | active.FAST        | errorprocessing | errorprocessing
+
+    # No state that can be asked for.
+    configuring    | inactive           | inactive        | unknown
+    unknown        | inactive           | inactive        | unknown
+""")
 def test_what_a_system_is_in(
-    target: StateAndMode | LifecycleState | None, base: str, arm: str, expected: str
+    asked_for: str, drive_base: str, manipulator: str, inferred: str
 ) -> None:
     """SEMANTICS 2 and system_modes, `mode_inference.cpp`."""
-    nodes = {"drive_base": base, "manipulator": arm}
-    inference = _inference(**{node: label for node, label in nodes.items() if label})
-    wanted = StateAndMode(target) if isinstance(target, LifecycleState) else target
-    inference.set_targets({ACTUATION: wanted})
-    assert _label(inference) == expected
+    inference = _system(asked_for, drive_base, manipulator)
+    assert _label(inference) == inferred
     assert inference.actual(ACTUATION).inferred
-    assert inference.actual(ACTUATION).undecidable is (expected == "unknown")
+    assert inference.actual(ACTUATION).undecidable is (inferred == "unknown")
 
 
-@pytest.mark.parametrize(
-    ("target", "base", "arm", "reason"),
-    [
-        (None, "inactive", UNTOLD, "manipulator has never reported a state"),
-        (active(), UNTOLD, "inactive", "drive_base has never reported a state"),
-        (
-            None,
-            "active.FAST",
-            "inactive",
-            "there is no target, and drive_base is active while manipulator is inactive",
-        ),
-        (
-            StateAndMode(S.CONFIGURING),
-            "inactive",
-            "inactive",
-            "configuring cannot be the target of a system",
-        ),
-    ],
-)
+@text_table("""
+    asked for   | drive_base  | manipulator | reason
+    -           | inactive    | -           | manipulator has never reported a state
+    active.__DEFAULT__ | -    | inactive    | drive_base has never reported a state
+    configuring | inactive    | inactive    | configuring cannot be the target of a system
+    -           | active.FAST | inactive    | there is no target, \
+and drive_base is active while manipulator is inactive
+""")
 def test_what_cannot_be_decided_says_why(
-    target: StateAndMode | None, base: str, arm: str, reason: str
+    asked_for: str, drive_base: str, manipulator: str, reason: str
 ) -> None:
-    nodes = {"drive_base": base, "manipulator": arm}
-    inference = _inference(**{node: label for node, label in nodes.items() if label})
-    inference.set_targets({ACTUATION: target})
-    assert inference.actual(ACTUATION).reason == reason
+    assert _system(asked_for, drive_base, manipulator).actual(ACTUATION).reason == reason
 
 
 def test_whether_the_mode_of_a_system_was_inferred_is_told() -> None:
@@ -559,23 +554,22 @@ def _with_a_plain_base(arm: str, target: str | None) -> ModeInference:
     return inference
 
 
-@pytest.mark.parametrize(
-    ("arm", "target", "system"),
-    [
-        ("unconfigured", None, "unconfigured"),
-        ("inactive", "inactive", "inactive"),
-        ("active.WEAK", "inactive", "deactivating"),
-        ("unconfigured", "unconfigured", "unconfigured"),
-        ("inactive", "unconfigured", "cleaningup"),
-        ("finalized", "finalized", "finalized"),
-        ("active.WEAK", "active.MODERATE", "active.MODERATE"),
-    ],
-)
+@text_table("""
+    asked for       | manipulator  | inferred
+    -               | unconfigured | unconfigured
+    inactive        | inactive     | inactive
+    inactive        | active.WEAK  | deactivating
+    unconfigured    | unconfigured | unconfigured
+    unconfigured    | inactive     | cleaningup
+    finalized       | finalized    | finalized
+    active.MODERATE | active.WEAK  | active.MODERATE
+""")
 def test_a_plain_node_does_not_keep_its_system_from_being_at_rest(
-    arm: str, target: str | None, system: str
+    asked_for: str, manipulator: str, inferred: str
 ) -> None:
     """SEMANTICS 2: it counts as active; system_modes issue #90."""
-    assert _label(_with_a_plain_base(arm, target)) == system
+    target = None if asked_for == "-" else asked_for
+    assert _label(_with_a_plain_base(manipulator, target)) == inferred
 
 
 def test_a_system_of_plain_nodes_is_active_as_they_are() -> None:

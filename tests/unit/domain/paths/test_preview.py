@@ -1,4 +1,5 @@
 import math
+from typing import NamedTuple
 
 import numpy as np
 import pytest
@@ -11,6 +12,7 @@ from domain.paths.preview import PathPreview, preview
 from domain.paths.speed_profile import REACTION_S, SpeedLimits
 from domain.vehicle import Pose, VehicleLimits
 from tests.support.shared import shared_folder
+from tests.support.tables import table
 
 VEHICLE = VehicleLimits(wheelbase_m=1.75, max_steering_angle_rad=0.61, max_speed_mps=11.2)
 TURNING_CIRCLE_M = 1.75 / math.tan(0.61)
@@ -108,25 +110,40 @@ def test_a_recording_that_stands_still_is_told() -> None:
     assert codes(seen(np.vstack((np.zeros((5, 3)), line(10.0))))) == []
 
 
-@pytest.mark.parametrize(
-    ("pose", "distance_m", "heading_error_rad", "expected"),
-    [
-        (Pose(0.0, 0.0, 0.0), 0.0, 0.0, []),
-        (Pose(3.0, -4.0, 0.5), 5.0, 0.5, []),
-        (Pose(-3.1, -4.1, 0.5), math.hypot(3.1, 4.1), 0.5, [("FAR_START", 0)]),
-        (Pose(0.0, 1.0, -3.0), 1.0, -3.0, [("TURNED_AWAY", 0)]),
-        (Pose(0.0, 1.0, math.tau + 0.1), 1.0, 0.1, []),
-    ],
+class Start(NamedTuple):
+    """Where the vehicle is, and how far that is from the start of the path along x."""
+
+    pose: Pose
+    distance_m: float
+    heading_error_rad: float
+    warning: str | None = None
+
+
+@table(
+    {
+        "at the start": Start(Pose(0.0, 0.0, 0.0), distance_m=0.0, heading_error_rad=0.0),
+        "as far as it may be": Start(Pose(3.0, -4.0, 0.5), distance_m=5.0, heading_error_rad=0.5),
+        "too far": Start(
+            Pose(-3.1, -4.1, 0.5),
+            distance_m=math.hypot(3.1, 4.1),
+            heading_error_rad=0.5,
+            warning="FAR_START",
+        ),
+        "turned away": Start(
+            Pose(0.0, 1.0, -3.0), distance_m=1.0, heading_error_rad=-3.0, warning="TURNED_AWAY"
+        ),
+        "turned by more than once around": Start(
+            Pose(0.0, 1.0, math.tau + 0.1), distance_m=1.0, heading_error_rad=0.1
+        ),
+    }
 )
-def test_the_start_is_compared_with_where_the_vehicle_is(
-    pose: Pose, distance_m: float, heading_error_rad: float, expected: list[tuple[str, int | None]]
-) -> None:
-    found = seen(line(10.0), pose=pose)
+def test_the_start_is_compared_with_where_the_vehicle_is(row: Start) -> None:
+    found = seen(line(10.0), pose=row.pose)
 
     assert found.start is not None
-    assert found.start.distance_m == pytest.approx(distance_m)
-    assert found.start.heading_error_rad == pytest.approx(heading_error_rad)
-    assert codes(found) == expected
+    assert found.start.distance_m == pytest.approx(row.distance_m)
+    assert found.start.heading_error_rad == pytest.approx(row.heading_error_rad)
+    assert codes(found) == ([(row.warning, 0)] if row.warning else [])
 
 
 def test_of_a_vehicle_that_is_nowhere_nothing_is_said() -> None:

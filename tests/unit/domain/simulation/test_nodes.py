@@ -1,4 +1,5 @@
 import time
+from typing import NamedTuple
 
 import pytest
 
@@ -18,7 +19,8 @@ from domain.simulation.nodes import NodeMessage, SimulatedNodes
 from domain.state_and_mode import DEFAULT_MODE, ModeName, PartName
 from domain.timebase import seconds
 from tests.support.models import ARM, BASE, actuation_model
-from tests.support.simulated_robot import SimulatedRobot, answers, states
+from tests.support.recorded_nodes import RecordedNodes, answers, states
+from tests.support.tables import table
 
 S = LifecycleState
 T = Transition
@@ -31,9 +33,9 @@ PATHS_TO = {
 }
 
 
-def robot_with(fault: Fault | None) -> SimulatedRobot:
+def robot_with(fault: Fault | None) -> RecordedNodes:
     """Return a robot that has said hello, with something wrong with its drive base from then on."""
-    robot = SimulatedRobot()
+    robot = RecordedNodes()
     robot.pass_time(1.0)
     robot.set_fault(BASE, fault)
     return robot
@@ -49,7 +51,7 @@ def reachability(said: list[tuple[float, NodeMessage]]) -> list[tuple[float, boo
 
 
 def test_all_nodes_say_at_once_that_they_are_unconfigured_and_were_told_nothing() -> None:
-    robot = SimulatedRobot()
+    robot = RecordedNodes()
 
     assert robot.pass_time(0.0) == [
         (
@@ -76,14 +78,14 @@ def test_all_nodes_say_at_once_that_they_are_unconfigured_and_were_told_nothing(
 
 
 def test_a_robot_at_rest_wants_nothing() -> None:
-    robot = SimulatedRobot()
+    robot = RecordedNodes()
     robot.pass_time(0.0)
 
     assert robot.nodes.wake_at() is None
 
 
 def test_a_plain_node_has_parameters_and_no_lifecycle() -> None:
-    robot = SimulatedRobot({BASE: NodeSettings(plain=True)})
+    robot = RecordedNodes({BASE: NodeSettings(plain=True)})
     (_, first), _ = robot.pass_time(0.0)
     request = robot.ask(BASE, T.CONFIGURE)
 
@@ -93,11 +95,6 @@ def test_a_plain_node_has_parameters_and_no_lifecycle() -> None:
         NodeAnswer(request, BASE, False, "the node has no lifecycle")
     ]
     assert robot.nodes.state_of(BASE) is S.UNKNOWN
-
-
-def test_settings_of_a_node_that_is_not_there_are_refused() -> None:
-    with pytest.raises(UnknownPartError, match="nowhere"):
-        SimulatedNodes(actuation_model(), {NOWHERE: NodeSettings()}, 0)
 
 
 # --- transitions ---------------------------------------------------------------------------------
@@ -116,7 +113,7 @@ def test_a_transition_is_answered_at_once_and_reported_on_its_way_and_at_its_end
 
 @pytest.mark.parametrize("rule", TRANSITIONS, ids=lambda rule: f"{rule.transition}-{rule.start}")
 def test_every_line_of_the_lifecycle_table_can_be_walked(rule: TransitionRule) -> None:
-    robot = SimulatedRobot()
+    robot = RecordedNodes()
     robot.bring(BASE, *PATHS_TO[rule.start])
     robot.ask(BASE, rule.transition)
 
@@ -130,7 +127,7 @@ def test_every_line_of_the_lifecycle_table_can_be_walked(rule: TransitionRule) -
 def test_a_transition_that_is_not_in_the_table_is_refused_and_changes_nothing(
     start: LifecycleState, transition: Transition
 ) -> None:
-    robot = SimulatedRobot()
+    robot = RecordedNodes()
     robot.bring(BASE, *PATHS_TO[start])
     request = robot.ask(BASE, transition)
 
@@ -156,7 +153,7 @@ def test_a_transition_asked_while_another_runs_is_refused_and_the_other_goes_on(
 
 def test_one_node_does_not_wait_for_another() -> None:
     slow = NodeSettings(configure=seconds(60.0))
-    robot = SimulatedRobot({BASE: slow})
+    robot = RecordedNodes({BASE: slow})
     robot.pass_time(0.0)
     robot.ask(BASE, T.CONFIGURE)
     robot.ask(ARM, T.CONFIGURE)
@@ -253,7 +250,7 @@ def test_a_mode_may_name_parameters_that_the_default_mode_does_not() -> None:
         DEFAULT_MODE: {"on": True},
         ModeName("DIM"): {"on": True, "brightness": 3},
     }
-    robot = SimulatedRobot(model=SmhModel({lamp: NodeModel(lamp, modes)}, {}))
+    robot = RecordedNodes(model=SmhModel({lamp: NodeModel(lamp, modes)}, {}))
 
     assert robot.nodes.parameters_of(lamp) == {"on": False, "brightness": 0}
 
@@ -306,7 +303,7 @@ def test_a_node_that_is_asked_says_all_that_it_is_in() -> None:
 
 
 def test_a_report_does_not_change_when_the_node_does() -> None:
-    robot = SimulatedRobot()
+    robot = RecordedNodes()
     (_, first), _ = robot.pass_time(0.0)
     robot.nodes.set_parameters(BASE, {"max_speed": 0.3}, robot.now)
 
@@ -339,7 +336,7 @@ def test_a_node_that_refuses_says_so_and_stays_as_it_is() -> None:
 
 @pytest.mark.parametrize("rule", TRANSITIONS, ids=lambda rule: f"{rule.transition}-{rule.start}")
 def test_a_callback_that_fails_ends_where_the_table_says(rule: TransitionRule) -> None:
-    robot = SimulatedRobot()
+    robot = RecordedNodes()
     robot.bring(BASE, *PATHS_TO[rule.start])
     robot.set_fault(BASE, Fault.FAIL)
     robot.ask(BASE, rule.transition)
@@ -411,21 +408,50 @@ def test_a_silent_node_that_speaks_again_says_what_it_is_in_by_now() -> None:
     ]
 
 
-def test_a_node_that_is_silent_for_a_moment_is_not_missed() -> None:
-    robot = robot_with(Fault.SILENT)
-    robot.pass_time(2.9)
-    robot.set_fault(BASE, None)
+class Outage(NamedTuple):
+    """Faults of a node, each with how long after the one before, and when it was reachable."""
 
-    assert reachability(robot.pass_time(60.0)) == [(3.9, True)]
+    faults: tuple[tuple[float, Fault | None], ...]
+    told: list[tuple[float, bool]]
 
 
-def test_a_node_that_falls_silent_again_is_missed_three_seconds_after_that() -> None:
-    robot = robot_with(Fault.SILENT)
-    robot.pass_time(2.0)
-    robot.set_fault(BASE, None)
-    robot.set_fault(BASE, Fault.SILENT)
+@table(
+    {
+        "silent for a moment: it is not missed": Outage(
+            faults=((0.0, Fault.SILENT), (2.9, None)), told=[(3.9, True)]
+        ),
+        "silent again: it is missed three seconds after that": Outage(
+            faults=((0.0, Fault.SILENT), (2.0, None), (0.0, Fault.SILENT)),
+            told=[(3.0, True), (6.0, False)],
+        ),
+        "silent twice at the same time: it is missed once": Outage(
+            faults=((0.0, Fault.SILENT), (0.0, None), (0.0, Fault.SILENT)),
+            told=[(1.0, True), (4.0, False)],
+        ),
+        "told twice to be silent: that changes nothing": Outage(
+            faults=((0.0, Fault.SILENT), (2.0, Fault.SILENT)), told=[(4.0, False)]
+        ),
+        "silent, and dead before that is noticed: it is missed once, as dead": Outage(
+            faults=((0.0, Fault.SILENT), (0.5, Fault.DIE)), told=[(2.5, False)]
+        ),
+        "silent, and dead when about to be missed: it is missed once, as silent": Outage(
+            faults=((0.0, Fault.SILENT), (2.9, Fault.DIE)), told=[(4.0, False)]
+        ),
+        "dead a second time: it is missed a second time": Outage(
+            faults=((0.0, Fault.DIE), (2.0, None), (0.0, Fault.DIE)),
+            told=[(2.0, False), (3.0, True), (4.0, False)],
+        ),
+    }
+)
+def test_a_node_is_missed_when_its_silence_or_death_is_noticed(row: Outage) -> None:
+    robot = robot_with(None)
+    robot.heard.clear()
+    for after_s, fault in row.faults:
+        robot.pass_time(after_s)
+        robot.set_fault(BASE, fault)
+    robot.pass_time(60.0)
 
-    assert reachability(robot.pass_time(60.0)) == [(3.0, True), (6.0, False)]
+    assert reachability(robot.heard) == row.told
 
 
 def test_a_dead_node_loses_what_it_was_at_and_is_missed_after_a_second() -> None:
@@ -485,45 +511,15 @@ def test_a_node_that_is_back_at_once_does_not_go_on_with_what_it_was_at() -> Non
     assert states(robot.pass_time(60.0)) == [(1.1, S.UNCONFIGURED)]
 
 
-@pytest.mark.parametrize(
-    ("died_at", "missed_at"),
-    [(0.5, 1.5), (2.9, 3.0)],
-    ids=["its death is noticed first", "its silence is noticed first"],
-)
-def test_a_silent_node_that_dies_is_missed_once(died_at: float, missed_at: float) -> None:
-    robot = robot_with(Fault.SILENT)
-    robot.pass_time(died_at)
-    robot.set_fault(BASE, Fault.DIE)
-
-    assert reachability(robot.pass_time(60.0)) == [(1.0 + missed_at, False)]
-
-
 @pytest.mark.parametrize(("fault", "missed_at"), [(Fault.SILENT, 3.0), (Fault.DIE, 1.0)])
 def test_a_node_that_is_missing_from_the_start_is_reported_as_such(
     fault: Fault, missed_at: float
 ) -> None:
-    robot = SimulatedRobot({BASE: NodeSettings(fault=fault)})
+    robot = RecordedNodes({BASE: NodeSettings(fault=fault)})
 
     said = [(t, m) for t, m in robot.pass_time(60.0) if m.node == BASE]
 
     assert said == [(missed_at, NodeReport(BASE, reachable=False))]
-
-
-def test_the_same_fault_once_more_changes_nothing() -> None:
-    robot = robot_with(Fault.SILENT)
-    robot.pass_time(2.0)
-    robot.set_fault(BASE, Fault.SILENT)
-
-    assert reachability(robot.pass_time(60.0)) == [(4.0, False)]
-
-
-def test_a_node_that_dies_a_second_time_is_missed_a_second_time() -> None:
-    robot = robot_with(Fault.DIE)
-    robot.pass_time(2.0)
-    robot.set_fault(BASE, None)
-    robot.set_fault(BASE, Fault.DIE)
-
-    assert reachability(robot.pass_time(60.0)) == [(3.0, True), (4.0, False)]
 
 
 def test_a_node_that_dies_when_it_is_already_missed_is_not_missed_again() -> None:
@@ -534,27 +530,12 @@ def test_a_node_that_dies_when_it_is_already_missed_is_not_missed_again() -> Non
     assert robot.pass_time(60.0) == []
 
 
-def test_a_node_that_falls_silent_twice_at_the_same_time_is_missed_once() -> None:
-    robot = robot_with(Fault.SILENT)
-    robot.set_fault(BASE, None)
-    robot.set_fault(BASE, Fault.SILENT)
-
-    assert reachability(robot.pass_time(60.0)) == [(1.0, True), (4.0, False)]
-
-
 def test_nobody_is_woken_to_notice_a_silence_that_is_over() -> None:
     robot = robot_with(Fault.SILENT)
     robot.set_fault(BASE, None)
     robot.pass_time(0.0)
 
     assert robot.nodes.wake_at() is None
-
-
-def test_a_fault_of_a_node_that_is_not_there_is_refused() -> None:
-    robot = robot_with(None)
-
-    with pytest.raises(UnknownPartError):
-        robot.set_fault(NOWHERE, Fault.DIE)
 
 
 # --- size ----------------------------------------------------------------------------------------
@@ -564,7 +545,7 @@ def test_ten_thousand_nodes_cost_no_more_each_than_a_hundred() -> None:
     def configure_all(number: int) -> float:
         names = [PartName(f"node_{n}") for n in range(number)]
         model = SmhModel({n: NodeModel(n, {DEFAULT_MODE: {"rate": 1.0}}) for n in names}, {})
-        robot = SimulatedRobot(model=model)
+        robot = RecordedNodes(model=model)
         robot.pass_time(0.0)
         began = time.process_time()
         for request, name in enumerate(names):

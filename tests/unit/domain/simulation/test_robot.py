@@ -5,7 +5,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from api.simulation import posted
+from api.simulation import simulation_job
 from domain.commands import AskTransition, Drive, NodeCommand
 from domain.errors import UnknownPartError
 from domain.inputs import NodeAnswer, NodeReport, Readings, VehicleReport
@@ -136,7 +136,7 @@ def test_settings_of_a_node_that_is_not_there_are_refused() -> None:
 def copy_of(robot: SimulatedRobot) -> SimulatedRobot:
     """Return a copy as a simulation that begins with the live robot makes it."""
     copied: SimulatedRobot
-    _, copied = pickle.loads(posted.copy_of(make_onboard(MODEL, 0), robot))
+    _, copied = pickle.loads(simulation_job.copy_of(make_onboard(MODEL, 0), robot))
     return copied
 
 

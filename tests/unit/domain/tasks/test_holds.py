@@ -73,3 +73,21 @@ def test_releasing_the_last_hold_leaves_none() -> None:
 
 def test_a_name_that_is_not_reserved_may_be_used() -> None:
     Holds().check("operator")
+
+
+def test_the_views_are_another_object_after_each_change_and_only_then() -> None:
+    holds = Holds()
+    none = holds.views
+    holds.set("gate", "closed", "", 1)
+    closed = holds.views
+    holds.set("gate", "closed", "", 2)
+    assert holds.views is closed
+
+    holds.set("gate", "jammed", "", 3)
+    jammed = holds.views
+    holds.release("operator")
+    assert holds.views is jammed
+
+    holds.release("gate")
+    assert (len(none), len(holds.views)) == (0, 0)
+    assert (closed["gate"].reason, jammed["gate"].reason) == ("closed", "jammed")

@@ -3,7 +3,7 @@ from domain.inputs import GoalFeedback
 from domain.snapshot import TaskPhase, TaskView
 from domain.tasks.task import Task
 from domain.vehicle import DriveCommand, Point
-from tests.support.driver import straight
+from tests.support.paths import straight
 
 
 def task(start_index: int = 0) -> Task:

@@ -5,7 +5,7 @@ from domain.identifiers import TaskId
 from domain.paths.path import Path
 from domain.tasks.task import Task
 from domain.tasks.task_log import MAX_KEPT, TaskLog
-from tests.support.driver import straight
+from tests.support.paths import straight
 
 
 def task(number: int, path: Path | None = None) -> Task:

@@ -16,7 +16,8 @@ from domain.snapshot import TaskPhase
 from domain.tasks.task_planner import MIN_CRUISE_MPS, check_cruise
 from domain.timebase import seconds
 from domain.vehicle import DriveCommand, Point, Pose, VehicleLimits, VehicleState
-from tests.support.driver import Driver, straight
+from tests.support.paths import straight
+from tests.support.scripted_robot import ScriptedRobot
 
 
 def commands_of(outputs: Outputs) -> list[str]:
@@ -26,9 +27,10 @@ def commands_of(outputs: Outputs) -> list[str]:
 # --- serve ---------------------------------------------------------------------------------------
 
 
-def test_a_task_that_nothing_holds_is_one_goal_from_its_first_waypoint() -> None:
-    robot = Driver()
-    served = robot.serve()
+def test_a_task_that_nothing_holds_is_one_goal_from_its_first_waypoint(
+    robot: ScriptedRobot,
+) -> None:
+    served = robot.submit_task()
 
     assert commands_of(served) == ["SendGoal"]
     assert robot.goals[0].start_index == 0
@@ -36,40 +38,36 @@ def test_a_task_that_nothing_holds_is_one_goal_from_its_first_waypoint() -> None
     assert robot.task.status is TaskPhase.RUNNING
 
 
-def test_running_for_a_while_sends_nothing_twice() -> None:
-    robot = Driver()
-    robot.serve()
-    robot.live(2.0, speed_mps=2.8)
+def test_running_for_a_while_sends_nothing_twice(robot: ScriptedRobot) -> None:
+    robot.submit_task()
+    robot.advance(2.0, speed_mps=2.8)
 
     assert len(robot.goals) == 1
 
 
-def test_a_task_served_in_error_is_taken_and_waits() -> None:
-    robot = Driver()
+def test_a_task_served_in_error_is_taken_and_waits(robot: ScriptedRobot) -> None:
     robot.read(estop=True)
-    robot.serve()
+    robot.submit_task()
 
     assert (robot.status, robot.state) == ("PAUSED_TASK", "ERROR")
     assert robot.task.status is TaskPhase.PAUSED
     assert robot.goals == []
 
 
-def test_a_task_served_in_error_starts_when_the_error_ends() -> None:
-    robot = Driver()
+def test_a_task_served_in_error_starts_when_the_error_ends(robot: ScriptedRobot) -> None:
     robot.read(estop=True)
-    robot.serve()
-    robot.live(0.5)
+    robot.submit_task()
+    robot.advance(0.5)
 
     assert len(robot.goals) == 1
     assert (robot.status, robot.state) == ("RUNNING_TASK", "RUNNING")
     assert [data["task"] for data in robot.happened("task.started")] == ["t1"]
 
 
-def test_a_new_task_takes_the_place_of_a_running_one_without_a_stop() -> None:
-    robot = Driver()
-    robot.serve()
+def test_a_new_task_takes_the_place_of_a_running_one_without_a_stop(robot: ScriptedRobot) -> None:
+    robot.submit_task()
     robot.feedback(9)
-    replaced = robot.serve(straight(y_m=0.5))
+    replaced = robot.submit_task(straight(y_m=0.5))
 
     assert commands_of(replaced) == ["PreemptGoal", "SendGoal"]
     assert robot.goals[1].start_index == 0
@@ -78,53 +76,50 @@ def test_a_new_task_takes_the_place_of_a_running_one_without_a_stop() -> None:
     assert robot.core.driving.task("t1").reason == "replaced by t2"
 
 
-def test_of_two_tasks_served_in_error_the_last_one_runs() -> None:
-    robot = Driver()
+def test_of_two_tasks_served_in_error_the_last_one_runs(robot: ScriptedRobot) -> None:
     robot.read(estop=True)
-    robot.serve()
-    robot.serve(straight(y_m=0.5))
-    robot.live(0.5)
+    robot.submit_task()
+    robot.submit_task(straight(y_m=0.5))
+    robot.advance(0.5)
 
     assert [goal.path.waypoint(0).y_m for goal in robot.goals] == [0.5]
 
 
-def test_a_task_may_begin_at_a_later_waypoint() -> None:
-    robot = Driver()
-    robot.serve(start_index=3)
+def test_a_task_may_begin_at_a_later_waypoint(robot: ScriptedRobot) -> None:
+    robot.submit_task(start_index=3)
 
     assert robot.goals[0].start_index == 3
     assert robot.task.length_m == 17
 
 
 @pytest.mark.parametrize("start_index", [-1, 20, 21])
-def test_a_start_with_no_path_behind_it_is_refused(start_index: int) -> None:
-    robot = Driver()
+def test_a_start_with_no_path_behind_it_is_refused(robot: ScriptedRobot, start_index: int) -> None:
     with pytest.raises(InvalidValueError, match="start_index"):
-        robot.serve(start_index=start_index)
+        robot.submit_task(start_index=start_index)
 
     assert robot.core.driving.current_task is None
 
 
-def test_an_unknown_controller_is_refused_and_the_known_ones_are_named() -> None:
-    robot = Driver()
+def test_an_unknown_controller_is_refused_and_the_known_ones_are_named(
+    robot: ScriptedRobot,
+) -> None:
     with pytest.raises(UnknownControllerError) as refused:
-        robot.serve(controller="magic")
+        robot.submit_task(controller="magic")
 
     assert refused.value.hint == "known: pure_pursuit, stanley"
 
 
-def test_a_path_that_begins_more_than_five_metres_away_is_refused() -> None:
-    robot = Driver()
+def test_a_path_that_begins_more_than_five_metres_away_is_refused(robot: ScriptedRobot) -> None:
     with pytest.raises(FarStartError, match=r"begins 5\.1 m from the vehicle"):
-        robot.serve(straight(y_m=5.1))
-    robot.serve(straight(y_m=5.0))
+        robot.submit_task(straight(y_m=5.1))
+    robot.submit_task(straight(y_m=5.0))
 
     assert robot.task.status is TaskPhase.RUNNING
 
 
 def test_where_the_vehicle_was_unknown_the_distance_is_judged_at_the_start() -> None:
-    robot = Driver(pose=False)
-    robot.serve(straight(y_m=8.0))
+    robot = ScriptedRobot(pose=False)
+    robot.submit_task(straight(y_m=8.0))
     assert robot.status == "PAUSED_TASK"
     robot.report()
 
@@ -136,9 +131,8 @@ def test_where_the_vehicle_was_unknown_the_distance_is_judged_at_the_start() -> 
 # --- holds ---------------------------------------------------------------------------------------
 
 
-def test_an_error_takes_the_goal_back_and_stops_in_the_same_step() -> None:
-    robot = Driver()
-    robot.serve()
+def test_an_error_takes_the_goal_back_and_stops_in_the_same_step(robot: ScriptedRobot) -> None:
+    robot.submit_task()
     robot.report(speed_mps=2.8, steering_rad=0.2)
     stopped = robot.read(estop=True)
 
@@ -148,18 +142,16 @@ def test_an_error_takes_the_goal_back_and_stops_in_the_same_step() -> None:
     assert robot.task.status is TaskPhase.PAUSING
 
 
-def test_a_stop_leaves_the_wheels_as_they_are() -> None:
-    robot = Driver()
-    robot.serve()
+def test_a_stop_leaves_the_wheels_as_they_are(robot: ScriptedRobot) -> None:
+    robot.submit_task()
     robot.report(speed_mps=2.8, steering_rad=0.2)
     robot.hold()
 
     assert robot.sent(Drive)[0].command.steering_angle_rad == 0.2
 
 
-def test_a_held_task_is_paused_once_the_vehicle_is_seen_to_stand() -> None:
-    robot = Driver()
-    robot.serve()
+def test_a_held_task_is_paused_once_the_vehicle_is_seen_to_stand(robot: ScriptedRobot) -> None:
+    robot.submit_task()
     robot.hold()
     robot.report(speed_mps=0.06)
     assert robot.task.status == "PAUSING"
@@ -169,9 +161,10 @@ def test_a_held_task_is_paused_once_the_vehicle_is_seen_to_stand() -> None:
     assert robot.task.reason == "lunch"
 
 
-def test_a_released_task_goes_on_from_the_first_waypoint_not_yet_passed() -> None:
-    robot = Driver()
-    robot.serve()
+def test_a_released_task_goes_on_from_the_first_waypoint_not_yet_passed(
+    robot: ScriptedRobot,
+) -> None:
+    robot.submit_task()
     robot.feedback(7)
     robot.hold()
     robot.report()
@@ -181,9 +174,8 @@ def test_a_released_task_goes_on_from_the_first_waypoint_not_yet_passed() -> Non
     assert robot.happened("task.resumed") == [{"task": "t1", "goal": 2, "target_index": 7}]
 
 
-def test_a_task_goes_on_even_while_it_is_still_pausing() -> None:
-    robot = Driver()
-    robot.serve()
+def test_a_task_goes_on_even_while_it_is_still_pausing(robot: ScriptedRobot) -> None:
+    robot.submit_task()
     robot.feedback(7)
     robot.hold()
     robot.report(speed_mps=1.0)
@@ -193,9 +185,8 @@ def test_a_task_goes_on_even_while_it_is_still_pausing() -> None:
     assert len(robot.goals) == 2
 
 
-def test_progress_never_goes_back_over_pauses() -> None:
-    robot = Driver()
-    robot.serve()
+def test_progress_never_goes_back_over_pauses(robot: ScriptedRobot) -> None:
+    robot.submit_task()
     for index in (3, 9, 9, 5, 15):
         robot.feedback(index)
         robot.hold()
@@ -204,9 +195,8 @@ def test_progress_never_goes_back_over_pauses() -> None:
     assert [goal.start_index for goal in robot.goals] == [0, 3, 9, 9, 9, 15]
 
 
-def test_only_the_last_of_several_holds_lets_the_task_go_on() -> None:
-    robot = Driver()
-    robot.serve()
+def test_only_the_last_of_several_holds_lets_the_task_go_on(robot: ScriptedRobot) -> None:
+    robot.submit_task()
     robot.hold("operator", "lunch")
     robot.hold("gate", "closed")
     robot.release("operator")
@@ -218,31 +208,30 @@ def test_only_the_last_of_several_holds_lets_the_task_go_on() -> None:
     assert len(robot.goals) == 2
 
 
-def test_a_hold_is_kept_across_a_replaced_task() -> None:
-    robot = Driver()
-    robot.serve()
+def test_a_hold_is_kept_across_a_replaced_task(robot: ScriptedRobot) -> None:
+    robot.submit_task()
     robot.hold()
-    robot.serve(straight(y_m=0.5))
+    robot.submit_task(straight(y_m=0.5))
     assert robot.status == "PAUSED_TASK"
     robot.release()
 
     assert [goal.path.waypoint(0).y_m for goal in robot.goals] == [0.0, 0.5]
 
 
-def test_a_hold_without_a_task_holds_the_next_one() -> None:
-    robot = Driver()
+def test_a_hold_without_a_task_holds_the_next_one(robot: ScriptedRobot) -> None:
     robot.hold()
-    robot.serve()
+    robot.submit_task()
 
     assert robot.goals == []
     assert robot.task.status is TaskPhase.PAUSED
 
 
-def test_a_hold_set_again_keeps_who_set_it_first_and_takes_the_new_reason() -> None:
-    robot = Driver()
+def test_a_hold_set_again_keeps_who_set_it_first_and_takes_the_new_reason(
+    robot: ScriptedRobot,
+) -> None:
     robot.hold(reason="lunch")
     since = robot.core.driving.holds["operator"].since
-    robot.wait(0.1)
+    robot.stay_silent(0.1)
     robot.hold(reason="still lunch")
     hold = robot.core.driving.holds["operator"]
 
@@ -253,38 +242,34 @@ def test_a_hold_set_again_keeps_who_set_it_first_and_takes_the_new_reason() -> N
 # --- cancel and end ------------------------------------------------------------------------------
 
 
-def test_cancel_stops_and_ends_the_task_at_once() -> None:
-    robot = Driver()
-    robot.serve()
-    canceled = robot.cancel()
+def test_cancel_stops_and_ends_the_task_at_once(robot: ScriptedRobot) -> None:
+    robot.submit_task()
+    canceled = robot.cancel_task()
 
     assert commands_of(canceled) == ["PreemptGoal", "Drive"]
     assert (robot.status, robot.state) == ("NO_TASK", "IDLE")
     assert robot.task.status is TaskPhase.CANCELED
 
 
-def test_cancel_while_pausing_leaves_nothing_to_resume() -> None:
-    robot = Driver()
-    robot.serve()
+def test_cancel_while_pausing_leaves_nothing_to_resume(robot: ScriptedRobot) -> None:
+    robot.submit_task()
     robot.hold()
     robot.report(speed_mps=1.0)
-    robot.cancel()
+    robot.cancel_task()
     robot.release()
 
     assert len(robot.goals) == 1
     assert robot.status == "NO_TASK"
 
 
-def test_cancel_without_a_task_changes_nothing() -> None:
-    robot = Driver()
-    outputs = robot.cancel()
+def test_cancel_without_a_task_changes_nothing(robot: ScriptedRobot) -> None:
+    outputs = robot.cancel_task()
 
     assert (outputs.commands, outputs.events) == ((), ())
 
 
-def test_a_goal_that_succeeds_ends_the_task_with_its_whole_progress() -> None:
-    robot = Driver()
-    robot.serve()
+def test_a_goal_that_succeeds_ends_the_task_with_its_whole_progress(robot: ScriptedRobot) -> None:
+    robot.submit_task()
     robot.feedback(20)
     ended = robot.arrive()
 
@@ -293,9 +278,8 @@ def test_a_goal_that_succeeds_ends_the_task_with_its_whole_progress() -> None:
     assert (robot.status, robot.state) == ("NO_TASK", "IDLE")
 
 
-def test_a_goal_that_is_given_up_ends_the_task_with_the_reason() -> None:
-    robot = Driver()
-    robot.serve()
+def test_a_goal_that_is_given_up_ends_the_task_with_the_reason(robot: ScriptedRobot) -> None:
+    robot.submit_task()
     robot.arrive(succeeded=False, reason="no progress for 20 s")
 
     assert robot.task.status is TaskPhase.ABORTED
@@ -303,9 +287,8 @@ def test_a_goal_that_is_given_up_ends_the_task_with_the_reason() -> None:
     assert robot.stops == 1
 
 
-def test_what_navigation_says_late_of_a_goal_taken_back_is_void() -> None:
-    robot = Driver()
-    robot.serve()
+def test_what_navigation_says_late_of_a_goal_taken_back_is_void(robot: ScriptedRobot) -> None:
+    robot.submit_task()
     robot.hold()
     robot.feedback(15)
     robot.arrive()
@@ -314,28 +297,27 @@ def test_what_navigation_says_late_of_a_goal_taken_back_is_void() -> None:
     assert robot.task.target_index == 0
 
 
-def test_what_navigation_says_late_does_not_touch_the_task_that_came_after() -> None:
-    robot = Driver()
-    robot.serve()
-    robot.serve(straight(y_m=0.5))
+def test_what_navigation_says_late_does_not_touch_the_task_that_came_after(
+    robot: ScriptedRobot,
+) -> None:
+    robot.submit_task()
+    robot.submit_task(straight(y_m=0.5))
     robot.feedback(15, robot.goals[0])
 
     assert robot.task.target_index == 0
 
 
-def test_progress_counts_by_distance_from_where_the_task_began() -> None:
-    robot = Driver()
+def test_progress_counts_by_distance_from_where_the_task_began(robot: ScriptedRobot) -> None:
     robot.report(x_m=10.0)
-    robot.serve(start_index=10)
+    robot.submit_task(start_index=10)
     robot.feedback(15)
 
     assert robot.task.distance_m == 4.5
     assert robot.task.progress == 0.45
 
 
-def test_each_event_of_a_task_leads_back_to_what_caused_it() -> None:
-    robot = Driver()
-    robot.serve()
+def test_each_event_of_a_task_leads_back_to_what_caused_it(robot: ScriptedRobot) -> None:
+    robot.submit_task()
     robot.read(estop=True)
     by_id = {event.id: event for event in robot.events}
     pausing = next(event for event in robot.events if event.kind == "task.pausing")
@@ -347,30 +329,27 @@ def test_each_event_of_a_task_leads_back_to_what_caused_it() -> None:
     assert way == ["task.pausing", "hold.set", "error.raised", "signal.read"]
 
 
-def test_ended_tasks_can_be_read_and_unknown_ones_not() -> None:
-    robot = Driver()
-    robot.serve()
-    robot.cancel()
+def test_ended_tasks_can_be_read_and_unknown_ones_not(robot: ScriptedRobot) -> None:
+    robot.submit_task()
+    robot.cancel_task()
 
     assert robot.core.driving.task("t1").ended_at == robot.now
     with pytest.raises(UnknownTaskError):
         robot.core.driving.task("t2")
 
 
-def test_not_one_command_to_drive_follows_a_goal_that_is_taken_back() -> None:
-    robot = Driver()
-    robot.serve()
+def test_not_one_command_to_drive_follows_a_goal_that_is_taken_back(robot: ScriptedRobot) -> None:
+    robot.submit_task()
     robot.hold()
     after = robot.commands[robot.commands.index(PreemptGoal(robot.goals[0].goal)) :]
 
     assert all(c.command.speed_mps == 0 for c in after if isinstance(c, Drive))
 
 
-def test_what_is_left_of_a_path_that_stands_still_is_nothing_to_drive() -> None:
-    robot = Driver()
+def test_what_is_left_of_a_path_that_stands_still_is_nothing_to_drive(robot: ScriptedRobot) -> None:
     path = Path(np.array([[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [1.0, 0.0, 0.0], [1.0, 0.0, 0.0]]))
     with pytest.raises(InvalidValueError) as refused:
-        robot.serve(path, start_index=1)
+        robot.submit_task(path, start_index=1)
 
     assert refused.value.message == "no path is left after this waypoint"
     assert refused.value.pointer == "start_index"
@@ -387,15 +366,16 @@ def test_a_speed_that_the_vehicle_does_not_go_is_refused(speed_mps: float) -> No
     check_cruise(limits.max_speed_mps, limits)
 
 
-def test_a_refused_start_names_the_nearest_waypoint_with_a_path_behind_it() -> None:
-    robot = Driver()
+def test_a_refused_start_names_the_nearest_waypoint_with_a_path_behind_it(
+    robot: ScriptedRobot,
+) -> None:
     robot.report(x_m=19.9)
     with pytest.raises(FarStartError) as refused:
-        robot.serve(straight())
+        robot.submit_task(straight())
     assert refused.value.hint == "waypoint 19 is 0.9 m away: start there with start_index"
     robot.report(x_m=40.0)
     with pytest.raises(FarStartError) as refused:
-        robot.serve(straight())
+        robot.submit_task(straight())
 
     assert refused.value.nearest is None
 
@@ -403,7 +383,7 @@ def test_a_refused_start_names_the_nearest_waypoint_with_a_path_behind_it() -> N
 # --- what is told --------------------------------------------------------------------------------
 
 
-def told(robot: Driver, *kinds: str) -> list[tuple[str, str, dict[str, object]]]:
+def told(robot: ScriptedRobot, *kinds: str) -> list[tuple[str, str, dict[str, object]]]:
     """Return events of tasks and holds: kind, kind of the cause, and data."""
     by_id = {event.id: event for event in robot.events}
     return [
@@ -413,9 +393,8 @@ def told(robot: Driver, *kinds: str) -> list[tuple[str, str, dict[str, object]]]
     ]
 
 
-def test_the_life_of_a_task_is_told_with_what_caused_each_turn() -> None:
-    robot = Driver()
-    robot.serve()
+def test_the_life_of_a_task_is_told_with_what_caused_each_turn(robot: ScriptedRobot) -> None:
+    robot.submit_task()
     robot.feedback(7)
     robot.hold()
     robot.report()
@@ -443,8 +422,7 @@ def test_the_life_of_a_task_is_told_with_what_caused_each_turn() -> None:
     ]
 
 
-def test_a_hold_is_told_when_it_is_set_and_when_it_goes() -> None:
-    robot = Driver()
+def test_a_hold_is_told_when_it_is_set_and_when_it_goes(robot: ScriptedRobot) -> None:
     robot.hold("gate", "closed")
     robot.hold("gate", "still closed")
     robot.release("gate")
@@ -456,33 +434,32 @@ def test_a_hold_is_told_when_it_is_set_and_when_it_goes() -> None:
     ]
 
 
-def test_a_task_served_while_held_and_standing_is_told_as_paused_because_of_that() -> None:
-    robot = Driver()
+def test_a_task_served_while_held_and_standing_is_told_as_paused_because_of_that(
+    robot: ScriptedRobot,
+) -> None:
     robot.hold()
-    robot.serve()
+    robot.submit_task()
 
     assert told(robot, "task.")[2:] == [
         ("task.paused", "task.served", {"task": "t1", "reason": "lunch"})
     ]
 
 
-def test_a_task_served_while_held_and_still_rolling_is_pausing() -> None:
-    robot = Driver()
+def test_a_task_served_while_held_and_still_rolling_is_pausing(robot: ScriptedRobot) -> None:
     robot.report(speed_mps=1.0)
     robot.hold()
-    robot.serve()
+    robot.submit_task()
 
     assert robot.task.status is TaskPhase.PAUSING
 
 
-def test_what_ends_a_task_is_told_with_how_far_it_came() -> None:
-    robot = Driver()
-    robot.serve()
+def test_what_ends_a_task_is_told_with_how_far_it_came(robot: ScriptedRobot) -> None:
+    robot.submit_task()
     robot.feedback(10)
-    robot.wait(0.1)
-    robot.serve(straight(y_m=0.5))
-    robot.wait(0.1)
-    robot.cancel()
+    robot.stay_silent(0.1)
+    robot.submit_task(straight(y_m=0.5))
+    robot.stay_silent(0.1)
+    robot.cancel_task()
 
     assert told(robot, "task.canceled") == [
         (
@@ -502,9 +479,9 @@ def test_what_ends_a_task_is_told_with_how_far_it_came() -> None:
 
 
 def test_a_task_that_begins_too_far_away_once_that_is_known_ends_with_that_cause() -> None:
-    robot = Driver(pose=False)
-    robot.serve(straight(y_m=8.0))
-    robot.wait(0.1)
+    robot = ScriptedRobot(pose=False)
+    robot.submit_task(straight(y_m=8.0))
+    robot.stay_silent(0.1)
     robot.report()
 
     reason = "the path begins 8.0 m from the vehicle; at most 5 m"
@@ -514,31 +491,30 @@ def test_a_task_that_begins_too_far_away_once_that_is_known_ends_with_that_cause
     assert robot.task.ended_at == seconds(0.1)
 
 
-def test_how_navigation_ended_it_and_when_can_be_read_afterwards() -> None:
-    robot = Driver()
-    robot.serve()
-    robot.wait(0.1)
+def test_how_navigation_ended_it_and_when_can_be_read_afterwards(robot: ScriptedRobot) -> None:
+    robot.submit_task()
+    robot.stay_silent(0.1)
     robot.arrive(succeeded=False, reason="no progress for 20 s")
 
     assert (robot.task.ended_at, robot.task.reason) == (seconds(0.1), "no progress for 20 s")
 
 
-def test_a_task_that_just_goes_on_is_told_as_changed_and_one_that_waits_is_not() -> None:
-    robot = Driver()
-    assert robot.serve().task_changed
+def test_a_task_that_just_goes_on_is_told_as_changed_and_one_that_waits_is_not(
+    robot: ScriptedRobot,
+) -> None:
+    assert robot.submit_task().task_changed
     assert robot.feedback(3).task_changed
     assert robot.hold().task_changed
     assert robot.hold(reason="still lunch").task_changed
     assert not robot.hold(reason="still lunch").task_changed
-    assert robot.cancel().task_changed
-    assert not robot.cancel().task_changed
+    assert robot.cancel_task().task_changed
+    assert not robot.cancel_task().task_changed
 
 
-def test_a_goal_tells_navigation_everything_about_the_task() -> None:
-    robot = Driver()
+def test_a_goal_tells_navigation_everything_about_the_task(robot: ScriptedRobot) -> None:
     robot.report(x_m=3.0)
     path = straight()
-    robot.serve(path, start_index=3, controller="stanley")
+    robot.submit_task(path, start_index=3, controller="stanley")
     goal = robot.goals[0].goal
     ahead, command = Point(9.0, 0.0), DriveCommand(2.8, 0.0)
     robot.give(GoalFeedback(goal, 8, 7.5, 0.0, ahead, command, left_out_m=0.7))
@@ -554,26 +530,27 @@ def test_a_goal_tells_navigation_everything_about_the_task() -> None:
 @pytest.mark.parametrize(
     ("start_index", "words"), [(-1, "start_index -1 is not within 0 to 19"), (20, "0 to 19")]
 )
-def test_a_refused_start_says_which_ones_there_are(start_index: int, words: str) -> None:
-    robot = Driver()
+def test_a_refused_start_says_which_ones_there_are(
+    robot: ScriptedRobot, start_index: int, words: str
+) -> None:
     with pytest.raises(InvalidValueError, match=words) as refused:
-        robot.serve(start_index=start_index)
+        robot.submit_task(start_index=start_index)
 
     assert refused.value.pointer == "start_index"
 
 
-def test_a_task_can_be_traced_to_who_asked_for_it() -> None:
-    robot = Driver()
-    robot.serve()
+def test_a_task_can_be_traced_to_who_asked_for_it(robot: ScriptedRobot) -> None:
+    robot.submit_task()
     asked = next(event for event in robot.events if event.kind == "task.requested")
 
     assert robot.task.cause == asked.id
     assert asked.actor == "operator"
 
 
-def test_a_hold_of_a_task_that_has_no_goal_any_more_does_not_make_it_pause_again() -> None:
-    robot = Driver()
-    robot.serve()
+def test_a_hold_of_a_task_that_has_no_goal_any_more_does_not_make_it_pause_again(
+    robot: ScriptedRobot,
+) -> None:
+    robot.submit_task()
     robot.hold("gate", "closed")
     robot.report()
     robot.hold("operator", "lunch")
@@ -582,34 +559,33 @@ def test_a_hold_of_a_task_that_has_no_goal_any_more_does_not_make_it_pause_again
     assert len(robot.preempted) == 1
 
 
-def test_the_last_waypoint_but_one_is_a_start() -> None:
-    robot = Driver()
+def test_the_last_waypoint_but_one_is_a_start(robot: ScriptedRobot) -> None:
     robot.report(x_m=19.0)
-    robot.serve(start_index=19)
+    robot.submit_task(start_index=19)
 
     assert robot.task.length_m == 1
 
 
-def test_an_unknown_controller_is_named() -> None:
-    robot = Driver()
+def test_an_unknown_controller_is_named(robot: ScriptedRobot) -> None:
     with pytest.raises(UnknownControllerError, match="there is no controller 'magic'"):
-        robot.serve(controller="magic")
+        robot.submit_task(controller="magic")
 
 
-def test_the_nearest_waypoint_is_found_in_both_directions_and_up_to_the_limit() -> None:
-    robot = Driver()
+def test_the_nearest_waypoint_is_found_in_both_directions_and_up_to_the_limit(
+    robot: ScriptedRobot,
+) -> None:
     diagonal = Path(
         np.array([[10.0, 9.0, 0.0], [6.0, 5.0, 0.0], [3.0, 4.0, 0.0], [30.0, 0.0, 0.0]])
     )
     with pytest.raises(FarStartError) as refused:
-        robot.serve(diagonal)
+        robot.submit_task(diagonal)
 
     assert refused.value.nearest == (2, 5.0)
 
 
 def test_without_a_pose_there_is_no_nearest_waypoint_and_no_refusal() -> None:
-    robot = Driver(pose=False)
-    robot.serve(straight(y_m=50.0))
+    robot = ScriptedRobot(pose=False)
+    robot.submit_task(straight(y_m=50.0))
 
     assert robot.task.status is TaskPhase.PAUSING
 
@@ -621,11 +597,10 @@ def test_a_speed_is_refused_with_what_the_vehicle_can() -> None:
     assert refused.value.message == "speed 0.05 m/s is not within 0.1 to 3 m/s"
 
 
-def test_the_nearest_waypoint_is_the_one_near_where_the_vehicle_is() -> None:
-    robot = Driver()
+def test_the_nearest_waypoint_is_the_one_near_where_the_vehicle_is(robot: ScriptedRobot) -> None:
     robot.give(VehicleReport(VehicleState(Pose(10.0, 4.0, 0.0), 0.0, 0.0)))
     places = [[0.0, 0.0, 0.0], [10.0, -4.0, 0.0], [10.0, 1.0, 0.0], [30.0, 0.0, 0.0]]
     with pytest.raises(FarStartError) as refused:
-        robot.serve(Path(np.array(places)))
+        robot.submit_task(Path(np.array(places)))
 
     assert refused.value.nearest == (2, 3.0)

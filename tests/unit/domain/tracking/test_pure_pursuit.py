@@ -7,6 +7,7 @@ from domain.paths.path import Path
 from domain.tracking.pure_pursuit import PurePursuit
 from domain.tracking.tracker import ControlStep
 from domain.vehicle import Pose, VehicleLimits, VehicleState
+from tests.support.tables import text_table
 
 LIMITS = VehicleLimits()
 LINE = Path(np.array([[0.0, 0.0, 0.0], [20.0, 0.0, 0.0], [40.0, 0.0, 0.0]]))
@@ -39,21 +40,21 @@ def test_in_a_bend_it_steers_as_the_bend_needs() -> None:
     assert said.steering_angle_rad == pytest.approx(atan(LIMITS.wheelbase_m / 20), rel=0.01)
 
 
-@pytest.mark.parametrize(
-    ("speed", "beside", "reach"),
-    [
-        (0.0, 0.0, 2.2),
-        (5.0, 0.0, 3.75),
-        (11.0, 0.0, 8.25),
-        (1.0, 0.3, 2.85),
-        (1.0, 2.0, 5.75),
-        (5.0, 3.0, 9.0),
-    ],
-)
+@text_table("""
+    speed_mps | beside_m | reach_m
+    0.0       | 0.0      | 2.2
+    5.0       | 0.0      | 3.75
+    11.0      | 0.0      | 8.25
+    1.0       | 0.3      | 2.85
+    1.0       | 2.0      | 5.75
+    5.0       | 3.0      | 9.0
+""")
 def test_it_looks_further_ahead_when_it_is_fast_or_off(
-    speed: float, beside: float, reach: float
+    speed_mps: str, beside_m: str, reach_m: str
 ) -> None:
-    assert step(5, beside, 0, speed).lookahead.x_m == pytest.approx(5 + reach)
+    lookahead = step(5, float(beside_m), 0, float(speed_mps)).lookahead
+
+    assert lookahead.x_m == pytest.approx(5 + float(reach_m))
 
 
 def test_a_vehicle_that_rolls_back_looks_as_far_as_one_that_stands() -> None:

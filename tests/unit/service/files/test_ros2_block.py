@@ -109,7 +109,9 @@ def test_of_another_type_the_field_has_to_be_named(type_name: str) -> None:
     ],
 )
 def test_a_name_that_ros_does_not_know_is_refused_with_an_example(key: str, wrong: str) -> None:
-    with pytest.raises(ValidationError, match=r"invalid (topic name|message type|field) .*such as ") as caught:
+    with pytest.raises(
+        ValidationError, match=r"invalid (topic name|message type|field) .*such as "
+    ) as caught:
         topic(**{key: wrong})
 
     (fault,) = caught.value.errors()
@@ -193,7 +195,7 @@ ros2:
 
 def test_a_fault_in_what_was_sent_is_told_with_a_pointer() -> None:
     sent = {"ros2": {"signals": {"tail": {"topic": "/t", "type": "std_msgs/msg/Bool"}}}}
-    with pytest.raises(InvalidValueError, match="there is no signal 'tail'; declare it") as caught:
+    with pytest.raises(InvalidValueError, match="unknown signal 'tail'; declare it") as caught:
         robot_settings_of(sent, MODEL)
 
     assert caught.value.pointer == "/ros2/signals/tail"

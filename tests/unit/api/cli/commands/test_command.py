@@ -4,7 +4,8 @@ from collections.abc import Callable
 import pytest
 
 from api.cli.command_line import main
-from api.client.service_client import NoAnswerError, Outcome, ServiceClient, ServiceProblemError
+from api.client.outcomes import NoAnswerError, Outcome, ServiceProblemError
+from api.client.service_client import ServiceClient
 
 Output = pytest.CaptureFixture[str]
 
@@ -31,7 +32,7 @@ def answer_with(monkeypatch: pytest.MonkeyPatch, ending: Callable[[], Outcome]) 
     def change(client: ServiceClient, part: str, what: str, *_: object) -> Outcome:
         return ending()
 
-    monkeypatch.setattr("api.client.service_client.change", change)
+    monkeypatch.setattr("api.cli.commands.change.change", change)
 
 
 @pytest.mark.parametrize("outcome", list(Outcome))
@@ -71,7 +72,7 @@ def test_a_dry_run_asks_for_the_steps_only(monkeypatch: pytest.MonkeyPatch) -> N
         given.append(asked[:-1])
         return Outcome.SUCCEEDED
 
-    monkeypatch.setattr("api.client.service_client.show_plan", show_plan)
+    monkeypatch.setattr("api.cli.commands.change.show_plan", show_plan)
 
     assert main(["mode", "actuation", "FAST", "--dry-run"]) == 0
 

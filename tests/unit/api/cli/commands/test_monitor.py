@@ -1,7 +1,7 @@
 import pytest
 
 from api.cli.command_line import main
-from api.client.service_client import NoAnswerError, ServiceProblemError
+from api.client.outcomes import NoAnswerError, ServiceProblemError
 
 Output = pytest.CaptureFixture[str]
 

@@ -13,7 +13,7 @@ def test_simulate_hands_on_what_it_was_told(monkeypatch: pytest.MonkeyPatch) -> 
         given.append(asked)
         return 1
 
-    monkeypatch.setattr("api.cli.simulate_command.simulate", simulate)
+    monkeypatch.setattr("api.cli.scenario_run.simulate", simulate)
 
     assert main(["simulate", "s.yaml"]) == 1
     assert main(["simulate", "-", "--format", "json", "--robot", "r", "--model", "m"]) == 1

@@ -184,10 +184,18 @@ def test_why_a_task_waits_is_told() -> None:
     assert lines[-1] == "  the vehicle is lost"
 
 
-def test_holds_are_told_instead_with_since_when_and_by_whom() -> None:
-    holds = {"type": "holds", "items": [hold("operator", "loading", "anna"), hold("error")]}
+def test_how_the_last_task_ended_stays_until_the_next() -> None:
+    lines = drawn_task(frame(task=task("SUCCEEDED", ended_at=AT)))
 
-    lines = drawn_task(frame(task=task("PAUSED", reason="loading; error")), holds, later_s=5.0)
+    assert lines[0] == "no task"
+    assert lines[1].startswith("  task t1 succeeded at ")
+
+
+def test_holds_are_told_instead_with_since_when_and_by_whom() -> None:
+    holds = named("owner", hold("operator", "loading", "anna"), hold("error"))
+    paused = task("PAUSED", reason="loading; error")
+
+    lines = drawn_task(frame(task=paused, holds=holds), later_s=5.0)
 
     assert lines[-2:] == [
         "  held by operator: loading, for 5 s, by anna",
@@ -212,7 +220,7 @@ def test_reasons_wrap_and_stay_behind_their_beginning() -> None:
 def test_the_stop_is_told_before_the_state() -> None:
     engaged = stop(engaged=True, reason="smoke", since_at=AT)
 
-    lines = blocks.sentences(view(robot({"type": "emergency_stop", **engaged})), console(80))
+    lines = blocks.sentences(view(robot(frame(emergency_stop=engaged))), console(80))
 
     assert plain(lines) == [
         "EMERGENCY STOP  engaged: smoke, for 0 s, no standstill seen yet",
@@ -230,7 +238,7 @@ def test_a_reason_cannot_move_the_cursor() -> None:
 
 @pytest.mark.parametrize(("room", "told"), [(2, ["t2 drives", "t3 drives"]), (0, []), (-1, [])])
 def test_of_what_happened_the_newest_is_told(room: int, told: list[str]) -> None:
-    starts = [event(number, "task.started", task=f"t{number}") for number in (1, 2, 3)]
+    starts = [event(number, f"task t{number} drives") for number in (1, 2, 3)]
 
     lines = plain(blocks.notes(view(robot(*starts)), room))
 

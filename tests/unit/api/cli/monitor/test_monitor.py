@@ -9,19 +9,17 @@ from collections.abc import Callable
 import pytest
 
 from api.cli.monitor import monitor as module
-from api.cli.monitor.address import Address
-from api.cli.monitor.monitor import monitor
+from api.cli.monitor.monitor import monitor, until_first_ends
 from api.cli.monitor.store import Json
 from api.cli.monitor.watch import Watch
-from api.client.service_client import NoAnswerError, ServiceProblemError
+from api.client.address import Address
+from api.client.outcomes import NoAnswerError, ServiceProblemError
 from tests.support.monitor import URL, after, frame, hello, named, part, stop, system_state
 
 Output = pytest.CaptureFixture[str]
 
 WHOLE = (
-    {"type": "emergency_stop", **stop()},
-    {"type": "holds", "items": []},
-    frame(parts=named("name", part("arm")), signals={}, task=None),
+    frame(parts=named("name", part("arm")), signals={}, task=None, holds={}, emergency_stop=stop()),
 )
 
 
@@ -81,7 +79,7 @@ def test_once_of_a_robot_in_error_is_a_picture_all_the_same(
     monkeypatch: pytest.MonkeyPatch, capsys: Output
 ) -> None:
     state = frame(system_state=system_state("ERROR", "battery is low"))
-    monkeypatch.setattr(Link, "says", (*WHOLE[:2], {**WHOLE[2], **state}))
+    monkeypatch.setattr(Link, "says", ({**WHOLE[0], **state},))
 
     assert monitor(URL, "text", once=True) == 0
     assert "ERROR  battery is low" in capsys.readouterr().out
@@ -191,7 +189,7 @@ def test_no_color_leaves_the_colours_out(
 ) -> None:
     terminal = on_a_terminal(monkeypatch)
     error = frame(system_state=system_state("ERROR", "battery is low"))
-    monkeypatch.setattr(Link, "says", (*WHOLE[:2], {**WHOLE[2], **error}))
+    monkeypatch.setattr(Link, "says", ({**WHOLE[0], **error},))
     monkeypatch.setenv("COLORTERM", "")
     monitor(URL, "text", once=True)
     colored = terminal.getvalue()
@@ -201,3 +199,49 @@ def test_no_color_leaves_the_colours_out(
 
     assert "31m" in colored
     assert "31m" not in terminal.getvalue()[len(colored) :]
+
+
+async def test_the_first_that_fails_ends_the_others_and_is_told_alone() -> None:
+    ended = asyncio.Event()
+
+    async def wait() -> None:
+        try:
+            await asyncio.Event().wait()
+        finally:
+            ended.set()
+
+    async def fail() -> None:
+        raise ValueError("gone")
+
+    with pytest.raises(ValueError, match="gone"):
+        await until_first_ends(wait(), fail())
+    assert ended.is_set()
+
+
+async def test_the_first_that_is_done_ends_the_others() -> None:
+    async def wait() -> None:
+        await asyncio.Event().wait()
+
+    async def finish() -> None:
+        return
+
+    await until_first_ends(wait(), finish())
+
+
+async def test_when_it_is_canceled_so_are_they() -> None:
+    began, ended = asyncio.Event(), asyncio.Event()
+
+    async def wait() -> None:
+        began.set()
+        try:
+            await asyncio.Event().wait()
+        finally:
+            ended.set()
+
+    task = asyncio.create_task(until_first_ends(wait()))
+    await began.wait()
+    task.cancel()
+
+    with pytest.raises(asyncio.CancelledError):
+        await task
+    assert ended.is_set()

@@ -1,25 +1,33 @@
 import io
 import json
 
+import pytest
 from rich.console import Console
 
-from api.cli.monitor.output import ChangeLog, write_picture
-from api.cli.monitor.store import fold
+from api.cli.monitor.output import ChangeLog, what_stands, write_picture
+from api.cli.monitor.store import Json, fold
 from api.cli.monitor.view import Contact, Level
 from tests.support.monitor import (
     after,
     console,
+    event,
     frame,
+    hello,
+    hold,
     named,
     off_target,
     part,
     robot,
     signal,
+    stop,
     system,
+    system_state,
+    task,
     view,
 )
 
 KNOWN = robot(parts=(system("robot", "arm"), part("arm")), signals=(signal("battery_level"),))
+DRIVING = fold(robot(parts=(part("arm"),)), frame(task=task()))
 CHANGED = fold(KNOWN, frame(parts=named("name", off_target("arm"))))
 
 
@@ -71,7 +79,7 @@ def test_pictures_in_a_log_have_an_empty_line_between_them() -> None:
 def test_as_long_as_something_is_not_known_there_is_no_picture() -> None:
     out = console()
 
-    ChangeLog("text", out, io.StringIO()).look(view(fold(KNOWN, {"type": "hello", "epoch": "x"})))
+    ChangeLog("text", out, io.StringIO()).look(view(fold(KNOWN, hello("x"))))
 
     assert text_in(out) == ""
 
@@ -95,3 +103,39 @@ def test_to_programs_only_what_is_true_now_is_told() -> None:
 
     assert text_in(out) == ""
     assert "broke" in complaints.getvalue()
+
+
+@pytest.mark.parametrize(
+    "message",
+    [
+        frame(after(1)),
+        frame(signals=named("signal", signal("battery_level", 0.5))),
+        frame(task=task(progress=0.5, distance_m=400.0)),
+        frame(vehicle={"speed_mps": 2.0}),
+        event(1),
+    ],
+)
+def test_values_ages_and_ways_are_no_change(message: Json) -> None:
+    assert what_stands(fold(DRIVING, message)) == what_stands(DRIVING)
+
+
+@pytest.mark.parametrize(
+    "message",
+    [
+        frame(system_state=system_state("RUNNING")),
+        frame(system_state=system_state("IDLE", "battery is low")),
+        frame(parts=named("name", part("arm", "inactive"))),
+        frame(parts=named("name", part("arm", mode="FAST"))),
+        frame(parts=named("name", part("arm", target={"state": "active", "mode": "FAST"}))),
+        frame(parts=named("name", off_target("arm"))),
+        frame(parts=named("name", part("arm", reachable=False))),
+        frame(task=task("PAUSED")),
+        frame(task=task(id="t2")),
+        frame(task=None),
+        frame(holds=named("owner", hold("operator"))),
+        frame(emergency_stop=stop(engaged=True)),
+        hello("two"),
+    ],
+)
+def test_states_modes_targets_holds_and_the_status_of_the_task_are(message: Json) -> None:
+    assert what_stands(fold(DRIVING, message)) != what_stands(DRIVING)

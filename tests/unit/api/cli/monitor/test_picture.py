@@ -8,6 +8,7 @@ from tests.support.monitor import (
     event,
     frame,
     hold,
+    named,
     off_target,
     part,
     robot,
@@ -21,9 +22,12 @@ from tests.support.monitor import (
 PARTS = (system("robot", "arm", "base"), part("arm"), off_target("base"))
 SIGNALS = (signal("battery_level"), signal("estop", value=False), signal("temperature"))
 BUSY = (
-    frame(system_state=system_state("ERROR", "battery is low"), task=task("PAUSED")),
-    {"type": "holds", "items": [hold("operator", "loading"), hold("error", "battery is low")]},
-    *(event(number, "task.started", task=f"t{number}") for number in range(1, 9)),
+    frame(
+        system_state=system_state("ERROR", "battery is low"),
+        task=task("PAUSED"),
+        holds=named("owner", hold("operator", "loading"), hold("error", "battery is low")),
+    ),
+    *(event(number, f"task t{number} drives") for number in range(1, 9)),
 )
 
 

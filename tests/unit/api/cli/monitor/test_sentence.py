@@ -1,7 +1,13 @@
-from api.cli.monitor.sentence import Sentence, contact_sentence, state_sentence, stop_sentence
+from api.cli.monitor.sentence import (
+    Sentence,
+    contact_sentence,
+    restart_sentence,
+    state_sentence,
+    stop_sentence,
+)
 from api.cli.monitor.store import Json, Robot
 from api.cli.monitor.view import Contact, Level
-from tests.support.monitor import AT, frame, robot, stop, system_state, task, view
+from tests.support.monitor import AT, after, frame, hello, robot, stop, system_state, task, view
 
 
 def test_idle_without_a_task_says_so() -> None:
@@ -83,8 +89,8 @@ def test_a_released_stop_is_not_worth_a_word() -> None:
 
 def test_an_engaged_stop_says_why_since_when_by_whom_and_whether_the_vehicle_stands() -> None:
     engaged = stop(engaged=True, by="anna", reason="smoke", since_at=AT)
-    moving = view(robot({"type": "emergency_stop", **engaged}), later_s=3.0)
-    standing = view(robot({"type": "emergency_stop", **engaged, "standstill_at": AT}))
+    moving = view(robot(frame(emergency_stop=engaged)), later_s=3.0)
+    standing = view(robot(frame(emergency_stop={**engaged, "standstill_at": AT})))
 
     assert stop_sentence(moving) == Sentence(
         "EMERGENCY STOP", "engaged: smoke, for 3 s, by anna, no standstill seen yet"
@@ -92,3 +98,21 @@ def test_an_engaged_stop_says_why_since_when_by_whom_and_whether_the_vehicle_sta
     assert stop_sentence(standing) == Sentence(
         "EMERGENCY STOP", "engaged: smoke, for 0 s, by anna, the vehicle stands"
     )
+
+
+def test_a_restart_is_told_for_ten_minutes() -> None:
+    restarted = robot(hello("two", after(3)), frame(after(4)))
+
+    told = restart_sentence(view(restarted, later_s=60.0))
+
+    assert told is not None
+    assert told.word == "RESTARTED"
+    assert told.text.endswith("earlier tasks and holds are gone")
+    assert restart_sentence(view(restarted, later_s=700.0)) is None
+    assert restart_sentence(view(robot())) is None
+
+
+def test_a_task_that_ended_is_no_task_any_more() -> None:
+    ended = view(robot(frame(task=task("SUCCEEDED", ended_at=AT))))
+
+    assert state_sentence(ended) == Sentence("IDLE", "no task")

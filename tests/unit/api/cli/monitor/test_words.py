@@ -1,7 +1,7 @@
 import pytest
 
 from api.cli.monitor import words
-from tests.support.monitor import signal, task
+from tests.support.monitor import after, signal, task
 
 
 @pytest.mark.parametrize(
@@ -115,3 +115,19 @@ def test_where_no_vehicle_is_known_its_speed_is_not() -> None:
 def test_the_time_of_day_is_local() -> None:
     assert words.time_of_day(0.0)[2:3] == ":"
     assert len(words.time_of_day(0.0)) == len("12:00:00")
+
+
+def test_how_a_task_ended_is_told_with_its_way_and_time() -> None:
+    ended = task("ABORTED", reason="left the path", ended_at=after(12), distance_m=60.0)
+
+    told = words.end_words(ended)
+
+    assert told.startswith("task t1 aborted at ")
+    assert told.endswith(": left the path (60 m of 800 m in 12 s)")
+
+
+def test_a_reason_that_says_the_same_is_left_out() -> None:
+    ended = task("CANCELED", reason="canceled", ended_at=after(1))
+
+    assert "canceled" in words.end_words(ended)
+    assert words.end_words(ended).count("canceled") == 1

@@ -1,5 +1,7 @@
 """What a page of another site cannot make a browser do to the robot."""
 
+from typing import NamedTuple
+
 import pytest
 
 from api.http.gate.origin import OriginGate, is_same_origin
@@ -7,6 +9,7 @@ from api.http.gate.refusals import Refusals
 from tests.support.asgi import answer_200, messages_of, status_of, websocket_scope
 from tests.support.http_robot import HttpRobot, http_scope
 from tests.support.manual_clock import ManualClock
+from tests.support.tables import table
 
 PRESS = '{"engaged": true}'
 JSON = {"content-type": "application/json"}
@@ -94,28 +97,42 @@ async def test_a_foreign_page_may_ask_but_is_not_let_read(robot: HttpRobot) -> N
     assert "access-control-allow-origin" not in answer.headers
 
 
-@pytest.mark.parametrize(
-    ("origin", "host", "same"),
-    [
-        ("http://robot", "robot", True),
-        ("http://robot", "robot:80", True),
-        ("http://robot:80", "robot", True),
-        ("https://robot", "robot", True),
-        ("https://robot", "robot:443", True),
-        ("http://ROBOT:8000", "robot:8000", True),
-        ("http://[::1]:8000", "[::1]:8000", True),
-        ("http://robot:8000", "robot:8001", False),
-        ("http://robot.evil.example", "robot", False),
-        ("http://localhost:8000", "127.0.0.1:8000", False),
-        ("file://robot", "robot", False),
-        ("null", "robot", False),
-        ("", "robot", False),
-        ("http://robot:x", "robot", False),
-        ("http://[robot", "robot", False),
-    ],
+class Asked(NamedTuple):
+    """A page and the host that it asks, as both stand in the headers of a request."""
+
+    origin: str
+    host: str
+
+
+@table(
+    {
+        "without ports": Asked("http://robot", "robot"),
+        "the port of http in the host": Asked("http://robot", "robot:80"),
+        "the port of http in the origin": Asked("http://robot:80", "robot"),
+        "https": Asked("https://robot", "robot"),
+        "the port of https in the host": Asked("https://robot", "robot:443"),
+        "capital letters": Asked("http://ROBOT:8000", "robot:8000"),
+        "an address of IPv6": Asked("http://[::1]:8000", "[::1]:8000"),
+    }
 )
-def test_an_origin_is_ours_if_name_and_port_are(origin: str, host: str, same: bool) -> None:
-    assert is_same_origin(origin, host) is same
+def test_an_origin_is_ours_if_name_and_port_are(row: Asked) -> None:
+    assert is_same_origin(row.origin, row.host) is True
+
+
+@table(
+    {
+        "another port": Asked("http://robot:8000", "robot:8001"),
+        "a name that begins like ours": Asked("http://robot.evil.example", "robot"),
+        "another name of the same host": Asked("http://localhost:8000", "127.0.0.1:8000"),
+        "a file": Asked("file://robot", "robot"),
+        "a page that hides its origin": Asked("null", "robot"),
+        "nothing": Asked("", "robot"),
+        "a port that is no number": Asked("http://robot:x", "robot"),
+        "an address without its end": Asked("http://[robot", "robot"),
+    }
+)
+def test_any_other_origin_is_foreign(row: Asked) -> None:
+    assert is_same_origin(row.origin, row.host) is False
 
 
 # --- what a page sends --------------------------------------------------------------------------

@@ -6,12 +6,12 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from api.http.access import Access
-from api.http.gate.rate import RateGate, TokenBuckets, is_never_limited
+from api.http.gate.rate import RateGate, TokenBuckets
 from api.http.gate.refusals import Refusals
 from api.http.limits import ServiceLimits
 from domain.timebase import seconds
 from tests.support.asgi import answer_200, messages_of, status_of, websocket_scope
-from tests.support.http_robot import http_robot, http_scope
+from tests.support.http_robot import declared_policies, http_robot, http_scope
 from tests.support.manual_clock import ManualClock
 
 # --- the buckets --------------------------------------------------------------------------------
@@ -94,7 +94,7 @@ def test_nobody_ever_asks_more_than_its_share(asked: list[tuple[int, str]]) -> N
 
 
 def gate(per_s: int, clock: ManualClock) -> RateGate:
-    return RateGate(answer_200, per_s, clock, Refusals(clock))
+    return RateGate(answer_200, per_s, clock, declared_policies(), Refusals(clock))
 
 
 async def test_who_asks_too_often_is_told_so_and_when_to_come_again() -> None:
@@ -179,8 +179,10 @@ async def test_what_makes_the_robot_safe_is_never_refused_for_being_asked_too_of
         ("GET", "/healthz"),
     ],
 )
-def test_nothing_else_is_free(method: str, path: str) -> None:
-    assert not is_never_limited(http_scope(method, path))
+async def test_nothing_else_is_free(method: str, path: str) -> None:
+    limited = gate(1, ManualClock())
+
+    assert [await status_of(limited, http_scope(method, path)) for _ in range(3)] == [200, 200, 429]
 
 
 async def test_a_stop_gets_through_to_the_robot_though_its_client_asks_too_often() -> None:

@@ -9,7 +9,7 @@ from api.http.access import Access
 from api.http.gate.refusals import Refusals
 from api.http.gate.token import TokenGate
 from tests.support.asgi import answer_200, messages_of, status_of, websocket_scope
-from tests.support.http_robot import HttpRobot, http_robot, http_scope
+from tests.support.http_robot import HttpRobot, declared_policies, http_robot, http_scope
 from tests.support.manual_clock import ManualClock
 
 TOKEN = "correct-horse-battery"
@@ -23,7 +23,7 @@ async def guarded() -> AsyncIterator[HttpRobot]:
 
 
 def gate(access: Access) -> TokenGate:
-    return TokenGate(answer_200, access, Refusals(ManualClock()))
+    return TokenGate(answer_200, access, declared_policies(), Refusals(ManualClock()))
 
 
 async def test_a_service_without_a_token_asks_for_none(robot: HttpRobot) -> None:
@@ -44,7 +44,9 @@ async def test_every_operation_of_the_contract_asks_for_the_token_but_the_probes
     assert open_to_all == {("get", "/livez"), ("get", "/readyz")}
 
 
-@pytest.mark.parametrize("path", ["/nowhere", "/metrics", "/healthz", "/webx", "/livez/", "/docsx"])
+@pytest.mark.parametrize(
+    "path", ["/nowhere", "/metrics", "/healthz", "/webx", "/livez/", "/docsx", "/docs/x"]
+)
 async def test_whatever_is_not_named_as_open_is_not(path: str, guarded: HttpRobot) -> None:
     assert (await guarded.http.get(path)).status_code == 401
 
@@ -56,7 +58,7 @@ async def test_the_page_can_be_loaded_to_ask_for_the_token(path: str, guarded: H
     assert (await guarded.http.get(path)).status_code == 200
 
 
-@pytest.mark.parametrize("path", ["/docs", "/docs/x.css", "/asyncapi.json"])
+@pytest.mark.parametrize("path", ["/docs", "/docs/swagger-ui.css", "/asyncapi.json"])
 async def test_documents_say_nothing_of_the_robot(path: str) -> None:
     assert await status_of(gate(Access.with_token(TOKEN)), http_scope("GET", path)) == 200
 

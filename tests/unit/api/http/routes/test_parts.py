@@ -1,7 +1,7 @@
 """`/systems` and `/nodes` as an operator uses them."""
 
 import asyncio
-from typing import Any
+from typing import Any, NamedTuple
 
 import pytest
 
@@ -9,6 +9,7 @@ from domain.simulation.node_settings import Fault, NodeSettings
 from domain.timebase import seconds
 from tests.support.http_robot import HttpRobot, http_robot, http_scope
 from tests.support.manual_clock import settle
+from tests.support.tables import table
 
 PART_FIELDS = {
     "name",
@@ -213,26 +214,30 @@ async def test_a_body_is_read_as_json_whatever_curl_calls_it(robot: HttpRobot) -
     assert answer.status_code == 202
 
 
-@pytest.mark.parametrize(
-    ("fault", "wait_s", "status", "end"),
-    [
-        (None, 5, 200, "succeeded"),
-        (Fault.REFUSE, 5, 409, "failed"),
-        (None, 0.1, 202, "running"),
-        (None, 0, 202, "running"),
-    ],
+class Waited(NamedTuple):
+    wait_s: float
+    status: int
+    told: str
+    fault: Fault | None = None
+
+
+@table(
+    {
+        "until it succeeds": Waited(wait_s=5, status=200, told="succeeded"),
+        "until it fails": Waited(wait_s=5, fault=Fault.REFUSE, status=409, told="failed"),
+        "not long enough": Waited(wait_s=0.1, status=202, told="running"),
+        "not at all": Waited(wait_s=0, status=202, told="running"),
+    }
 )
-async def test_who_waits_is_told_how_it_ended(
-    fault: Fault | None, wait_s: float, status: int, end: str, robot: HttpRobot
-) -> None:
-    if fault is not None:
-        robot.break_node("drive_base", fault)
-    asked = robot.http.post(f"/nodes/drive_base/mode?wait={wait_s}", json={"mode": "FAST"})
+async def test_who_waits_is_told_how_it_ended(row: Waited, robot: HttpRobot) -> None:
+    if row.fault is not None:
+        robot.break_node("drive_base", row.fault)
+    asked = robot.http.post(f"/nodes/drive_base/mode?wait={row.wait_s}", json={"mode": "FAST"})
 
-    answer = await robot.while_time_passes(wait_s, asked)
+    answer = await robot.while_time_passes(row.wait_s, asked)
 
-    assert answer.json()["status"] == end
-    assert answer.status_code == status
+    assert answer.json()["status"] == row.told
+    assert answer.status_code == row.status
 
 
 async def test_who_waits_for_a_node_that_does_not_come_to_an_end_hears_that_nobody_knows() -> None:

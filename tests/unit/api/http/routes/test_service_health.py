@@ -1,13 +1,11 @@
 """`/livez`, `/readyz` and `/healthz`: how the service fares, whatever the robot does."""
 
-from collections.abc import AsyncIterator
 from typing import Any
 
 import httpx
 import pytest
 from fastapi import FastAPI
 
-from api.app import create_app
 from domain.findings import Finding
 from domain.inputs import EmergencyStopRequest, Reading
 from domain.timebase import seconds
@@ -19,25 +17,8 @@ ODD = Finding("warning", "INDISTINGUISHABLE_MODES", "WEAK is equal to __DEFAULT_
 
 
 @pytest.fixture
-def clock() -> ManualClock:
-    return ManualClock()
-
-
-@pytest.fixture
 def supervisor(clock: ManualClock) -> Supervisor:
     return make_supervisor(clock, warnings=[ODD])
-
-
-@pytest.fixture
-def app(supervisor: Supervisor) -> FastAPI:
-    return create_app(supervisor, allowed_hosts=[])
-
-
-@pytest.fixture
-async def http(app: FastAPI) -> AsyncIterator[httpx.AsyncClient]:
-    transport = httpx.ASGITransport(app)
-    async with httpx.AsyncClient(transport=transport, base_url="http://127.0.0.1:8000") as client:
-        yield client
 
 
 async def warnings(http: httpx.AsyncClient) -> dict[str, str]:

@@ -2,7 +2,7 @@ from api.http.schemas.path_preview import PathPreviewJson
 from domain.paths.preview import preview
 from domain.paths.speed_profile import SpeedLimits
 from domain.vehicle import VehicleLimits
-from tests.support.driver import straight
+from tests.support.paths import straight
 
 
 def test_a_straight_path_of_an_unknown_vehicle_has_neither_radius_nor_start() -> None:

@@ -11,6 +11,8 @@ def test_what_has_not_changed_is_left_out_of_a_frame() -> None:
         "signals",
         "task",
         "vehicle",
+        "holds",
+        "emergency_stop",
     }
 
 

@@ -3,7 +3,7 @@ import pytest
 from domain.errors import InvalidValueError
 from domain.inputs import TaskRequest
 from domain.snapshot import TaskPhase
-from tests.support.driver import straight
+from tests.support.paths import straight
 from tests.support.ros_robot import OPERATOR, RosRobot
 
 

@@ -1,5 +1,5 @@
 from domain.inputs import HoldRequest, Reading, TaskRequest
-from tests.support.driver import straight
+from tests.support.paths import straight
 from tests.support.ros_robot import RosRobot
 
 

@@ -1,0 +1,142 @@
+"""`pilothouse simulate`: let a scenario happen in virtual time, and say whether it went as told."""
+
+import json
+import sys
+import time
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Literal
+
+from api.cli.terminal_line import TerminalLine
+from api.http.schemas.simulation import DifferenceJson, ExpectationJson, RefusalJson
+from api.simulation.expectations import MISSING
+from api.simulation.scenario_file import InvalidScenarioError, Scenario, load_scenario
+from api.simulation.simulation import Simulation
+from api.terminal_text import finding_line
+from service.files.text_file import UnreadableFileError, read_text_file
+from service.worker import TooComplexError
+
+HELD, FAILED, INVALID = 0, 1, 2
+
+
+def simulate(
+    name: str,
+    form: Literal["text", "json"],
+    loaded_model: Path,
+    model: Path | None = None,
+    robot: Path | None = None,
+) -> int:
+    """Let a scenario happen and print what came of it; return the exit code.
+
+    Args:
+        name: Path of the scenario; `-` is the standard input.
+        form: `text` for people, `json` for programs.
+        loaded_model: File of the model for who names none.
+        model: File with another model than that of the scenario.
+        robot: File with other settings than those of the scenario.
+    """
+    try:
+        scenario = load_scenario(name, read_text_file(loaded_model), model, robot)
+        simulation = Simulation(scenario.body, scenario.robot)
+        begin = time.perf_counter()
+        _run(simulation, scenario.body.until_s)
+        took_s = time.perf_counter() - begin
+    except InvalidScenarioError as error:
+        for file, finding in error.findings:
+            print(finding_line(file, finding), file=sys.stderr)
+        return INVALID
+    except (UnreadableFileError, TooComplexError) as error:
+        print(f"pilothouse: {error}", file=sys.stderr)
+        return INVALID
+    if form == "json":
+        print(simulation.as_json())
+    else:
+        for line in report(scenario, simulation, took_s):
+            print(line)
+    return FAILED if failures(scenario, simulation) else HELD
+
+
+def failures(scenario: Scenario, simulation: Simulation) -> list[str]:
+    """Return what did not go as told, each with its line in the file; empty: all is as expected."""
+    found: list[ExpectationJson | RefusalJson] = [
+        *simulation.failed_expectations(),
+        *simulation.unexpected_refusals(),
+    ]
+    return [
+        line
+        for item in sorted(found, key=lambda item: (item.t_s, item.step))
+        for line in _failure(scenario, item)
+    ]
+
+
+def report(scenario: Scenario, simulation: Simulation, took_s: float) -> Iterator[str]:
+    """Yield what came of a scenario, line by line.
+
+    Args:
+        scenario: What was to happen.
+        simulation: What happened.
+        took_s: How long that took, in s.
+    """
+    if scenario.body.title:
+        yield scenario.body.title
+    for event in simulation.events:
+        if event.event.notable:
+            yield f"{simulation.seconds_to(event):9.2f} s  {event.event.words}"
+    failed = failures(scenario, simulation)
+    yield from failed
+    speed = f"{scenario.body.until_s:g} s in {took_s:.2f} s"
+    yield f"{scenario.file}: {_verdict(simulation)} ({speed})"
+
+
+def _run(simulation: Simulation, until_s: float) -> None:
+    """Run with a line that tells how far it is, where somebody looks at a terminal."""
+    with TerminalLine(sys.stderr) as line:
+
+        def show(at_s: float) -> None:
+            share = at_s / until_s if until_s else 1.0
+            line.show(f"{at_s:,.1f} s of {until_s:,g} s ({share:.0%})")
+
+        simulation.run(show if line.is_shown else lambda _: None)
+
+
+def _failure(scenario: Scenario, item: ExpectationJson | RefusalJson) -> Iterator[str]:
+    """Yield a line for what went wrong, and those that say how."""
+    if isinstance(item, RefusalJson):
+        place = f"{scenario.file}:{scenario.line_of(item.step)}"
+        yield f"{place}: refused at {item.t_s:g} s: {item.problem.detail}"
+        if item.problem.hint:
+            yield f"    hint: {item.problem.hint}"
+        return
+    for difference in item.differences:
+        if difference.path == "refused":
+            place = f"{scenario.file}:{scenario.line_of(item.step)}"
+            yield f"{place}: not refused at {item.t_s:g} s, though that was expected"
+        else:
+            yield from _difference(scenario, item, difference)
+
+
+def _difference(
+    scenario: Scenario, item: ExpectationJson, difference: DifferenceJson
+) -> Iterator[str]:
+    line = scenario.line_of(item.step, difference.path)
+    yield f"{scenario.file}:{line}: otherwise than expected at {item.t_s:g} s: {difference.path}"
+    yield f"    expected {_shown(difference.expected)}"
+    yield f"    seen     {_shown(difference.seen)}"
+
+
+_LONGEST = 300
+
+
+def _shown(value: object) -> str:
+    text = MISSING if value == MISSING else json.dumps(value, ensure_ascii=False)
+    return text if len(text) <= _LONGEST else f"{text[: _LONGEST - 3]}..."
+
+
+def _verdict(simulation: Simulation) -> str:
+    held = sum(not found.differences for found in simulation.expectations)
+    failed = len(simulation.expectations) - held
+    refused = len(simulation.unexpected_refusals())
+    if not simulation.expectations and not refused:
+        return "nothing was expected"
+    counts = [(held, "as expected"), (failed, "otherwise than expected"), (refused, "refused")]
+    return ", ".join(f"{count} {what}" for count, what in counts if count)

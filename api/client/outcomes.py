@@ -1,0 +1,55 @@
+"""What can come of asking a service: how it ended, what it refused, or no answer at all."""
+
+from collections.abc import Iterator, Mapping, Sequence
+from enum import IntEnum
+from typing import Any
+
+from api.access_token import FILE_VARIABLE, TOKEN_VARIABLE
+
+_NO_TOKEN = f"set {TOKEN_VARIABLE} to the token of the service, or {FILE_VARIABLE} to its file"
+_OTHER_TOKEN = f"the token in {TOKEN_VARIABLE} or {FILE_VARIABLE} is that of another service"
+
+Json = Mapping[str, Any]
+
+
+class Outcome(IntEnum):
+    """How a change ended, as exit code of the command."""
+
+    SUCCEEDED = 0
+    FAILED = 1
+    UNKNOWN = 2
+    """Timed out, not ended yet, or nobody answered."""
+
+
+class ServiceProblemError(Exception):
+    """The service answered with a problem document (RFC 9457)."""
+
+    def __init__(self, problem: Json) -> None:
+        super().__init__(problem.get("detail") or problem.get("title") or "refused")
+        self.problem = problem
+
+
+class NoAnswerError(Exception):
+    """The service did not answer, or something answered that is not Pilothouse."""
+
+
+def token_hint(*, given: bool) -> str:
+    """Say what to do about a service that wants a token, or another one than was given."""
+    return _OTHER_TOKEN if given else _NO_TOKEN
+
+
+def refusal_lines(problem: Json) -> Iterator[str]:
+    """Say why something was refused, what stands against it, and what helps."""
+    yield f"refused: {problem.get('detail') or problem.get('title')}"
+    for blocker in problem.get("blockers") or ():
+        yield f"  {blocker['code']}: {blocker['message']}{_way(blocker.get('path') or ())}"
+    faults = problem.get("errors") or ()
+    # A single fault is told by the detail already.
+    for fault in faults if len(faults) > 1 else ():
+        yield f"  {fault['pointer'] or 'body'}: {fault['message']}"
+    if problem.get("hint"):
+        yield f"  hint: {problem['hint']}"
+
+
+def _way(path: Sequence[str]) -> str:
+    return f" ({' > '.join(path)})" if len(path) > 1 else ""

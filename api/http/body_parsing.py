@@ -1,0 +1,164 @@
+"""Bodies of requests: read up to a limit, parsed strictly, validated, and what was wrong with them.
+
+The routes and the worker process share this, so it knows no web framework.
+"""
+
+import json
+from collections.abc import AsyncIterable, Iterable, Mapping, Sequence
+from typing import Any, TypeVar
+
+from pydantic import BaseModel, ValidationError
+
+from api.http.schemas.problem import BodyFault
+from domain.errors import PilothouseError
+
+AnyBody = TypeVar("AnyBody", bound=BaseModel)
+
+
+class MalformedBodyError(PilothouseError):
+    """A body that cannot be read at all."""
+
+    code = "MALFORMED"
+
+
+class BodyTooLargeError(PilothouseError):
+    """A body larger than is accepted here."""
+
+    code = "TOO_LARGE"
+
+    def __init__(self, limit: int) -> None:
+        super().__init__(f"the body is larger than {limit} bytes")
+
+
+class InvalidBodyError(PilothouseError):
+    """A request that can be read, and says something that cannot be; `faults` hold it all."""
+
+    code = "INVALID_BODY"
+
+    def __init__(
+        self, faults: Sequence[BodyFault], code: str | None = None, hint: str | None = None
+    ) -> None:
+        first = faults[0]
+        place = f"{first.pointer}: " if first.pointer else ""
+        more = f" (and {len(faults) - 1} more)" if len(faults) > 1 else ""
+        super().__init__(f"{place}{first.message}{more}")
+        self.faults = tuple(faults)
+        if code is not None:
+            self.code = code
+        if hint is not None:
+            self.hint = hint
+
+    @classmethod
+    def at(cls, pointer: str, error: PilothouseError) -> "InvalidBodyError":
+        """Return an error that was raised for a name or value in a body, with its place.
+
+        Args:
+            pointer: The key of the member, or a JSON pointer.
+            error: What was raised.
+        """
+        fault = BodyFault(pointer=as_pointer(pointer), code=error.code, message=error.message)
+        return cls([fault], error.code, error.hint)
+
+
+async def read_limited(chunks: AsyncIterable[bytes], limit: int) -> bytes:
+    """Return a whole body, counted while it comes in, since its length may not be known before.
+
+    Raises:
+        BodyTooLargeError: It is longer than `limit` bytes.
+    """
+    body = bytearray()
+    async for chunk in chunks:
+        body += chunk
+        if len(body) > limit:
+            raise BodyTooLargeError(limit)
+    return bytes(body)
+
+
+def parse_text(raw: bytes) -> str:
+    """Return a body as text.
+
+    Raises:
+        MalformedBodyError: It is not UTF-8.
+    """
+    try:
+        return raw.decode("utf-8-sig")
+    except UnicodeDecodeError as error:
+        raise MalformedBodyError(f"the body is not UTF-8: {error.reason}") from error
+
+
+def parse_json(raw: bytes) -> object:
+    """Return what a JSON text says.
+
+    Raises:
+        MalformedBodyError: It is not JSON, nested beyond reason, or holds half a surrogate pair,
+            which could not be sent on.
+    """
+    text = parse_text(raw)
+    try:
+        value: object = json.loads(text)
+        if "\\u" in text:
+            json.dumps(value, ensure_ascii=False).encode()
+    except json.JSONDecodeError as error:
+        where = f"line {error.lineno}, column {error.colno}"
+        raise MalformedBodyError(f"the body is not JSON: {error.msg} at {where}") from error
+    except UnicodeEncodeError as error:
+        raise MalformedBodyError("the body holds half a surrogate pair") from error
+    except RecursionError as error:
+        raise MalformedBodyError("the body is nested too deeply") from error
+    except ValueError as error:
+        raise MalformedBodyError("the body holds a number with too many digits") from error
+    return value
+
+
+def parse_body(kind: type[AnyBody], raw: bytes) -> AnyBody:
+    """Return a JSON text as a `kind`.
+
+    Raises:
+        MalformedBodyError: It is not JSON.
+        InvalidBodyError: It is not a `kind`.
+    """
+    return check_body(kind, parse_json(raw))
+
+
+def check_body(kind: type[AnyBody], value: object) -> AnyBody:
+    """Return what a JSON text says as a `kind`.
+
+    Raises:
+        InvalidBodyError: It is not a `kind`.
+    """
+    try:
+        return kind.model_validate(value)
+    except ValidationError as error:
+        raise InvalidBodyError(faults_of(error.errors(include_url=False))) from error
+
+
+def faults_of(
+    errors: Iterable[Mapping[str, Any]], outside: frozenset[str] = frozenset()
+) -> list[BodyFault]:
+    """Return what pydantic found.
+
+    Args:
+        errors: As of `ValidationError.errors()`.
+        outside: First members of a place that are no member of the body, as FastAPI adds them.
+    """
+    faults = []
+    for error in errors:
+        place = tuple(error["loc"])
+        message = error["msg"]
+        if place and place[0] in outside:
+            source, place = place[0], place[1:]
+            if source != "body":
+                message, place = f"{source} {'.'.join(map(str, place))}: {message}", ()
+        pointer = pointer_to(*place)
+        faults.append(BodyFault(pointer=pointer, code=error["type"].upper(), message=message))
+    return faults
+
+
+def as_pointer(name: str) -> str:
+    """Return the name of a member as a JSON pointer (RFC 6901); one that is a pointer is kept."""
+    return name if not name or name.startswith("/") else pointer_to(name)
+
+
+def pointer_to(*keys: str | int) -> str:
+    """Return the JSON pointer (RFC 6901) that leads along `keys`."""
+    return "".join(f"/{str(key).replace('~', '~0').replace('/', '~1')}" for key in keys)

@@ -1,0 +1,74 @@
+"""Which route a request is for, and what that route declares, before the router has seen it."""
+
+import re
+from collections import defaultdict
+from collections.abc import Iterator, Sequence
+from typing import Any
+
+from fastapi import routing
+from starlette.routing import BaseRoute, compile_path
+from starlette.types import Scope
+
+from api.http.route_policy import RoutePolicy, UndeclaredRouteError, policy_of
+
+_KEY = "pilothouse.policy"
+_WEBSOCKET = "WEBSOCKET"
+
+_Routes = dict[tuple[str, str], list[tuple[re.Pattern[str], RoutePolicy]]]
+"""By method and first name of the path, each list in the order in which its routes are tried."""
+
+
+class RoutePolicies:
+    """What the routes of an application declare, by method and path as the router matches them."""
+
+    def __init__(self, routes: Sequence[BaseRoute]) -> None:
+        """Read the declarations.
+
+        Args:
+            routes: Of the whole application, in the order in which they are tried.
+
+        Raises:
+            UndeclaredRouteError: One declares nothing.
+        """
+        self._routes: _Routes = defaultdict(list)
+        for route in each_route(routes):
+            declared = policy_of(route.endpoint)
+            if declared is None:
+                raise UndeclaredRouteError(route.path)
+            pattern, _, _ = compile_path(route.path)
+            for method in route.methods or (_WEBSOCKET,):
+                self._routes[method, _first_name(route.path)].append((pattern, declared))
+
+    def of(self, scope: Scope) -> RoutePolicy | None:
+        """Return what the route of a request declares; None: there is no such route.
+
+        A HEAD is for what its GET is for. What was found is kept in the scope, for the next gate.
+
+        Args:
+            scope: Of an HTTP request or a WebSocket.
+        """
+        if _KEY not in scope:
+            scope[_KEY] = self._find(scope)
+        found: RoutePolicy | None = scope[_KEY]
+        return found
+
+    def _find(self, scope: Scope) -> RoutePolicy | None:
+        method = scope.get("method", _WEBSOCKET)
+        path: str = scope["path"]
+        key = ("GET" if method == "HEAD" else method, _first_name(path))
+        candidates = self._routes.get(key, ())
+        return next((declared for pattern, declared in candidates if pattern.match(path)), None)
+
+
+def _first_name(path: str) -> str:
+    """Return what is between the first slash and the next; no route has a parameter there."""
+    return path.split("/", 2)[1] if "/" in path else ""
+
+
+def each_route(routes: Sequence[BaseRoute]) -> Iterator[Any]:
+    """Yield each route with its whole path, methods and endpoint, also those of included routers.
+
+    FastAPI 0.115 copies the routes of a router that is included; later ones keep the router.
+    """
+    flattened = getattr(routing, "iter_route_contexts", iter)
+    yield from flattened(routes)

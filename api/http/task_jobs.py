@@ -1,0 +1,128 @@
+"""Work on waypoints that a client posts: read, checked, and made into a path.
+
+The functions take and return what can be sent between processes, since the worker runs them.
+"""
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from api.http.body_parsing import InvalidBodyError, MalformedBodyError, parse_body, parse_text
+from api.http.schemas.path_preview import MAX_DRAWN, PathPreviewJson
+from api.http.schemas.tasks import TaskBody, WaypointJson, WaypointsJson
+from domain.errors import InvalidValueError
+from domain.paths.path import Path
+from domain.paths.preview import preview
+from domain.paths.speed_profile import SpeedLimits
+from domain.tasks.task_planner import check_cruise
+from domain.vehicle import Pose, VehicleLimits
+from service.files.waypoint_file import Heading, read_waypoints_csv
+
+
+@dataclass(frozen=True, slots=True)
+class TaskOptions:
+    """What stands in the query beside a CSV; in a JSON body it stands there itself."""
+
+    controller: str
+    speed_mps: float
+    start_index: int
+    heading: Heading
+
+
+@dataclass(frozen=True, slots=True)
+class PostedTask:
+    """A task as it was posted, with its path made."""
+
+    path: Path
+    start_index: int
+    controller: str
+    speed_mps: float
+
+
+def read_posted_task(raw: bytes, csv: TaskOptions | None) -> PostedTask:
+    """Return the task that a body describes.
+
+    Args:
+        raw: The body.
+        csv: How to drive a body that is CSV; None: it is JSON as `TaskBody` describes it.
+
+    Raises:
+        PilothouseError: The body or its waypoints are invalid.
+    """
+    if csv is not None:
+        waypoints = read_waypoints_csv(parse_text(raw), csv.heading)
+        return PostedTask(Path(waypoints), csv.start_index, csv.controller, csv.speed_mps)
+    try:
+        return task_of(parse_body(TaskBody, raw))
+    except MalformedBodyError as error:
+        error.hint = "a CSV is sent with Content-Type: text/csv"
+        raise
+
+
+def task_of(body: TaskBody) -> PostedTask:
+    """Return the task that a validated body describes.
+
+    Raises:
+        InvalidBodyError: The waypoints are no path.
+    """
+    rows = [(point.x_m, point.y_m, point.yaw_rad) for point in body.waypoints]
+    try:
+        path = Path(np.array(rows, dtype=np.float64).reshape(-1, 3))
+    except InvalidValueError as error:
+        raise InvalidBodyError.at(error.pointer or "waypoints", error) from error
+    return PostedTask(path, body.start_index, body.controller, body.speed_mps)
+
+
+def preview_posted(
+    raw: bytes,
+    csv: TaskOptions | None,
+    pose: Pose | None,
+    vehicle: VehicleLimits,
+    limits: SpeedLimits,
+) -> bytes:
+    """Return what there is to know of a path before it is driven, as JSON.
+
+    Args:
+        raw: The body.
+        csv: As of `read_posted_task`.
+        pose: Of the vehicle; None: it is not known.
+        vehicle: What it can do.
+        limits: How hard it may be accelerated.
+
+    Raises:
+        PilothouseError: The body or its waypoints are invalid.
+    """
+    task = read_posted_task(raw, csv)
+    try:
+        check_cruise(task.speed_mps, vehicle)
+    except InvalidValueError as error:
+        raise InvalidBodyError.at(error.pointer, error) from error
+    found = preview(task.path, task.speed_mps, pose, vehicle, limits)
+    waypoints = task.path.waypoints
+    drawn = waypoints[thinned(len(waypoints), MAX_DRAWN), :2].tolist()
+    return PathPreviewJson.of(found, drawn).model_dump_json().encode()
+
+
+def encode_waypoints(waypoints: NDArray[np.float64], max_points: int | None) -> bytes:
+    """Return waypoints as JSON.
+
+    Args:
+        waypoints: Shape (n, 3): x and y in m, yaw in rad.
+        max_points: At most so many, evenly spread, first and last among them; None: all.
+    """
+    indices = thinned(len(waypoints), max_points)
+    items = [WaypointJson(x_m=x, y_m=y, yaw_rad=yaw) for x, y, yaw in waypoints[indices].tolist()]
+    return (
+        WaypointsJson(waypoint_count=len(waypoints), indices=indices.tolist(), items=items)
+        .model_dump_json()
+        .encode()
+    )
+
+
+def thinned(count: int, max_points: int | None) -> NDArray[Any]:
+    """Return indices of at most `max_points` of `count` things, evenly spread."""
+    if max_points is None or count <= max_points:
+        return np.arange(count)
+    return np.unique(np.linspace(0, count - 1, max_points).round().astype(int))

@@ -1,0 +1,97 @@
+"""What a client of the stream asks for in the address, and the messages that it may send."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any, TypeAlias
+
+from api.http.body_parsing import check_body, parse_json
+from api.http.schemas.stream import AuthMessage, ReadingMessage, ResyncMessage
+from domain.errors import InvalidValueError
+
+TOPICS = (
+    "system_state",
+    "parts",
+    "signals",
+    "task",
+    "vehicle",
+    "holds",
+    "emergency_stop",
+    "events",
+)
+"""In the order in which they are listed."""
+
+STATE_TOPICS = frozenset(TOPICS) - {"events"}
+
+ClientMessage: TypeAlias = ReadingMessage | ResyncMessage | AuthMessage
+
+
+@dataclass(frozen=True, slots=True)
+class StreamQuery:
+    """Which topics, and behind which event."""
+
+    topics: frozenset[str]
+    after: int | None
+    """Id of the last event known; None: only new ones."""
+    epoch: str | None
+
+    @property
+    def wants_state(self) -> bool:
+        """Tell whether `state` frames are wanted at all."""
+        return bool(self.topics & STATE_TOPICS)
+
+    @property
+    def wants_events(self) -> bool:
+        """Tell whether `event` frames are wanted."""
+        return "events" in self.topics
+
+
+def read_stream_query(query: Mapping[str, str]) -> StreamQuery:
+    """Read `topics`, `after` and `epoch`.
+
+    Raises:
+        InvalidValueError: An unknown topic, none at all, or an `after` that is no id.
+    """
+    return StreamQuery(_topics(query.get("topics")), _after(query.get("after")), query.get("epoch"))
+
+
+def _topics(text: str | None) -> frozenset[str]:
+    if text is None:
+        return frozenset(TOPICS)
+    named = [name.strip() for name in text.split(",") if name.strip()]
+    unknown = [name for name in named if name not in TOPICS]
+    if unknown:
+        message = f"there is no topic {unknown[0]!r}; topics: {', '.join(TOPICS)}"
+        raise InvalidValueError(message, "/topics")
+    if not named:
+        raise InvalidValueError(f"no topic is named; topics: {', '.join(TOPICS)}", "/topics")
+    return frozenset(named)
+
+
+def _after(text: str | None) -> int | None:
+    if text is None:
+        return None
+    # isdecimal alone accepts digits of other scripts, and int() alone accepts "1_0" and " 1".
+    if not (text.isascii() and text.isdecimal() and len(text) <= 18):
+        raise InvalidValueError(f"invalid event id {text[:40]!r}: ids are 0, 1, 2, ...", "/after")
+    return int(text)
+
+
+def read_client_message(message: Mapping[str, Any]) -> ClientMessage:
+    """Return what a client said.
+
+    Args:
+        message: As ASGI has it, with `text` or `bytes`.
+
+    Raises:
+        PilothouseError: It is none of the messages that a client may send.
+    """
+    text = message.get("text")
+    if text is None:
+        raise InvalidValueError("binary messages are not read; send JSON as text")
+    said = parse_json(text.encode())
+    kind = said.get("type") if isinstance(said, dict) else None
+    if kind == "auth":
+        return check_body(AuthMessage, said)
+    if kind == "resync":
+        return check_body(ResyncMessage, said)
+    return check_body(ReadingMessage, said)

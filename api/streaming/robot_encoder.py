@@ -1,0 +1,142 @@
+"""JSON text of what a robot shows and of its events; what is the same is not encoded again."""
+
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from typing import Any, Generic, TypeVar
+
+from pydantic_core import to_json
+
+from api.http.schemas.base import timestamp
+from api.http.schemas.health import EmergencyStopJson, StreamedSignalJson, SystemStateJson
+from api.http.schemas.parts import PartJson
+from api.http.schemas.tasks import HoldJson, TaskJson, VehicleJson
+from domain.events.event import RecordedEvent
+from domain.snapshot import (
+    EmergencyStopView,
+    HoldView,
+    PartView,
+    SignalView,
+    SystemStateView,
+    TaskView,
+    VehicleView,
+)
+from domain.timebase import Instant
+from service.supervisor import Supervisor
+
+View = TypeVar("View")
+
+
+class RobotEncoder:
+    """Encodes views and events of one robot, for frames as for samples of a simulation."""
+
+    def __init__(self, supervisor: Supervisor) -> None:
+        """Keep nothing yet.
+
+        Args:
+            supervisor: Its clock, epoch and vehicle limits are used.
+        """
+        self._supervisor = supervisor
+        self._clock = clock = supervisor.clock
+        self.parts = MemberCache[PartView](lambda view: PartJson.of(view, clock).model_dump_json())
+        self.signals = MemberCache[SignalView](
+            lambda view: StreamedSignalJson.of(view, clock).model_dump_json()
+        )
+        self._holds = LatestCache[Mapping[str, HoldView]](self._encode_holds)
+        self._emergency_stop = LatestCache[EmergencyStopView](
+            lambda view: EmergencyStopJson.of(view, clock).model_dump_json()
+        )
+
+    def system_state(
+        self, view: SystemStateView, seq: int, at: Instant, simulated: Sequence[str]
+    ) -> str:
+        """Return the state of the robot as it was at `at`, when frame `seq` was the newest."""
+        return SystemStateJson.of(view, seq, at, simulated, self._clock).model_dump_json()
+
+    def task(self, view: TaskView | None) -> str:
+        """Return a task; `null` for none."""
+        return "null" if view is None else TaskJson.of(view, self._clock).model_dump_json()
+
+    def vehicle(self, view: VehicleView) -> str:
+        """Return where the vehicle is and what it is told."""
+        limits = self._supervisor.core.driving.limits
+        return VehicleJson.of(view, limits, self._clock).model_dump_json()
+
+    def holds(self, views: Mapping[str, HoldView]) -> str:
+        """Return holds by owner; encoded anew only for another mapping."""
+        return self._holds.text(views)
+
+    def emergency_stop(self, view: EmergencyStopView) -> str:
+        """Return the emergency stop; encoded anew only for another view."""
+        return self._emergency_stop.text(view)
+
+    def event(self, event: RecordedEvent) -> str:
+        """Return an `event` frame, as it is in the log and in simulations too."""
+        shown = {
+            "type": "event",
+            "epoch": self._supervisor.epoch,
+            "id": event.id,
+            "at": timestamp(self._clock, event.at),
+            "kind": event.kind,
+            "cause": event.cause,
+            "actor": event.actor,
+            "data": event.data,
+            "words": event.event.words,
+            "notable": event.event.notable,
+        }
+        # A node may report a parameter that is NaN, which JSON does not know.
+        return to_json(shown, inf_nan_mode="null", fallback=_plain).decode()
+
+    def _encode_holds(self, views: Mapping[str, HoldView]) -> str:
+        return to_json(
+            {name: HoldJson.of(view, self._clock) for name, view in views.items()}
+        ).decode()
+
+
+class MemberCache(Generic[View]):
+    """Members of a JSON object, kept by name; a view that is the same object is not made again.
+
+    So a frame with 10,000 parts of which none changed is little more than joining strings. Names
+    are never forgotten, so that this is for those that the model or the robot file fix.
+    """
+
+    def __init__(self, encode: Callable[[View], str]) -> None:
+        self._encode = encode
+        self._known: dict[str, tuple[View, str]] = {}
+
+    def text(self, views: Mapping[Any, View]) -> str:
+        """Return the object that holds these members."""
+        return f"{{{','.join(self._each(views))}}}"
+
+    def new_ones(self, views: Iterable[tuple[str, View]]) -> Iterator[tuple[str, View]]:
+        """Yield the members that are not known as they are here."""
+        for name, view in views:
+            known = self._known.get(name)
+            if known is None or known[0] is not view:
+                yield name, view
+
+    def learn(self, views: Iterable[tuple[str, View]]) -> None:
+        """Encode members and keep their text."""
+        for name, view in views:
+            self._known[name] = (view, f"{to_json(name).decode()}:{self._encode(view)}")
+
+    def _each(self, views: Mapping[Any, View]) -> Iterator[str]:
+        self.learn(self.new_ones(views.items()))
+        return (self._known[name][1] for name in views)
+
+
+class LatestCache(Generic[View]):
+    """Text of one view, kept until another one is asked for."""
+
+    def __init__(self, encode: Callable[[View], str]) -> None:
+        self._encode = encode
+        self._known: tuple[View, str] | None = None
+
+    def text(self, view: View) -> str:
+        """Return the text of a view."""
+        if self._known is None or self._known[0] is not view:
+            self._known = (view, self._encode(view))
+        return self._known[1]
+
+
+def _plain(value: object) -> object:
+    """Return what JSON can hold instead of `value`, such as a read-only mapping."""
+    return dict(value) if isinstance(value, Mapping) else str(value)

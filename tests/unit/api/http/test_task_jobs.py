@@ -1,0 +1,78 @@
+"""Work on posted waypoints, as the worker does it."""
+
+import json
+import pickle
+
+import pytest
+
+from api.http.body_parsing import InvalidBodyError
+from api.http.task_jobs import (
+    TaskOptions,
+    encode_waypoints,
+    preview_posted,
+    read_posted_task,
+    thinned,
+)
+from domain.paths.speed_profile import SpeedLimits
+from domain.vehicle import Pose, VehicleLimits
+from service.files.waypoint_file import Heading, InvalidWaypointsError
+from tests.support.paths import straight
+
+LINE = b"0,0,0\n5,0,0\n10,0,0\n"
+OPTIONS = TaskOptions("stanley", 2.8, 1, Heading.RAD)
+
+
+def test_a_csv_takes_what_the_query_says() -> None:
+    task = read_posted_task(LINE, OPTIONS)
+
+    assert (task.controller, task.speed_mps, task.start_index) == ("stanley", 2.8, 1)
+    assert task.path.length_m == 10.0
+
+
+def test_json_says_all_of_it_itself() -> None:
+    body = {"waypoints": [{"x_m": 0, "y_m": 0, "yaw_rad": 0}, {"x_m": 3, "y_m": 4, "yaw_rad": 0}]}
+    task = read_posted_task(json.dumps(body).encode(), None)
+
+    assert (task.controller, task.path.length_m) == ("pure_pursuit", 5.0)
+
+
+def test_a_byte_order_mark_is_no_part_of_the_first_number() -> None:
+    assert read_posted_task(b"\xef\xbb\xbf" + LINE, OPTIONS).path.count == 3
+
+
+def test_a_task_can_be_sent_from_the_worker() -> None:
+    task = pickle.loads(pickle.dumps(read_posted_task(LINE, OPTIONS)))
+
+    assert task.path.point_at(7.5).x_m == 7.5
+
+
+def test_a_file_that_is_none_is_refused_with_its_lines() -> None:
+    with pytest.raises(InvalidWaypointsError):
+        read_posted_task(b"no waypoints", OPTIONS)
+
+
+def test_a_preview_of_an_impossible_speed_is_refused() -> None:
+    fast = TaskOptions("stanley", 99.0, 0, Heading.RAD)
+    with pytest.raises(InvalidBodyError, match=r"11\.2 m/s"):
+        preview_posted(LINE, fast, None, VehicleLimits(), SpeedLimits())
+
+
+def test_a_preview_knows_how_far_the_vehicle_is() -> None:
+    pose = Pose(0.0, 3.0, 0.0)
+    shown = json.loads(preview_posted(LINE, OPTIONS, pose, VehicleLimits(), SpeedLimits()))
+
+    assert shown["start"]["distance_m"] == 3.0
+    assert shown["duration_s"] == pytest.approx(10 / 2.8 + 2.8, rel=0.1)
+
+
+def test_thinned_points_keep_the_first_and_the_last() -> None:
+    assert thinned(1_001, 3).tolist() == [0, 500, 1000]
+    assert thinned(3, 10).tolist() == [0, 1, 2]
+    assert thinned(5, None).tolist() == [0, 1, 2, 3, 4]
+
+
+def test_waypoints_are_encoded_with_their_indices() -> None:
+    shown = json.loads(encode_waypoints(straight().waypoints, 2))
+
+    assert (shown["waypoint_count"], shown["indices"]) == (21, [0, 20])
+    assert shown["items"][1] == {"x_m": 20.0, "y_m": 0.0, "yaw_rad": 0.0}

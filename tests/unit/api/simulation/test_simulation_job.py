@@ -1,0 +1,154 @@
+import json
+from collections.abc import Mapping
+from datetime import UTC, datetime
+from typing import Any
+
+import pytest
+
+from api.http.body_parsing import InvalidBodyError, MalformedBodyError
+from api.simulation.simulation_job import LiveCopy, copy_of, robot_for, simulate_posted
+from domain.errors import InvalidModelError
+from domain.inputs import HoldRequest
+from domain.timebase import seconds
+from service.simulation.virtual_robot import VirtualRobot
+from tests.support.http_robot import ACTUATION
+from tests.support.scenarios import ALL_GOOD, STRAIGHT, scenario, virtual_robot
+
+WRONG = "arm: {ros__parameters: {type: system, modes: {__DEFAULT__: {arm: active}}}}"
+NOW = datetime(2026, 5, 1, 12, tzinfo=UTC)
+
+
+def posted(body: Mapping[str, Any], live: LiveCopy | None = None) -> Any:  # noqa: ANN401
+    return json.loads(simulate_posted(json.dumps(body).encode(), ACTUATION, live))
+
+
+@pytest.fixture
+def live() -> VirtualRobot:
+    """A robot that is in the middle of something."""
+    robot = virtual_robot(scenario())
+    robot.advance_to(seconds(0.1))
+    robot.supervisor.submit(HoldRequest("operator", "lunch", "test"))
+    robot.advance_to(seconds(2))
+    return robot
+
+
+def copied(robot: VirtualRobot) -> LiveCopy:
+    parts = robot.supervisor.simulated_parts
+    assert parts is not None
+    return LiveCopy(copy_of(*parts), robot.clock.now(), NOW, robot.supervisor.events.newest)
+
+
+def test_a_scenario_happens_to_the_loaded_model() -> None:
+    told = posted({"until_s": 1})
+
+    assert set(told) == {"samples", "events", "refusals", "expectations"}
+    assert set(told["samples"][0]["parts"]) == {"actuation", "drive_base", "manipulator"}
+
+
+def test_another_model_is_taken_where_one_is_sent() -> None:
+    model = "arm: {ros__parameters: {type: node}}"
+
+    assert set(posted({"until_s": 1, "model": model})["samples"][0]["parts"]) == {"arm"}
+    assert set(posted({"until_s": 1, "model": None})["samples"][0]["parts"]) != {"arm"}
+
+
+def test_readings_come_from_the_scenario_alone_unless_mocks_are_asked_for() -> None:
+    assert posted({"until_s": 5})["samples"][-1]["system_state"]["errors"] == ["STALE_DATA"]
+
+    mocked = posted({"until_s": 5, "robot": {"mock": True}})
+    assert mocked["samples"][-1]["system_state"]["errors"] == []
+    assert "signals" in mocked["samples"][-1]["system_state"]["simulated"]
+
+
+def test_settings_are_those_of_a_robot_file() -> None:
+    robot = {"vehicle": {"pose": {"x_m": 3.0, "y_m": -1.0, "yaw_rad": 0.5}}}
+
+    pose = posted({"until_s": 1, "robot": robot})["samples"][-1]["vehicle"]["pose"]
+
+    assert pose == {"x_m": 3.0, "y_m": -1.0, "yaw_rad": 0.5}
+
+
+@pytest.mark.parametrize(
+    ("robot", "pointer"),
+    [
+        ({"wings": 2}, "/robot/wings"),
+        ({"signals": {"battery_level": {"threshold": "x"}}}, "/robot/signals"),
+        ({"nodes": {"wing": {}}}, "/robot/nodes/wing"),
+        ({"start_task": {"file": "track.csv"}}, "/robot/start_task"),
+    ],
+)
+def test_wrong_settings_are_told_with_their_place(robot: dict[str, Any], pointer: str) -> None:
+    with pytest.raises(InvalidBodyError) as refused:
+        posted({"until_s": 1, "robot": robot})
+
+    assert refused.value.faults[0].pointer.startswith(pointer)
+
+
+def test_a_wrong_model_is_told_with_its_findings() -> None:
+    with pytest.raises(InvalidModelError):
+        posted({"until_s": 1, "model": WRONG})
+
+
+@pytest.mark.parametrize("raw", [b"", b"{", b"\xff"])
+def test_what_is_no_json_is_malformed(raw: bytes) -> None:
+    with pytest.raises(MalformedBodyError):
+        simulate_posted(raw, ACTUATION, None)
+
+
+def test_a_copy_that_cannot_be_had_is_refused() -> None:
+    body = scenario(begin="live")
+
+    with pytest.raises(InvalidBodyError, match="cannot be copied"):
+        robot_for(body, ACTUATION, None)
+
+
+def test_a_copy_goes_on_from_the_live_robot_in_time_events_and_state(live: VirtualRobot) -> None:
+    copy = copied(live)
+
+    told = posted(
+        {
+            "from": "live",
+            "until_s": 4,
+            "steps": [
+                ALL_GOOD,
+                {"t_s": 1, "task": {"waypoints": STRAIGHT}},
+                {"t_s": 2, "request": {"method": "DELETE", "path": "/holds/operator"}},
+            ],
+        },
+        copy,
+    )
+
+    assert told["samples"][0]["system_state"]["at"] == "2026-05-01T12:00:00.000Z"
+    assert told["samples"][0]["parts"]["drive_base"]["actual"]["state"] == "unconfigured"
+    assert [sample["task"] and sample["task"]["status"] for sample in told["samples"]] == [
+        None,
+        "PAUSED",
+        "RUNNING",
+        "RUNNING",
+        "RUNNING",
+    ]
+    assert told["events"][0]["id"] == copy.events + 1
+
+
+def test_what_happens_to_a_copy_does_not_happen_to_the_live_robot(live: VirtualRobot) -> None:
+    parts = live.supervisor.simulated_parts
+    assert parts is not None
+    before = copy_of(*parts)
+    steps = [
+        ALL_GOOD,
+        {"t_s": 1, "task": {"waypoints": STRAIGHT}},
+        {"t_s": 1, "change": {"part": "actuation", "mode": "PERFORMANCE"}},
+        {"t_s": 2, "node": "drive_base", "fault": "die"},
+    ]
+
+    posted({"from": "live", "until_s": 10, "steps": steps}, copied(live))
+
+    assert copy_of(*parts) == before
+    assert live.supervisor.core.driving.holds.keys() == {"operator"}
+
+
+def test_a_copy_is_the_same_however_often_it_is_used(live: VirtualRobot) -> None:
+    copy = copied(live)
+    body = {"from": "live", "until_s": 5, "steps": [ALL_GOOD]}
+
+    assert posted(body, copy) == posted(body, copy)
