@@ -83,7 +83,8 @@ bench: $(INSTALLED_DEV) ## measure, beside what others do, and write docs/benchm
 	  $(BIN)/python -m tests.support.bench_document && exit $$code
 
 bench-ros2: $(INSTALLED_ROS2) ## measure fifty real ROS 2 nodes, and write docs/benchmarks.md
-	@$(NOT_OF_ROS) $(ROS2)/bin/pytest -s -p no:cacheprovider -m bench --timeout=0 tests/bench/bench_ros2.py $(ARGS); \
+	@$(NOT_OF_ROS) $(ROS2)/bin/pytest -s -p no:cacheprovider -m bench --timeout=0 \
+	  tests/bench/bench_ros2.py tests/bench/bench_ros2_estop.py $(ARGS); \
 	  code=$$?; $(ROS2)/bin/python -m tests.support.bench_document && exit $$code
 
 coverage: $(INSTALLED_DEV) ## branches of the core that its tests reach, each module by its own test file

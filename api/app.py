@@ -20,6 +20,7 @@ from api.robot_app import create_robot_app
 from api.rosbridge import route as rosbridge
 from api.rosbridge.clients import make_rosbridge_clients
 from api.simulation import route as simulations
+from api.simulation.simulation_job import SimulatedParts
 from service.supervisor import Supervisor
 from service.worker import Worker
 
@@ -32,6 +33,7 @@ def create_app(
     allowed_hosts: Sequence[str],
     access: Access | None = None,
     limits: ServiceLimits = USUAL_LIMITS,
+    simulated: SimulatedParts | None = None,
 ) -> FastAPI:
     """Return the application; it starts no task and no process.
 
@@ -45,6 +47,7 @@ def create_app(
         allowed_hosts: Names by which this service may be asked, beside those of loopback.
         access: Whom it lets in; None: everybody.
         limits: How much may be asked of it.
+        simulated: What a simulation can go on with a copy of; None: the robot is real.
     """
     worker = Worker([model_jobs.__name__, task_jobs.__name__])
     app = create_robot_app(supervisor, worker, access=access, limits=limits, lifespan=_lifespan)
@@ -52,6 +55,7 @@ def create_app(
     app.state.rosbridge_clients = make_rosbridge_clients(
         supervisor, limits.requests_per_s, app.state.stream_server
     )
+    app.state.simulated = simulated
     app.include_router(simulations.router)
     app.include_router(documents.router)
     app.include_router(rosbridge.router)

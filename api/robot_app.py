@@ -38,8 +38,8 @@ from api.streaming import events_route as events
 from api.streaming import route as stream
 from api.streaming.stream_metrics import StreamCollector
 from api.streaming.stream_server import StreamServer
-from service.jobs import Jobs
 from service.supervisor import Supervisor
+from service.worker import Jobs
 
 _RESOURCES = (
     openapi_router,

@@ -92,7 +92,7 @@ class EventLog(Watched):
 
 
 class EventReader:
-    """The place of one reader in a log: it gets every event, or is told which ones it missed."""
+    """The position of one reader in a log: it gets every event, or is told which ones it missed."""
 
     def __init__(self, log: EventLog, after: int | None = None, epoch: str | None = None) -> None:
         """Begin behind a cursor.

@@ -1,4 +1,4 @@
-"""The task that a robot file names: served at the start, driven once nothing holds it."""
+"""The task that a robot file names: submitted at the start, driven once nothing holds it."""
 
 from pathlib import Path as FilePath
 
@@ -17,8 +17,8 @@ class StartTaskError(PilothouseError):
     code = "INVALID_START_TASK"
 
 
-def serve_start_task(supervisor: Supervisor, task: StartTaskBlock, robot_file: FilePath) -> None:
-    """Serve the task to begin with.
+def submit_start_task(supervisor: Supervisor, task: StartTaskBlock, robot_file: FilePath) -> None:
+    """Submit the task to begin with.
 
     Args:
         supervisor: Of the robot that drives it.

@@ -11,7 +11,7 @@ import os
 import sys
 from asyncio.subprocess import PIPE, Process
 from collections.abc import Callable, Sequence
-from typing import TypeVar, TypeVarTuple, cast
+from typing import Protocol, TypeVar, TypeVarTuple, cast
 
 from domain.errors import PilothouseError
 from service.worker_process import (
@@ -62,6 +62,41 @@ class WorkerClosedError(PilothouseError):
 
 class JobFailedError(Exception):
     """A fault in the program, met in the worker; the message is its traceback."""
+
+
+class Jobs(Protocol):
+    """Does work that takes longer than the event loop may be kept, one job after the other."""
+
+    async def close(self) -> None:
+        """End for good; jobs that are not done fail."""
+        ...
+
+    async def call(self, function: Callable[[*Given], Result], *arguments: *Given) -> Result:
+        """Return what a function returns.
+
+        Args:
+            function: One that a module names, since it may be sent by its name.
+            arguments: What it is called with.
+
+        Raises:
+            PilothouseError: Raised by the function, or the job cannot be done.
+        """
+        ...
+
+
+class InlineJobs:
+    """Does jobs at once, for code that runs in a worker process already."""
+
+    async def close(self) -> None:
+        """Do nothing: there is no process."""
+
+    async def call(self, function: Callable[[*Given], Result], *arguments: *Given) -> Result:
+        """Return what a function returns.
+
+        Raises:
+            PilothouseError: Raised by the function.
+        """
+        return function(*arguments)
 
 
 class Worker:

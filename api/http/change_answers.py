@@ -85,7 +85,7 @@ async def _ended(
     supervisor: Supervisor, change: ChangeId, wait_s: float, request: Request
 ) -> ChangeView:
     """Return a change when it has ended, the time is up, or nobody waits for it any more."""
-    ended = asyncio.create_task(supervisor.change_ended(change, wait_s), name="change ended")
+    ended = asyncio.create_task(supervisor.change_ends.wait(change, wait_s), name="change ended")
     gone = asyncio.create_task(_disconnected(request), name="client gone")
     try:
         await asyncio.wait({ended, gone}, return_when=asyncio.FIRST_COMPLETED)

@@ -11,8 +11,8 @@ from fastapi.requests import HTTPConnection
 from domain.errors import UnknownPartError
 from domain.parts.system_model import SmhModel
 from domain.state_and_mode import PartName
-from service.jobs import Jobs
 from service.supervisor import Supervisor
+from service.worker import Jobs
 
 
 async def _supervisor(connection: HTTPConnection) -> Supervisor:

@@ -34,7 +34,7 @@ class Metrics:
             buckets=_PERIODS_S,
             registry=self.registry,
         )
-        supervisor.on_tick.append(period.observe)
+        supervisor.publisher.on_tick.append(period.observe)
         self.registry.register(_RobotCollector(supervisor))
         self.registry.register(_ServiceCollector(supervisor))
         self.registry.register(_GateCollector(refusals))
@@ -113,11 +113,13 @@ class _ServiceCollector(Collector):
 
     def collect(self) -> Iterator[Metric]:
         yield CounterMetricFamily(
-            "pilothouse_ticks_late", "Ticks that were skipped", value=self._supervisor.late_ticks
+            "pilothouse_ticks_late",
+            "Ticks that were skipped",
+            value=self._supervisor.publisher.late_ticks,
         )
         changes = CounterMetricFamily("pilothouse_changes", "Changes that ended", labels=["status"])
         for status in _ENDS:
-            changes.add_metric([status], self._supervisor.ended_changes[status])
+            changes.add_metric([status], self._supervisor.change_ends.counts[status])
         yield changes
 
 

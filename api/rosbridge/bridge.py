@@ -10,9 +10,9 @@ from api.rosbridge.rosapi import REQUESTS, RosApi
 from domain.errors import InvalidValueError
 from service.clock import Clock
 from service.frame_feed import FrameFeed
-from service.ros.interface.offer import Fields, HeardTopic, OfferedService, OfferedTopic
-from service.ros.interface.robot_services import CANCEL_TASKS
-from service.ros.interface.shapes import CHANGE_MODE, CHANGE_STATE, Shape
+from service.ros.interface.endpoints import Fields, OfferedService, OfferedTopic, SubscribedTopic
+from service.ros.interface.message_check import CHANGE_MODE, CHANGE_STATE, Shape
+from service.ros.interface.services import CANCEL_TASKS
 
 
 class Interface(Protocol):
@@ -29,7 +29,7 @@ class Interface(Protocol):
         ...
 
     @property
-    def heard(self) -> Mapping[str, HeardTopic]:
+    def heard(self) -> Mapping[str, SubscribedTopic]:
         """By full name."""
         ...
 
@@ -63,7 +63,7 @@ class Bridge:
         self.texts = PublishedTexts()
         self.turn = asyncio.Lock()
         """Held while a message of a client is done: one in each turn of the event loop."""
-        topics: list[HeardTopic | OfferedTopic] = [
+        topics: list[SubscribedTopic | OfferedTopic] = [
             *interface.heard.values(),
             *interface.topics.values(),
         ]

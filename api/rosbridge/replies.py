@@ -6,7 +6,7 @@ from typing import Any
 from pydantic_core import to_json
 
 from domain.errors import PilothouseError
-from service.ros.interface.offer import Fields
+from service.ros.interface.endpoints import Fields
 
 
 def status_text(level: str, message: str, id_: str | int | None) -> str:

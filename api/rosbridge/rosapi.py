@@ -10,13 +10,13 @@ from typing import TypeAlias
 from api.rosbridge.operations import full_name, is_type
 from domain.timebase import NANOSECONDS_PER_SECOND
 from service.clock import Clock, since_epoch
-from service.ros.interface.offer import (
+from service.ros.interface.endpoints import (
     Fields,
-    HeardTopic,
     OfferedService,
     OfferedTopic,
+    SubscribedTopic,
 )
-from service.ros.interface.shapes import EMPTY, Kind, Shape, checked
+from service.ros.interface.message_check import EMPTY, Kind, Shape, checked
 
 NODE = "rosapi"
 
@@ -40,7 +40,7 @@ class RosApi:
     def __init__(
         self,
         services: Mapping[str, OfferedService],
-        topics: Iterable[OfferedTopic | HeardTopic],
+        topics: Iterable[OfferedTopic | SubscribedTopic],
         clock: Clock,
     ) -> None:
         """Begin.

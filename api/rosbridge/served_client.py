@@ -6,6 +6,7 @@ from collections.abc import Awaitable, Callable, Mapping
 from typing import Any
 
 from api.rosbridge.bridge import Bridge
+from api.rosbridge.read_ahead import ReadAhead, is_urgent
 from api.rosbridge.send_queue import SendQueue
 from api.rosbridge.session import Session
 from api.rosbridge.wire import Wire
@@ -44,20 +45,39 @@ class ServedClient:
                 writing = tasks.create_task(self._write(), name="rosbridge writer")
                 caller = f"rosbridge:{self._address}"
                 session = Session(self._bridge, self._queue, caller, tasks.create_task)
+                ahead = ReadAhead()
+                reading = tasks.create_task(self._read(session, ahead, receive))
                 try:
-                    await self._hear(session, receive)
+                    await self._hear(session, ahead)
                 finally:
                     session.end()
+                    reading.cancel()
                     writing.cancel()
         finally:
             self._connection.listen(None)
 
-    async def _hear(
-        self, session: Session, receive: Callable[[], Awaitable[Mapping[str, Any]]]
+    async def _read(
+        self,
+        session: Session,
+        ahead: ReadAhead,
+        receive: Callable[[], Awaitable[Mapping[str, Any]]],
     ) -> None:
-        """Take one message after the other; the next waits in the client until this one is done."""
+        """Read ahead, so that a reading of the emergency stop waits for nothing said before it."""
         while True:
             message = await receive()
+            if is_urgent(message):
+                self._wire.heard()
+                session.hear(message)
+                await asyncio.sleep(0)
+                continue
+            await ahead.put(message)
+            if message["type"] == "websocket.disconnect":
+                return
+
+    async def _hear(self, session: Session, ahead: ReadAhead) -> None:
+        """Do what one message after the other asks."""
+        while True:
+            message = await ahead.get()
             if message["type"] == "websocket.disconnect":
                 return
             self._wire.heard()

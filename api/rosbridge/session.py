@@ -27,7 +27,7 @@ from api.rosbridge.send_queue import SendQueue
 from api.rosbridge.subscription import Pace, Subscription
 from domain.errors import InvalidValueError, PilothouseError, UnknownNameError
 from domain.timebase import seconds
-from service.ros.interface.offer import OfferedService
+from service.ros.interface.endpoints import OfferedService
 
 MAX_CALLS = 16
 """Calls of one client that may be under way."""

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 from api.rosbridge.replies import PublishedTexts
 from domain.timebase import Duration, Instant
-from service.ros.interface.offer import Fields, OfferedTopic
+from service.ros.interface.endpoints import Fields, OfferedTopic
 
 MAX_QUEUE = 100
 """Messages of a topic that may wait for their turn, however many a client asks for."""

@@ -7,18 +7,22 @@ from pathlib import Path
 from typing import Literal, TypeAlias
 
 from api.http.limits import ServiceLimits
+from api.simulation.simulation_job import SimulatedParts
 from domain.simulation.mock_signals import MockSignals
 from service.clock import Clock
+from service.composite import CompositeRobot
 from service.files.model_file import LoadedModel, load_model
 from service.files.robot_file import RobotSettings, load_robot_file
 from service.files.ros2_block import Ros2Block
-from service.robot_parts import make_onboard, make_simulated_robot
+from service.onboard_parts import make_onboard
 from service.ros.backend.backend import Ros2Backend
 from service.ros.gateway import RosGateway
 from service.ros.graph.graph import RosGraph, UnknownTypeError
 from service.ros.interface.interface import RosInterface
+from service.simulation.from_settings import make_simulated_robot
+from service.simulation.mock_source import MockSource
 from service.simulation.simulated import SimulatedBackend
-from service.start_task import serve_start_task
+from service.start_task import submit_start_task
 from service.supervisor import Supervisor
 
 log = logging.getLogger(__name__)
@@ -63,6 +67,8 @@ class Composition:
     limits: ServiceLimits
     gateway: RosGateway | None = None
     """Offers the robot to ROS 2; None: its nodes are not there."""
+    simulated: SimulatedParts | None = None
+    """What a simulation can go on with a copy of; None: the robot is real."""
 
 
 def compose(options: ServeOptions, clock: Clock) -> Composition:
@@ -85,7 +91,7 @@ def compose(options: ServeOptions, clock: Clock) -> Composition:
         else _with_simulated(options, loaded, robot, clock)
     )
     if options.robot is not None and robot.start_task is not None:
-        serve_start_task(composition.supervisor, robot.start_task, options.robot)
+        submit_start_task(composition.supervisor, robot.start_task, options.robot)
     return composition
 
 
@@ -103,8 +109,9 @@ def _with_simulated(
     simulated = make_simulated_robot(loaded.model, robot, now, mock=mocked)
     backend = SimulatedBackend(simulated, clock)
     onboard = make_onboard(loaded.model, robot, now)
-    supervisor = Supervisor(loaded, onboard, clock, backend, backend.mock, simulated.what)
-    return Composition(supervisor, ServiceLimits.of(robot.limits))
+    supervisor = Supervisor(loaded, onboard, clock, backend, backend.readings, simulated.what)
+    limits, parts = ServiceLimits.of(robot.limits), SimulatedParts(onboard, simulated)
+    return Composition(supervisor, limits, simulated=parts)
 
 
 def _with_ros2(
@@ -115,11 +122,14 @@ def _with_ros2(
     now = clock.now()
     graph = _join_graph()
     _require_types(graph, robot.ros2)
-    mock = MockSignals(now) if mocked else None
-    backend = Ros2Backend(loaded.model, robot, graph, clock, mock=mock)
-    simulated = ("signals",) if mocked else ()
+    ros = Ros2Backend(loaded.model, robot, graph, clock)
     onboard = make_onboard(loaded.model, robot, now)
-    supervisor = Supervisor(loaded, onboard, clock, backend, backend.mock, simulated)
+    if mocked:
+        mock = MockSource(MockSignals(now), clock)
+        backend = CompositeRobot(dict.fromkeys(loaded.model.nodes, ros), ros, (ros, mock))
+        supervisor = Supervisor(loaded, onboard, clock, backend, mock.readings, ("signals",))
+    else:
+        supervisor = Supervisor(loaded, onboard, clock, ros)
     mapped = {block.topic for block in robot.ros2.signals.values()}
     gateway = RosGateway(RosInterface(supervisor), graph, mapped)
     return Composition(supervisor, ServiceLimits.of(robot.limits), gateway)

@@ -64,7 +64,7 @@ class ServiceManager:
     def watch(self, supervisor: Supervisor) -> None:
         """Tell of each tick from now on; the first says that the service is ready."""
         if self._address is not None:
-            supervisor.on_tick.append(self._ticked)
+            supervisor.publisher.on_tick.append(self._ticked)
 
     def say_stopping(self) -> None:
         """Tell that the service winds down, so that nobody takes its end for a failure."""

@@ -28,8 +28,9 @@ from service.files.robot_file import InvalidRobotFileError
 from service.files.text_file import UnreadableFileError
 from service.ros.gateway import RosGateway
 from service.ros.graph.graph import GraphFailedError, UnknownFieldError, UnknownTypeError
+from service.running import TaskFailedError
 from service.start_task import StartTaskError
-from service.supervisor import Supervisor, TaskFailedError
+from service.supervisor import Supervisor
 
 log = logging.getLogger(__name__)
 
@@ -54,7 +55,13 @@ def serve(options: ServeOptions) -> int:
     except (ListenError, StartTaskError, *_NOT_IN_ROS, UnreadableFileError) as error:
         return _end(str(error), FAILED)
     supervisor, hosts = composition.supervisor, (options.host, *options.allowed_hosts)
-    app = create_app(supervisor, allowed_hosts=hosts, access=access, limits=composition.limits)
+    app = create_app(
+        supervisor,
+        allowed_hosts=hosts,
+        access=access,
+        limits=composition.limits,
+        simulated=composition.simulated,
+    )
     app.state.exposed = options.anonymous and not is_loopback(options.host)
     prepare(app)
     greeting = "\n".join(greet(composition, options, url_of(sockets, options.host), access))
@@ -122,7 +129,7 @@ async def run_service(
             manager.say_stopping()
             # The robot first: the rest may take a moment.
             supervisor.stop_driving()
-            supervisor.stop_waiting()
+            supervisor.change_ends.stop()
             server.should_exit = True
             await serving
             if offering is not None:

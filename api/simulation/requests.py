@@ -10,8 +10,8 @@ from api.http.problems import MEDIA_TYPE, make_problem
 from api.http.schemas.problem import Problem
 from api.http.schemas.simulation import AskedRequest
 from api.robot_app import create_robot_app
-from service.jobs import InlineJobs
 from service.supervisor import Supervisor
+from service.worker import InlineJobs
 
 _HOST = "simulation"
 

@@ -8,9 +8,9 @@ from api.http.dependencies import SupervisorDep
 from api.http.request_body import limits_of, read_body
 from api.http.route_policy import Permission, policy
 from api.http.schemas.simulation import SimulationJson
-from api.simulation.simulation_job import LiveCopy, copy_of, simulate_posted
-from service.jobs import Jobs
+from api.simulation.simulation_job import LiveCopy, SimulatedParts, copy_of, simulate_posted
 from service.supervisor import Supervisor
+from service.worker import Jobs
 
 router = APIRouter(prefix="/simulations", tags=["simulation"])
 
@@ -48,15 +48,14 @@ async def simulate(
     """
     raw = await read_body(request, limits_of(request).model_bytes)
     # Looked at only when it may be asked for: a copy takes time on the loop.
-    live = _copy(supervisor) if b'"live"' in raw else None
+    live = _copy(request.app.state.simulated, supervisor) if b'"live"' in raw else None
     content = await simulator.call(simulate_posted, raw, supervisor.model_text, live)
     return Response(content, media_type="application/json")
 
 
-def _copy(supervisor: Supervisor) -> LiveCopy | None:
-    parts = supervisor.simulated_parts
-    if parts is None:
+def _copy(robot: SimulatedParts | None, supervisor: Supervisor) -> LiveCopy | None:
+    if robot is None:
         return None
     clock = supervisor.clock
     now = clock.now()
-    return LiveCopy(copy_of(*parts), now, clock.wall_time(now), supervisor.events.newest)
+    return LiveCopy(copy_of(*robot), now, clock.wall_time(now), supervisor.events.newest)

@@ -29,7 +29,7 @@ from service.files.yaml_tree import (
     read_tree,
 )
 from service.files.yaml_tree import Sequence as Items
-from service.simulation.virtual_robot import VirtualRobot
+from service.simulation.virtual_time import VirtualService
 
 Keys = tuple[int | str, ...]
 """The way to a value, from the top of a file."""
@@ -79,7 +79,7 @@ class Scenario:
 
     file: str
     body: SimulationBody
-    robot: VirtualRobot
+    robot: VirtualService
     root: Node
 
     def line_of(self, step: int, path: str = "") -> int:
@@ -282,7 +282,7 @@ def _robot(
     body: SimulationBody,
     loaded_model: str,
     model_file: Path | None,
-) -> VirtualRobot:
+) -> VirtualService:
     """Return the robot that the scenario begins with.
 
     Raises:

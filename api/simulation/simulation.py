@@ -23,7 +23,7 @@ from api.simulation.samples import Sampler
 from api.simulation.steps import Actors
 from domain.events.event import RecordedEvent
 from domain.timebase import NANOSECONDS_PER_SECOND, Duration, seconds, to_seconds
-from service.simulation.virtual_robot import VirtualRobot
+from service.simulation.virtual_time import VirtualService
 
 MAX_REFUSALS = 1_000
 """More of them, that were not expected, are not told."""
@@ -39,7 +39,7 @@ class Simulation:
     from it at once, then the sample. Only the sample at the begin comes before the first step.
     """
 
-    def __init__(self, body: SimulationBody, robot: VirtualRobot) -> None:
+    def __init__(self, body: SimulationBody, robot: VirtualService) -> None:
         self._body = body
         self._robot = robot
         self._begin = robot.clock.now()

@@ -7,7 +7,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from datetime import UTC, datetime
 from types import MappingProxyType
-from typing import Any
+from typing import Any, NamedTuple
 
 from pydantic import ValidationError
 
@@ -21,13 +21,20 @@ from domain.timebase import Instant
 from service.event_log import EventLog
 from service.files.model_file import LoadedModel, read_model
 from service.files.robot_file import RobotSettings, robot_settings_of
-from service.robot_parts import make_onboard, make_simulated_robot
-from service.simulation.virtual_clock import VirtualClock
-from service.simulation.virtual_robot import VirtualRobot
+from service.onboard_parts import make_onboard
+from service.simulation.from_settings import make_simulated_robot
+from service.simulation.virtual_time import VirtualClock, VirtualService
 
 EPOCH = "simulation"
 BEGIN = datetime(2000, 1, 1, tzinfo=UTC)
 """What a calendar says at 0 s, so that two runs say the same."""
+
+
+class SimulatedParts(NamedTuple):
+    """A live robot of which nothing is real, so that a simulation can go on with a copy of it."""
+
+    onboard: Onboard
+    robot: SimulatedRobot
 
 
 @dataclass(frozen=True, slots=True)
@@ -93,7 +100,7 @@ def _read(raw: bytes) -> SimulationBody:
         raise InvalidBodyError(faults_of(placed)) from error
 
 
-def robot_for(body: SimulationBody, model_text: str, live: LiveCopy | None) -> VirtualRobot:
+def robot_for(body: SimulationBody, model_text: str, live: LiveCopy | None) -> VirtualService:
     """Return the robot that a scenario begins with.
 
     Raises:
@@ -113,9 +120,9 @@ def robot_for(body: SimulationBody, model_text: str, live: LiveCopy | None) -> V
     return _new(loaded, robot)
 
 
-def _new(loaded: LoadedModel, robot: RobotSettings) -> VirtualRobot:
+def _new(loaded: LoadedModel, robot: RobotSettings) -> VirtualService:
     mock = robot.mock is True
-    return VirtualRobot(
+    return VirtualService(
         loaded,
         make_onboard(loaded.model, robot, 0),
         make_simulated_robot(loaded.model, robot, 0, mock=mock),
@@ -124,9 +131,9 @@ def _new(loaded: LoadedModel, robot: RobotSettings) -> VirtualRobot:
     )
 
 
-def _copied(model_text: str, live: LiveCopy) -> VirtualRobot:
+def _copied(model_text: str, live: LiveCopy) -> VirtualService:
     onboard, robot = pickle.loads(live.state)
-    return VirtualRobot(
+    return VirtualService(
         read_model(model_text),
         onboard,
         robot,

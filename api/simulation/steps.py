@@ -24,9 +24,10 @@ from domain.inputs import (
     TransitionRequest,
 )
 from domain.lifecycle import Transition
+from domain.simulation.node_settings import Fault
 from domain.state_and_mode import part_name
 from domain.timebase import seconds
-from service.simulation.virtual_robot import VirtualRobot
+from service.simulation.virtual_time import VirtualService
 
 _ACTOR = "simulation"
 
@@ -34,7 +35,7 @@ _ACTOR = "simulation"
 class Actors:
     """Whoever does something in a scenario: sensors, operators, faults."""
 
-    def __init__(self, robot: VirtualRobot, runner: asyncio.Runner) -> None:
+    def __init__(self, robot: VirtualService, runner: asyncio.Runner) -> None:
         self._robot = robot
         self._runner = runner
         self._requests: Requests | None = None
@@ -65,7 +66,7 @@ class Actors:
         if step.stamp_offset_s is not None:
             stamp = self._robot.clock.now() + seconds(step.stamp_offset_s)
         readings = [Reading(signal, value, stamp) for signal, value in step.reading.items()]
-        self._robot.supervisor.submit_readings(readings, step.source, _ACTOR)
+        self._robot.supervisor.readings.submit(readings, step.source, _ACTOR)
 
     def _drive(self, step: TaskStep) -> None:
         if step.task is None:
@@ -84,7 +85,8 @@ class Actors:
     def _disturb(self, step: NodeStep) -> None:
         node = part_name(step.node)
         if step.parameters is None:
-            self._robot.backend.set_fault(node, step.set_fault)
+            fault = None if step.set_fault is None else Fault(step.set_fault)
+            self._robot.backend.set_fault(node, fault)
         else:
             self._robot.backend.set_parameters(node, step.parameters)
 

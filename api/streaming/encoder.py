@@ -15,7 +15,8 @@ from domain.events.event import RecordedEvent
 from domain.timebase import to_seconds
 from service.event_log import Gap
 from service.frame_feed import Frame
-from service.supervisor import PERIOD, Supervisor
+from service.frame_publisher import PERIOD
+from service.supervisor import Supervisor
 
 _EVENTS_KEPT = 1_000
 _MEMBERS_AT_ONCE = 200

@@ -164,7 +164,7 @@ class _Client:
             self._server.fan_out.resync(client)
             return
         reading = given.reading(given.signal, supervisor.clock)
-        supervisor.submit_readings([reading], given.source, f"websocket:{self._address}")
+        supervisor.readings.submit([reading], given.source, f"websocket:{self._address}")
 
     async def _answer(self, error: PilothouseError) -> None:
         """Say what is wrong, once the client has taken most of what was written before."""

@@ -10,7 +10,7 @@ from api.simulation.simulation import Simulation
 from api.simulation.simulation_job import robot_for
 from docs.generate.markdown import code, page, table
 from docs.generate.source_scan import PROJECT, metric_names, require_described
-from service.jobs import InlineJobs
+from service.worker import InlineJobs
 
 _MODEL = PROJECT / "service" / "example" / "actuation.yaml"
 _GOOD = {

@@ -16,10 +16,7 @@ import numpy as np
 from domain.inputs import VehicleReport
 from domain.simulation.vehicle_settings import Noise, Plant, VehicleSettings
 from domain.timebase import Duration, Instant, seconds, to_seconds
-from domain.vehicle import DriveCommand, Pose, VehicleState
-
-COMMAND_VALID_FOR: Duration = seconds(0.5)
-"""Without a new command for this long the vehicle stops, so that a dead supervisor stops it."""
+from domain.vehicle import COMMAND_VALID_FOR, DriveCommand, Pose, VehicleState
 
 REPORT_PERIOD: Duration = seconds(0.05)
 

@@ -16,11 +16,10 @@ from domain.findings import Finding
 from domain.health.signals import SignalSettings
 from domain.navigation import NavigationSettings
 from domain.parts.system_model import SmhModel
-from domain.simulation.node_settings import NodeSettings
-from domain.simulation.vehicle_settings import VehicleSettings
 from domain.state_and_mode import PartName
 from domain.tasks.settings import TaskSettings
 from domain.timebase import seconds
+from domain.vehicle import VehicleLimits
 from service.files.driving_block import DrivingBlock, StartTaskBlock
 from service.files.limits_block import LimitsBlock
 from service.files.parameter_file import scalar_value
@@ -79,10 +78,6 @@ class RobotSettings(SettingsBlock):
         """
         return self.signals.to_domain()
 
-    def to_node_settings(self) -> dict[PartName, NodeSettings]:
-        """Return the settings of the nodes that are named here."""
-        return {PartName(name): node.to_domain() for name, node in self.nodes.items()}
-
     def to_change_settings(self) -> ChangeSettings:
         """Return the deadlines of changes, and the nodes to restore."""
         return ChangeSettings(
@@ -93,9 +88,9 @@ class RobotSettings(SettingsBlock):
             parameters_deadline=seconds(self.changes.parameters_deadline_s),
         )
 
-    def to_vehicle_settings(self) -> VehicleSettings:
-        """Return the settings of the vehicle."""
-        return self.vehicle.to_domain()
+    def to_vehicle_limits(self) -> VehicleLimits:
+        """Return the limits of the vehicle."""
+        return self.vehicle.to_limits()
 
     def to_task_settings(self) -> TaskSettings:
         """Return the settings of tasks."""

@@ -20,7 +20,6 @@ from domain.health.signals import (
     SignalSpec,
     default_signals,
 )
-from domain.simulation.node_settings import Fault, NodeSettings
 from domain.timebase import Duration, seconds
 
 Seconds: TypeAlias = Annotated[float, Field(ge=0, le=86_400, allow_inf_nan=False)]
@@ -228,19 +227,6 @@ class NodeBlock(SettingsBlock):
     """Duration of setting parameters, in seconds."""
     fault: Literal["slow", "refuse", "fail", "error", "silent", "die"] | None = None
     """Fault of the node from the start."""
-
-    def to_domain(self) -> NodeSettings:
-        """Return the settings for the simulation."""
-        usual = NodeSettings()
-        return NodeSettings(
-            configure=_duration(self.configure_s, usual.configure),
-            activate=_duration(self.activate_s, usual.activate),
-            deactivate=_duration(self.deactivate_s, usual.deactivate),
-            cleanup=_duration(self.cleanup_s, usual.cleanup),
-            shutdown=_duration(self.shutdown_s, usual.shutdown),
-            set_parameters=_duration(self.set_parameters_s, usual.set_parameters),
-            fault=Fault(self.fault) if self.fault else None,
-        )
 
 
 class ChangesBlock(SettingsBlock):

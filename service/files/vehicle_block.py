@@ -4,9 +4,7 @@ from typing import Annotated, TypeAlias
 
 from pydantic import Field
 
-from domain.simulation.vehicle_settings import Noise, Plant, VehicleSettings
-from domain.timebase import seconds
-from domain.vehicle import Pose, VehicleLimits
+from domain.vehicle import VehicleLimits
 from service.files.robot_settings import Number, SettingsBlock
 
 Coordinate: TypeAlias = Annotated[float, Field(ge=-1e6, le=1e6, allow_inf_nan=False)]
@@ -72,19 +70,6 @@ class VehicleBlock(SettingsBlock):
     plant: PlantBlock = PlantBlock()
     """Dynamics of the simulated vehicle. Default: ideal."""
 
-    def to_domain(self) -> VehicleSettings:
-        """Return the settings of the vehicle for the core."""
-        plant, noise = self.plant, self.plant.noise
-        return VehicleSettings(
-            Pose(self.pose.x_m, self.pose.y_m, self.pose.yaw_rad),
-            Plant(
-                plant.acceleration_mps2,
-                plant.braking_mps2,
-                plant.steering_rate_radps,
-                plant.steering_lag_s,
-                plant.speed_lag_s,
-                seconds(plant.delay_s),
-                Noise(noise.position_m, noise.yaw_rad, noise.speed_mps, noise.seed),
-            ),
-            VehicleLimits(self.wheelbase_m, self.max_steering_angle_rad, self.max_speed_mps),
-        )
+    def to_limits(self) -> VehicleLimits:
+        """Return the limits of the vehicle, real or simulated."""
+        return VehicleLimits(self.wheelbase_m, self.max_steering_angle_rad, self.max_speed_mps)

@@ -11,17 +11,17 @@ from collections.abc import Collection
 from functools import partial
 
 from domain.errors import PilothouseError
+from service.ros.graph.conversion import fields_of
 from service.ros.graph.graph import Fields, Lane, Publisher, Qos, RosGraph, RosNode
-from service.ros.graph.messages import fields_of
-from service.ros.interface.carriers import (
-    SERVICE_CARRIERS,
-    TOPIC_CARRIERS,
+from service.ros.interface.endpoints import OWN_NODE, OfferedService, OfferedTopic, SubscribedTopic
+from service.ros.interface.fallback_types import (
+    SERVICE_FALLBACKS,
+    TOPIC_FALLBACKS,
     Convert,
-    ServiceCarrier,
-    TopicCarrier,
+    ServiceFallback,
+    TopicFallback,
 )
 from service.ros.interface.interface import RosInterface
-from service.ros.interface.offer import OWN_NODE, HeardTopic, OfferedService, OfferedTopic
 
 log = logging.getLogger(__name__)
 
@@ -62,8 +62,8 @@ class RosGateway:
 
         The event loop gets its turns in between, since a hundred parts take a second.
 
-        Where a type is not installed, one that always is stands in (`ros_interface.carriers`). What
-        has none, and what has a name that ROS does not allow, is left out and logged.
+        Where a type is not installed, a standard one takes its place (`interface.fallback_types`).
+        What has none, and what has a name that ROS does not allow, is left out and logged.
         """
         for service in self._interface.services.values():
             if not service.of_a_node and self._is_allowed(service.name):
@@ -86,7 +86,7 @@ class RosGateway:
         await self._interface.run()
 
     def _serve(self, service: OfferedService) -> None:
-        carrier = SERVICE_CARRIERS.get(service.type)
+        carrier = SERVICE_FALLBACKS.get(service.type)
         if self._graph.has_type(service.type):
             answer = partial(_answer, service)
             self._node(service.node).serve(service.name, service.type, answer)
@@ -97,9 +97,9 @@ class RosGateway:
             self._missing_types.add(service.type)
 
     def _publish(self, topic: OfferedTopic) -> None:
-        carrier = TOPIC_CARRIERS.get(topic.type)
+        carrier = TOPIC_FALLBACKS.get(topic.type)
         if self._graph.has_type(topic.type):
-            carrier = TopicCarrier(topic.type, _as_it_is)
+            carrier = TopicFallback(topic.type, _as_it_is)
         if carrier is None or not self._graph.has_type(carrier.type):
             self._missing_types.add(topic.type)
             return
@@ -107,11 +107,11 @@ class RosGateway:
         publisher = self._node(topic.node).publisher(topic.name, carrier.type, qos)
         self._interface.listen(topic.name, partial(_send, publisher, carrier.message))
 
-    def _hear(self, heard: HeardTopic) -> None:
+    def _hear(self, heard: SubscribedTopic) -> None:
         take = partial(self._take, heard)
         self._node(OWN_NODE).subscribe(heard.name, heard.type, Qos.SENSOR, fields_of, take)
 
-    def _take(self, heard: HeardTopic, message: Fields) -> None:
+    def _take(self, heard: SubscribedTopic, message: Fields) -> None:
         """Hand in a message; a refused one must not end the others, nor fill the log with its like.
 
         So the next one is logged once another was taken.
@@ -147,7 +147,7 @@ async def _answer(service: OfferedService, request: Fields) -> Fields:
 
 
 async def _answer_carried(
-    service: OfferedService, carrier: ServiceCarrier, request: Fields
+    service: OfferedService, carrier: ServiceFallback, request: Fields
 ) -> Fields:
     return carrier.response(await service.call(carrier.request(request), CALLER))
 

@@ -1,7 +1,5 @@
 """The simulated robot in real time: the backend that needs no robot."""
 
-from collections.abc import Callable
-
 from domain.commands import Drive, NodeCommand
 from domain.inputs import BackendStatus
 from domain.parameters import Parameters
@@ -10,28 +8,36 @@ from domain.simulation.robot import SimulatedRobot
 from domain.state_and_mode import PartName
 from service.clock import Clock
 from service.pacing import Pacer
-from service.ports import BackendMessage
-from service.simulation.mock_source import MockSource
+from service.ports import Deliver
+from service.readings import DirectReadings, ReadingInput, Submit
+from service.simulation.mock_source import MockHandle
 
 
 class SimulatedBackend:
-    """Runs a `SimulatedRobot` on a clock; a `RobotBackend`."""
+    """Runs a `SimulatedRobot` on a clock: nodes, vehicle and, if it has them, mock signals.
+
+    As one adapter, since what several of them say at the same instant has one order.
+    """
 
     def __init__(self, robot: SimulatedRobot, clock: Clock) -> None:
-        self.simulation = robot
+        self.robot = robot
         self._clock = clock
         self._pacer = Pacer(robot, clock)
-        self.mock = None if robot.mock is None else MockSource(robot.mock, clock, self._pacer.touch)
+        self.mock = None if robot.mock is None else MockHandle(robot.mock, clock, self._pacer.touch)
         """What can be done to the mock signals; None: there are none."""
 
-    async def run(self, deliver: Callable[[BackendMessage], None]) -> None:
+    async def run(self, deliver: Deliver) -> None:
         """Deliver every node and the vehicle, then what changes, until cancelled."""
         deliver(BackendStatus(available=True))
         await self._pacer.run(deliver)
 
-    def send(self, command: NodeCommand | Drive) -> None:
+    def readings(self, submit: Submit) -> ReadingInput:
+        """Return where readings from outside are handed in."""
+        return DirectReadings(submit) if self.mock is None else self.mock.readings(submit)
+
+    def send(self, command: NodeCommand | Drive, /) -> None:
         """Ask a node for something, or tell the vehicle how to drive."""
-        self.simulation.handle(command, self._clock.now())
+        self.robot.handle(command, self._clock.now())
         self._pacer.touch()
 
     def set_fault(self, node: PartName, fault: Fault | None) -> None:
@@ -40,7 +46,7 @@ class SimulatedBackend:
         Raises:
             UnknownPartError: There is no such node.
         """
-        self.simulation.nodes.set_fault(node, fault, self._clock.now())
+        self.robot.nodes.set_fault(node, fault, self._clock.now())
         self._pacer.touch()
 
     def set_parameters(self, node: PartName, values: Parameters) -> None:
@@ -52,10 +58,10 @@ class SimulatedBackend:
             InvalidValueError: A value is not of the parameter's type.
             RefusedError: The node does not run.
         """
-        self.simulation.nodes.set_parameters(node, values, self._clock.now())
+        self.robot.nodes.set_parameters(node, values, self._clock.now())
         self._pacer.touch()
 
     def set_vehicle_reporting(self, reporting: bool) -> None:
         """Let the vehicle stop telling where it is, or tell it again."""
-        self.simulation.vehicle.set_reporting(reporting, self._clock.now())
+        self.robot.vehicle.set_reporting(reporting, self._clock.now())
         self._pacer.touch()

@@ -215,7 +215,7 @@ async def test_a_silent_supervisor_lets_the_vehicle_stop_by_itself() -> None:
     async with driving() as drive:
         await drive.submit_task(STRAIGHT)
         await drive.advance(5)
-        vehicle = drive.robot.backend.simulation.vehicle
+        vehicle = drive.robot.backend.robot.vehicle
         assert vehicle.state.speed_mps > 2.0
         now = drive.robot.clock.now()
         vehicle.advance(now + 3_000_000_000)

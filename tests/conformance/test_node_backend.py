@@ -21,7 +21,7 @@ from domain.simulation.robot import SimulatedRobot
 from domain.state_and_mode import PartName
 from service.clock import MonotonicClock
 from service.files.robot_file import RobotSettings
-from service.ports import BackendMessage, RobotBackend
+from service.ports import BackendMessage, NodeBackend
 from service.ros.backend.backend import Ros2Backend
 from service.simulation.simulated import SimulatedBackend
 from tests.ros2.support.isolation import isolate
@@ -39,7 +39,7 @@ NOTICED_WITHIN_S = 5.0
 class BackendUnderTest(Protocol):
     """A backend over the nodes of `actuation_model`, which can be made to fall silent and die."""
 
-    backend: RobotBackend
+    backend: NodeBackend
 
     async def pass_time(self, by_s: float) -> None:
         """Let at least this much time pass for the nodes and the backend."""
@@ -64,7 +64,7 @@ class Simulated:
         self._clock = ManualClock()
         robot = SimulatedRobot(actuation_model(), self._clock.now())
         self._simulated = SimulatedBackend(robot, self._clock)
-        self.backend: RobotBackend = self._simulated
+        self.backend: NodeBackend = self._simulated
 
     async def pass_time(self, by_s: float) -> None:
         await self._clock.advance(by_s)
@@ -92,7 +92,7 @@ class InMemory:
         arm: Parameters = {"max_torque": 0.0}
         self._nodes = {BASE: FakeNode(graph, BASE, base), ARM: FakeNode(graph, ARM, arm)}
         self._stopped: set[PartName] = set()
-        self.backend: RobotBackend = Ros2Backend(
+        self.backend: NodeBackend = Ros2Backend(
             actuation_model(), RobotSettings(), graph, self._clock
         )
 
@@ -130,7 +130,7 @@ class RealNodes:
             process.start()
         self._stopped: set[PartName] = set()
         link = import_module("service.ros.graph.link").RosLink()
-        self.backend: RobotBackend = Ros2Backend(
+        self.backend: NodeBackend = Ros2Backend(
             actuation_model(), RobotSettings(), link, MonotonicClock()
         )
 

@@ -19,7 +19,7 @@ from domain.simulation.robot import SimulatedRobot
 from domain.simulation.vehicle_settings import Noise, Plant, VehicleSettings
 from domain.timebase import seconds, to_seconds
 from domain.vehicle import DriveCommand, Pose, VehicleLimits, VehicleState
-from service.ports import BackendMessage, RobotBackend
+from service.ports import BackendMessage, VehicleBackend
 from service.simulation.simulated import SimulatedBackend
 from tests.support.manual_clock import ManualClock
 from tests.support.models import actuation_model
@@ -37,7 +37,7 @@ CRUISE = 2.0
 class VehicleUnderTest(Protocol):
     """A backend whose vehicle has room to drive some 50 m each way."""
 
-    backend: RobotBackend
+    backend: VehicleBackend
     limits: VehicleLimits
     """What it can do."""
 
@@ -63,7 +63,7 @@ class Simulated:
         self.limits = settings.limits
         robot = SimulatedRobot(actuation_model(), self._clock.now(), vehicle=settings)
         self._simulated = SimulatedBackend(robot, self._clock)
-        self.backend: RobotBackend = self._simulated
+        self.backend: VehicleBackend = self._simulated
 
     def now_s(self) -> float:
         return to_seconds(self._clock.now())
@@ -104,7 +104,7 @@ class RosTopics:
         base = RosBase(settings, graph, self._clock)
         self.pass_time = base.pass_time
         self.lose = base.lose
-        self.backend: RobotBackend = RosVehicleBackend(self.limits, graph, self._clock)
+        self.backend: VehicleBackend = RosVehicleBackend(self.limits, graph, self._clock)
 
     def now_s(self) -> float:
         return to_seconds(self._clock.now())

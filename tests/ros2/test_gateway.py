@@ -17,11 +17,12 @@ from domain.inputs import Reading
 from domain.simulation.node_settings import Fault
 from service.clock import MonotonicClock
 from service.ros.gateway import RosGateway
+from service.ros.graph.conversion import fields_of
 from service.ros.graph.graph import Fields, Lane, Qos, RosNode
-from service.ros.graph.messages import fields_of
 from service.ros.interface.interface import RosInterface
+from service.simulation.simulated import SimulatedBackend
 from service.supervisor import Supervisor
-from tests.support.live_robot import make_supervisor, running
+from tests.support.live_robot import make_live_robot, running
 from tests.support.models import ARM
 from tests.support.waiting import until
 
@@ -37,8 +38,9 @@ GET_STATE = "lifecycle_msgs/srv/GetState"
 class Robot:
     """The example robot, offered in the graph, and somebody else who is in the graph as well."""
 
-    def __init__(self, supervisor: Supervisor, other: RosNode) -> None:
+    def __init__(self, supervisor: Supervisor, backend: SimulatedBackend, other: RosNode) -> None:
         self.supervisor = supervisor
+        self._backend = backend
         self._other = other
 
     def hear(self, topic: str, type_name: str, qos: Qos = Qos.EVENTS) -> list[dict[str, Any]]:
@@ -55,21 +57,19 @@ class Robot:
 
     def fault(self, fault: Fault) -> None:
         """Let something be wrong with the manipulator."""
-        assert self.supervisor.simulated_parts is not None
-        _, simulated = self.supervisor.simulated_parts
-        simulated.nodes.set_fault(ARM, fault, self.supervisor.clock.now())
+        self._backend.set_fault(ARM, fault)
 
 
 @pytest.fixture
 async def robot() -> AsyncIterator[Robot]:
     make_link = import_module("service.ros.graph.link").RosLink
     link, others_link = make_link(), make_link()
-    supervisor = make_supervisor(MonotonicClock())
+    supervisor, backend = make_live_robot(MonotonicClock())
     gateway = RosGateway(RosInterface(supervisor), link)
     await gateway.offer()
     async with running(supervisor):
         publishing = asyncio.create_task(gateway.run(), name="gateway")
-        yield Robot(supervisor, others_link.node("somebody", Lane.STATES))
+        yield Robot(supervisor, backend, others_link.node("somebody", Lane.STATES))
         publishing.cancel()
         await asyncio.gather(publishing, return_exceptions=True)
     await others_link.close()
@@ -155,7 +155,7 @@ async def test_the_robot_tells_its_state_and_its_diagnostics(robot: Robot) -> No
     await until(lambda: bool(states and diagnoses), POLL_S)
     assert states[0]["message"] == "IDLE"
 
-    robot.supervisor.submit_readings([Reading("battery_level", 0.2)])
+    robot.supervisor.readings.submit([Reading("battery_level", 0.2)])
     await until(lambda: states[-1]["level"] == diagnoses[-1]["status"][0]["level"] == 2, POLL_S)
 
     assert states[-1]["message"] == "ERROR: BATTERY_LOW"

@@ -4,8 +4,8 @@ from typing import Any
 
 import pytest
 
+from service.ros.graph.conversion import fields_of, find_type
 from service.ros.graph.graph import Lane, Qos
-from service.ros.graph.messages import fields_of, find_type
 from tests.ros2.support.links import POLL_S, Link
 from tests.support.waiting import until
 

@@ -12,6 +12,7 @@ from api.app import close_workers, create_app
 from api.http.access import Access
 from api.http.gate.policies import RoutePolicies
 from api.http.limits import USUAL_LIMITS, ServiceLimits
+from api.simulation.simulation_job import SimulatedParts
 from domain.commands import Drive, NodeCommand
 from domain.findings import Finding
 from domain.simulation.node_settings import Fault, NodeSettings
@@ -60,7 +61,7 @@ class _Backend(SimulatedBackend):
         super().__init__(robot, clock)
         self.sent: list[NodeCommand | Drive] = []
 
-    def send(self, command: NodeCommand | Drive) -> None:
+    def send(self, command: NodeCommand | Drive, /) -> None:
         self.sent.append(command)
         super().send(command)
 
@@ -85,16 +86,22 @@ class HttpRobot:
         by_name = {PartName(name): setting for name, setting in (nodes or {}).items()}
         robot = SimulatedRobot(model, 0, by_name, vehicle, mock=mock)
         self.backend = _Backend(robot, self.clock)
+        onboard = make_onboard(model, 0, settings)
+        self.simulated = SimulatedParts(onboard, robot)
         self.supervisor = Supervisor(
             LoadedModel(model, tuple(warnings), text),
-            make_onboard(model, 0, settings),
+            onboard,
             self.clock,
             self.backend,
-            self.backend.mock,
+            self.backend.readings,
             simulated=robot.what,
         )
         self.app = create_app(
-            self.supervisor, allowed_hosts=["robot"], access=access, limits=limits
+            self.supervisor,
+            allowed_hosts=["robot"],
+            access=access,
+            limits=limits,
+            simulated=self.simulated,
         )
         transport = httpx.ASGITransport(self.app)
         self.http = httpx.AsyncClient(transport=transport, base_url="http://robot:8000")

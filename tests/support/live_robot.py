@@ -28,19 +28,31 @@ def make_supervisor(
     mock: bool = True,
 ) -> Supervisor:
     """Return a supervisor of simulated nodes that does not run yet."""
+    return make_live_robot(clock, model, warnings, mock=mock)[0]
+
+
+def make_live_robot(
+    clock: Clock | None = None,
+    model: SmhModel | None = None,
+    warnings: Sequence[Finding] = (),
+    *,
+    mock: bool = True,
+) -> tuple[Supervisor, SimulatedBackend]:
+    """Return a supervisor that does not run yet, and the simulated robot that it supervises."""
     clock = clock or ManualClock()
     model = model or actuation_model()
     now = clock.now()
     robot = SimulatedRobot(model, now, mock=mock)
     backend = SimulatedBackend(robot, clock)
-    return Supervisor(
+    supervisor = Supervisor(
         LoadedModel(model=model, warnings=tuple(warnings), text=""),
         make_onboard(model, now),
         clock,
         backend,
-        backend.mock,
+        backend.readings,
         simulated=robot.what,
     )
+    return supervisor, backend
 
 
 def make_onboard(

@@ -40,7 +40,7 @@ async def run_recording(supervisor):
             found["drives"].append((time.perf_counter(), command.command.speed_mps))
 
     backend.send = send_recording
-    supervisor.on_tick.append(lambda _: found["ticks"].append(time.perf_counter()))
+    supervisor.publisher.on_tick.append(lambda _: found["ticks"].append(time.perf_counter()))
     await run(supervisor)
 
 Supervisor.run = run_recording

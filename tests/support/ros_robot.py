@@ -8,9 +8,9 @@ from typing import Any
 from domain.parts.system_model import SmhModel
 from domain.simulation.node_settings import Fault
 from domain.state_and_mode import PartName
+from service.ros.interface.endpoints import Fields
 from service.ros.interface.interface import RosInterface
-from service.ros.interface.offer import Fields
-from tests.support.live_robot import make_supervisor, running
+from tests.support.live_robot import make_live_robot, running
 from tests.support.manual_clock import ManualClock, settle
 
 OPERATOR = "test:operator"
@@ -21,7 +21,7 @@ class RosRobot:
 
     def __init__(self, model: SmhModel | None = None) -> None:
         self.clock = ManualClock()
-        self.supervisor = make_supervisor(self.clock, model)
+        self.supervisor, self.backend = make_live_robot(self.clock, model)
         self.interface = RosInterface(self.supervisor)
 
     def hear(self, topic: str) -> list[Any]:
@@ -47,9 +47,7 @@ class RosRobot:
 
     def fault(self, node: str, fault: Fault) -> None:
         """Let something be wrong with a node."""
-        assert self.supervisor.simulated_parts is not None
-        _, robot = self.supervisor.simulated_parts
-        robot.nodes.set_fault(PartName(node), fault, self.clock.now())
+        self.backend.set_fault(PartName(node), fault)
 
 
 @asynccontextmanager

@@ -3,7 +3,7 @@
 import math
 from collections.abc import Callable
 
-from domain.commands import Drive, NodeCommand
+from domain.commands import Drive
 from domain.simulation.vehicle import SimulatedVehicle
 from domain.simulation.vehicle_settings import VehicleSettings
 from domain.timebase import seconds
@@ -67,9 +67,7 @@ class RosBase:
 
 
 class RosVehicleBackend:
-    """A `RobotBackend` of nothing but a `RosVehicle`."""
-
-    simulation = None
+    """A `VehicleBackend` of nothing but a `RosVehicle`."""
 
     def __init__(self, limits: VehicleLimits, graph: FakeGraph, clock: ManualClock) -> None:
         block = {
@@ -87,9 +85,8 @@ class RosVehicleBackend:
         finally:
             await self._graph.close()
 
-    def send(self, command: NodeCommand | Drive) -> None:
+    def send(self, command: Drive, /) -> None:
         """Tell the vehicle how to drive."""
-        assert isinstance(command, Drive)
         self._vehicle.send(command)
 
 

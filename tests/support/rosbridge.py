@@ -11,7 +11,7 @@ from api.rosbridge.bridge import Bridge
 from api.streaming.websocket_frames import Connection
 from domain.errors import InvalidValueError
 from service.frame_feed import FrameFeed
-from service.ros.interface.offer import Fields, HeardTopic, OfferedService, OfferedTopic
+from service.ros.interface.endpoints import Fields, OfferedService, OfferedTopic, SubscribedTopic
 from tests.support.manual_clock import ManualClock
 from tests.support.websocket import WebSocketClient
 
@@ -37,8 +37,8 @@ class SmallInterface:
         self.topics: Mapping[str, OfferedTopic] = {
             topic.name: topic for topic in (SYSTEM_STATE, MODE_EVENT, MODE_REQUEST)
         }
-        estop = HeardTopic("/estop", "gem_state_msgs/msg/EstopStamped", self._take)
-        self.heard: Mapping[str, HeardTopic] = {estop.name: estop}
+        estop = SubscribedTopic("/estop", "gem_state_msgs/msg/EstopStamped", self._take)
+        self.heard: Mapping[str, SubscribedTopic] = {estop.name: estop}
         self.services: Mapping[str, OfferedService] = {
             service.name: service
             for service in (

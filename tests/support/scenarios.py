@@ -7,7 +7,7 @@ from pydantic_core import from_json
 from api.http.schemas.simulation import SimulationBody
 from api.simulation.simulation import Simulation
 from api.simulation.simulation_job import robot_for
-from service.simulation.virtual_robot import VirtualRobot
+from service.simulation.virtual_time import VirtualService
 from tests.support.good import GOOD
 from tests.support.http_robot import ACTUATION
 
@@ -26,7 +26,7 @@ def scenario(*steps: Step, until_s: float = 10, **more: Any) -> SimulationBody: 
     return SimulationBody.model_validate(body)
 
 
-def virtual_robot(body: SimulationBody) -> VirtualRobot:
+def virtual_robot(body: SimulationBody) -> VirtualService:
     """Return the robot that a scenario begins with: that of Annex 4 unless it names another."""
     return robot_for(body, ACTUATION, None)
 

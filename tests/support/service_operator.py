@@ -22,7 +22,7 @@ class ServiceOperator(OperatorVerbs[Outputs, ChangeId, Awaitable[None]]):
     def give(self, given: Input) -> Outputs:
         """Submit an input."""
         if isinstance(given, Readings):
-            return self._supervisor.submit_readings(given.items, given.source)
+            return self._supervisor.readings.submit(given.items, given.source)
         return self._supervisor.submit(given)
 
     def begin(self, request: ChangeRequest) -> ChangeId:

@@ -58,7 +58,7 @@ class Storm:
     def facts(self) -> list[Any]:
         """Return everything that a request can change."""
         supervisor = self.robot.supervisor
-        core = supervisor.core
+        core, mock = supervisor.core, supervisor.readings.mock
         # That somebody asked is recorded, also of who was refused.
         told = (e.id for e in supervisor.events.newest_first() if e.kind != "audit.write")
         return [
@@ -69,7 +69,7 @@ class Storm:
             core.emergency_stop(),
             dict(core.driving.holds),
             core.driving.current_task,
-            supervisor.mock.view() if supervisor.mock else None,
+            mock.view() if mock else None,
         ]
 
     def summary(self) -> str:

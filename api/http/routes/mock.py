@@ -12,7 +12,8 @@ from api.http.request_body import JsonRoute
 from api.http.route_policy import Permission, policy
 from api.http.schemas.health import MockBody, MockJson, MockSignalJson
 from domain.errors import InvalidValueError, UnknownSignalError
-from service.simulation.mock_source import MockSource
+from domain.inputs import Reading
+from service.readings import Mock
 from service.supervisor import Supervisor
 
 router = APIRouter(prefix="/mock", tags=["health"], route_class=JsonRoute)
@@ -40,7 +41,7 @@ async def change_mock(
         raise UnknownSignalError("signal of the mock", signal, known)
     try:
         if body.value is not None:
-            supervisor.hold_mock(signal, body.value, actor)
+            supervisor.readings.submit([Reading(signal, body.value)], actor=actor)
     except InvalidValueError as error:
         raise InvalidBodyError.at("value", error) from error
     if body.publishing is not None:
@@ -48,15 +49,16 @@ async def change_mock(
     return next(item for item in _signals(mock) if item.signal == signal)
 
 
-def _mock_of(supervisor: Supervisor) -> MockSource:
-    if supervisor.mock is None:
+def _mock_of(supervisor: Supervisor) -> Mock:
+    mock = supervisor.readings.mock
+    if mock is None:
         detail = "the mock does not run: signals come from outside"
         hint = "start the service with --mock-signals, or with `mock: true` in the robot file"
         raise HttpError(HTTPStatus.NOT_FOUND, "NO_MOCK", detail, hint)
-    return supervisor.mock
+    return mock
 
 
-def _signals(mock: MockSource) -> list[MockSignalJson]:
+def _signals(mock: Mock) -> list[MockSignalJson]:
     return [
         MockSignalJson(signal=item.signal, value=item.value, publishing=item.publishing)
         for item in mock.view()

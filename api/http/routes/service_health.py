@@ -110,7 +110,7 @@ async def get_metrics(known: Annotated[Metrics, Depends(_metrics)]) -> Response:
 def _checks(supervisor: Supervisor) -> list[CheckJson]:
     model = supervisor.model
     loaded = f"{len(model.systems)} systems, {len(model.nodes)} nodes"
-    last = supervisor.last_tick_at
+    last = supervisor.publisher.last_tick_at
     if last is None:
         ticking = CheckJson(name="core", ok=False, message="has not ticked yet")
     else:
@@ -130,8 +130,8 @@ def _warnings(supervisor: Supervisor, *, exposed: bool) -> Iterator[WarningJson]
     lost = supervisor.core.driving.holds.get(VEHICLE_HOLD)
     if lost is not None:
         yield WarningJson(code="NO_POSE", message=lost.reason)
-    if supervisor.late_ticks:
-        message = f"{supervisor.late_ticks} ticks were skipped since the start: the machine is slow"
+    if late := supervisor.publisher.late_ticks:
+        message = f"{late} ticks were skipped since the start: the machine is slow"
         yield WarningJson(code="LATE_TICKS", message=message)
     if exposed:
         message = "anybody on the network can control the robot: there is no authentication"

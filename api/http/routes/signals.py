@@ -66,7 +66,7 @@ async def post_readings(
             raise InvalidBodyError.at("source", error)
     readings = [Reading(signal, value) for signal, value in values.items()]
     try:
-        supervisor.submit_readings(readings, source, actor)
+        supervisor.readings.submit(readings, source, actor)
     except UnknownSignalError as error:
         raise InvalidBodyError.at(error.name, error) from error
     return current_system_state(supervisor)
@@ -85,7 +85,7 @@ async def post_reading(
     """
     reading = body.reading(signal, supervisor.clock)
     try:
-        supervisor.submit_readings([reading], body.source, actor)
+        supervisor.readings.submit([reading], body.source, actor)
     except InvalidValueError as error:
         raise InvalidBodyError.at("value", error) from error
     return current_system_state(supervisor)

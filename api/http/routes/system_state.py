@@ -18,7 +18,7 @@ def current_system_state(supervisor: Supervisor) -> SystemStateJson:
     clock = supervisor.clock
     view = supervisor.core.system_state()
     return SystemStateJson.of(
-        view, supervisor.snapshot_seq, clock.now(), supervisor.simulated, clock
+        view, supervisor.publisher.seq, clock.now(), supervisor.simulated, clock
     )
 
 

@@ -29,8 +29,8 @@ from domain.errors import FarStartError, InvalidValueError, UnknownControllerErr
 from domain.inputs import CancelTaskRequest, TaskRequest
 from domain.tracking.trackers import TRACKERS
 from service.files.waypoint_file import Heading
-from service.jobs import Jobs
 from service.supervisor import Supervisor
+from service.worker import Jobs
 
 router = APIRouter(prefix="/tasks", tags=["drive"])
 

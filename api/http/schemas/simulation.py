@@ -9,7 +9,6 @@ from api.http.schemas.health import MAX_SOURCE
 from api.http.schemas.problem import Problem
 from api.http.schemas.sent_values import SentParameter, SentSignalValue
 from api.http.schemas.tasks import TaskBody
-from domain.simulation.node_settings import Fault
 
 MAX_UNTIL_S = 86_400.0
 MAX_SAMPLES = 20_000
@@ -124,9 +123,9 @@ class NodeStep(ActingStep):
         return self
 
     @property
-    def set_fault(self) -> Fault | None:
+    def set_fault(self) -> str | None:
         """Return the fault to set; None: remove it."""
-        return None if self.fault in (None, RECOVER) else Fault(str(self.fault))
+        return None if self.fault == RECOVER else self.fault
 
 
 class VehicleStep(ActingStep):

@@ -1,23 +1,19 @@
 """A robot in ROS 2: its nodes, its signals and its vehicle as one backend."""
 
 import asyncio
-from collections.abc import Callable
 
 from domain.commands import Drive, NodeCommand
 from domain.inputs import BackendStatus
 from domain.parts.system_model import SmhModel
-from domain.simulation.mock_signals import MockSignals
 from service.clock import Clock
 from service.files.robot_file import RobotSettings
-from service.pacing import Pacer
-from service.ports import BackendMessage
+from service.ports import Deliver
+from service.ros.backend.delivery import Delivery
 from service.ros.backend.nodes import RosNodes
 from service.ros.backend.signals import SignalTopics
 from service.ros.backend.vehicle import RosVehicle
 from service.ros.graph.graph import RosGraph
-from service.simulation.mock_source import MockSource
 
-_AT_ONCE = 4
 _ROOM = 10_000
 _ROOM_PER_NODE = 200
 """For messages that were not delivered yet; a busy event loop finds no more, since the graph holds
@@ -26,13 +22,10 @@ back about a hundred of each topic.
 
 
 class Ros2Backend:
-    """Reaches a robot through ROS 2; a `RobotBackend`.
+    """Reaches a robot through ROS 2: its nodes, its vehicle and its signals, as one adapter.
 
-    What is heard is delivered by `run` alone, in the order in which it was heard.
+    What is heard is delivered by `run` alone: readings of `estop` first, reports of nodes last.
     """
-
-    simulation: None = None
-    """There is nothing to be copied."""
 
     def __init__(
         self,
@@ -40,7 +33,6 @@ class Ros2Backend:
         robot: RobotSettings,
         graph: RosGraph,
         clock: Clock,
-        mock: MockSignals | None = None,
     ) -> None:
         """Prepare; nothing is heard or sent before `run`.
 
@@ -49,22 +41,16 @@ class Ros2Backend:
             robot: Says which topics signals and vehicle have.
             graph: Where all that is; `run` closes it at its end.
             clock: The present.
-            mock: Signals that are published as well, as if they came from the robot.
         """
         self._graph = graph
         self._nodes = RosNodes(model.nodes, graph, clock)
         self._signals = SignalTopics(robot, graph, clock)
-        limits = robot.to_vehicle_settings().limits
+        limits = robot.to_vehicle_limits()
         self._vehicle = RosVehicle(robot.ros2, limits, graph, clock)
-        self._mock = None if mock is None else Pacer(mock, clock)
-        self.mock: MockSource | None = None
-        """What can be done to the mock signals; None: there are none."""
-        if mock is not None and self._mock is not None:
-            self.mock = MockSource(mock, clock, self._mock.touch)
         room = _ROOM + _ROOM_PER_NODE * len(model.nodes)
-        self._heard: asyncio.Queue[BackendMessage] = asyncio.Queue(room)
+        self._delivery = Delivery(room)
 
-    async def run(self, deliver: Callable[[BackendMessage], None]) -> None:
+    async def run(self, deliver: Deliver) -> None:
         """Deliver what nodes, signals and vehicle say, until cancelled; then leave the graph.
 
         Raises:
@@ -73,7 +59,7 @@ class Ros2Backend:
         """
         try:
             deliver(BackendStatus(available=True))
-            hear = self._heard.put_nowait
+            hear = self._delivery.put
             self._signals.start(hear)
             self._vehicle.start(hear)
             await self._nodes.start(hear)
@@ -81,23 +67,13 @@ class Ros2Backend:
                 group.create_task(self._graph.wait_failed(), name="link to ROS 2")
                 group.create_task(self._nodes.run(), name="nodes")
                 group.create_task(self._vehicle.run(), name="vehicle")
-                if self._mock is not None:
-                    group.create_task(self._mock.run(hear), name="mock signals")
-                await self._hand_over(deliver)
+                await self._delivery.run(deliver)
         finally:
             await self._graph.close()
 
-    def send(self, command: NodeCommand | Drive) -> None:
+    def send(self, command: NodeCommand | Drive, /) -> None:
         """Ask a node for something, or tell the vehicle how to drive."""
         if isinstance(command, Drive):
             self._vehicle.send(command)
         else:
             self._nodes.send(command)
-
-    async def _hand_over(self, deliver: Callable[[BackendMessage], None]) -> None:
-        while True:
-            deliver(await self._heard.get())
-            for _ in range(min(self._heard.qsize(), _AT_ONCE)):
-                deliver(self._heard.get_nowait())
-            # Thousands may have come at once, and the rest of the service runs on.
-            await asyncio.sleep(0)

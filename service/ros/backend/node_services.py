@@ -1,4 +1,4 @@
-"""The services of one node, asked and answered in our words."""
+"""Calls the services of one node, in terms of the core."""
 
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
@@ -11,14 +11,14 @@ from domain.state_and_mode import PartName
 from service.ros.graph.graph import Fields, Message, RosNode
 
 LOOK_WITHIN_S = 0.8
-"""So long an answer to a question may take."""
+"""Timeout of a query, s."""
 ANSWER_WITHIN_S = 60.0
-"""So long an answer to a command is waited for: longer than those who sent it do."""
+"""Timeout of a command, s: longer than whoever sent it waits."""
 
 
 @dataclass(frozen=True, slots=True)
 class Askers:
-    """The nodes of ours that ask others, by what they ask for."""
+    """Our own nodes that have the clients, by what they ask for."""
 
     states: RosNode
     transitions: RosNode

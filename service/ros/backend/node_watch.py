@@ -1,4 +1,4 @@
-"""One node of the robot: what was heard of it last, and what it is asked.
+"""One node of the robot: what it reported last, and what it is asked.
 
 ROS 2 latches neither states nor parameters, and what is published can get lost. So a node is asked
 for everything when it appears, and again whenever something does not fit what is known of it.
@@ -17,20 +17,20 @@ from domain.parameters import Parameters, ParameterValue
 from domain.parts.system_model import NodeModel
 from domain.timebase import Duration, Instant, seconds
 from service.clock import Clock
-from service.ros.backend.insisting import Seen, insist
 from service.ros.backend.node_services import NodeServices, begins, holds_all
+from service.ros.backend.retries import Seen, call_with_retries
 
 LOOK_PERIOD: Duration = seconds(1.0)
 """How often each node is asked how it is."""
 MOST_COMMANDS = 16
-"""So many commands to one node wait for their answers; further ones are refused."""
+"""At most this many commands to one node wait for an answer; further ones are refused."""
 _MISSES = 2
-"""So many answers in a row that do not come make a node unreachable."""
+"""After this many missed answers in a row a node is unreachable."""
 _BEATS_FOR: Duration = seconds(4.5)
-"""So long a node that beats is left alone after it was heard."""
+"""A node with a heartbeat is not polled for this long after it said something."""
 _STATE_FOLLOWS: Duration = seconds(0.2)
 _PARAMETERS_FOLLOW: Duration = seconds(0.5)
-"""So long after an answer the news may come; then they are asked for."""
+"""A report may follow an answer within this time; then the node is asked for it."""
 _TRIES = 3
 
 NodeMessage: TypeAlias = NodeReport | NodeAnswer
@@ -38,9 +38,11 @@ Work: TypeAlias = Callable[[], Coroutine[Any, Any, None]]
 
 
 class NodeWatch:
-    """What is known of one node, and the way to it.
+    """What is known of one node, and the commands to it.
 
-    All methods return at once. What is delivered first is that it is not reachable.
+    One class, since each half needs the other: an answer that is missed, a report that does not fit
+    and a command whose effect is not seen all lead to the same question, and share its timing.
+    All methods return at once. The first report says that the node is unreachable.
     """
 
     def __init__(
@@ -71,14 +73,14 @@ class NodeWatch:
         self._has_lifecycle = True
         self._state: LifecycleState | None = None
         self._parameters: dict[str, ParameterValue] | None = None
-        """None: it was not there to be asked for them."""
+        """None: the node could not be asked for them yet."""
         self._heard = 0
-        """Counts what was heard of its state."""
+        """Counts the reports of its state."""
         self._heard_at: Instant = 0
         self._news: dict[str, ParameterValue] = {}
-        """Parameters that were heard since they were last asked for."""
+        """Parameters that the node reported since it was last asked for them."""
         self._processes = 0
-        """So many of it the graph knew when the node was asked last."""
+        """How many processes of the node the graph knew when it was asked last."""
         self._known_since: Instant | None = None
         """Since when the graph knows one of its services."""
         self._beats = False
@@ -87,17 +89,17 @@ class NodeWatch:
         self._wants_all = False
         """Whether it is to be asked for everything, and not only how it is."""
         self._commands: dict[int, AskTransition | AskParameters] = {}
-        """What it was told and has not answered yet, or whose effect was not heard of yet."""
+        """Commands without an answer, or whose effect was not reported yet, by request."""
         self._newest: int | None = None
         """Number of the command that came last: an older one must not be sent again after it."""
         self._taken: set[int] = set()
-        """Of those, transitions that it was heard to begin."""
+        """Requests of transitions that the node reported as begun."""
         self._deliver(NodeReport(self._name, reachable=False))
 
     # --- what is heard ---------------------------------------------------------------------------
 
     def take_transition(self, start: LifecycleState, goal: LifecycleState) -> None:
-        """Take in that the node went from one state to another."""
+        """Take a report that the node went from one state to another."""
         self._note_word()
         self._heard += 1
         for request, command in tuple(self._commands.items()):
@@ -115,7 +117,7 @@ class NodeWatch:
             self._deliver(NodeReport(self._name, state=goal))
 
     def take_parameters(self, values: Parameters) -> None:
-        """Take in that parameters of the node were set."""
+        """Take a report that parameters of the node were set."""
         self._note_word()
         self._news.update(values)
         if self._is_there:
@@ -124,7 +126,7 @@ class NodeWatch:
             self._deliver(NodeReport(self._name, parameters=MappingProxyType(dict(values))))
 
     def take_heartbeat(self, beats: bool) -> None:
-        """Take in that a process of the node came or went: whether there is one that lives."""
+        """Take the news whether a process of the node is alive."""
         self._beats = beats
         if beats:
             # One that was started anew is heard before the old one is missed.
@@ -187,7 +189,7 @@ class NodeWatch:
             self._looking = False
 
     async def _is_as_known(self) -> bool:
-        """Ask for the little that shows whether something was missed.
+        """Ask for what shows whether a report was missed.
 
         Raises:
             TimeoutError: The node does not answer.
@@ -196,12 +198,12 @@ class NodeWatch:
         if self._has_lifecycle:
             # If something was heard meanwhile, the answer may be older than that.
             is_same = await self._ask_state() is self._state or heard != self._heard
-            return is_same and not self._is_started_anew()
+            return is_same and not self._was_restarted()
         values = await self._ask_parameters()
         return values is None or holds_all(self._parameters, values)
 
-    def _is_started_anew(self) -> bool:
-        """Tell whether there is a new process: it may be in the same state as the old one."""
+    def _was_restarted(self) -> bool:
+        """Tell whether the node was restarted; it may be in the same state as before."""
         known, self._processes = self._processes, self._services.processes
         return self._processes > known
 
@@ -278,7 +280,7 @@ class NodeWatch:
     # --- what it is told -------------------------------------------------------------------------
 
     def send(self, command: NodeCommand) -> None:
-        """Ask the node for something, while tasks can be started; a silent one does not answer."""
+        """Send a command; a node that is silent does not answer it."""
         if isinstance(command, AskFacts):
             self._ask_all()
             return
@@ -295,7 +297,7 @@ class NodeWatch:
         self._start(work)
 
     def _why_not(self, command: AskTransition | AskParameters) -> str:
-        """Return why a command does not even go out; empty: it does."""
+        """Return why a command is not sent; empty: it is sent."""
         if not self._is_there:
             return "not reachable"
         if isinstance(command, AskTransition) and not self._has_lifecycle:
@@ -318,7 +320,7 @@ class NodeWatch:
         heard = self._heard
         try:
             start = self._state
-            done = await insist(
+            done = await call_with_retries(
                 partial(self._services.change_state, ask.transition, start),
                 partial(self._see_transition, ask, start),
                 True,
@@ -369,7 +371,7 @@ class NodeWatch:
     async def _set_parameters(self, ask: AskParameters) -> None:
         """Ask to set parameters, and see to it that they are reported."""
         try:
-            reason = await insist(
+            reason = await call_with_retries(
                 partial(self._services.set_parameters, ask.values, self._parameters or {}),
                 partial(self._see_parameters, ask),
                 "",

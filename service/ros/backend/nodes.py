@@ -20,9 +20,9 @@ from service.ros.backend.node_watch import LOOK_PERIOD, NodeMessage, NodeWatch, 
 from service.ros.graph.graph import Lane, Message, Qos, RosGraph, RosNode
 
 _OURS = "pilothouse_"
-"""Begin of the names of our own nodes, which ask and listen."""
+"""Prefix of the names of our own nodes, which ask and listen."""
 HEARTBEAT_LEASE_S = 0.5
-"""Of the heartbeat topic of a node; so long after its death it is missed."""
+"""Liveliness lease of the heartbeat topic of a node, s: its death is noticed after this time."""
 
 
 class RosNodes:

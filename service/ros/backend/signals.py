@@ -25,9 +25,9 @@ NODE = "pilothouse_signals"
 _PERIOD: Duration = seconds(0.02)
 """Readings of a topic that comes more often than this are left out."""
 _BURST: Duration = seconds(0.2)
-"""What is saved up while nothing comes: so much of it may come at once."""
+"""After a pause, readings for this much time may come at once."""
 _QUIET: Duration = seconds(60)
-"""A topic is complained of no more often than this."""
+"""Faults of a topic are logged no more often than this."""
 _COVARIANCE_UNKNOWN = 0
 _EAST, _NORTH = 0, 4
 """Places of the variances in the 3 by 3 matrix."""
@@ -92,7 +92,7 @@ class _Source:
         self._clock = clock
         self._last: SignalValue | None = None
         self._spent_until: Instant = clock.now() - _BURST
-        """Up to when what may come is used up; before the present: something is saved up."""
+        """Until when the allowed readings are used up; in the past: some are left."""
         self._quiet_until: Instant = 0
 
     def pick(self, message: Message) -> _Sample | None:

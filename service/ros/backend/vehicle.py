@@ -7,9 +7,8 @@ from dataclasses import dataclass, replace
 
 from domain.commands import Drive
 from domain.inputs import VehicleReport
-from domain.simulation.vehicle import COMMAND_VALID_FOR
 from domain.timebase import NANOSECONDS_PER_SECOND, Duration, Instant, seconds
-from domain.vehicle import DriveCommand, Pose, VehicleLimits, VehicleState
+from domain.vehicle import COMMAND_VALID_FOR, DriveCommand, Pose, VehicleLimits, VehicleState
 from service.clock import Clock, since_epoch
 from service.files.ros2_block import CommandType, Ros2Block
 from service.pacing import Alarm
@@ -23,9 +22,9 @@ ODOMETRY = "nav_msgs/msg/Odometry"
 _PERIOD: Duration = seconds(0.04)
 """Odometry that comes more often than this is left out."""
 _EARLY: Duration = seconds(0.02)
-"""So much earlier a message may come after one that was late, so that jitter costs none."""
+"""A message may come this much early after one that was late, so that jitter drops none."""
 _QUIET: Duration = seconds(60)
-"""Odometry is complained of no more often than this."""
+"""Faults of the odometry are logged no more often than this."""
 _ROLLS_MPS = 0.1
 """Below this speed the steering angle cannot be told from how quickly the vehicle turns."""
 _AT_REST = DriveCommand(0.0, 0.0)

@@ -11,13 +11,15 @@ from collections import deque
 from collections.abc import Awaitable, Callable, Coroutine
 from typing import Any, Generic, TypeVar
 
+from service.ros.graph.conversion import fields_of, fill
 from service.ros.graph.graph import Fields, Message
-from service.ros.graph.messages import fields_of, fill
 
 MAX_UNANSWERED = 32
-"""So many requests to one service of ours wait for their responses; more get an empty one."""
+"""At most this many requests to one service of ours wait; more get an empty response."""
 
 _CANCEL_S = 0.5
+_AT_ONCE = 20
+"""At most this many messages of a topic are taken in one pass of the event loop."""
 
 _log = logging.getLogger(__name__)
 
@@ -91,7 +93,7 @@ class Inbox(Generic[PickedT]):
             topic: Names it in the log.
             pick: Takes out of a message what matters, on the thread that hears it; None: nothing.
             take: Is handed that, on the event loop's thread.
-            depth: So many wait; when one more comes, the oldest is dropped.
+            depth: How many wait; when one more comes, the oldest is dropped.
         """
         self._crossing = crossing
         self._topic = topic
@@ -126,8 +128,8 @@ class Inbox(Generic[PickedT]):
 
     def _hand_out(self) -> None:
         with self._lock:
-            items = list(self._waiting)
-            self._waiting.clear()
+            items = [self._waiting.popleft() for _ in range(min(len(self._waiting), _AT_ONCE))]
+            has_more = bool(self._waiting)
             dropped, self._dropped = self._dropped, 0
         if dropped:
             _log.warning(
@@ -136,6 +138,8 @@ class Inbox(Generic[PickedT]):
         for item in items:
             # One call each, so that what is raised over one does not cost the others.
             self._crossing.call_next(self._take, item)
+        if has_more:
+            self._crossing.call_next(self._hand_out)
 
 
 class Server:

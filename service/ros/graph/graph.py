@@ -57,7 +57,7 @@ class Qos(Enum):
 
 
 class Lane(Enum):
-    """Who shares a thread: the callbacks of a lane run one after the other.
+    """Which nodes share a thread: the callbacks of a lane run one after the other.
 
     With rclpy each message costs as much as the lane has things to wait for. So the many services
     of nodes are divided by what is asked of all of them at the same time, and what comes often is
@@ -154,7 +154,7 @@ class RosNode(Protocol):
         Args:
             topic: Full name.
             type_name: As `std_msgs/msg/Empty`.
-            lease_s: So long after its process died, a publisher is missed, in seconds.
+            lease_s: How long after its process died a publisher is missed, in seconds.
             take: Is handed True whenever one comes or goes and there is one then, and False once
                 there is none any more.
         """
@@ -182,7 +182,7 @@ class RosGraph(Protocol):
 
         Args:
             name: Full name without the leading slash, as `actuation` or `left/arm`.
-            lane: Whom it shares a thread with.
+            lane: Which nodes it shares a thread with.
         """
         ...
 

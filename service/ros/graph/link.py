@@ -32,6 +32,7 @@ from rosidl_generator_py.import_type_support_impl import (  # type: ignore[impor
     UnsupportedTypeSupport,
 )
 
+from service.ros.graph.conversion import fill, find_type, require_field
 from service.ros.graph.crossing import MAX_UNANSWERED, Crossing, Inbox, Server
 from service.ros.graph.graph import (
     Fields,
@@ -42,7 +43,6 @@ from service.ros.graph.graph import (
     Qos,
     UnknownTypeError,
 )
-from service.ros.graph.messages import fill, find_type, require_field
 from service.ros.graph.sending import Sender, Turnstile, send_or_tell
 
 _PROFILES = {

@@ -1,4 +1,4 @@
-"""How much is sent without keeping the event loop from its tick; knows no ROS.
+"""Sending without delaying the tick of the event loop; knows no ROS.
 
 To fill a message of fifty parts takes too long, and so do fifty requests in a row: messages are
 published by a thread of its own, and requests go out a few at a time.
@@ -16,7 +16,7 @@ from domain.errors import InvalidValueError
 from service.ros.graph.graph import Fields
 
 MAX_WAITING = 1_000
-"""So many messages wait to be sent; further ones are dropped."""
+"""At most this many messages wait to be sent; further ones are dropped."""
 
 _log = logging.getLogger(__name__)
 
@@ -30,7 +30,7 @@ class Turnstile:
         """Begin.
 
         Args:
-            at_once: So many pass together.
+            at_once: How many pass together.
         """
         self._at_once = at_once
         self._passed = 0

@@ -12,8 +12,8 @@ from domain.lifecycle import LifecycleState
 from domain.snapshot import PartView, SignalView, SystemState, SystemStateView
 from service.clock import Clock
 from service.frame_feed import Frame
-from service.ros.interface.messages import header
-from service.ros.interface.offer import Fields
+from service.ros.interface.endpoints import Fields
+from service.ros.interface.message_fields import header
 
 ViewT = TypeVar("ViewT")
 

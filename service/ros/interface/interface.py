@@ -8,14 +8,17 @@ from itertools import chain
 
 from domain.timebase import seconds
 from service.event_log import EventReader, Gap
-from service.ros.interface.heard import heard_topics
-from service.ros.interface.lifecycle_services import LifecycleServices
-from service.ros.interface.listeners import Listeners
-from service.ros.interface.mode_services import ModeServices
-from service.ros.interface.offer import Fields, HeardTopic, OfferedService, OfferedTopic
+from service.ros.interface.endpoints import (
+    Fields,
+    Listeners,
+    OfferedService,
+    OfferedTopic,
+    SubscribedTopic,
+)
 from service.ros.interface.part_topics import PartTopics
-from service.ros.interface.robot_services import robot_services
+from service.ros.interface.reading_topics import reading_topics
 from service.ros.interface.robot_topics import RobotTopics
+from service.ros.interface.services import LifecycleServices, ModeServices, robot_services
 from service.supervisor import Supervisor
 
 log = logging.getLogger(__name__)
@@ -45,7 +48,7 @@ class RosInterface:
         """By full name."""
         self.topics: Mapping[str, OfferedTopic] = {topic.name: topic for topic in topics}
         """By full name."""
-        self.heard: Mapping[str, HeardTopic] = {t.name: t for t in heard_topics(supervisor)}
+        self.heard: Mapping[str, SubscribedTopic] = {t.name: t for t in reading_topics(supervisor)}
         """By full name."""
 
     def listen(self, topic: str, take: Callable[[Fields], None]) -> Callable[[], None]:

@@ -16,9 +16,8 @@ from domain.lifecycle import LifecycleState, Transition, rule_for
 from domain.state_and_mode import ModeName, PartName, StateAndMode
 from domain.timebase import Instant
 from service.event_log import EventLog
-from service.ros.interface.listeners import Listeners
-from service.ros.interface.messages import mode_event, nanoseconds, transition_event
-from service.ros.interface.offer import OWN_NODE, Fields, OfferedTopic
+from service.ros.interface.endpoints import OWN_NODE, Fields, Listeners, OfferedTopic
+from service.ros.interface.message_fields import mode_event, nanoseconds, transition_event
 from service.supervisor import Supervisor
 
 TRANSITION_EVENT = "transition_event"

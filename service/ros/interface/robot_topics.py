@@ -3,11 +3,11 @@
 from domain.snapshot import SystemState, TaskStatus
 from domain.timebase import Instant, seconds
 from service.frame_feed import Frame, FrameFeed
+from service.frame_publisher import PERIOD
 from service.ros.interface.diagnostics import diagnostic_array
-from service.ros.interface.listeners import Listeners
-from service.ros.interface.messages import header
-from service.ros.interface.offer import OWN_NODE, OfferedTopic
-from service.supervisor import PERIOD, Supervisor
+from service.ros.interface.endpoints import OWN_NODE, Listeners, OfferedTopic
+from service.ros.interface.message_fields import header
+from service.supervisor import Supervisor
 
 SYSTEM_STATE = "/system_state"
 TASK_STATUS = "/task_planner_status"

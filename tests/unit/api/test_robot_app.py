@@ -1,5 +1,5 @@
 from api.robot_app import create_robot_app
-from service.jobs import InlineJobs
+from service.worker import InlineJobs
 from tests.support.live_robot import make_supervisor
 
 

@@ -1,8 +1,3 @@
-"""Work beside the loop: one job at a time, and no job can do lasting harm.
-
-These tests start real processes, and wait in real time for them alone.
-"""
-
 import asyncio
 import os
 import signal
@@ -17,7 +12,9 @@ import pytest
 from domain.errors import UnknownPartError
 from service.worker import (
     QUEUE_LENGTH,
+    InlineJobs,
     JobFailedError,
+    Jobs,
     TooComplexError,
     Worker,
     WorkerBusyError,
@@ -254,3 +251,34 @@ def is_there(process: int) -> bool:
             return file.read().rpartition(") ")[2][0] != "Z"
     except (FileNotFoundError, ProcessLookupError):
         return False
+
+
+async def test_a_job_is_done_here() -> None:
+    assert await InlineJobs().call(os.getpid) == os.getpid()
+
+
+async def test_a_job_gets_its_arguments() -> None:
+    assert await InlineJobs().call(divmod, 7, 3) == (2, 1)
+
+
+async def test_what_a_job_refuses_is_refused() -> None:
+    with pytest.raises(UnknownPartError, match="there is no node 'x'"):
+        await InlineJobs().call(refuse, "x")
+
+
+async def test_there_is_nothing_to_close() -> None:
+    jobs = InlineJobs()
+    await jobs.close()
+
+    assert await jobs.call(abs, -1) == 1
+
+
+async def test_whoever_does_jobs_takes_them_in_the_same_way() -> None:
+    everybody: list[Jobs] = [InlineJobs(), Worker()]
+    for jobs in everybody:
+        try:
+            assert await jobs.call(divmod, 7, 3) == (2, 1)
+            with pytest.raises(UnknownPartError):
+                await jobs.call(refuse, "x")
+        finally:
+            await jobs.close()

@@ -61,7 +61,7 @@ async def test_the_metrics_tell_how_old_a_signal_is(
     http: httpx.AsyncClient, clock: ManualClock, supervisor: Supervisor
 ) -> None:
     assert await metric(http, "pilothouse_signal_age_seconds", signal="temperature") is None
-    supervisor.submit_readings([Reading("temperature", 30.0)])
+    supervisor.readings.submit([Reading("temperature", 30.0)])
 
     await clock.advance(1.5)
 
@@ -112,7 +112,7 @@ async def test_the_metrics_count_the_ticks_that_were_skipped(
 ) -> None:
     assert await metric(http, "pilothouse_ticks_late_total") == 0
 
-    supervisor.late_ticks = 3
+    supervisor.publisher.late_ticks = 3
 
     assert await metric(http, "pilothouse_ticks_late_total") == 3
 
@@ -121,7 +121,7 @@ async def test_two_services_in_one_process_do_not_mix_their_metrics(
     http: httpx.AsyncClient, supervisor: Supervisor
 ) -> None:
     other = make_supervisor()
-    other.late_ticks = 7
+    other.publisher.late_ticks = 7
     create_app(other, allowed_hosts=[])
 
     assert await metric(http, "pilothouse_ticks_late_total") == 0

@@ -2,7 +2,7 @@ import pytest
 
 from api.rosbridge.rosapi import RosApi
 from domain.errors import InvalidValueError
-from service.ros.interface.offer import Fields, HeardTopic, OfferedTopic
+from service.ros.interface.endpoints import Fields, OfferedTopic, SubscribedTopic
 from tests.support.manual_clock import ManualClock
 from tests.support.rosbridge import SmallInterface
 
@@ -17,7 +17,7 @@ TOPICS = [
 @pytest.fixture
 def rosapi() -> RosApi:
     interface = SmallInterface()
-    topics: list[OfferedTopic | HeardTopic] = [
+    topics: list[OfferedTopic | SubscribedTopic] = [
         *interface.topics.values(),
         *interface.heard.values(),
     ]

@@ -256,10 +256,39 @@ async def test_many_clients_together_do_not_keep_others_from_their_turn_either(
         for client in clients:
             await served.enter_async_context(client.served())
             for _ in range(10):
-                client.say("publish", topic="/estop", msg={"enabled": False})
+                client.say("publish", topic="/estop", msg={"enabled": False}, padding="x" * 1_000)
         for _ in range(300):
             await asyncio.sleep(0)
             seen.append(len(done))
 
     assert seen[-1] == 100
     assert max(after - before for before, after in pairwise(seen)) == 1
+
+
+async def test_an_emergency_stop_waits_for_no_message_of_its_own_or_another_client(
+    robot: Robot,
+) -> None:
+    flooding = [robot.another() for _ in range(9)]
+    async with AsyncExitStack() as served:
+        for client in (robot, *flooding):
+            await served.enter_async_context(client.served())
+            for _ in range(1_000):
+                client.say("call_service", service="/nothing")
+        await asyncio.sleep(0)
+        robot.say("publish", topic="/estop", msg={"enabled": True})
+        turns = 0
+        while not robot.interface.readings:
+            await asyncio.sleep(0)
+            turns += 1
+
+    assert turns <= 2
+
+
+async def test_emergency_stops_of_a_client_keep_their_order(robot: Robot) -> None:
+    async with robot.served():
+        for number in range(20):
+            robot.say("publish", topic="/estop", msg={"enabled": number % 3 == 0})
+        await settle()
+
+    taken = [fields["enabled"] for fields, _ in robot.interface.readings]
+    assert taken == [number % 3 == 0 for number in range(20)]

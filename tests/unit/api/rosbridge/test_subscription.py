@@ -5,7 +5,7 @@ import pytest
 from api.rosbridge.replies import PublishedTexts
 from api.rosbridge.subscription import MAX_QUEUE, Pace, Subscription
 from domain.timebase import seconds
-from service.ros.interface.offer import OfferedTopic
+from service.ros.interface.endpoints import OfferedTopic
 from tests.support.rosbridge import MODE_EVENT, SYSTEM_STATE
 
 

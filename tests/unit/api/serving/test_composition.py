@@ -46,7 +46,7 @@ def test_the_command_line_may_turn_the_mock_on_again(robot: Path) -> None:
     robot.write_text("mock: false\n")
     supervisor = compose(ServeOptions(robot=robot, mock_signals=True), ManualClock()).supervisor
 
-    assert supervisor.mock is not None
+    assert supervisor.readings.mock is not None
 
 
 def test_the_settings_of_a_robot_file_reach_the_core_and_the_service(robot: Path) -> None:
@@ -78,9 +78,9 @@ def test_real_nodes_are_reached_where_that_is_said() -> None:
     composition = compose(ServeOptions(backend="ros2"), ManualClock())
 
     assert composition.gateway is not None
-    assert composition.supervisor.simulated_parts is None
+    assert composition.simulated is None
     assert composition.supervisor.simulated == ()
-    assert composition.supervisor.mock is None
+    assert composition.supervisor.readings.mock is None
 
 
 @pytest.mark.usefixtures("_ros")
@@ -105,7 +105,7 @@ def test_signals_of_a_real_robot_are_mocked_only_where_that_is_asked(
     options = ServeOptions(robot=robot, backend="ros2", mock_signals=flag)
     supervisor = compose(options, ManualClock()).supervisor
 
-    assert (supervisor.mock is not None) is mocked
+    assert (supervisor.readings.mock is not None) is mocked
     assert supervisor.simulated == (("signals",) if mocked else ())
 
 

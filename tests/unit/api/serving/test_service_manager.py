@@ -119,7 +119,7 @@ def test_without_a_manager_nobody_is_told_and_no_tick_is_watched(supervisor: Sup
     nobody.watch(supervisor)
     nobody.say_stopping()
 
-    assert supervisor.on_tick == []
+    assert supervisor.publisher.on_tick == []
 
 
 async def test_a_manager_that_is_gone_is_complained_of_and_does_not_end_the_tick(
@@ -130,7 +130,7 @@ async def test_a_manager_that_is_gone_is_complained_of_and_does_not_end_the_tick
     with caplog.at_level(logging.WARNING):
         async with running(supervisor):
             await clock.advance(1)
-            assert supervisor.last_tick_at == clock.now()
+            assert supervisor.publisher.last_tick_at == clock.now()
 
     assert "cannot tell READY=1 to the service manager" in caplog.text
 

@@ -11,7 +11,7 @@ from api.http.schemas.simulation import AskedRequest
 from api.simulation.requests import Requests
 from domain.state_and_mode import PartName
 from domain.timebase import seconds
-from service.simulation.virtual_robot import VirtualRobot
+from service.simulation.virtual_time import VirtualService
 from tests.support.scenarios import STRAIGHT, scenario, virtual_robot
 from tests.support.tables import table
 
@@ -19,14 +19,14 @@ Ask = Callable[..., Problem | None]
 
 
 @pytest.fixture
-def robot() -> VirtualRobot:
+def robot() -> VirtualService:
     robot = virtual_robot(scenario())
     robot.advance_to(seconds(0.1))
     return robot
 
 
 @pytest.fixture
-def ask(robot: VirtualRobot) -> Iterator[Ask]:
+def ask(robot: VirtualService) -> Iterator[Ask]:
     with asyncio.Runner() as runner:
         requests = Requests(robot.supervisor, runner)
 
@@ -44,7 +44,7 @@ def test_what_can_be_read_is_answered(path: str, ask: Ask) -> None:
     assert ask("GET", path) is None
 
 
-def test_a_request_acts_on_the_robot_of_the_scenario(robot: VirtualRobot, ask: Ask) -> None:
+def test_a_request_acts_on_the_robot_of_the_scenario(robot: VirtualService, ask: Ask) -> None:
     assert ask("PUT", "/emergency_stop", {"engaged": True, "reason": "test"}) is None
 
     assert "ESTOP" in robot.supervisor.core.system_state().errors
@@ -57,7 +57,7 @@ def test_work_of_the_worker_is_done_at_once(ask: Ask) -> None:
 
 
 def test_who_waits_for_a_change_is_answered_while_it_is_still_running(
-    robot: VirtualRobot, ask: Ask
+    robot: VirtualService, ask: Ask
 ) -> None:
     assert ask("POST", "/nodes/drive_base/mode?wait=60", {"mode": "FAST"}) is None
 
@@ -95,7 +95,7 @@ def test_a_refusal_is_the_document_of_the_interface(row: Refused, ask: Ask) -> N
 
 
 def test_a_failure_that_is_no_problem_document_is_told_as_it_is(
-    robot: VirtualRobot, monkeypatch: pytest.MonkeyPatch
+    robot: VirtualService, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     async def fail(scope: Scope, receive: Receive, send: Send) -> None:
         await JSONResponse({"id": "c1", "status": "failed"}, 409)(scope, receive, send)

@@ -7,17 +7,17 @@ from api.simulation import samples
 from api.simulation.samples import Sampler
 from domain.inputs import CancelTaskRequest, HoldRequest, ReleaseRequest
 from domain.timebase import seconds
-from service.simulation.virtual_robot import VirtualRobot
+from service.simulation.virtual_time import VirtualService
 from service.worker import TooComplexError
 from tests.support.scenarios import ALL_GOOD, STRAIGHT, answer, happened, scenario, virtual_robot
 
 
 @pytest.fixture
-def robot() -> VirtualRobot:
+def robot() -> VirtualService:
     return virtual_robot(scenario())
 
 
-def test_a_sample_shows_all_there_is(robot: VirtualRobot) -> None:
+def test_a_sample_shows_all_there_is(robot: VirtualService) -> None:
     sample = from_json(Sampler(robot.supervisor).sample(0.5, 3))
 
     SampleJson.model_validate(sample)
@@ -34,7 +34,7 @@ def test_a_sample_shows_all_there_is(robot: VirtualRobot) -> None:
     assert sample["emergency_stop"]["engaged"] is False
 
 
-def test_holds_are_shown_by_owner(robot: VirtualRobot) -> None:
+def test_holds_are_shown_by_owner(robot: VirtualService) -> None:
     robot.supervisor.submit(HoldRequest("operator", "lunch", "test"))
 
     sample = from_json(Sampler(robot.supervisor).sample(0, 0))
@@ -55,7 +55,7 @@ def test_a_task_that_ended_is_no_current_one_any_more() -> None:
     assert told["samples"][-1]["task"] is None
 
 
-def test_a_sample_shows_what_has_changed_since_the_one_before(robot: VirtualRobot) -> None:
+def test_a_sample_shows_what_has_changed_since_the_one_before(robot: VirtualService) -> None:
     sampler = Sampler(robot.supervisor)
     before = from_json(sampler.sample(0, 0))
     robot.advance_to(seconds(1))
@@ -73,7 +73,7 @@ def test_task_and_vehicle_are_as_in_their_get() -> None:
     assert VehicleJson.model_validate_json(to_json(sample["vehicle"])).command.speed_mps > 0
 
 
-def test_events_are_collected_and_counted_by_kind(robot: VirtualRobot) -> None:
+def test_events_are_collected_and_counted_by_kind(robot: VirtualService) -> None:
     sampler = Sampler(robot.supervisor)
     robot.advance_to(seconds(1))
     robot.supervisor.submit(HoldRequest("operator", "lunch", "test"))
@@ -88,7 +88,7 @@ def test_events_are_collected_and_counted_by_kind(robot: VirtualRobot) -> None:
 
 
 def test_more_events_than_can_be_told_are_too_complex(
-    robot: VirtualRobot, monkeypatch: pytest.MonkeyPatch
+    robot: VirtualService, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(samples, "MAX_EVENTS", 2)
     sampler = Sampler(robot.supervisor)
@@ -99,7 +99,7 @@ def test_more_events_than_can_be_told_are_too_complex(
 
 
 def test_events_that_the_log_has_forgotten_are_not_left_out_in_silence(
-    robot: VirtualRobot,
+    robot: VirtualService,
 ) -> None:
     sampler = Sampler(robot.supervisor)
     for _ in range(3_000):
@@ -111,7 +111,7 @@ def test_events_that_the_log_has_forgotten_are_not_left_out_in_silence(
 
 
 def test_samples_that_are_too_long_together_are_too_complex(
-    robot: VirtualRobot, monkeypatch: pytest.MonkeyPatch
+    robot: VirtualService, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(samples, "MAX_CHARACTERS", len(Sampler(robot.supervisor).sample(0, 0)) + 1)
     sampler = Sampler(robot.supervisor)

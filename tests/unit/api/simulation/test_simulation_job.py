@@ -10,7 +10,7 @@ from api.simulation.simulation_job import LiveCopy, copy_of, robot_for, simulate
 from domain.errors import InvalidModelError
 from domain.inputs import HoldRequest
 from domain.timebase import seconds
-from service.simulation.virtual_robot import VirtualRobot
+from service.simulation.virtual_time import VirtualService
 from tests.support.http_robot import ACTUATION
 from tests.support.scenarios import ALL_GOOD, STRAIGHT, scenario, virtual_robot
 
@@ -23,7 +23,7 @@ def posted(body: Mapping[str, Any], live: LiveCopy | None = None) -> Any:  # noq
 
 
 @pytest.fixture
-def live() -> VirtualRobot:
+def live() -> VirtualService:
     """A robot that is in the middle of something."""
     robot = virtual_robot(scenario())
     robot.advance_to(seconds(0.1))
@@ -32,10 +32,9 @@ def live() -> VirtualRobot:
     return robot
 
 
-def copied(robot: VirtualRobot) -> LiveCopy:
-    parts = robot.supervisor.simulated_parts
-    assert parts is not None
-    return LiveCopy(copy_of(*parts), robot.clock.now(), NOW, robot.supervisor.events.newest)
+def copied(robot: VirtualService) -> LiveCopy:
+    state = copy_of(robot.onboard, robot.robot)
+    return LiveCopy(state, robot.clock.now(), NOW, robot.supervisor.events.newest)
 
 
 def test_a_scenario_happens_to_the_loaded_model() -> None:
@@ -102,7 +101,7 @@ def test_a_copy_that_cannot_be_had_is_refused() -> None:
         robot_for(body, ACTUATION, None)
 
 
-def test_a_copy_goes_on_from_the_live_robot_in_time_events_and_state(live: VirtualRobot) -> None:
+def test_a_copy_goes_on_from_the_live_robot_in_time_events_and_state(live: VirtualService) -> None:
     copy = copied(live)
 
     told = posted(
@@ -130,10 +129,8 @@ def test_a_copy_goes_on_from_the_live_robot_in_time_events_and_state(live: Virtu
     assert told["events"][0]["id"] == copy.events + 1
 
 
-def test_what_happens_to_a_copy_does_not_happen_to_the_live_robot(live: VirtualRobot) -> None:
-    parts = live.supervisor.simulated_parts
-    assert parts is not None
-    before = copy_of(*parts)
+def test_what_happens_to_a_copy_does_not_happen_to_the_live_robot(live: VirtualService) -> None:
+    before = copy_of(live.onboard, live.robot)
     steps = [
         ALL_GOOD,
         {"t_s": 1, "task": {"waypoints": STRAIGHT}},
@@ -143,11 +140,11 @@ def test_what_happens_to_a_copy_does_not_happen_to_the_live_robot(live: VirtualR
 
     posted({"from": "live", "until_s": 10, "steps": steps}, copied(live))
 
-    assert copy_of(*parts) == before
+    assert copy_of(live.onboard, live.robot) == before
     assert live.supervisor.core.driving.holds.keys() == {"operator"}
 
 
-def test_a_copy_is_the_same_however_often_it_is_used(live: VirtualRobot) -> None:
+def test_a_copy_is_the_same_however_often_it_is_used(live: VirtualService) -> None:
     copy = copied(live)
     body = {"from": "live", "until_s": 5, "steps": [ALL_GOOD]}
 

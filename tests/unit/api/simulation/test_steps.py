@@ -10,7 +10,7 @@ from api.http.schemas.simulation import Step as AnyKindOfStep
 from api.simulation.steps import Actors
 from domain.state_and_mode import PartName
 from domain.timebase import seconds
-from service.simulation.virtual_robot import VirtualRobot
+from service.simulation.virtual_time import VirtualService
 from tests.support.scenarios import ALL_GOOD, STRAIGHT, Step, scenario, virtual_robot
 
 STEPS: TypeAdapter[Any] = TypeAdapter(AnyKindOfStep)
@@ -20,7 +20,7 @@ class Stage:
     """A robot, and whoever does something to it."""
 
     def __init__(self, runner: asyncio.Runner) -> None:
-        self.robot: VirtualRobot = virtual_robot(scenario())
+        self.robot: VirtualService = virtual_robot(scenario())
         self._actors = Actors(self.robot, runner)
         self.pass_time(0.1)
 

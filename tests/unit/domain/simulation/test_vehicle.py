@@ -6,10 +6,10 @@ import pytest
 from numpy.typing import NDArray
 
 from domain.inputs import VehicleReport
-from domain.simulation.vehicle import COMMAND_VALID_FOR, SimulatedVehicle
+from domain.simulation.vehicle import SimulatedVehicle
 from domain.simulation.vehicle_settings import Noise, Plant, VehicleSettings
 from domain.timebase import Instant, seconds, to_seconds
-from domain.vehicle import DriveCommand, Pose, VehicleLimits
+from domain.vehicle import COMMAND_VALID_FOR, DriveCommand, Pose, VehicleLimits
 
 START = seconds(50.0) + 3
 LIMITS = VehicleLimits()

@@ -10,12 +10,10 @@ from domain.findings import Finding
 from domain.health.signals import default_signals
 from domain.navigation import NavigationSettings
 from domain.parts.system_model import NodeModel, SmhModel
-from domain.simulation.node_settings import Fault
-from domain.simulation.vehicle_settings import Plant, VehicleSettings
 from domain.state_and_mode import PartName
 from domain.tasks.settings import TaskSettings
 from domain.timebase import seconds
-from domain.vehicle import Pose, VehicleLimits
+from domain.vehicle import VehicleLimits
 from service.files.limits_block import LimitsBlock
 from service.files.model_file import load_model
 from service.files.robot_file import (
@@ -26,6 +24,7 @@ from service.files.robot_file import (
     robot_settings_of,
 )
 from service.files.text_file import UnreadableFileError
+from service.files.vehicle_block import PlantBlock, PoseBlock
 from tests.support.models import actuation_model
 from tests.support.shared import PROJECT
 
@@ -46,11 +45,11 @@ def test_a_robot_of_which_nothing_is_said_is_as_usual(text: str) -> None:
 
     assert settings == RobotSettings()
     assert settings.to_signal_settings() == default_signals()
-    assert settings.to_node_settings() == {}
+    assert settings.nodes == {}
     assert settings.to_change_settings().transition_deadline == seconds(10)
     assert settings.to_change_settings().parameters_deadline == seconds(2)
     assert settings.to_change_settings().restored_nodes == set()
-    assert settings.to_vehicle_settings() == VehicleSettings()
+    assert settings.to_vehicle_limits() == VehicleLimits()
     assert settings.to_task_settings() == TaskSettings()
     assert settings.to_navigation_settings() == NavigationSettings()
     assert settings.limits == LimitsBlock()
@@ -79,7 +78,7 @@ changes: {transition_deadline_s: 4}
 
     assert settings.mock is False
     assert {signal.stale_after for signal in settings.to_signal_settings()} == {0}
-    assert settings.to_node_settings()["manipulator"].fault is Fault.FAIL  # type: ignore[index]
+    assert settings.nodes["manipulator"].fault == "fail"
     assert settings.to_change_settings().transition_deadline == seconds(4)
 
 
@@ -98,11 +97,9 @@ start_task: {file: tracks/loop.csv, controller: stanley, speed_mps: 2}
         MODEL,
     )
 
-    assert settings.to_vehicle_settings() == VehicleSettings(
-        Pose(1.0, -2.0, 1.5),
-        Plant(steering_lag_s=0.15, delay=seconds(0.1)),
-        VehicleLimits(max_speed_mps=5.0),
-    )
+    assert settings.to_vehicle_limits() == VehicleLimits(max_speed_mps=5.0)
+    assert settings.vehicle.pose == PoseBlock(x_m=1.0, y_m=-2.0, yaw_rad=1.5)
+    assert settings.vehicle.plant == PlantBlock(steering_lag_s=0.15, delay_s=0.1)
     assert settings.to_task_settings() == TaskSettings(max_start_distance_m=8.0)
     assert settings.to_navigation_settings().no_progress_for == seconds(30)
     start = settings.start_task
@@ -122,7 +119,7 @@ def test_the_robots_among_the_examples_load(robot: str, model: Path) -> None:
     settings = load_robot_file(EXAMPLES / f"{robot}.yaml", load_model(model).model)
 
     assert settings.to_signal_settings()
-    assert settings.to_node_settings()
+    assert settings.nodes
 
 
 def test_no_robot_among_the_examples_is_forgotten() -> None:
@@ -224,8 +221,8 @@ def test_settings_that_were_sent_hold() -> None:
     settings = robot_settings_of(sent, MODEL)
 
     assert settings.mock is True
-    assert settings.to_vehicle_settings().pose == Pose(1.0, 0.0, 0.0)
-    assert settings.to_node_settings().keys() == {"manipulator"}
+    assert settings.vehicle.pose == PoseBlock(x_m=1.0)
+    assert settings.nodes.keys() == {"manipulator"}
     assert settings.to_navigation_settings().max_cross_track_m == 2.0
 
 

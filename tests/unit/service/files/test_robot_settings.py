@@ -3,7 +3,6 @@ from pydantic import ValidationError
 
 from domain.errors import InvalidValueError
 from domain.health.signals import SignalSettings, default_signals
-from domain.simulation.node_settings import Fault, NodeSettings
 from domain.timebase import seconds
 from service.files.robot_settings import ChangesBlock, NodeBlock, SignalsBlock
 
@@ -164,35 +163,8 @@ def test_a_threshold_that_can_never_be_reached_is_refused(
     assert caught.value.pointer == pointer
 
 
-def test_a_node_is_usual_except_for_what_is_said() -> None:
-    assert NodeBlock().to_domain() == NodeSettings()
-    assert NodeBlock(
-        configure_s=1.5,
-        activate_s=0,
-        deactivate_s=2,
-        cleanup_s=3,
-        shutdown_s=4,
-        set_parameters_s=0.5,
-        fault="silent",
-    ).to_domain() == NodeSettings(
-        configure=seconds(1.5),
-        activate=0,
-        deactivate=seconds(2),
-        cleanup=seconds(3),
-        shutdown=seconds(4),
-        set_parameters=seconds(0.5),
-        fault=Fault.SILENT,
-    )
-
-
-@pytest.mark.parametrize("fault", Fault)
-def test_every_fault_can_be_there_from_the_start(fault: Fault) -> None:
-    assert NodeBlock.model_validate({"fault": str(fault)}).to_domain().fault is fault
-
-
 def test_a_node_that_returns_is_left_unless_it_is_said_that_it_is_restored() -> None:
     assert NodeBlock().on_return == "leave"
-    assert NodeBlock(on_return="restore").to_domain() == NodeSettings()
     with pytest.raises(ValidationError):
         NodeBlock.model_validate({"on_return": "activate"})
 

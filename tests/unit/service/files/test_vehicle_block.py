@@ -4,9 +4,7 @@ from typing import Any
 import pytest
 from pydantic import ValidationError
 
-from domain.simulation.vehicle_settings import Noise, Plant, VehicleSettings
-from domain.timebase import seconds
-from domain.vehicle import Pose, VehicleLimits
+from domain.vehicle import VehicleLimits
 from service.files.vehicle_block import VehicleBlock
 
 EVERYTHING: dict[str, Any] = {
@@ -34,31 +32,13 @@ def nested(path: str, value: object) -> dict[str, Any]:
     return value
 
 
-def test_a_vehicle_of_which_nothing_is_said_is_ideal_and_stands_at_the_origin() -> None:
-    assert VehicleBlock().to_domain() == VehicleSettings()
+def test_a_vehicle_of_which_nothing_is_said_can_do_what_is_usual() -> None:
+    assert VehicleBlock().to_limits() == VehicleLimits()
 
 
-def test_everything_that_is_said_holds() -> None:
-    assert VehicleBlock.model_validate(EVERYTHING).to_domain() == VehicleSettings(
-        Pose(1.5, -2.5, 0.75),
-        Plant(
-            acceleration_mps2=1.25,
-            braking_mps2=2.25,
-            steering_rate_radps=0.11,
-            steering_lag_s=0.2,
-            speed_lag_s=0.3,
-            delay=seconds(0.1),
-            noise=Noise(position_m=0.02, yaw_rad=0.01, speed_mps=0.05, seed=42),
-        ),
-        VehicleLimits(wheelbase_m=2.5, max_steering_angle_rad=0.5, max_speed_mps=6.5),
-    )
-
-
-def test_what_is_left_out_of_a_part_is_as_usual() -> None:
-    settings = VehicleBlock.model_validate({"plant": {"noise": {"seed": 3}}, "pose": {"y_m": 2.0}})
-
-    assert settings.to_domain() == VehicleSettings(
-        Pose(0.0, 2.0, 0.0), Plant(noise=Noise(seed=3)), VehicleLimits()
+def test_limits_that_are_said_hold() -> None:
+    assert VehicleBlock.model_validate(EVERYTHING).to_limits() == VehicleLimits(
+        wheelbase_m=2.5, max_steering_angle_rad=0.5, max_speed_mps=6.5
     )
 
 

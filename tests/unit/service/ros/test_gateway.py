@@ -11,7 +11,7 @@ from domain.parts.system_model import NodeModel, SmhModel, SystemModel
 from domain.state_and_mode import DEFAULT_MODE, PartName
 from service.ros.gateway import RosGateway
 from service.ros.graph.graph import Fields, Lane, Qos
-from service.ros.interface.offer import OfferedTopic
+from service.ros.interface.endpoints import OfferedTopic
 from tests.support.live_robot import running
 from tests.support.manual_clock import settle
 from tests.support.models import inactive

@@ -3,12 +3,16 @@ from collections.abc import AsyncIterator
 
 import pytest
 
-from domain.inputs import Readings, SignalValue
+from domain.errors import InvalidValueError
+from domain.inputs import Reading, Readings, SignalValue
+from domain.simulation.mock_signals import MOCK_SOURCE, MockSignals
 from domain.simulation.robot import SimulatedRobot
 from domain.timebase import seconds, to_seconds
 from service.ports import BackendMessage
-from service.simulation.mock_source import MockSource
+from service.simulation.mock_source import MockHandle, MockSource
 from service.simulation.simulated import SimulatedBackend
+from service.supervisor import Supervisor
+from tests.support.live_robot import make_supervisor, running
 from tests.support.manual_clock import ManualClock, settle
 from tests.support.models import actuation_model
 
@@ -18,7 +22,7 @@ def backend_of(clock: ManualClock) -> SimulatedBackend:
     return SimulatedBackend(SimulatedRobot(actuation_model(), clock.now(), mock=True), clock)
 
 
-def mock_of(backend: SimulatedBackend) -> MockSource:
+def mock_of(backend: SimulatedBackend) -> MockHandle:
     """Return what can be done to the mock signals of a robot."""
     assert backend.mock is not None
     return backend.mock
@@ -43,11 +47,11 @@ class Listening:
 @pytest.fixture
 async def listening() -> AsyncIterator[Listening]:
     listening = Listening()
-    running = asyncio.create_task(listening.backend.run(listening.hear))
+    run = asyncio.create_task(listening.backend.run(listening.hear))
     await settle()
     yield listening
-    running.cancel()
-    await asyncio.wait([running])
+    run.cancel()
+    await asyncio.wait([run])
 
 
 async def test_all_signals_are_there_before_any_time_passes(listening: Listening) -> None:
@@ -94,7 +98,7 @@ def test_it_shows_what_it_holds() -> None:
 async def test_what_is_due_can_be_taken_first_and_is_not_delivered_again() -> None:
     listening = Listening()
     (due,) = listening.source.due()
-    running = asyncio.create_task(listening.backend.run(listening.hear))
+    run = asyncio.create_task(listening.backend.run(listening.hear))
     await listening.clock.advance(0.05)
 
     assert len(due.items) == 5
@@ -102,5 +106,83 @@ async def test_what_is_due_can_be_taken_first_and_is_not_delivered_again() -> No
 
     await listening.clock.advance(0.05)
     assert listening.heard == [(0.1, {reading.signal: reading.value for reading in due.items})]
-    running.cancel()
-    await asyncio.wait([running])
+    run.cancel()
+    await asyncio.wait([run])
+
+
+# --- readings from outside ------------------------------------------------------------------------
+
+
+@pytest.fixture
+def clock() -> ManualClock:
+    return ManualClock()
+
+
+@pytest.fixture
+async def supervisor(clock: ManualClock) -> AsyncIterator[Supervisor]:
+    supervisor = make_supervisor(clock)
+    async with running(supervisor):
+        yield supervisor
+
+
+async def test_a_posted_reading_is_what_the_mock_goes_on_with(
+    clock: ManualClock, supervisor: Supervisor
+) -> None:
+    supervisor.readings.submit([Reading("battery_level", 0.4)])
+    await clock.advance(5)
+    assert supervisor.core.signal("battery_level").value == 0.4
+    assert supervisor.core.system_state().errors == ("BATTERY_LOW",)
+
+
+async def test_a_named_source_of_estop_is_kept_apart_from_the_mock_and_from_others(
+    clock: ManualClock, supervisor: Supervisor
+) -> None:
+    supervisor.readings.submit([Reading("estop", value=True)], source="panel")
+    supervisor.readings.submit([Reading("estop", value=False)], source="remote")
+    supervisor.readings.submit([Reading("estop", value=False)])
+    await clock.advance(1)
+    assert supervisor.core.system_state().errors == ("ESTOP",)
+    supervisor.readings.submit([Reading("estop", value=False)], source="panel")
+    await clock.advance(1)
+    assert supervisor.core.system_state().errors == ()
+
+
+async def test_a_refused_reading_leaves_the_mock_as_it_was(
+    clock: ManualClock, supervisor: Supervisor
+) -> None:
+    with pytest.raises(InvalidValueError):
+        supervisor.readings.submit([Reading("battery_level", 0.4), Reading("temperature", "hot")])
+    await clock.advance(1)
+    assert supervisor.core.signal("battery_level").value == 1.0
+
+
+async def test_an_older_value_of_the_mock_never_follows_a_posted_one(
+    clock: ManualClock, supervisor: Supervisor
+) -> None:
+    """The mock is due, and has not had its turn, when the reading arrives."""
+    await clock.advance(0.095)
+    clock.stall(0.01)
+    supervisor.readings.submit([Reading("estop", value=True)])
+    values = [
+        event.data["values"]
+        for event in supervisor.events.oldest_first()
+        if event.kind == "signal.read"
+    ]
+    await clock.advance(0)
+    assert values[-1] == {"estop": True}
+    assert supervisor.core.signal("estop").value is True
+
+
+async def test_it_runs_on_its_own_beside_other_adapters() -> None:
+    clock = ManualClock()
+    source = MockSource(MockSignals(clock.now()), clock)
+    heard: list[Readings] = []
+    run = asyncio.create_task(source.run(heard.append))
+    await clock.advance(0.35)
+    source.hold("temperature", 60.0)
+    await settle()
+    run.cancel()
+    await asyncio.wait([run])
+
+    assert {message.source for message in heard} == {MOCK_SOURCE}
+    assert [len(message.items) for message in heard] == [5, 5, 5, 5, 1]

@@ -9,16 +9,22 @@ from fastapi import FastAPI
 from domain.findings import Finding
 from domain.inputs import EmergencyStopRequest, Reading
 from domain.timebase import seconds
+from service.simulation.simulated import SimulatedBackend
 from service.supervisor import Supervisor
-from tests.support.live_robot import make_supervisor, running
+from tests.support.live_robot import make_live_robot, running
 from tests.support.manual_clock import ManualClock
 
 ODD = Finding("warning", "INDISTINGUISHABLE_MODES", "WEAK is equal to __DEFAULT__", "manipulator")
 
 
 @pytest.fixture
-def supervisor(clock: ManualClock) -> Supervisor:
-    return make_supervisor(clock, warnings=[ODD])
+def live(clock: ManualClock) -> tuple[Supervisor, SimulatedBackend]:
+    return make_live_robot(clock, warnings=[ODD])
+
+
+@pytest.fixture
+def supervisor(live: tuple[Supervisor, SimulatedBackend]) -> Supervisor:
+    return live[0]
 
 
 async def warnings(http: httpx.AsyncClient) -> dict[str, str]:
@@ -89,7 +95,7 @@ async def test_a_sender_with_a_wrong_clock_is_a_warning(
     await clock.advance(10)
     early = Reading("temperature", 30.0, clock.now() - seconds(5))
 
-    supervisor.submit_readings([early])
+    supervisor.readings.submit([early])
 
     assert "temperature" in (await warnings(http))["CLOCK_SKEW"]
 
@@ -99,7 +105,7 @@ async def test_ticks_that_were_late_are_a_warning(
 ) -> None:
     assert "LATE_TICKS" not in await warnings(http)
 
-    supervisor.late_ticks = 3
+    supervisor.publisher.late_ticks = 3
 
     assert "3 ticks" in (await warnings(http))["LATE_TICKS"]
 
@@ -115,14 +121,13 @@ async def test_a_service_that_anybody_can_reach_warns_of_it(
 
 
 async def test_a_vehicle_that_does_not_tell_where_it_is_is_a_warning(
-    http: httpx.AsyncClient, supervisor: Supervisor, clock: ManualClock
+    http: httpx.AsyncClient, live: tuple[Supervisor, SimulatedBackend], clock: ManualClock
 ) -> None:
+    supervisor, backend = live
     assert (await warnings(http))["NO_POSE"] == "the vehicle never reported a pose"
     async with running(supervisor):
         assert "NO_POSE" not in await warnings(http)
-        parts = supervisor.simulated_parts
-        assert parts is not None
-        parts[1].vehicle.set_reporting(False, clock.now())
+        backend.set_vehicle_reporting(False)
         await clock.advance(1)
 
         assert (await warnings(http))["NO_POSE"] == "no pose of the vehicle for 0.3 s"

@@ -87,7 +87,7 @@ async def test_a_reading_is_decided_on_arrival(robot: HttpRobot) -> None:
     }
     assert (state["state"], state["error_code"], state["errors"]) == ("ERROR", 1, ["BATTERY_LOW"])
     assert state["reasons"][0]["value"] == 0.42
-    assert state["seq"] == robot.supervisor.snapshot_seq
+    assert state["seq"] == robot.supervisor.publisher.seq
 
 
 async def test_several_readings_are_taken_together(unmocked: HttpRobot) -> None:

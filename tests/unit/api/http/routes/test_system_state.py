@@ -11,7 +11,7 @@ async def test_a_robot_with_good_signals_and_no_task_is_idle(robot: HttpRobot) -
     state = await robot.get("/system_state")
 
     assert state == {
-        "seq": robot.supervisor.snapshot_seq,
+        "seq": robot.supervisor.publisher.seq,
         "at": "2026-01-01T00:00:00.000Z",
         "state": "IDLE",
         "error_code": 0,

@@ -65,7 +65,7 @@ def test_a_step_is_told_by_what_it_names(step: dict[str, Any], kind: type) -> No
 def test_a_fault_is_set_or_ended(fault: str, meant: Fault | None) -> None:
     step = NodeStep.model_validate({"t_s": 0, "node": "arm", "fault": fault})
 
-    assert step.set_fault is meant
+    assert step.set_fault == meant
 
 
 @pytest.mark.parametrize(

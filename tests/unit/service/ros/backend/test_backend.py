@@ -6,7 +6,6 @@ import pytest
 from domain.commands import AskTransition, Drive
 from domain.inputs import BackendStatus, NodeAnswer, NodeReport, Readings
 from domain.lifecycle import Transition
-from domain.simulation.mock_signals import MOCK_SOURCE, MockSignals
 from domain.vehicle import DriveCommand
 from service.files.robot_file import read_robot_file
 from service.ports import BackendMessage
@@ -30,13 +29,12 @@ ros2:
 class Listening:
     """A backend over a graph in memory, and what was heard of it."""
 
-    def __init__(self, *missing: str, mock: bool = False) -> None:
+    def __init__(self, *missing: str) -> None:
         self.clock = ManualClock()
         self.graph = FakeGraph(self.clock, missing)
-        signals = MockSignals(self.clock.now()) if mock else None
         model = actuation_model()
         robot = read_robot_file(ROBOT_FILE, model)
-        self.backend = Ros2Backend(model, robot, self.graph, self.clock, signals)
+        self.backend = Ros2Backend(model, robot, self.graph, self.clock)
         self.heard: list[BackendMessage] = []
 
     def run(self) -> asyncio.Task[None]:
@@ -96,27 +94,6 @@ async def test_the_vehicle_is_told_to_drive_and_after_half_a_second_to_stand(
 
     speeds = [message["linear"]["x"] for message in robot.graph.published("/cmd_vel")]
     assert speeds == [1.5, 0.0]
-
-
-async def test_there_is_nothing_simulated_and_no_mock_unless_it_is_asked_for(
-    robot: Listening,
-) -> None:
-    assert robot.backend.simulation is None
-    assert robot.backend.mock is None
-
-
-async def test_mock_signals_are_published_beside_the_real_robot() -> None:
-    listening = Listening(mock=True)
-    running = listening.run()
-    await listening.clock.advance(0.35)
-    assert listening.backend.mock is not None
-    listening.backend.mock.hold("temperature", 60.0)
-    await settle()
-    await ended(running)
-
-    readings = [message for message in listening.heard if isinstance(message, Readings)]
-    assert {message.source for message in readings} == {MOCK_SOURCE}
-    assert [len(message.items) for message in readings] == [5, 5, 5, 5, 1]
 
 
 async def test_what_comes_at_once_is_delivered_in_its_order_and_lets_others_run(

@@ -26,7 +26,7 @@ async def test_an_error_is_told_with_its_bits_before_the_next_tick(robot: RosRob
     await robot.clock.advance(0.01)
     heard = robot.hear("/system_state")
 
-    robot.supervisor.submit_readings([Reading("battery_level", 0.2), Reading("estop", value=True)])
+    robot.supervisor.readings.submit([Reading("battery_level", 0.2), Reading("estop", value=True)])
     await robot.clock.advance(0)
 
     assert [(message["state"], message["error_code"]) for message in heard] == [(2, 3)]
@@ -61,7 +61,7 @@ async def test_diagnostics_come_at_once_when_the_state_of_the_robot_changes(
     await robot.clock.advance(0.51)
     before = len(heard)
 
-    robot.supervisor.submit_readings([Reading("estop", value=True)])
+    robot.supervisor.readings.submit([Reading("estop", value=True)])
     await robot.clock.advance(0)
 
     assert len(heard) == before + 1

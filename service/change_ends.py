@@ -1,0 +1,68 @@
+"""The ends of changes: counted, and waited for by whoever asked for one."""
+
+import asyncio
+from collections import Counter
+from collections.abc import Iterable
+from contextlib import suppress
+
+from domain.events.changes import ChangeEnded
+from domain.events.event import RecordedEvent
+from domain.identifiers import ChangeId
+from domain.snapshot import ChangeStatus, ChangeView
+from domain.supervision import Supervision
+from domain.timebase import seconds
+from service.clock import Clock
+
+
+class ChangeEnds:
+    """Tells those who wait for a change that it has ended."""
+
+    def __init__(self, core: Supervision, clock: Clock) -> None:
+        self.counts: Counter[str] = Counter()
+        """Changes that ended so far, by how they ended."""
+        self._core = core
+        self._clock = clock
+        self._stopped = False
+        self._waiting: dict[ChangeId, set[asyncio.Future[None]]] = {}
+
+    def note(self, events: Iterable[RecordedEvent]) -> None:
+        """Count the changes that ended by these events, and wake those who wait for them."""
+        for recorded in events:
+            event = recorded.event
+            if isinstance(event, ChangeEnded):
+                self.counts[event.status] += 1
+                self._wake(event.change)
+
+    async def wait(self, change: ChangeId, timeout_s: float) -> ChangeView:
+        """Return a change once it has ended, or as it is after `timeout_s` seconds.
+
+        Raises:
+            UnknownChangeError: There is no such change.
+        """
+        view = self._core.change(change)
+        if view.status is not ChangeStatus.RUNNING or timeout_s <= 0 or self._stopped:
+            return view
+        ended: asyncio.Future[None] = asyncio.get_running_loop().create_future()
+        waiting = self._waiting.setdefault(change, set())
+        waiting.add(ended)
+        deadline = self._clock.now() + seconds(timeout_s)
+        timer = asyncio.ensure_future(self._clock.sleep_until(deadline))
+        try:
+            await asyncio.wait({ended, timer}, return_when=asyncio.FIRST_COMPLETED)
+        finally:
+            waiting.discard(ended)
+            timer.cancel()
+            with suppress(asyncio.CancelledError):
+                await timer
+        return self._core.change(change)
+
+    def stop(self) -> None:
+        """Let everybody who waits go, and nobody wait from now on."""
+        self._stopped = True
+        for change in list(self._waiting):
+            self._wake(change)
+
+    def _wake(self, change: ChangeId) -> None:
+        for ended in self._waiting.pop(change, ()):
+            if not ended.done():
+                ended.set_result(None)

@@ -1,0 +1,118 @@
+"""Publishes frames: 20 a second, and one at once when the system state changes."""
+
+import logging
+from collections.abc import Callable
+
+from domain.outbox import Outputs
+from domain.state_and_mode import PartName
+from domain.supervision import Supervision
+from domain.timebase import Instant, seconds, to_seconds
+from service.clock import Clock
+from service.frame_feed import Frame, FrameFeed
+
+log = logging.getLogger(__name__)
+
+PERIOD = seconds(0.05)
+_TICKS_PER_FULL = 20
+"""One complete frame a second, so that a client that lost something is soon right again."""
+
+
+class FramePublisher:
+    """Makes frames of the views of the core, each of what changed since the one before."""
+
+    def __init__(self, core: Supervision, clock: Clock, simulated: tuple[str, ...] = ()) -> None:
+        """Prepare; nothing is published yet.
+
+        Args:
+            core: What frames show.
+            clock: The present.
+            simulated: What of the robot is not real.
+        """
+        self.frames = FrameFeed()
+        self.seq = 0
+        """Number of the newest frame."""
+        self.late_ticks = 0
+        """So many ticks were skipped."""
+        self.last_tick_at: Instant | None = None
+        self.on_tick: list[Callable[[float], None]] = []
+        """Called with the seconds since the tick before; must return at once."""
+        self._core = core
+        self._clock = clock
+        self._simulated = simulated
+        self._ticks = 0
+        self._changed_parts: set[PartName] = set()
+        self._changed_signals: set[str] = set()
+        self._task_changed = False
+        self._vehicle_changed = False
+
+    async def run(self) -> None:
+        """Tick on a fixed grid until cancelled; a late tick is skipped and counted."""
+        start = self._clock.now()
+        count = 0
+        while True:
+            self._tick()
+            count += 1
+            late = self._clock.now() - (start + count * PERIOD)
+            if late >= PERIOD:
+                skipped = late // PERIOD + 1
+                count += skipped
+                self.late_ticks += skipped
+                log.warning("%d ticks were skipped: %.0f ms late", skipped, late / 1e6)
+            await self._clock.sleep_until(start + count * PERIOD)
+
+    def note(self, outputs: Outputs) -> None:
+        """Take in what looks different by now; the next frame shows it."""
+        self._changed_parts |= outputs.parts
+        self._changed_signals |= outputs.signals
+        self._task_changed |= outputs.task_changed
+        self._vehicle_changed |= outputs.vehicle_changed
+
+    def publish_change(self) -> None:
+        """Publish now and not at the next tick, unless nothing was published yet."""
+        if self.seq:
+            self._publish()
+
+    def _publish(self, *, full: bool = False) -> None:
+        """Publish one frame: everything, or what changed since the last one."""
+        full = full or self.frames.wants_full
+        self.seq += 1
+        core = self._core
+        holds, emergency_stop = core.driving.holds, core.emergency_stop()
+        last = self.frames.newest
+        frame = Frame(
+            seq=self.seq,
+            at=self._clock.now(),
+            system_state=core.system_state(),
+            parts=core.parts() if full else {p: core.part(p) for p in sorted(self._changed_parts)},
+            signals=(
+                core.signals()
+                if full
+                else {s: core.signal(s) for s in sorted(self._changed_signals)}
+            ),
+            task=core.driving.latest_task if last is None or self._task_changed else last.task,
+            task_changed=full or self._task_changed,
+            vehicle=core.driving.vehicle,
+            vehicle_changed=full or self._vehicle_changed,
+            # Both are the same objects as long as nothing about them changes.
+            holds=holds,
+            holds_changed=full or last is None or holds is not last.holds,
+            emergency_stop=emergency_stop,
+            emergency_stop_changed=(
+                full or last is None or emergency_stop is not last.emergency_stop
+            ),
+            full=full,
+            simulated=self._simulated,
+        )
+        self._changed_parts.clear()
+        self._changed_signals.clear()
+        self._task_changed = self._vehicle_changed = False
+        self.frames.publish(frame)
+
+    def _tick(self) -> None:
+        now = self._clock.now()
+        if self.last_tick_at is not None:
+            for observe in self.on_tick:
+                observe(to_seconds(now - self.last_tick_at))
+        self.last_tick_at = now
+        self._publish(full=self._ticks % _TICKS_PER_FULL == 0)
+        self._ticks += 1

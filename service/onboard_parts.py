@@ -1,0 +1,22 @@
+"""What supervises a robot, made from its settings: the same live and in a simulation."""
+
+from domain.navigation import Navigation
+from domain.onboard import Onboard
+from domain.parts.system_model import SmhModel
+from domain.supervision import Supervision, SupervisionSettings
+from domain.timebase import Instant
+from service.files.robot_file import RobotSettings
+
+
+def make_onboard(model: SmhModel, robot: RobotSettings, start: Instant) -> Onboard:
+    """Return the supervision and the navigation of a robot."""
+    limits = robot.to_vehicle_limits()
+    settings = SupervisionSettings(
+        robot.to_signal_settings(),
+        robot.to_change_settings(),
+        robot.to_task_settings(),
+        limits,
+    )
+    core = Supervision(model, settings, start)
+    navigation = Navigation(limits, robot.to_navigation_settings(), core.driving.watch)
+    return Onboard(core, navigation)

@@ -1,0 +1,135 @@
+"""Standard types in place of message types that exist only where somebody built them.
+
+`system_modes_msgs` and `gem_state_msgs` come with no distribution of ROS 2. Where one is not
+installed, its services and topics are offered all the same, in types that every installation has. A
+mode is then written as a state with a label of its own, as in `active.FAST`.
+"""
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from typing import Any, TypeAlias
+
+from domain.health.signals import DECLARED_BIT, STALE_DATA, STALE_DATA_BIT, default_signals
+from domain.lifecycle import LifecycleState
+from domain.snapshot import SystemState, TaskStatus
+from domain.state_and_mode import ModeName, StateAndMode
+from service.ros.interface.diagnostics import Level, status
+from service.ros.interface.endpoints import Fields
+from service.ros.interface.services import UNKNOWN_MODE
+
+Convert: TypeAlias = Callable[[Fields], Fields]
+
+
+@dataclass(frozen=True, slots=True)
+class ServiceFallback:
+    """The type that carries a service, and what becomes of its requests and responses."""
+
+    type: str
+    request: Convert
+    """From the type that carries it."""
+    response: Convert
+    """Into the type that carries it."""
+
+
+@dataclass(frozen=True, slots=True)
+class TopicFallback:
+    """The type that carries a topic, and what becomes of its messages."""
+
+    type: str
+    message: Convert
+    """Into the type that carries it."""
+
+
+_ACTIVE = f"{LifecycleState.ACTIVE}."
+_NO_STATE: Mapping[str, object] = {"id": 0, "label": ""}
+_ERRORS = {
+    **{c.bit: c.error for signal in default_signals() for c in signal.conditions},
+    STALE_DATA_BIT: STALE_DATA,
+    DECLARED_BIT: "DECLARED",
+}
+"""By bit; the message has no room for the names of declared errors, which share one."""
+
+
+def _no_fields(_: Fields) -> Fields:
+    return {}
+
+
+def _as_it_is(fields: Fields) -> Fields:
+    return fields
+
+
+def _state(mode: str) -> Fields:
+    """Return a mode as a state; none, and one that is not known, is the unknown state."""
+    if not mode or mode == UNKNOWN_MODE:
+        return {"id": LifecycleState.UNKNOWN.id, "label": mode}
+    label = StateAndMode(LifecycleState.ACTIVE, ModeName(mode)).label
+    return {"id": LifecycleState.ACTIVE.id, "label": label}
+
+
+def _asked_mode(fields: Fields) -> Fields:
+    """Read the label `FAST` or `active.FAST`; the number says nothing about a mode."""
+    return {"mode_name": str(fields["transition"]["label"]).removeprefix(_ACTIVE)}
+
+
+def _current_mode(fields: Fields) -> Fields:
+    return {"current_state": _state(fields["current_mode"])}
+
+
+def _available_modes(fields: Fields) -> Fields:
+    return {"available_states": [_state(mode) for mode in fields["available_modes"]]}
+
+
+def _mode_event(fields: Fields) -> Fields:
+    return {
+        "timestamp": fields["timestamp"],
+        "transition": _NO_STATE,
+        "start_state": _state(fields["start_mode"]["label"]),
+        "goal_state": _state(fields["goal_mode"]["label"]),
+    }
+
+
+def _system_state(fields: Fields) -> Fields:
+    code = fields["error_code"]
+    errors = ", ".join(error for bit, error in sorted(_ERRORS.items()) if code & bit)
+    state = tuple(SystemState)[fields["state"]]
+    level = Level.ERROR if state is SystemState.ERROR else Level.OK
+    values = {"stamp": _stamp(fields), "state": state, "error_code": code, "errors": errors}
+    return status(level, "system state", f"{state}: {errors}" if errors else state, values)
+
+
+def _task_status(fields: Fields) -> Fields:
+    name = tuple(TaskStatus)[fields["status"]]
+    values = {"stamp": _stamp(fields), "status": name}
+    return status(Level.OK, "task planner status", name, values)
+
+
+def _stamp(fields: Mapping[str, Any]) -> str:
+    stamp = fields["header"]["stamp"]
+    return f"{stamp['sec']}.{stamp['nanosec']:09d}"
+
+
+SERVICE_FALLBACKS: Mapping[str, ServiceFallback] = {
+    "system_modes_msgs/srv/ChangeMode": ServiceFallback(
+        "lifecycle_msgs/srv/ChangeState", _asked_mode, _as_it_is
+    ),
+    "system_modes_msgs/srv/GetMode": ServiceFallback(
+        "lifecycle_msgs/srv/GetState", _no_fields, _current_mode
+    ),
+    "system_modes_msgs/srv/GetAvailableModes": ServiceFallback(
+        "lifecycle_msgs/srv/GetAvailableStates", _no_fields, _available_modes
+    ),
+}
+"""By the native type."""
+
+TOPIC_FALLBACKS: Mapping[str, TopicFallback] = {
+    "system_modes_msgs/msg/ModeEvent": TopicFallback(
+        "lifecycle_msgs/msg/TransitionEvent", _mode_event
+    ),
+    "gem_state_msgs/msg/SystemStateStamped": TopicFallback(
+        "diagnostic_msgs/msg/DiagnosticStatus", _system_state
+    ),
+    "gem_state_msgs/msg/TaskPlannerStatus": TopicFallback(
+        "diagnostic_msgs/msg/DiagnosticStatus", _task_status
+    ),
+}
+"""By the native type."""

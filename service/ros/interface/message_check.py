@@ -1,0 +1,102 @@
+"""Checks the fields of incoming messages."""
+
+from collections.abc import Mapping
+from enum import Enum
+from typing import Any, TypeAlias
+
+from domain.errors import InvalidValueError
+
+
+class Kind(Enum):
+    """What a field holds; the value is how that is called in a sentence."""
+
+    BOOLEAN = "true or false"
+    UINT8 = "a whole number from 0 to 255"
+    INT32 = "a whole number of 32 bits"
+    UINT32 = "a whole number of 32 bits, at least 0"
+    NUMBER = "a number"
+    TEXT = "a text"
+
+
+Shape: TypeAlias = "Mapping[str, Kind | Shape]"
+"""Fields of a message, in the order of its definition."""
+
+EMPTY: Shape = {}
+HEADER: Shape = {"stamp": {"sec": Kind.INT32, "nanosec": Kind.UINT32}, "frame_id": Kind.TEXT}
+CHANGE_STATE: Shape = {"transition": {"id": Kind.UINT8, "label": Kind.TEXT}}
+CHANGE_MODE: Shape = {"mode_name": Kind.TEXT}
+
+_DEFAULTS: Mapping[Kind, bool | int | float | str] = {
+    Kind.BOOLEAN: False,
+    Kind.UINT8: 0,
+    Kind.INT32: 0,
+    Kind.UINT32: 0,
+    Kind.NUMBER: 0.0,
+    Kind.TEXT: "",
+}
+_RANGES: Mapping[Kind, range] = {
+    Kind.UINT8: range(2**8),
+    Kind.INT32: range(-(2**31), 2**31),
+    Kind.UINT32: range(2**32),
+}
+
+
+def checked(shape: Shape, fields: object, pointer: str = "") -> dict[str, Any]:
+    """Return a message with all its fields; one that was left out has the default of ROS.
+
+    Args:
+        shape: What it has to look like.
+        fields: The message as it came.
+        pointer: Where in a larger message this is.
+
+    Raises:
+        InvalidValueError: A field is unknown or has a wrong type; `pointer` names it, as in
+            `transition/id`.
+    """
+    if not isinstance(fields, Mapping):
+        raise InvalidValueError(f"{pointer or 'a message'} must have fields by name", pointer)
+    for name in fields:
+        if name not in shape:
+            known = f"known: {', '.join(shape)}" if shape else "there are none here"
+            message = f"there is no field {name!r:.100}; {known}"
+            raise InvalidValueError(message, _below(pointer, f"{name:.100}"))
+    return {
+        name: _checked_field(kind, fields.get(name), name in fields, _below(pointer, name))
+        for name, kind in shape.items()
+    }
+
+
+def _checked_field(kind: "Kind | Shape", value: object, is_given: bool, pointer: str) -> object:
+    if not isinstance(kind, Kind):
+        return checked(kind, value if is_given else {}, pointer)
+    if not is_given:
+        return _DEFAULTS[kind]
+    if not _fits(kind, value):
+        raise InvalidValueError(f"{pointer} must be {kind.value}, not {_shown(value)}", pointer)
+    return value
+
+
+def _shown(value: object) -> str:
+    """Return a wrong value as a sentence names it.
+
+    Of one that holds others only what it is: to write it all out may take as long as some ticks,
+    and has no end if it is nested deeply.
+    """
+    if isinstance(value, Mapping):
+        return "fields"
+    return "a list" if isinstance(value, list) else f"{value!r:.40}"
+
+
+def _fits(kind: Kind, value: object) -> bool:
+    """Tell whether a value is of a kind; a boolean is not a number, and a number not a boolean."""
+    if kind is Kind.TEXT:
+        return isinstance(value, str)
+    if kind is Kind.BOOLEAN or isinstance(value, bool):
+        return kind is Kind.BOOLEAN and isinstance(value, bool)
+    if kind is Kind.NUMBER:
+        return isinstance(value, int | float)
+    return isinstance(value, int) and value in _RANGES[kind]
+
+
+def _below(pointer: str, name: str) -> str:
+    return f"{pointer}/{name}" if pointer else name

@@ -1,0 +1,66 @@
+"""The simulated robot that a robot file describes."""
+
+from domain.parts.system_model import SmhModel
+from domain.simulation.node_settings import Fault, NodeSettings
+from domain.simulation.robot import SimulatedRobot
+from domain.simulation.vehicle_settings import Noise, Plant, VehicleSettings
+from domain.state_and_mode import PartName
+from domain.timebase import Duration, Instant, seconds
+from domain.vehicle import Pose
+from service.files.robot_file import RobotSettings
+from service.files.robot_settings import NodeBlock
+from service.files.vehicle_block import VehicleBlock
+
+
+def make_simulated_robot(
+    model: SmhModel, robot: RobotSettings, start: Instant, *, mock: bool
+) -> SimulatedRobot:
+    """Return a simulated robot.
+
+    Args:
+        model: Says which nodes there are.
+        robot: What nodes and vehicle are like.
+        start: The present.
+        mock: Whether the mock signals are published as well.
+
+    Raises:
+        UnknownPartError: There are settings of a node that the model does not have.
+    """
+    nodes = {PartName(name): node_settings(block) for name, block in robot.nodes.items()}
+    return SimulatedRobot(model, start, nodes, vehicle_settings(robot.vehicle), mock=mock)
+
+
+def node_settings(block: NodeBlock) -> NodeSettings:
+    """Return what a simulated node is like; what the block leaves out is as usual."""
+    usual = NodeSettings()
+    return NodeSettings(
+        configure=_duration(block.configure_s, usual.configure),
+        activate=_duration(block.activate_s, usual.activate),
+        deactivate=_duration(block.deactivate_s, usual.deactivate),
+        cleanup=_duration(block.cleanup_s, usual.cleanup),
+        shutdown=_duration(block.shutdown_s, usual.shutdown),
+        set_parameters=_duration(block.set_parameters_s, usual.set_parameters),
+        fault=Fault(block.fault) if block.fault else None,
+    )
+
+
+def vehicle_settings(block: VehicleBlock) -> VehicleSettings:
+    """Return what the simulated vehicle is like."""
+    pose, plant, noise = block.pose, block.plant, block.plant.noise
+    return VehicleSettings(
+        Pose(pose.x_m, pose.y_m, pose.yaw_rad),
+        Plant(
+            plant.acceleration_mps2,
+            plant.braking_mps2,
+            plant.steering_rate_radps,
+            plant.steering_lag_s,
+            plant.speed_lag_s,
+            seconds(plant.delay_s),
+            Noise(noise.position_m, noise.yaw_rad, noise.speed_mps, noise.seed),
+        ),
+        block.to_limits(),
+    )
+
+
+def _duration(own: float | None, usual: Duration) -> Duration:
+    return usual if own is None else seconds(own)

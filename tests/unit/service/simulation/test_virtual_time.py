@@ -1,0 +1,253 @@
+import asyncio
+from collections.abc import Callable
+from datetime import timedelta
+from typing import Any, Protocol, TypeAlias
+
+import numpy as np
+import pytest
+
+from domain.events.event import RecordedEvent
+from domain.inputs import (
+    EmergencyStopRequest,
+    HoldRequest,
+    ModeRequest,
+    Reading,
+    ReleaseRequest,
+    TaskRequest,
+)
+from domain.paths.path import Path
+from domain.simulation.node_settings import Fault
+from domain.simulation.robot import SimulatedRobot
+from domain.snapshot import ChangeStatus
+from domain.timebase import seconds, to_seconds
+from service.event_log import EventLog
+from service.files.model_file import LoadedModel
+from service.simulation.simulated import SimulatedBackend
+from service.simulation.virtual_time import VirtualClock, VirtualService
+from service.supervisor import Supervisor
+from tests.support.live_robot import make_onboard, running
+from tests.support.manual_clock import START, ManualClock, settle
+from tests.support.models import ACTUATION, BASE, PERFORMANCE, actuation_model
+
+
+def test_it_stands_until_it_is_set() -> None:
+    clock = VirtualClock(seconds(50), START)
+    assert clock.now() == seconds(50)
+
+    clock.set(seconds(51.5))
+    assert clock.now() == seconds(51.5)
+
+
+def test_time_that_has_passed_does_not_come_back() -> None:
+    clock = VirtualClock(seconds(50), START)
+    clock.set(seconds(49))
+
+    assert clock.now() == seconds(50)
+
+
+def test_the_calendar_goes_on_with_it_from_what_it_said_at_the_start() -> None:
+    clock = VirtualClock(seconds(50), START)
+    clock.set(seconds(3650))
+
+    assert clock.wall_time(seconds(50)) == START
+    assert clock.wall_time(clock.now()) == START + timedelta(hours=1)
+    assert clock.from_wall(START + timedelta(seconds=1)) == seconds(51)
+
+
+@pytest.mark.parametrize("ahead", [1, seconds(3600)])
+async def test_who_waits_for_what_is_to_come_waits_even_when_it_has_come(ahead: int) -> None:
+    clock = VirtualClock(0, START)
+    waiting = asyncio.create_task(clock.sleep_until(ahead))
+    await settle()
+    clock.set(ahead)
+    await settle()
+    assert not waiting.done()
+
+    waiting.cancel()
+    await asyncio.wait([waiting])
+    assert waiting.cancelled()
+
+
+@pytest.mark.parametrize("deadline", [0, seconds(50)])
+async def test_who_waits_for_what_has_passed_does_not_wait(deadline: int) -> None:
+    clock = VirtualClock(seconds(50), START)
+
+    await asyncio.wait_for(clock.sleep_until(deadline), 5)
+
+
+MODEL = actuation_model()
+LOADED = LoadedModel(model=MODEL, warnings=(), text="")
+
+
+def virtual(start_s: float = 0.0, *, mock: bool = True) -> VirtualService:
+    start = seconds(start_s)
+    return VirtualService(
+        LOADED,
+        make_onboard(MODEL, start),
+        SimulatedRobot(MODEL, start, mock=mock),
+        VirtualClock(start, START),
+        EventLog(epoch="test"),
+    )
+
+
+def straight(length_m: float) -> Path:
+    x = np.linspace(0.0, length_m, round(length_m / 0.5) + 1)
+    return Path(np.column_stack((x, np.zeros_like(x), np.zeros_like(x))))
+
+
+def happened(log: EventLog) -> list[tuple[float, str]]:
+    """Return when, in seconds, and what happened, without what happens all the time."""
+    often = ("signal.read", "vehicle.reported", "task.progress")
+    return [
+        (to_seconds(event.at), event.kind)
+        for event in log.oldest_first()
+        if event.kind not in often
+    ]
+
+
+def test_nothing_has_happened_before_time_passes() -> None:
+    robot = virtual(50.0)
+
+    assert happened(robot.supervisor.events) == []
+    assert robot.clock.now() == seconds(50.0)
+
+
+def test_what_is_due_at_the_end_of_a_time_is_part_of_it() -> None:
+    robot = virtual()
+    robot.advance_to(0)
+    assert robot.supervisor.core.part(BASE).reachable
+
+    robot.supervisor.submit(ModeRequest(BASE, "FAST"))
+    robot.advance_to(seconds(0.3) - 1)
+    assert robot.supervisor.core.part(BASE).actual.state_and_mode.label == "configuring"
+    robot.advance_to(seconds(0.3))
+    assert robot.supervisor.core.part(BASE).actual.state_and_mode.label != "configuring"
+    assert robot.clock.now() == seconds(0.3)
+
+
+def test_a_change_ends_in_virtual_time() -> None:
+    robot = virtual()
+    robot.advance_to(seconds(1))
+    change = robot.supervisor.submit(ModeRequest(ACTUATION, PERFORMANCE)).change
+    assert change is not None
+    robot.advance_to(seconds(3))
+
+    assert robot.supervisor.core.change(change).status is ChangeStatus.SUCCEEDED
+
+
+async def test_who_waits_for_a_change_gets_it_at_once_as_it_is() -> None:
+    robot = virtual()
+    robot.advance_to(0)
+    change = robot.supervisor.submit(ModeRequest(ACTUATION, PERFORMANCE)).change
+    assert change is not None
+    view = await asyncio.wait_for(robot.supervisor.change_ends.wait(change, 60), 5)
+
+    assert view.status is ChangeStatus.RUNNING
+
+
+def test_deadlines_of_the_core_are_kept_between_what_the_robot_says() -> None:
+    robot = virtual()
+    robot.advance_to(seconds(1.03))
+    assert robot.backend.mock is not None
+    robot.backend.mock.set_publishing("temperature", False)
+    robot.supervisor.readings.submit([Reading("temperature", 20.0)], source="test")
+    robot.advance_to(seconds(5))
+
+    raised = [event.at for event in told(robot.supervisor.events) if event.kind == "error.raised"]
+    # Stale is what is older than 2 s, by a nanosecond at least.
+    assert raised == [seconds(3.03) + 1]
+
+
+def test_the_robot_is_advanced_no_more_often_than_it_wants() -> None:
+    robot = virtual(mock=False)
+    advanced: list[float] = []
+    advance = robot.robot.advance
+
+    def counting(now: int) -> Any:  # noqa: ANN401  # whatever it is
+        advanced.append(to_seconds(now))
+        return advance(now)
+
+    robot.robot.advance = counting  # type: ignore[method-assign]
+    robot.advance_to(seconds(1))
+
+    assert len(advanced) <= 30
+
+
+def test_a_task_is_driven_to_its_end() -> None:
+    robot = virtual()
+    robot.advance_to(0)
+    robot.supervisor.submit(TaskRequest(straight(20.0), 0, "pure_pursuit", 2.8, "operator"))
+    robot.advance_to(seconds(40))
+
+    kinds = [kind for _, kind in happened(robot.supervisor.events)]
+    assert "task.succeeded" in kinds
+    vehicle = robot.supervisor.core.driving.vehicle.state
+    assert vehicle is not None
+    assert abs(vehicle.pose.x_m - 20.0) < 0.3
+
+
+class Story(Protocol):
+    """A robot that is told something at a time; live or virtual."""
+
+    supervisor: Supervisor
+    backend: SimulatedBackend
+
+
+Act: TypeAlias = Callable[[Story], object]
+
+
+def _drive(story: Story) -> None:
+    story.supervisor.submit(TaskRequest(straight(30.0), 0, "stanley", 2.8, "operator"))
+
+
+STORY: list[tuple[float, Act]] = [
+    (0.5, lambda s: s.supervisor.submit(ModeRequest(ACTUATION, PERFORMANCE, "operator"))),
+    (0.7, lambda s: s.backend.set_fault(BASE, Fault.DIE)),
+    (2.5, lambda s: s.backend.set_fault(BASE, None)),
+    (3.0, _drive),
+    (5.123, lambda s: s.supervisor.readings.submit([Reading("estop", value=True)])),
+    (6.0, lambda s: s.supervisor.readings.submit([Reading("estop", value=False)])),
+    (7.0, lambda s: s.supervisor.submit(HoldRequest("operator", "lunch", "operator"))),
+    (8.0, lambda s: s.supervisor.submit(ReleaseRequest("operator", "operator"))),
+    (9.0, lambda s: s.backend.set_vehicle_reporting(False)),
+    (9.5, lambda s: s.backend.set_vehicle_reporting(True)),
+    (10.5, lambda s: s.supervisor.submit(EmergencyStopRequest(True, "test", "operator"))),
+    (11.0, lambda s: s.supervisor.submit(EmergencyStopRequest(False, "test", "operator"))),
+]
+END_S = 40.0
+
+
+def told(log: EventLog) -> list[RecordedEvent]:
+    return list(log.oldest_first())
+
+
+class Live:
+    """The same robot, run by tasks on a clock."""
+
+    def __init__(self) -> None:
+        self.clock = ManualClock()
+        robot = SimulatedRobot(MODEL, 0, mock=True)
+        self.backend = SimulatedBackend(robot, self.clock)
+        onboard = make_onboard(MODEL, 0)
+        self.supervisor = Supervisor(
+            LOADED, onboard, self.clock, self.backend, self.backend.readings, robot.what
+        )
+
+
+async def test_the_same_happens_at_the_same_times_as_with_a_live_robot() -> None:
+    fast = virtual()
+    for at_s, act in STORY:
+        fast.advance_to(seconds(at_s))
+        act(fast)
+    fast.advance_to(seconds(END_S))
+
+    live = Live()
+    async with running(live.supervisor):
+        for at_s, act in STORY:
+            await live.clock.advance_to(seconds(at_s))
+            act(live)
+        await live.clock.advance_to(seconds(END_S))
+
+    kinds = {kind for _, kind in happened(fast.supervisor.events)}
+    assert {"task.paused", "task.resumed", "task.succeeded", "hold.set"} <= kinds
+    assert told(fast.supervisor.events) == told(live.supervisor.events)

@@ -1,0 +1,117 @@
+"""Frames in virtual time: the tick publishes, and an error is published at once."""
+
+import logging
+from collections.abc import AsyncIterator
+
+import pytest
+
+from domain.inputs import ModeRequest, Reading
+from domain.snapshot import SystemState
+from service.frame_feed import Frame
+from service.supervisor import Supervisor
+from tests.support.live_robot import make_supervisor, running
+from tests.support.manual_clock import ManualClock
+from tests.support.models import ACTUATION, BASE
+
+
+@pytest.fixture
+def clock() -> ManualClock:
+    return ManualClock()
+
+
+@pytest.fixture
+async def supervisor(clock: ManualClock) -> AsyncIterator[Supervisor]:
+    supervisor = make_supervisor(clock)
+    async with running(supervisor):
+        yield supervisor
+
+
+class Recorded:
+    """Every frame that a supervisor publishes."""
+
+    def __init__(self, supervisor: Supervisor) -> None:
+        self.frames: list[Frame] = []
+        self._supervisor = supervisor
+
+    def __call__(self) -> None:
+        newest = self._supervisor.frames.newest
+        assert newest is not None
+        self.frames.append(newest)
+
+
+async def test_ten_seconds_are_200_frames_without_a_gap(
+    clock: ManualClock, supervisor: Supervisor
+) -> None:
+    recorded = Recorded(supervisor)
+    first = supervisor.publisher.seq
+    with supervisor.frames.watch(recorded):
+        await clock.advance(10)
+    assert [f.seq for f in recorded.frames] == list(range(first + 1, first + 201))
+    assert supervisor.publisher.late_ticks == 0
+
+
+async def test_one_frame_a_second_is_complete(clock: ManualClock, supervisor: Supervisor) -> None:
+    recorded = Recorded(supervisor)
+    with supervisor.frames.watch(recorded):
+        await clock.advance(3)
+    full = [frame for frame in recorded.frames if frame.full]
+    assert len(full) == 3
+    assert all(set(frame.parts) == set(supervisor.model.parts) for frame in full)
+
+
+async def test_a_frame_in_between_holds_what_changed_and_nothing_else(
+    clock: ManualClock, supervisor: Supervisor
+) -> None:
+    await clock.advance(0.31)
+    recorded = Recorded(supervisor)
+    with supervisor.frames.watch(recorded):
+        supervisor.submit(ModeRequest(BASE, "FAST"))
+        await clock.advance(0.05)
+    (frame,) = recorded.frames
+    assert set(frame.parts) == {BASE, ACTUATION}
+
+
+async def test_an_error_is_published_at_once_and_not_at_the_next_tick(
+    clock: ManualClock, supervisor: Supervisor
+) -> None:
+    await clock.advance(0.01)
+    before = supervisor.publisher.seq
+    supervisor.readings.submit([Reading("estop", value=True)])
+    newest = supervisor.frames.newest
+    assert newest is not None
+    assert newest.seq == before + 1
+    assert newest.system_state.state is SystemState.ERROR
+
+
+async def test_the_first_frame_of_a_robot_with_the_mock_is_idle(supervisor: Supervisor) -> None:
+    newest = supervisor.frames.newest
+    assert newest is not None
+    assert (newest.system_state.state, newest.full) == (SystemState.IDLE, True)
+
+
+async def test_changing_reasons_make_no_more_frames_and_errors_do(
+    clock: ManualClock, supervisor: Supervisor
+) -> None:
+    supervisor.readings.submit([Reading("temperature", 60.0)])
+    recorded = Recorded(supervisor)
+    with supervisor.frames.watch(recorded):
+        for number in range(80):
+            supervisor.readings.submit([Reading("temperature", 60.0 + number)])
+            await clock.advance(0.0125)
+    assert len(recorded.frames) == 20
+    assert [frame.full for frame in recorded.frames].count(True) == 1
+
+
+async def test_a_late_tick_is_skipped_counted_and_not_made_up_for(
+    clock: ManualClock, supervisor: Supervisor, caplog: pytest.LogCaptureFixture
+) -> None:
+    periods: list[float] = []
+    supervisor.publisher.on_tick.append(periods.append)
+    before = supervisor.publisher.seq
+    clock.stall(0.32)
+    with caplog.at_level(logging.WARNING):
+        await clock.advance(0)
+    assert supervisor.publisher.late_ticks == 5
+    assert supervisor.publisher.seq == before + 1
+    await clock.advance(0.03)
+    assert periods == pytest.approx([0.32, 0.03])

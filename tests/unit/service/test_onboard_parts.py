@@ -1,0 +1,68 @@
+import numpy as np
+import pytest
+
+from domain.errors import InvalidValueError
+from domain.inputs import Reading, Readings, TaskRequest, VehicleReport
+from domain.paths.path import Path
+from domain.timebase import seconds
+from domain.vehicle import Pose, VehicleState
+from service.files.robot_file import RobotSettings
+from service.onboard_parts import make_onboard
+from tests.support.models import actuation_model
+
+MODEL = actuation_model()
+START = seconds(50.0)
+
+
+def settings(**said: object) -> RobotSettings:
+    return RobotSettings.model_validate(said)
+
+
+def test_the_supervision_is_of_the_model() -> None:
+    onboard = make_onboard(MODEL, settings(), START)
+
+    assert set(onboard.core.parts()) == set(MODEL.parts)
+
+
+def test_signals_are_judged_as_the_settings_say() -> None:
+    onboard = make_onboard(MODEL, settings(signals={"battery_level": {"threshold": 0.3}}), START)
+    onboard.handle(Readings((Reading("battery_level", 0.4),), "test"), START)
+    assert "BATTERY_LOW" not in onboard.core.system_state().errors
+
+    onboard.handle(Readings((Reading("battery_level", 0.2),), "test"), START)
+    assert "BATTERY_LOW" in onboard.core.system_state().errors
+
+
+def test_navigation_is_as_the_settings_say() -> None:
+    robot = settings(driving={"max_cross_track_m": 1.5, "braking_mps2": 0.5})
+    navigation = make_onboard(MODEL, robot, START).navigation
+
+    assert navigation.settings == robot.to_navigation_settings()
+    assert navigation.settings.max_cross_track_m == 1.5
+    assert navigation.settings.speed.braking_mps2 == 0.5
+
+
+def task(begins_at_m: float, speed_mps: float) -> TaskRequest:
+    """Return a task along the x axis."""
+    x = np.linspace(begins_at_m, begins_at_m + 20.0, 41)
+    path = Path(np.column_stack((x, np.zeros_like(x), np.zeros_like(x))))
+    return TaskRequest(path, 0, "pure_pursuit", speed_mps, "operator")
+
+
+@pytest.mark.parametrize(
+    ("begins_at_m", "speed_mps", "refused"),
+    [(8.0, 5.0, ""), (9.5, 5.0, "at most 9 m"), (8.0, 5.5, "5")],
+    ids=["as far and as fast as may be", "too far", "too fast"],
+)
+def test_tasks_are_judged_as_the_settings_say(
+    begins_at_m: float, speed_mps: float, refused: str
+) -> None:
+    robot = settings(vehicle={"max_speed_mps": 5.0}, driving={"max_start_distance_m": 9.0})
+    onboard = make_onboard(MODEL, robot, START)
+    onboard.handle(VehicleReport(VehicleState(Pose(0.0, 0.0, 0.0), 0.0, 0.0)), START)
+
+    if refused:
+        with pytest.raises(InvalidValueError, match=refused):
+            onboard.handle(task(begins_at_m, speed_mps), START)
+    else:
+        assert onboard.handle(task(begins_at_m, speed_mps), START).task is not None

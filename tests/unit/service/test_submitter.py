@@ -1,0 +1,80 @@
+"""What is handed to the core, and what follows from it."""
+
+import asyncio
+from collections.abc import AsyncIterator
+
+import pytest
+
+from domain.errors import UnknownPartError
+from domain.inputs import ModeRequest, NodeReport, Reading, Readings
+from domain.outbox import Outputs
+from domain.state_and_mode import PartName
+from service.submitter import Submitter
+from service.supervisor import Supervisor
+from tests.support.live_robot import make_onboard, make_supervisor, running
+from tests.support.manual_clock import ManualClock
+from tests.support.models import BASE, actuation_model
+
+
+class Given:
+    """A submitter on a clock, and the outputs that were to be carried out."""
+
+    def __init__(self) -> None:
+        self.clock = ManualClock()
+        self.onboard = make_onboard(actuation_model(), self.clock.now())
+        self.carried_out: list[Outputs] = []
+        self.submitter = Submitter(self.onboard, self.clock, self.carried_out.append)
+
+
+@pytest.fixture
+def clock() -> ManualClock:
+    return ManualClock()
+
+
+@pytest.fixture
+async def supervisor(clock: ManualClock) -> AsyncIterator[Supervisor]:
+    supervisor = make_supervisor(clock)
+    async with running(supervisor):
+        yield supervisor
+
+
+async def test_what_was_due_before_a_refused_request_is_still_told(
+    clock: ManualClock, supervisor: Supervisor
+) -> None:
+    supervisor.readings.submit([Reading("estop", value=True)])
+    supervisor.readings.submit([Reading("estop", value=False)])
+    clock.stall(0.3)
+    with pytest.raises(UnknownPartError):
+        supervisor.submit(ModeRequest(PartName("nobody"), "FAST"))
+    kinds = [event.kind for event in supervisor.events.oldest_first()]
+    assert "error.cleared" in kinds[-3:]
+
+
+def test_what_follows_is_carried_out_and_returned() -> None:
+    given = Given()
+    given.submitter.deliver(NodeReport(BASE, reachable=True))
+    outputs = given.submitter.submit(ModeRequest(BASE, "FAST"))
+
+    assert given.carried_out[-1] == outputs
+    assert outputs.change is not None
+
+
+def test_a_report_that_is_refused_is_logged(caplog: pytest.LogCaptureFixture) -> None:
+    given = Given()
+    given.submitter.deliver(NodeReport(PartName("nobody"), reachable=True))
+
+    assert "refused NodeReport" in caplog.text
+    assert given.onboard.core.part(BASE).reachable is False
+
+
+async def test_what_time_makes_due_happens_at_its_time() -> None:
+    given = Given()
+    run = asyncio.create_task(given.submitter.run())
+    given.submitter.submit(Readings((Reading("estop", value=True),), "test"))
+    given.submitter.submit(Readings((Reading("estop", value=False),), "test"))
+    await given.clock.advance(0.19)
+    assert "ESTOP" in given.onboard.core.system_state().errors
+    await given.clock.advance(0.01)
+    assert "ESTOP" not in given.onboard.core.system_state().errors
+    run.cancel()
+    await asyncio.wait([run])
