@@ -9,8 +9,8 @@ from dataclasses import dataclass
 from domain.timebase import Duration, seconds
 
 COMMAND_VALID_FOR: Duration = seconds(0.5)
-"""How long a drive command is valid. Without a new one the vehicle then stops, so that it also stops
-when the supervisor dies."""
+"""How long a drive command is valid. Without a new one the vehicle then stops, so that a dead
+supervisor stops it."""
 
 
 @dataclass(frozen=True, slots=True)

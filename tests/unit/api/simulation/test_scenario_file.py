@@ -184,7 +184,10 @@ def test_what_is_wrong_is_told_with_its_place(text: str, told: str, folder: Fold
 @pytest.mark.parametrize(
     ("step", "told"),
     [
-        ("{t_s: 0, vehicle: silent, why: x}", "s.yaml:3:31: INVALID_VALUE steps.0.why: there is"),
+        (
+            "{t_s: 0, vehicle: silent, why: x}",
+            "s.yaml:3:31: INVALID_VALUE steps.0.why: unknown key",
+        ),
         ("{t_s: 0, vehicle: off}", "s.yaml:3:14: INVALID_VALUE steps.0.vehicle: "),
         ("{t_s: 2, vehicle: silent}", "s.yaml:3:6: INVALID_VALUE this is after the end, until_s 1"),
         ("{t_s: 0, reading: {estop: }}", "s.yaml:3:24: INVALID_VALUE steps.0.reading.estop: "),

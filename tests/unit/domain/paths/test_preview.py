@@ -167,7 +167,7 @@ def test_a_straight_lasts_as_long_as_speeding_up_driving_and_braking() -> None:
 
 
 def test_a_lap_of_the_gem_is_estimated_near_its_optimum() -> None:
-    # smart_polaris section 12: v <= 7 m/s, 2 m/s2 lateral, 1 m/s2 along: 126.2 s at best.
+    # The fastest lap with v <= 7 m/s, 2 m/s2 lateral and 1 m/s2 along takes 126.2 s.
     text = (shared_folder("tracks") / "gem_e2_loop.csv").read_text(encoding="utf-8")
     waypoints = np.array([[float(c) for c in row.split(",")[:3]] for row in text.split()])
 

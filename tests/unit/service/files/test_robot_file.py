@@ -189,7 +189,7 @@ def test_all_faults_are_told_at_once() -> None:
 
 
 def test_the_error_says_what_is_wrong_first() -> None:
-    with pytest.raises(InvalidRobotFileError, match=r"unknown node 'tail'.*\(and 1 more\)"):
+    with pytest.raises(InvalidRobotFileError, match=r"there is no node 'tail'.*\(and 1 more\)"):
         read_robot_file("nodes: {tail: {}, horn: {}}", MODEL)
 
 

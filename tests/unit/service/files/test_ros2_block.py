@@ -195,7 +195,7 @@ ros2:
 
 def test_a_fault_in_what_was_sent_is_told_with_a_pointer() -> None:
     sent = {"ros2": {"signals": {"tail": {"topic": "/t", "type": "std_msgs/msg/Bool"}}}}
-    with pytest.raises(InvalidValueError, match="unknown signal 'tail'; declare it") as caught:
+    with pytest.raises(InvalidValueError, match="there is no signal 'tail'; declare it") as caught:
         robot_settings_of(sent, MODEL)
 
     assert caught.value.pointer == "/ros2/signals/tail"
