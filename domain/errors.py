@@ -177,6 +177,14 @@ class IllegalTransitionError(RefusedError):
         state: LifecycleState | None,
         available: Sequence[Transition],
     ) -> None:
+        """State where the part is, and what is legal there.
+
+        Args:
+            part: The requested part.
+            transition: The requested transition.
+            state: Current state of the part; None: its nodes are in different states.
+            available: Transitions that would be accepted.
+        """
         where = f"is {state}" if state else "has parts in different states"
         super().__init__(f"{part} {where}: it cannot {transition}")
         self.available = tuple(available)

@@ -58,6 +58,13 @@ class Supervision:
     """The supervision of one robot: its concerns, and the order in which they act."""
 
     def __init__(self, model: SmhModel, settings: SupervisionSettings, start: Instant) -> None:
+        """Begin with all nodes unknown and no readings.
+
+        Args:
+            model: Systems and nodes of the robot.
+            settings: Settings of signals, changes, tasks and vehicle.
+            start: The current time; the times of silent signals count from here.
+        """
         self.model = model
         self._now = start
         self._outbox = Outbox()

@@ -41,6 +41,15 @@ class Restoring:
         outbox: Outbox,
         admit: Callable[[ChangeRequest], ChangeGoal],
     ) -> None:
+        """Begin without nodes to restore.
+
+        Args:
+            parts: Facts, inferred states and targets of all parts.
+            changes: Begins the changes that restore nodes.
+            settings: Names the nodes to restore.
+            outbox: Receives events.
+            admit: Returns the goal of a request, or raises the error that rejects it.
+        """
         self._parts = parts
         self._inference = parts.inference
         self._changes = changes

@@ -14,7 +14,7 @@ from domain.state_and_mode import PartName, StateAndMode
 
 @dataclass(frozen=True, slots=True)
 class ChangeRequested(Event):
-    """Somebody requests a change of state, mode or parameters."""
+    """A change of state, mode or parameters is requested."""
 
     kind = "change.requested"
     is_input = True
@@ -34,7 +34,7 @@ class ChangeRequested(Event):
 
 @dataclass(frozen=True, slots=True)
 class ChangeCancelRequested(Event):
-    """Somebody cancels a change."""
+    """A cancel of a change is requested."""
 
     kind = "change.cancel_requested"
     is_input = True

@@ -94,7 +94,7 @@ class ErrorCleared(Event):
 
 @dataclass(frozen=True, slots=True)
 class ErrorAcknowledged(Event):
-    """Somebody acknowledges an error."""
+    """An error is acknowledged."""
 
     kind = "error.acknowledged"
     is_input = True
@@ -107,7 +107,7 @@ class ErrorAcknowledged(Event):
 
 @dataclass(frozen=True, slots=True)
 class EmergencyStopEngaged(Event):
-    """Somebody engages the emergency stop."""
+    """The emergency stop is engaged."""
 
     kind = "emergency_stop.engaged"
     is_input = True
@@ -120,7 +120,7 @@ class EmergencyStopEngaged(Event):
 
 @dataclass(frozen=True, slots=True)
 class EmergencyStopReleased(Event):
-    """Somebody releases the emergency stop."""
+    """The emergency stop is released."""
 
     kind = "emergency_stop.released"
     is_input = True

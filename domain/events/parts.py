@@ -34,7 +34,7 @@ class NodeReported(Event):
 
 @dataclass(frozen=True, slots=True)
 class NodeReachable(Event):
-    """A node is heard from, for the first time or again."""
+    """A node is reachable, for the first time or again."""
 
     kind = "node.reachable"
     node: PartName
@@ -45,7 +45,7 @@ class NodeReachable(Event):
 
 @dataclass(frozen=True, slots=True)
 class NodeUnreachable(Event):
-    """A node is no longer heard from."""
+    """A node is no longer reachable."""
 
     kind = "node.unreachable"
     node: PartName

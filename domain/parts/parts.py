@@ -75,7 +75,7 @@ class Parts(Concern):
         self._tell_actuals(changed)
 
     def ask(self, wanted: Mapping[PartName, StateAndMode]) -> None:
-        """Set the targets that somebody requests; they are in force at once."""
+        """Set requested targets; they are in force at once."""
         self.touch(self._targets.ask(wanted))
         self.touch(wanted)
 

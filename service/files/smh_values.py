@@ -39,7 +39,14 @@ def read_want(
 
 
 def read_part_name(block: SmhBlock, where: str, text: str, place: Node) -> PartName:
-    """Read the name of a part; the C++ code finds no part by a name with a leading slash."""
+    """Read the name of a part; the C++ code finds no part by a name with a leading slash.
+
+    Args:
+        block: Receives findings.
+        where: The place in words, for messages.
+        text: The name as written.
+        place: Place of the name in the file.
+    """
     name = text.removeprefix("/")
     if name != text:
         block.warn(place, "LEADING_SLASH", f"{where}: write {name} without a leading slash")
@@ -47,14 +54,26 @@ def read_part_name(block: SmhBlock, where: str, text: str, place: Node) -> PartN
 
 
 def fitted(pair: StateAndMode, part: PartName, with_modes: Collection[PartName]) -> StateAndMode:
-    """Add `__DEFAULT__` to `active` for a part with modes, or remove it for one without."""
+    """Add `__DEFAULT__` to `active` for a part with modes, or remove it for one without.
+
+    Args:
+        pair: State and mode as written.
+        part: The part that they apply to.
+        with_modes: All parts that have modes.
+    """
     if pair.state is not LifecycleState.ACTIVE or pair.mode not in (None, DEFAULT_MODE):
         return pair
     return StateAndMode(pair.state, DEFAULT_MODE if part in with_modes else None)
 
 
 def read_rule(block: SmhBlock, name: str, with_modes: Collection[PartName]) -> Rule | None:
-    """Read a rule; None: too little of it can be read."""
+    """Read a rule; None: too little of it can be read.
+
+    Args:
+        block: Block of the system; receives findings.
+        name: Name of the rule.
+        with_modes: All parts that have modes.
+    """
     lines, where = block.rules[name], f"rule {name} of {block.name}"
     for key, line in lines.items():
         if key not in _RULE_KEYS:

@@ -77,7 +77,15 @@ def finding_at(
     part: str | None = None,
     severity: Literal["error", "warning"] = "error",
 ) -> Finding:
-    """Return a finding with line and column of `place`."""
+    """Return a finding with line and column of `place`.
+
+    Args:
+        place: What the finding is about.
+        code: Stable, UPPER_SNAKE.
+        message: The finding in words.
+        part: Name of the part concerned, if any.
+        severity: Whether the file cannot be used, or only looks wrong.
+    """
     return Finding(severity, code, message, part, (), place.line, place.column)
 
 

@@ -47,7 +47,7 @@ def add_url(parser: argparse.ArgumentParser) -> None:
 
 
 def with_service(url: str, run: Callable[["ServiceClient"], Outcome]) -> int:
-    """Run something with a client, and say why if it is refused or nobody answers.
+    """Run something with a client; report a rejection, or a service that does not answer.
 
     Args:
         url: Where the service runs.

@@ -92,7 +92,7 @@ COMMAND = Command("task", "submit or cancel a waypoint task", _TEXT, _add_option
 
 @dataclass(frozen=True, slots=True)
 class TaskOptions:
-    """What is asked; None is left to the service."""
+    """Options of a task; None: the default of the service."""
 
     file: str
     """Path of a CSV; `-` is the standard input."""
