@@ -4,6 +4,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import TypeAlias
 
+from domain.actor import NOBODY, Actor
 from domain.identifiers import ChangeId, GoalId
 from domain.lifecycle import LifecycleState, Transition
 from domain.parameters import Parameters, ParameterValue
@@ -60,7 +61,7 @@ class Readings:
     items: tuple[Reading, ...]
     source: str
     """Who measured. `estop` is kept per source: one source cannot release another's."""
-    actor: str = ""
+    actor: Actor = NOBODY
 
 
 @dataclass(frozen=True, slots=True)
@@ -122,7 +123,7 @@ class WriteRecord:
     """HTTP status code."""
     address: str
     """Host and port of the client."""
-    actor: str = ""
+    actor: Actor = NOBODY
 
 
 # --- requests ------------------------------------------------------------------------------------
@@ -134,7 +135,7 @@ class ModeRequest:
 
     part: PartName
     mode: str
-    actor: str = ""
+    actor: Actor = NOBODY
 
 
 @dataclass(frozen=True, slots=True)
@@ -143,7 +144,7 @@ class TransitionRequest:
 
     part: PartName
     transition: Transition
-    actor: str = ""
+    actor: Actor = NOBODY
 
 
 @dataclass(frozen=True, slots=True)
@@ -152,7 +153,7 @@ class ParametersRequest:
 
     node: PartName
     values: Mapping[str, ParameterValue]
-    actor: str = ""
+    actor: Actor = NOBODY
 
 
 @dataclass(frozen=True, slots=True)
@@ -160,7 +161,7 @@ class CancelRequest:
     """Cancel a change: it starts no further step; a step in flight is not recalled."""
 
     change: ChangeId
-    actor: str = ""
+    actor: Actor = NOBODY
 
 
 @dataclass(frozen=True, slots=True)
@@ -169,7 +170,7 @@ class EmergencyStopRequest:
 
     engaged: bool
     reason: str
-    actor: str = ""
+    actor: Actor = NOBODY
 
 
 @dataclass(frozen=True, slots=True)
@@ -177,7 +178,7 @@ class AcknowledgeRequest:
     """Acknowledge an error, so that it clears once its cause is gone."""
 
     error: str
-    actor: str = ""
+    actor: Actor = NOBODY
 
 
 @dataclass(frozen=True, slots=True)
@@ -191,14 +192,14 @@ class TaskRequest:
     """Name of a path tracker."""
     speed_mps: float
     """Cruise speed; slower in curves and towards the end."""
-    actor: str = ""
+    actor: Actor = NOBODY
 
 
 @dataclass(frozen=True, slots=True)
 class CancelTaskRequest:
     """Cancel the current task, if any, and stop the vehicle."""
 
-    actor: str = ""
+    actor: Actor = NOBODY
 
 
 @dataclass(frozen=True, slots=True)
@@ -207,7 +208,7 @@ class HoldRequest:
 
     owner: str
     reason: str
-    actor: str = ""
+    actor: Actor = NOBODY
 
 
 @dataclass(frozen=True, slots=True)
@@ -215,7 +216,7 @@ class ReleaseRequest:
     """Release the hold of `owner`; without effect if there is none."""
 
     owner: str
-    actor: str = ""
+    actor: Actor = NOBODY
 
 
 ChangeRequest: TypeAlias = ModeRequest | TransitionRequest | ParametersRequest

@@ -2,6 +2,7 @@
 
 from dataclasses import dataclass
 
+from domain.actor import NOBODY, Actor
 from domain.commands import Command
 from domain.events.event import Event, RecordedEvent
 from domain.events.service import TimeWasDue
@@ -56,17 +57,19 @@ class Outbox:
         self._next_request = 1
         self._at: Instant = 0
         self._input: Event = TimeWasDue()
-        self._actor = ""
+        self._actor = NOBODY
         self._cause: int | None = None
         self._input_id: int | None = None
 
-    def begin(self, now: Instant, event: Event, actor: str = "", cause: int | None = None) -> None:
+    def begin(
+        self, now: Instant, event: Event, actor: Actor = NOBODY, cause: int | None = None
+    ) -> None:
         """Begin an input; it is recorded once something follows from it.
 
         Args:
             now: When it arrived.
             event: Describes the input.
-            actor: Who sent it; empty: nobody in particular.
+            actor: Who sent it.
             cause: Id of the event that led to this input, if any.
         """
         self._at, self._input, self._actor, self._cause = now, event, actor, cause

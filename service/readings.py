@@ -3,6 +3,7 @@
 from collections.abc import Callable, Sequence
 from typing import Protocol, TypeAlias
 
+from domain.actor import NOBODY, Actor
 from domain.inputs import Input, Reading, Readings, SignalValue
 from domain.outbox import Outputs
 
@@ -61,7 +62,7 @@ class ReadingInput(Protocol):
         ...
 
     def submit(
-        self, items: Sequence[Reading], source: str | None = None, actor: str = ""
+        self, items: Sequence[Reading], source: str | None = None, actor: Actor = NOBODY
     ) -> Outputs:
         """Hand in readings.
 
@@ -85,7 +86,7 @@ class DirectReadings:
         self._submit = submit
 
     def submit(
-        self, items: Sequence[Reading], source: str | None = None, actor: str = ""
+        self, items: Sequence[Reading], source: str | None = None, actor: Actor = NOBODY
     ) -> Outputs:
         """Hand in readings; those of a sender without a name are of `api`."""
         return self._submit(Readings(tuple(items), source or UNNAMED, actor))

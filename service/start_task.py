@@ -2,6 +2,7 @@
 
 from pathlib import Path as FilePath
 
+from domain.actor import Actor
 from domain.errors import PilothouseError
 from domain.inputs import TaskRequest
 from domain.paths.path import Path
@@ -33,7 +34,7 @@ def submit_start_task(supervisor: Supervisor, task: StartTaskBlock, robot_file: 
     text = read_text_file(file)
     try:
         path = Path(read_waypoints_csv(text))
-        asked = TaskRequest(path, 0, task.controller, task.speed_mps, "robot file")
+        asked = TaskRequest(path, 0, task.controller, task.speed_mps, Actor("robot file"))
         supervisor.submit(asked)
     except PilothouseError as error:
         raise StartTaskError(f"start_task {file}: {error.message}") from error

@@ -7,6 +7,7 @@ becomes due there, it is told so at that time; the tick only publishes (`frame_p
 from collections.abc import Callable, Sequence
 from contextlib import suppress
 
+from domain.actor import Actor
 from domain.commands import PreemptGoal, SendGoal
 from domain.errors import PilothouseError
 from domain.findings import Finding
@@ -120,7 +121,7 @@ class Supervisor:
         """Hold the task and let the vehicle stand still, since the service ends."""
         # Refused only where there is no room for one more hold, and so it stands already.
         with suppress(PilothouseError):
-            self.submit(HoldRequest("service", "the service ends", "service"))
+            self.submit(HoldRequest("service", "the service ends", Actor("service")))
 
     def _carry_out(self, outputs: Outputs) -> None:
         """Act on the robot first, then tell."""

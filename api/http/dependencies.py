@@ -8,6 +8,7 @@ from typing import Annotated
 from fastapi import Depends, Path, Request
 from fastapi.requests import HTTPConnection
 
+from domain.actor import Actor
 from domain.errors import UnknownPartError
 from domain.parts.system_model import SmhModel
 from domain.state_and_mode import PartName
@@ -29,12 +30,12 @@ SupervisorDep = Annotated[Supervisor, Depends(_supervisor)]
 WorkerDep = Annotated[Jobs, Depends(_worker)]
 
 
-async def _actor(request: Request) -> str:
-    return f"http:{request.client.host}" if request.client else "http:unknown"
+async def _actor(request: Request) -> Actor:
+    return Actor(way="http", address=request.client.host if request.client else "unknown")
 
 
-ActorDep = Annotated[str, Depends(_actor)]
-"""Who asks, as events record it."""
+ActorDep = Annotated[Actor, Depends(_actor)]
+"""Who asks."""
 
 
 async def _part(

@@ -7,6 +7,7 @@ from typing import Any, Protocol
 from api.http.gate.rate import TokenBuckets
 from api.rosbridge.replies import PublishedTexts
 from api.rosbridge.rosapi import REQUESTS, RosApi
+from domain.actor import Actor
 from domain.errors import InvalidValueError
 from service.clock import Clock
 from service.frame_feed import FrameFeed
@@ -72,7 +73,7 @@ class Bridge:
         self.calls_per_s = calls_per_s
         self._buckets = TokenBuckets(calls_per_s)
 
-    def may_call(self, service: str, caller: str) -> bool:
+    def may_call(self, service: str, caller: Actor) -> bool:
         """Count a call, and tell whether it may be made.
 
         As over HTTP, what makes the robot safe always may.
@@ -81,7 +82,7 @@ class Bridge:
             service: Full name.
             caller: With the address of the client.
         """
-        return service == CANCEL_TASKS or not self._buckets.take(caller, self.clock.now())
+        return service == CANCEL_TASKS or not self._buckets.take(caller.label, self.clock.now())
 
 
 _REQUESTS: Mapping[str, Shape] = {

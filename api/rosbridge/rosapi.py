@@ -8,6 +8,7 @@ from collections.abc import Callable, Iterable, Mapping
 from typing import TypeAlias
 
 from api.rosbridge.operations import full_name, is_type
+from domain.actor import Actor
 from domain.timebase import NANOSECONDS_PER_SECOND
 from service.clock import Clock, since_epoch
 from service.ros.interface.endpoints import (
@@ -99,7 +100,7 @@ class RosApi:
 
 
 def _service(name: str, type_name: str, answer: Answer) -> OfferedService:
-    async def call(request: Fields, caller: str) -> Fields:
+    async def call(request: Fields, caller: Actor) -> Fields:
         return answer(checked(REQUESTS[type_name], request))
 
     return OfferedService(

@@ -11,6 +11,7 @@ from api.rosbridge.send_queue import SendQueue
 from api.rosbridge.session import Session
 from api.rosbridge.wire import Wire
 from api.streaming.websocket_frames import Connection
+from domain.actor import Actor
 
 log = logging.getLogger(__name__)
 
@@ -43,7 +44,7 @@ class ServedClient:
         try:
             async with asyncio.TaskGroup() as tasks:
                 writing = tasks.create_task(self._write(), name="rosbridge writer")
-                caller = f"rosbridge:{self._address}"
+                caller = Actor(way="rosbridge", address=self._address)
                 session = Session(self._bridge, self._queue, caller, tasks.create_task)
                 ahead = ReadAhead()
                 reading = tasks.create_task(self._read(session, ahead, receive))

@@ -25,6 +25,7 @@ from api.rosbridge.operations import (
 from api.rosbridge.replies import response_text, sentence, status_text
 from api.rosbridge.send_queue import SendQueue
 from api.rosbridge.subscription import Pace, Subscription
+from domain.actor import Actor
 from domain.errors import InvalidValueError, PilothouseError, UnknownNameError
 from domain.timebase import seconds
 from service.ros.interface.endpoints import OfferedService
@@ -44,7 +45,7 @@ Spawn: TypeAlias = Callable[[Coroutine[Any, Any, None]], asyncio.Task[None]]
 class Session:
     """One client."""
 
-    def __init__(self, bridge: Bridge, queue: SendQueue, caller: str, spawn: Spawn) -> None:
+    def __init__(self, bridge: Bridge, queue: SendQueue, caller: Actor, spawn: Spawn) -> None:
         """Begin.
 
         Args:

@@ -16,6 +16,7 @@ from api.http.schemas.simulation import (
 )
 from api.http.task_jobs import task_of
 from api.simulation.requests import Requests
+from domain.actor import Actor
 from domain.errors import PilothouseError
 from domain.inputs import (
     CancelTaskRequest,
@@ -29,7 +30,7 @@ from domain.state_and_mode import part_name
 from domain.timebase import seconds
 from service.simulation.virtual_time import VirtualService
 
-_ACTOR = "simulation"
+_ACTOR = Actor("simulation")
 
 
 class Actors:

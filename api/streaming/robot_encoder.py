@@ -77,7 +77,7 @@ class RobotEncoder:
             "at": timestamp(self._clock, event.at),
             "kind": event.kind,
             "cause": event.cause,
-            "actor": event.actor,
+            "actor": event.actor.label,
             "data": event.data,
             "words": event.event.words,
             "notable": event.event.notable,

@@ -20,6 +20,7 @@ from api.streaming.client_input import read_client_message, read_stream_query
 from api.streaming.stream_client import StreamClient
 from api.streaming.stream_server import StreamServer, StreamServerDep
 from api.streaming.websocket_frames import connection_of, text_frame
+from domain.actor import Actor
 from domain.errors import PilothouseError
 
 router = APIRouter()
@@ -164,7 +165,8 @@ class _Client:
             self._server.fan_out.resync(client)
             return
         reading = given.reading(given.signal, supervisor.clock)
-        supervisor.readings.submit([reading], given.source, f"websocket:{self._address}")
+        actor = Actor(way="websocket", address=self._address)
+        supervisor.readings.submit([reading], given.source, actor)
 
     async def _answer(self, error: PilothouseError) -> None:
         """Say what is wrong, once the client has taken most of what was written before."""

@@ -10,6 +10,7 @@ from dataclasses import dataclass, fields
 from enum import Enum
 from typing import ClassVar
 
+from domain.actor import Actor
 from domain.state_and_mode import StateAndMode
 from domain.timebase import Instant
 
@@ -67,8 +68,8 @@ class RecordedEvent:
     at: Instant
     cause: int | None
     """Id of the event that led to this one; None: it came from outside, or from the clock."""
-    actor: str
-    """Who requested it; empty: nobody."""
+    actor: Actor
+    """Who requested it."""
     event: Event
 
     @property

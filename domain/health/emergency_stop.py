@@ -42,7 +42,7 @@ class EmergencyStop(Concern):
             return
         self._view = EmergencyStopView(
             engaged=request.engaged,
-            by=request.actor,
+            by=request.actor.label,
             reason=request.reason,
             since=now,
             standstill_at=None,

@@ -152,7 +152,7 @@ class Driving(Concern):
         self._planner.holds.check(request.owner)
         self._planner.holds.check_room(request.owner)
         self._outbox.begin(now, HoldRequested(request.owner, request.reason), request.actor)
-        self._planner.hold(request.owner, request.reason, request.actor, now)
+        self._planner.hold(request.owner, request.reason, request.actor.label, now)
 
     def _take_release(self, request: ReleaseRequest, now: Instant) -> None:
         self._planner.holds.check(request.owner)

@@ -10,6 +10,7 @@ import re
 from collections.abc import Collection
 from functools import partial
 
+from domain.actor import Actor
 from domain.errors import PilothouseError
 from service.ros.graph.conversion import fields_of
 from service.ros.graph.graph import Fields, Lane, Publisher, Qos, RosGraph, RosNode
@@ -25,7 +26,7 @@ from service.ros.interface.interface import RosInterface
 
 log = logging.getLogger(__name__)
 
-CALLER = "ros"
+CALLER = Actor("ros")
 """Who asks or measures, as it is recorded; ROS does not tell who it is."""
 
 _ROS_NAME = re.compile(r"(/[A-Za-z_][A-Za-z0-9_]*)+")

@@ -2,6 +2,7 @@
 
 from collections.abc import Callable, Sequence
 
+from domain.actor import NOBODY, Actor
 from domain.health.signals import ESTOP_SIGNAL
 from domain.inputs import Reading, Readings, SignalValue
 from domain.outbox import Outputs
@@ -91,7 +92,7 @@ class MockedReadings:
         self._submit = submit
 
     def submit(
-        self, items: Sequence[Reading], source: str | None = None, actor: str = ""
+        self, items: Sequence[Reading], source: str | None = None, actor: Actor = NOBODY
     ) -> Outputs:
         """Hand in readings, and let the mock hold their values.
 

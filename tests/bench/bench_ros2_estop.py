@@ -17,6 +17,7 @@ from importlib.util import find_spec
 import pytest
 import uvloop
 
+from domain.actor import Actor
 from domain.commands import Drive, NodeCommand
 from domain.inputs import NodeReport, Reading, Readings, TaskRequest, VehicleReport
 from domain.state_and_mode import DEFAULT_MODE, PartName
@@ -127,7 +128,7 @@ class Robot:
     def drive(self) -> None:
         """Begin to drive."""
         path = straight(2_000.0, 2.0)
-        self.supervisor.submit(TaskRequest(path, 0, "pure_pursuit", 2.8, "bench"))
+        self.supervisor.submit(TaskRequest(path, 0, "pure_pursuit", 2.8, Actor("bench")))
 
     async def begin(self) -> None:
         """Begin to drive, once all nodes are there."""

@@ -16,6 +16,7 @@ from api.simulation.simulation_job import robot_for
 from docs.generate.__main__ import main as renew
 from docs.generate.pages import FOLDER, PAGES
 from docs.generate.source_scan import UndescribedError, codes_given_to, require_described
+from domain.actor import Actor
 from domain.changes.admission import ADVISORY
 from domain.events.event import RecordedEvent
 from domain.events.kinds import EVENTS
@@ -172,7 +173,9 @@ def a_lost_backend() -> list[RecordedEvent]:
 
 
 def a_write() -> list[RecordedEvent]:
-    return told(WriteRecord("PUT", "/holds/operator", 200, "10.0.0.7:50000", "http:10.0.0.7"))
+    return told(
+        WriteRecord("PUT", "/holds/operator", 200, "10.0.0.7:50000", Actor("http:10.0.0.7"))
+    )
 
 
 def told(*inputs: Input) -> list[RecordedEvent]:

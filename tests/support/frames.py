@@ -4,6 +4,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from types import MappingProxyType
 
+from domain.actor import Actor
 from domain.events.event import Event, RecordedEvent
 from domain.lifecycle import LifecycleState
 from domain.snapshot import (
@@ -124,4 +125,6 @@ class RareHappened(Happened):
 
 def event(number: int, happened: type[Happened] = Happened) -> RecordedEvent:
     """Make event number `number`, caused by the one before."""
-    return RecordedEvent(number, seconds(number), number - 1 or None, "test", happened(number))
+    return RecordedEvent(
+        number, seconds(number), number - 1 or None, Actor("test"), happened(number)
+    )

@@ -7,6 +7,7 @@ the service, or over HTTP.
 from abc import ABC, abstractmethod
 from typing import Generic, TypeVar
 
+from domain.actor import Actor
 from domain.identifiers import ChangeId
 from domain.inputs import (
     AcknowledgeRequest,
@@ -63,7 +64,7 @@ class OperatorVerbs(ABC, Generic[Answer, Change, Passed]):
 
     def acknowledge(self, error: str) -> Answer:
         """Acknowledge an error."""
-        return self.give(AcknowledgeRequest(error, "operator"))
+        return self.give(AcknowledgeRequest(error, Actor("operator")))
 
     def ask_mode(self, part: str, mode: str) -> Change:
         """Ask for a mode of a node or a system."""
@@ -75,11 +76,11 @@ class OperatorVerbs(ABC, Generic[Answer, Change, Passed]):
 
     def stop(self, reason: str = "test") -> Answer:
         """Engage the emergency stop."""
-        return self.give(EmergencyStopRequest(True, reason, "operator"))
+        return self.give(EmergencyStopRequest(True, reason, Actor("operator")))
 
     def release_stop(self, reason: str = "test") -> Answer:
         """Release the emergency stop."""
-        return self.give(EmergencyStopRequest(False, reason, "operator"))
+        return self.give(EmergencyStopRequest(False, reason, Actor("operator")))
 
     def submit_task(
         self,
@@ -90,20 +91,22 @@ class OperatorVerbs(ABC, Generic[Answer, Change, Passed]):
         speed_mps: float = 2.8,
     ) -> Answer:
         """Submit a task in place of the current one; without a path it is 20 m straight on."""
-        asked = TaskRequest(path or straight(), start_index, controller, speed_mps, "operator")
+        asked = TaskRequest(
+            path or straight(), start_index, controller, speed_mps, Actor("operator")
+        )
         return self.give(asked)
 
     def cancel_task(self) -> Answer:
         """Cancel the current task."""
-        return self.give(CancelTaskRequest("operator"))
+        return self.give(CancelTaskRequest(Actor("operator")))
 
     def hold(self, owner: str = "operator", reason: str = "lunch") -> Answer:
         """Set a hold."""
-        return self.give(HoldRequest(owner, reason, "operator"))
+        return self.give(HoldRequest(owner, reason, Actor("operator")))
 
     def release(self, owner: str = "operator") -> Answer:
         """Release a hold."""
-        return self.give(ReleaseRequest(owner, "operator"))
+        return self.give(ReleaseRequest(owner, Actor("operator")))
 
 
 def change_of(outputs: Outputs) -> ChangeId:

@@ -5,6 +5,7 @@ from collections.abc import AsyncIterator
 from contextlib import asynccontextmanager
 from typing import Any
 
+from domain.actor import Actor
 from domain.parts.system_model import SmhModel
 from domain.simulation.node_settings import Fault
 from domain.state_and_mode import PartName
@@ -13,7 +14,7 @@ from service.ros.interface.interface import RosInterface
 from tests.support.live_robot import make_live_robot, running
 from tests.support.manual_clock import ManualClock, settle
 
-OPERATOR = "test:operator"
+OPERATOR = Actor("test:operator")
 
 
 class RosRobot:

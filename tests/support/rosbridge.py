@@ -9,6 +9,7 @@ from starlette.types import ASGIApp
 
 from api.rosbridge.bridge import Bridge
 from api.streaming.websocket_frames import Connection
+from domain.actor import Actor
 from domain.errors import InvalidValueError
 from service.frame_feed import FrameFeed
 from service.ros.interface.endpoints import Fields, OfferedService, OfferedTopic, SubscribedTopic
@@ -58,8 +59,8 @@ class SmallInterface:
                 ),
             )
         }
-        self.readings: list[tuple[Fields, str]] = []
-        self.asked: list[tuple[Fields, str]] = []
+        self.readings: list[tuple[Fields, Actor]] = []
+        self.asked: list[tuple[Fields, Actor]] = []
         self.answer = asyncio.Event()
         """Set: changes of mode are answered."""
         self.is_broken = False
@@ -94,19 +95,19 @@ class SmallInterface:
         finally:
             self.running -= 1
 
-    async def _change_mode(self, request: Fields, caller: str) -> Fields:
+    async def _change_mode(self, request: Fields, caller: Actor) -> Fields:
         if not isinstance(request.get("mode_name"), str):
             raise InvalidValueError("mode_name must be a text", "mode_name")
         self.asked.append((request, caller))
         await self.answer.wait()
         return {"success": True}
 
-    async def _get_mode(self, request: Fields, caller: str) -> Fields:
+    async def _get_mode(self, request: Fields, caller: Actor) -> Fields:
         if self.is_broken:
             raise ZeroDivisionError
         return {"current_mode": "SLOW"}
 
-    def _take(self, message: Fields, sender: str) -> None:
+    def _take(self, message: Fields, sender: Actor) -> None:
         if not isinstance(message.get("enabled"), bool):
             raise InvalidValueError("enabled must be true or false", "enabled")
         self.readings.append((message, sender))

@@ -9,6 +9,7 @@ from starlette.types import ASGIApp, Message, Receive, Scope, Send
 from api.http.gate.policies import RoutePolicies
 from api.http.gate.refusals import address_of
 from api.http.route_policy import AuditClass
+from domain.actor import Actor
 from domain.inputs import WriteRecord
 
 _MAX_PATH = 200
@@ -70,5 +71,5 @@ def _record_of(scope: Scope, status: int) -> WriteRecord:
         path=scope["path"][:_MAX_PATH],
         status=status,
         address=f"{named}:{client[1]}" if client else host,
-        actor=f"http:{host}",
+        actor=Actor(way="http", address=host),
     )

@@ -25,6 +25,7 @@ from api.http.task_jobs import (
     preview_posted,
     read_posted_task,
 )
+from domain.actor import Actor
 from domain.errors import FarStartError, InvalidValueError, UnknownControllerError, UnknownTaskError
 from domain.inputs import CancelTaskRequest, TaskRequest
 from domain.tracking.trackers import TRACKERS
@@ -111,7 +112,7 @@ async def serve_task(
     return Response(task.model_dump_json(), HTTPStatus.CREATED, headers, "application/json")
 
 
-def submit_task(supervisor: Supervisor, posted: PostedTask, actor: str) -> TaskJson:
+def submit_task(supervisor: Supervisor, posted: PostedTask, actor: Actor) -> TaskJson:
     """Hand a task to the core and show what became of it.
 
     Raises:

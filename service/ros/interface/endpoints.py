@@ -9,6 +9,8 @@ from dataclasses import dataclass
 from functools import partial
 from typing import Any, TypeAlias
 
+from domain.actor import Actor
+
 Fields: TypeAlias = Mapping[str, Any]
 
 OWN_NODE = "pilothouse"
@@ -27,7 +29,7 @@ class OfferedService:
     """Name of the ROS node that has it, without the leading slash: the system, or `OWN_NODE`."""
     of_a_node: bool
     """Whether a lifecycle node has it itself: then it is not offered in ROS 2 again."""
-    call: Callable[[Fields, str], Awaitable[Fields]]
+    call: Callable[[Fields, Actor], Awaitable[Fields]]
     """Takes a request and who asks (as `rosbridge:127.0.0.1`), returns the response. A request is a
     success only once its end was verified, and so it may take its time.
 
@@ -60,7 +62,7 @@ class SubscribedTopic:
     """Full name, as `/battery_level`."""
     type: str
     """As `gem_state_msgs/msg/BatteryLevelStamped`."""
-    take: Callable[[Fields, str], None]
+    take: Callable[[Fields, Actor], None]
     """Is handed a message and who sent it.
 
     Raises:

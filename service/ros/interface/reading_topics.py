@@ -6,6 +6,7 @@ from datetime import timedelta
 from functools import partial
 from typing import Any
 
+from domain.actor import Actor
 from domain.errors import InvalidValueError
 from domain.inputs import Reading, SignalValue
 from domain.timebase import Instant
@@ -65,7 +66,7 @@ def reading_topics(supervisor: Supervisor) -> Iterable[SubscribedTopic]:
     )
 
 
-def _take(supervisor: Supervisor, given: _Input, fields: Fields, sender: str) -> None:
+def _take(supervisor: Supervisor, given: _Input, fields: Fields, sender: Actor) -> None:
     """Hand in a reading.
 
     Raises:
@@ -77,7 +78,7 @@ def _take(supervisor: Supervisor, given: _Input, fields: Fields, sender: str) ->
         raise InvalidValueError(f"{given.field} is missing", given.field)
     stamp = _stamp(supervisor.clock, message["header"]["stamp"])
     reading = Reading(given.signal, given.read(message[given.field]), stamp)
-    supervisor.readings.submit([reading], source=sender, actor=sender)
+    supervisor.readings.submit([reading], source=sender.label, actor=sender)
 
 
 def _stamp(clock: Clock, stamp: Mapping[str, int]) -> Instant | None:

@@ -3,6 +3,7 @@
 import logging
 from functools import partial
 
+from domain.actor import Actor
 from domain.errors import PilothouseError
 from domain.inputs import CancelTaskRequest, ModeRequest, TransitionRequest
 from domain.lifecycle import (
@@ -31,7 +32,7 @@ async def carry_out(supervisor: Supervisor, request: ModeRequest | TransitionReq
     The answer has no room for a reason, and so the reason is logged.
     """
     wanted = request.mode if isinstance(request, ModeRequest) else str(request.transition)
-    what = f"{wanted!r:.100} of {request.part}, asked by {request.actor}"
+    what = f"{wanted!r:.100} of {request.part}, asked by {request.actor.label}"
     try:
         change = supervisor.submit(request).change
         if change is None:
@@ -83,17 +84,17 @@ class LifecycleServices:
             for name, (type_name, call) in calls.items()
         )
 
-    async def get_state(self, request: Fields, caller: str) -> Fields:
+    async def get_state(self, request: Fields, caller: Actor) -> Fields:
         """Answer with the state; `unknown` (0) where it is not known, or undecidable."""
         checked(EMPTY, request)
         return {"current_state": state(self._state)}
 
-    async def get_available_states(self, request: Fields, caller: str) -> Fields:
+    async def get_available_states(self, request: Fields, caller: Actor) -> Fields:
         """Answer with all states that there are."""
         checked(EMPTY, request)
         return {"available_states": [state(value) for value in LifecycleState]}
 
-    async def get_available_transitions(self, request: Fields, caller: str) -> Fields:
+    async def get_available_transitions(self, request: Fields, caller: Actor) -> Fields:
         """Answer with what may be asked now, those included that others lead to."""
         checked(EMPTY, request)
         found = self._supervisor.core.available_transitions(self._part)
@@ -101,7 +102,7 @@ class LifecycleServices:
             "available_transitions": [transition_description(t, self._state) for t in found],
         }
 
-    async def get_transition_graph(self, request: Fields, caller: str) -> Fields:
+    async def get_transition_graph(self, request: Fields, caller: Actor) -> Fields:
         """Answer with what may be asked from each state where a part can rest."""
         checked(EMPTY, request)
         return {
@@ -114,12 +115,14 @@ class LifecycleServices:
             ],
         }
 
-    async def change_state(self, request: Fields, caller: str) -> Fields:
+    async def change_state(self, request: Fields, caller: Actor) -> Fields:
         """Ask for a transition: by its label, and by its number where there is no label."""
         asked = checked(CHANGE_STATE, request)["transition"]
         wanted = _transition_of(asked["label"], asked["id"])
         if wanted is None:
-            what = f"{asked['label']!r:.100} [{asked['id']}] of {self._part}, asked by {caller}"
+            what = (
+                f"{asked['label']!r:.100} [{asked['id']}] of {self._part}, asked by {caller.label}"
+            )
             log.info("refused %s: there is no such transition", what)
             return {"success": False}
         done = await carry_out(self._supervisor, TransitionRequest(self._part, wanted, caller))
@@ -167,7 +170,7 @@ class ModeServices:
             for name, (type_name, call) in calls.items()
         )
 
-    async def get_mode(self, request: Fields, caller: str) -> Fields:
+    async def get_mode(self, request: Fields, caller: Actor) -> Fields:
         """Answer with the mode; empty where the part is in none, as while it is inactive.
 
         `unknown` says that nobody knows, as in system_modes.
@@ -178,12 +181,12 @@ class ModeServices:
             return {"current_mode": UNKNOWN_MODE}
         return {"current_mode": actual.mode or ""}
 
-    async def get_available_modes(self, request: Fields, caller: str) -> Fields:
+    async def get_available_modes(self, request: Fields, caller: Actor) -> Fields:
         """Answer with all modes of the part, in the order of the model file."""
         checked(EMPTY, request)
         return {"available_modes": list(self._supervisor.model.modes_of(self._part))}
 
-    async def change_mode(self, request: Fields, caller: str) -> Fields:
+    async def change_mode(self, request: Fields, caller: Actor) -> Fields:
         """Ask for a mode; one that the part is in already is a success."""
         mode = checked(CHANGE_MODE, request)["mode_name"]
         done = await carry_out(self._supervisor, ModeRequest(self._part, mode, caller))
@@ -205,7 +208,7 @@ def robot_services(supervisor: Supervisor) -> tuple[OfferedService, ...]:
     return (cancel,)
 
 
-async def _cancel_tasks(supervisor: Supervisor, request: Fields, caller: str) -> Fields:
+async def _cancel_tasks(supervisor: Supervisor, request: Fields, caller: Actor) -> Fields:
     """End the task, if there is one."""
     checked(EMPTY, request)
     supervisor.submit(CancelTaskRequest(caller))

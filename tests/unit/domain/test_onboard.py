@@ -4,6 +4,7 @@ import math
 
 import pytest
 
+from domain.actor import Actor
 from domain.commands import Drive
 from domain.errors import InvalidValueError
 from domain.inputs import ModeRequest, Reading, Readings, TaskRequest, TimePassed, VehicleReport
@@ -145,7 +146,7 @@ def test_what_was_due_before_an_input_is_answered_together_with_it() -> None:
     robot.read(**GOOD)
     robot.submit_task(straight())
     later = robot.now + seconds(0.12)
-    request = ModeRequest(BASE, "FAST", actor="alice")
+    request = ModeRequest(BASE, "FAST", actor=Actor("alice"))
     outputs = robot.onboard.handle(request, later)
 
     assert outputs.change == "c1"

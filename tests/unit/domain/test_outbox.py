@@ -1,5 +1,6 @@
 """What one input leads to, and what caused what."""
 
+from domain.actor import Actor
 from domain.commands import AskFacts
 from domain.events.changes import ChangeRequested
 from domain.events.health import ErrorRaised, SignalPending, SignalRead
@@ -16,13 +17,13 @@ RAISED = ErrorRaised("BATTERY_LOW", "battery 10 % is below 50 %", 0.1, 0.5)
 
 def test_an_input_from_which_nothing_follows_leaves_no_trace() -> None:
     outbox = Outbox()
-    outbox.begin(5, READ, "alice")
+    outbox.begin(5, READ, Actor("alice"))
     assert outbox.take() == Outputs()
 
 
 def test_what_follows_from_an_input_points_at_it() -> None:
     outbox = Outbox()
-    outbox.begin(5, READ, "alice")
+    outbox.begin(5, READ, Actor("alice"))
     outbox.emit(RAISED)
     read, raised = outbox.take().events
     assert (read.event, read.cause) == (READ, None)
@@ -31,9 +32,9 @@ def test_what_follows_from_an_input_points_at_it() -> None:
 
 def test_all_events_of_an_input_have_its_time_and_actor() -> None:
     outbox = Outbox()
-    outbox.begin(5, READ, actor="alice")
+    outbox.begin(5, READ, actor=Actor("alice"))
     outbox.emit(RAISED)
-    assert {(event.at, event.actor) for event in outbox.take().events} == {(5, "alice")}
+    assert {(event.at, event.actor.label) for event in outbox.take().events} == {(5, "alice")}
 
 
 def test_an_input_is_recorded_once_however_much_follows_from_it() -> None:
@@ -65,11 +66,11 @@ def test_the_cause_of_an_input_is_kept() -> None:
 
 def test_a_new_input_is_not_mistaken_for_the_one_before() -> None:
     outbox = Outbox()
-    outbox.begin(5, READ, actor="alice")
+    outbox.begin(5, READ, actor=Actor("alice"))
     before = outbox.record_input()
     outbox.begin(6, NodeReported(ARM))
     assert outbox.record_input() != before
-    assert [(e.at, e.kind, e.actor) for e in outbox.take().events] == [
+    assert [(e.at, e.kind, e.actor.label) for e in outbox.take().events] == [
         (5, "signal.read", "alice"),
         (6, "node.reported", ""),
     ]

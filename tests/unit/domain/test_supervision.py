@@ -7,6 +7,7 @@ import hypothesis.strategies as st
 import pytest
 from hypothesis import given, settings
 
+from domain.actor import Actor
 from domain.changes.admission import ADVISORY
 from domain.commands import AskFacts, AskTransition, Command, Drive
 from domain.errors import (
@@ -142,9 +143,9 @@ def test_what_follows_after_a_refusal_is_not_laid_to_the_one_who_was_refused(
     robot: CoreRobot,
 ) -> None:
     with pytest.raises(UnknownModeError):
-        robot.give(ModeRequest(BASE, "NO_SUCH", actor="mallory"))
+        robot.give(ModeRequest(BASE, "NO_SUCH", actor=Actor("mallory")))
     outputs = robot.core.handle(TimePassed(), seconds(3))
-    assert {event.actor for event in outputs.events} == {""}
+    assert {event.actor.label for event in outputs.events} == {""}
 
 
 def test_one_bad_reading_refuses_the_good_one_beside_it(robot: CoreRobot) -> None:
@@ -261,23 +262,23 @@ def test_what_a_node_does_on_its_own_has_no_cause(robot: CoreRobot) -> None:
             {"source": "test", "values": {"battery_level": 0.1}},
         ),
         (
-            ModeRequest(BASE, "FAST", "alice"),
+            ModeRequest(BASE, "FAST", Actor("alice")),
             "change.requested",
             {"part": "drive_base", "mode": "FAST"},
         ),
         (
-            EmergencyStopRequest(True, "smoke", "alice"),
+            EmergencyStopRequest(True, "smoke", Actor("alice")),
             "emergency_stop.engaged",
             {"reason": "smoke"},
         ),
         (DOWN, "backend.unavailable", {"reason": "no DDS"}),
         (
-            WriteRecord("PUT", "/holds/gate", 200, "10.0.0.7:4711", "alice"),
+            WriteRecord("PUT", "/holds/gate", 200, "10.0.0.7:4711", Actor("alice")),
             "audit.write",
             {"method": "PUT", "path": "/holds/gate", "status": 200, "address": "10.0.0.7:4711"},
         ),
         (
-            HoldRequest("gate", "closed", "alice"),
+            HoldRequest("gate", "closed", Actor("alice")),
             "hold.requested",
             {"owner": "gate", "reason": "closed"},
         ),
@@ -292,30 +293,30 @@ def test_an_input_that_matters_is_recorded_with_what_it_said(
 
 
 def test_who_asked_is_told_with_everything_that_follows(robot: CoreRobot) -> None:
-    outputs = robot.give(ModeRequest(BASE, "FAST", actor="alice"))
+    outputs = robot.give(ModeRequest(BASE, "FAST", actor=Actor("alice")))
     assert len(outputs.events) > 1
-    assert {event.actor for event in outputs.events} == {"alice"}
+    assert {event.actor.label for event in outputs.events} == {"alice"}
 
 
 @pytest.mark.parametrize(
     "given_",
     [
-        EmergencyStopRequest(True, "smoke", "alice"),
-        HoldRequest("gate", "closed", "alice"),
-        WriteRecord("PUT", "/holds/gate", 200, "10.0.0.7:4711", "alice"),
-        Readings((Reading("battery_level", 0.1),), "test", "alice"),
-        ParametersRequest(BASE, {"max_speed": 0.4}, "alice"),
+        EmergencyStopRequest(True, "smoke", Actor("alice")),
+        HoldRequest("gate", "closed", Actor("alice")),
+        WriteRecord("PUT", "/holds/gate", 200, "10.0.0.7:4711", Actor("alice")),
+        Readings((Reading("battery_level", 0.1),), "test", Actor("alice")),
+        ParametersRequest(BASE, {"max_speed": 0.4}, Actor("alice")),
     ],
     ids=["stop", "hold", "write", "reading", "parameters"],
 )
 def test_whoever_did_something_is_told_with_it(robot: CoreRobot, given_: Input) -> None:
-    assert {event.actor for event in robot.give(given_).events} == {"alice"}
+    assert {event.actor.label for event in robot.give(given_).events} == {"alice"}
 
 
 def test_who_canceled_a_change_is_told(robot: CoreRobot) -> None:
     change = robot.ask_mode("drive_base", "FAST")
-    outputs = robot.give(CancelRequest(change, actor="bob"))
-    assert [(event.kind, event.actor) for event in outputs.events] == [
+    outputs = robot.give(CancelRequest(change, actor=Actor("bob")))
+    assert [(event.kind, event.actor.label) for event in outputs.events] == [
         ("change.cancel_requested", "bob"),
         ("change.canceled", "bob"),
     ]
@@ -332,7 +333,7 @@ def test_a_request_answers_with_its_change_and_the_commands_that_begin_it(
 
 
 def test_a_change_keeps_what_was_asked(robot: CoreRobot) -> None:
-    request = ModeRequest(BASE, "FAST", "alice")
+    request = ModeRequest(BASE, "FAST", Actor("alice"))
     robot.give(request)
     assert robot.core.changes()[0].request == request
 
@@ -376,12 +377,12 @@ def test_who_engaged_and_who_released_the_stop_can_be_seen_and_is_told(
     robot: CoreRobot,
 ) -> None:
     robot.advance(0.1)
-    robot.give(EmergencyStopRequest(True, "smoke", "alice"))
+    robot.give(EmergencyStopRequest(True, "smoke", Actor("alice")))
     stop = robot.core.emergency_stop()
     assert (stop.by, stop.reason, stop.since) == ("alice", "smoke", seconds(0.1))
     robot.advance(0.1)
-    (released, *_) = robot.give(EmergencyStopRequest(False, "all clear", "bob")).events
-    assert (released.kind, released.actor) == ("emergency_stop.released", "bob")
+    (released, *_) = robot.give(EmergencyStopRequest(False, "all clear", Actor("bob"))).events
+    assert (released.kind, released.actor.label) == ("emergency_stop.released", "bob")
     assert dict(released.data) == {"reason": "all clear"}
     stop = robot.core.emergency_stop()
     assert (stop.by, stop.reason, stop.since) == ("bob", "all clear", seconds(0.2))
@@ -391,7 +392,7 @@ def test_engaging_twice_keeps_who_did_it_first_and_tells_it_once(robot: CoreRobo
     robot.stop()
     robot.advance(1)
     before = robot.core.emergency_stop()
-    again = EmergencyStopRequest(True, "again", "somebody else")
+    again = EmergencyStopRequest(True, "again", Actor("somebody else"))
     assert robot.core.handle(again, robot.now) == Outputs()
     assert robot.core.emergency_stop() is before
 
@@ -485,7 +486,7 @@ def test_a_report_of_the_vehicle_is_recorded_with_where_it_is_once_something_fol
 
 def test_that_the_vehicle_stands_after_an_emergency_stop_is_told_once() -> None:
     core = _core()
-    core.handle(EmergencyStopRequest(True, "smoke", "alice"), 0)
+    core.handle(EmergencyStopRequest(True, "smoke", Actor("alice")), 0)
     assert core.handle(_standing(0.0, 1.0), seconds(0.1)).events[-1].kind == "hold.released"
     told = core.handle(_standing(0.1, 0.0), seconds(0.2)).events
     assert [event.kind for event in told] == ["vehicle.reported", "emergency_stop.standstill"]
@@ -805,8 +806,8 @@ def test_acknowledging_what_is_on_is_recorded_with_who_did_it() -> None:
     core = Supervision(actuation_model(), SupervisionSettings(signals=tuple(signals)), 0)
     core.handle(_readings(battery_level=0.1), 0)
     core.handle(_readings(battery_level=0.9), seconds(1))
-    events = core.handle(AcknowledgeRequest("BATTERY_LOW", "alice"), seconds(2)).events
-    assert [(event.kind, event.actor) for event in events[:2]] == [
+    events = core.handle(AcknowledgeRequest("BATTERY_LOW", Actor("alice")), seconds(2)).events
+    assert [(event.kind, event.actor.label) for event in events[:2]] == [
         ("error.acknowledged", "alice"),
         ("error.cleared", "alice"),
     ]

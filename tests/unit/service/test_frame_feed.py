@@ -1,3 +1,4 @@
+from domain.actor import Actor
 from domain.inputs import (
     CancelTaskRequest,
     EmergencyStopRequest,
@@ -183,9 +184,9 @@ async def test_a_hold_is_in_the_next_frame_and_not_told_again_while_it_stays() -
     async with running(supervisor):
         await clock.advance(0.1)
         with supervisor.frames.watch(published):
-            supervisor.submit(HoldRequest("operator", "lunch", "http:1"))
+            supervisor.submit(HoldRequest("operator", "lunch", Actor("http:1")))
             await clock.advance(0.2)
-            supervisor.submit(ReleaseRequest("operator", "http:1"))
+            supervisor.submit(ReleaseRequest("operator", Actor("http:1")))
             await clock.advance(0.1)
 
     told = [f.holds for f in published.frames if f.holds_changed]
@@ -199,7 +200,7 @@ async def test_the_emergency_stop_is_in_the_frame_that_its_error_publishes_at_on
     supervisor = make_supervisor(clock)
     async with running(supervisor):
         await clock.advance(0.1)
-        supervisor.submit(EmergencyStopRequest(engaged=True, reason="smoke", actor="anna"))
+        supervisor.submit(EmergencyStopRequest(engaged=True, reason="smoke", actor=Actor("anna")))
 
         newest = supervisor.frames.newest
         assert newest is not None
@@ -217,7 +218,7 @@ async def test_a_task_that_ended_stays_until_the_next_one() -> None:
         await clock.advance(0.1)
         before = supervisor.frames.complete()
         supervisor.submit(TaskRequest(straight(), 0, "stanley", 2.8))
-        supervisor.submit(CancelTaskRequest("http:1"))
+        supervisor.submit(CancelTaskRequest(Actor("http:1")))
         await clock.advance(2)
         ended = supervisor.frames.complete()
         supervisor.submit(TaskRequest(straight(), 0, "stanley", 2.8))

@@ -4,6 +4,7 @@ from collections.abc import AsyncIterator
 
 import pytest
 
+from domain.actor import NOBODY
 from domain.events.changes import ChangeRequested, NodeRestoring
 from domain.events.event import RecordedEvent
 from domain.events.parts import NodeUnreachable
@@ -28,7 +29,7 @@ async def test_a_node_that_moves_by_itself_is_in_the_log(
     events: EventLog, caplog: pytest.LogCaptureFixture
 ) -> None:
     restoring = NodeRestoring(PartName("manipulator"), active("STRONG"))
-    events.append(RecordedEvent(1, 0, None, "", restoring))
+    events.append(RecordedEvent(1, 0, None, NOBODY, restoring))
     await settle()
 
     assert caplog.messages == [
@@ -40,7 +41,7 @@ async def test_a_node_that_moves_by_itself_is_in_the_log(
 async def test_what_somebody_asked_for_is_not(
     events: EventLog, caplog: pytest.LogCaptureFixture
 ) -> None:
-    events.append(RecordedEvent(1, 0, None, "", ChangeRequested(PartName("manipulator"))))
+    events.append(RecordedEvent(1, 0, None, NOBODY, ChangeRequested(PartName("manipulator"))))
     await settle()
 
     assert caplog.messages == []
@@ -50,7 +51,9 @@ async def test_of_many_events_at_once_none_is_missed(
     events: EventLog, caplog: pytest.LogCaptureFixture
 ) -> None:
     for number in range(1, 251):
-        events.append(RecordedEvent(number, 0, None, "", NodeUnreachable(PartName(f"n{number}"))))
+        events.append(
+            RecordedEvent(number, 0, None, NOBODY, NodeUnreachable(PartName(f"n{number}")))
+        )
     await settle()
 
     assert caplog.messages == [

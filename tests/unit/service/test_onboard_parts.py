@@ -1,6 +1,7 @@
 import numpy as np
 import pytest
 
+from domain.actor import Actor
 from domain.errors import InvalidValueError
 from domain.inputs import Reading, Readings, TaskRequest, VehicleReport
 from domain.paths.path import Path
@@ -46,7 +47,7 @@ def task(begins_at_m: float, speed_mps: float) -> TaskRequest:
     """Return a task along the x axis."""
     x = np.linspace(begins_at_m, begins_at_m + 20.0, 41)
     path = Path(np.column_stack((x, np.zeros_like(x), np.zeros_like(x))))
-    return TaskRequest(path, 0, "pure_pursuit", speed_mps, "operator")
+    return TaskRequest(path, 0, "pure_pursuit", speed_mps, Actor("operator"))
 
 
 @pytest.mark.parametrize(

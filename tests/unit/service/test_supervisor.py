@@ -5,6 +5,7 @@ from collections.abc import Callable
 
 import pytest
 
+from domain.actor import Actor
 from domain.commands import Drive, NodeCommand
 from domain.inputs import (
     BackendStatus,
@@ -63,7 +64,7 @@ async def test_commands_reach_the_nodes_before_anybody_is_told() -> None:
     backend = Backend(appear)
     supervisor = _supervisor_of(backend)
     async with running(supervisor):
-        supervisor.submit(EmergencyStopRequest(engaged=True, reason="", actor="test"))
+        supervisor.submit(EmergencyStopRequest(engaged=True, reason="", actor=Actor("test")))
         assert backend.sent == []
         assert supervisor.core.emergency_stop().engaged
 

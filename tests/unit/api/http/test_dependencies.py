@@ -8,7 +8,7 @@ async def test_who_asks_is_recorded_by_address(robot: HttpRobot) -> None:
 
     (event,) = [e for e in robot.supervisor.events.oldest_first() if "engaged" in e.kind]
 
-    assert event.actor == "http:127.0.0.1"
+    assert event.actor.label == "http:127.0.0.1"
 
 
 async def test_who_asks_over_a_socket_without_addresses_is_unknown(robot: HttpRobot) -> None:

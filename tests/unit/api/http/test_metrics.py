@@ -5,6 +5,7 @@ import pytest
 from prometheus_client.parser import text_string_to_metric_families
 
 from api.app import create_app
+from domain.actor import Actor
 from domain.inputs import (
     EmergencyStopRequest,
     HoldRequest,
@@ -37,7 +38,7 @@ async def test_the_metrics_tell_the_state_and_the_errors_of_the_robot(
     http: httpx.AsyncClient, supervisor: Supervisor
 ) -> None:
     async with running(supervisor):
-        supervisor.submit(EmergencyStopRequest(True, "test", "operator"))
+        supervisor.submit(EmergencyStopRequest(True, "test", Actor("operator")))
 
         assert await metric(http, "pilothouse_system_state", state="ERROR") == 1
         assert await metric(http, "pilothouse_system_state", state="IDLE") == 0
@@ -49,7 +50,7 @@ async def test_the_metrics_tell_which_parts_are_on_their_way(
     http: httpx.AsyncClient, supervisor: Supervisor, clock: ManualClock
 ) -> None:
     async with running(supervisor):
-        supervisor.submit(ModeRequest(PartName("actuation"), "PERFORMANCE", "operator"))
+        supervisor.submit(ModeRequest(PartName("actuation"), "PERFORMANCE", Actor("operator")))
         assert await metric(http, "pilothouse_part_deviates", part="actuation") == 1
 
         await clock.advance(2)
@@ -74,7 +75,7 @@ async def test_the_metrics_count_how_changes_ended(
     async with running(supervisor):
         assert await metric(http, "pilothouse_changes_total", status="succeeded") == 0
         for mode in ("PERFORMANCE", "MODERATE"):
-            supervisor.submit(ModeRequest(PartName("actuation"), mode, "operator"))
+            supervisor.submit(ModeRequest(PartName("actuation"), mode, Actor("operator")))
             await clock.advance(2)
 
             await http.get("/metrics")
@@ -87,7 +88,7 @@ async def test_a_change_is_counted_however_much_happened_since_the_last_question
     http: httpx.AsyncClient, supervisor: Supervisor, clock: ManualClock
 ) -> None:
     async with running(supervisor):
-        supervisor.submit(ModeRequest(PartName("actuation"), "PERFORMANCE", "operator"))
+        supervisor.submit(ModeRequest(PartName("actuation"), "PERFORMANCE", Actor("operator")))
         await clock.advance(2)
     log = supervisor.events
     for number in range(log.newest + 1, log.newest + 10_002):

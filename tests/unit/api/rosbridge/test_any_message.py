@@ -12,6 +12,7 @@ from api.rosbridge.bridge import Bridge
 from api.rosbridge.operations import OPERATIONS
 from api.rosbridge.send_queue import SendQueue
 from api.rosbridge.session import Session
+from domain.actor import Actor
 from service.ros.interface.interface import RosInterface
 from tests.support.live_robot import make_supervisor
 from tests.support.manual_clock import settle
@@ -70,7 +71,7 @@ async def _say(texts: list[str]) -> tuple[list[dict[str, Any]], list[Exception]]
         return calls[-1]
 
     bridge = Bridge(RosInterface(supervisor), supervisor.frames, supervisor.clock, 1_000)
-    session = Session(bridge, queue, "rosbridge:test", spawn)
+    session = Session(bridge, queue, Actor("rosbridge:test"), spawn)
     for text in texts:
         session.hear({"text": text})
         await settle()

@@ -1,6 +1,7 @@
 import pytest
 
 from api.rosbridge.bridge import request_of
+from domain.actor import Actor
 from domain.errors import InvalidValueError
 from service.ros.interface.interface import RosInterface
 from tests.support.live_robot import make_supervisor
@@ -20,16 +21,16 @@ async def test_an_address_may_call_so_often_and_another_one_as_well() -> None:
     clock = ManualClock()
     bridge = make_bridge(SmallInterface(), clock, calls_per_s=10)
 
-    assert [bridge.may_call("/a", "one") for _ in range(21)] == [True] * 20 + [False]
-    assert bridge.may_call("/a", "another")
+    assert [bridge.may_call("/a", Actor("one")) for _ in range(21)] == [True] * 20 + [False]
+    assert bridge.may_call("/a", Actor("another"))
     await clock.advance(0.1)
-    assert [bridge.may_call("/a", "one") for _ in range(2)] == [True, False]
+    assert [bridge.may_call("/a", Actor("one")) for _ in range(2)] == [True, False]
 
 
 def test_who_calls_too_often_may_still_end_the_task() -> None:
     bridge = make_bridge(SmallInterface(), calls_per_s=1)
 
-    assert [bridge.may_call("/cancel_tasks", "one") for _ in range(9)] == [True] * 9
+    assert [bridge.may_call("/cancel_tasks", Actor("one")) for _ in range(9)] == [True] * 9
 
 
 @pytest.mark.parametrize(

@@ -1,6 +1,7 @@
 import pytest
 
 from api.rosbridge.rosapi import RosApi
+from domain.actor import Actor
 from domain.errors import InvalidValueError
 from service.ros.interface.endpoints import Fields, OfferedTopic, SubscribedTopic
 from tests.support.manual_clock import ManualClock
@@ -25,7 +26,7 @@ def rosapi() -> RosApi:
 
 
 async def ask(rosapi: RosApi, service: str, /, **request: object) -> Fields:
-    return await rosapi.services[f"/rosapi/{service}"].call(request, "test")
+    return await rosapi.services[f"/rosapi/{service}"].call(request, Actor("test"))
 
 
 async def test_all_topics_are_told_with_their_types(rosapi: RosApi) -> None:

@@ -12,6 +12,7 @@ from api.rosbridge import clients as clients_module
 from api.rosbridge import route as rosbridge
 from api.rosbridge.clients import rosbridge_clients
 from api.streaming import stream_server as stream_server_module
+from domain.actor import Actor
 from domain.inputs import ModeRequest
 from domain.state_and_mode import PartName
 from service.supervisor import Supervisor
@@ -83,7 +84,9 @@ async def test_a_change_is_on_record_with_who_asked_for_it(
         await clock.advance(1)
 
     asked = [
-        event for event in supervisor.events.oldest_first() if event.actor == "rosbridge:127.0.0.1"
+        event
+        for event in supervisor.events.oldest_first()
+        if event.actor.label == "rosbridge:127.0.0.1"
     ]
     assert [event.kind for event in asked][:1] == ["change.requested"]
 
@@ -91,7 +94,7 @@ async def test_a_change_is_on_record_with_who_asked_for_it(
 async def test_what_was_asked_before_the_first_client_came_is_told_to_it(
     app: FastAPI, supervisor: Supervisor, clock: ManualClock
 ) -> None:
-    supervisor.submit(ModeRequest(PartName("actuation"), "PERFORMANCE", "operator"))
+    supervisor.submit(ModeRequest(PartName("actuation"), "PERFORMANCE", Actor("operator")))
     await clock.advance(1)
 
     async with RosbridgeClient(app) as client:

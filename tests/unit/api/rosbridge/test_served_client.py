@@ -13,10 +13,13 @@ from api.rosbridge.bridge import Bridge
 from api.rosbridge.send_queue import MAX_WAITING
 from api.rosbridge.served_client import ServedClient
 from api.rosbridge.session import MAX_CALLS
+from domain.actor import Actor
 from tests.support.frames import frame
 from tests.support.manual_clock import ManualClock, settle
 from tests.support.rosbridge import MODE_EVENT, SYSTEM_STATE, Pipe, SmallInterface, make_bridge
 from tests.support.websocket import texts_of
+
+CALLER = Actor(way="rosbridge", address="test")
 
 
 class Robot:
@@ -203,7 +206,9 @@ async def test_a_client_that_goes_leaves_nothing_behind(robot: Robot) -> None:
         await serving
 
         assert robot.interface.listens(SYSTEM_STATE) == 0
-        assert robot.interface.asked == [({"mode_name": "FAST"}, "rosbridge:test")]
+        assert robot.interface.asked == [
+            ({"mode_name": "FAST"}, Actor(way="rosbridge", address="test"))
+        ]
 
 
 async def test_of_a_client_that_went_readings_are_taken_and_some_last_calls_made(
@@ -219,7 +224,7 @@ async def test_of_a_client_that_went_readings_are_taken_and_some_last_calls_made
     await robot.serve()
 
     assert len(robot.interface.asked) == MAX_CALLS
-    assert robot.interface.readings == [({"enabled": True}, "rosbridge:test")]
+    assert robot.interface.readings == [({"enabled": True}, CALLER)]
 
 
 async def test_a_fault_of_ours_ends_the_connection_and_is_not_hidden(robot: Robot) -> None:

@@ -10,6 +10,7 @@ import pytest
 from api.rosbridge import session as session_module
 from api.rosbridge.send_queue import SendQueue
 from api.rosbridge.session import MAX_CALLS, Session
+from domain.actor import Actor
 from tests.support.manual_clock import settle
 from tests.support.rosbridge import (
     MODE_EVENT,
@@ -30,7 +31,7 @@ class Talk:
         self.session = Session(
             make_bridge(self.interface, calls_per_s=calls_per_s),
             self._queue,
-            "rosbridge:test",
+            Actor(way="rosbridge", address="test"),
             self._spawn,
         )
 
@@ -203,7 +204,7 @@ async def test_a_reading_is_published_under_the_name_of_the_client(talk: Talk, t
     talk.say("publish", topic=topic, msg={"enabled": True})
     talk.say("unadvertise", topic=topic)
 
-    assert talk.interface.readings == [({"enabled": True}, "rosbridge:test")]
+    assert talk.interface.readings == [({"enabled": True}, Actor(way="rosbridge", address="test"))]
     assert talk.heard() == []
 
 
@@ -269,7 +270,7 @@ async def test_a_call_is_answered_when_it_is_done(talk: Talk, service: str, args
         "values": {"success": True},
         "result": True,
     }
-    assert talk.interface.asked == [({"mode_name": "FAST"}, "rosbridge:test")]
+    assert talk.interface.asked == [({"mode_name": "FAST"}, Actor(way="rosbridge", address="test"))]
 
 
 async def test_a_call_without_values_and_id_is_answered_without_an_id(talk: Talk) -> None:

@@ -5,6 +5,7 @@ from api.http.schemas.simulation import SampleJson
 from api.http.schemas.tasks import TaskJson, VehicleJson
 from api.simulation import samples
 from api.simulation.samples import Sampler
+from domain.actor import Actor
 from domain.inputs import CancelTaskRequest, HoldRequest, ReleaseRequest
 from domain.timebase import seconds
 from service.simulation.virtual_time import VirtualService
@@ -35,7 +36,7 @@ def test_a_sample_shows_all_there_is(robot: VirtualService) -> None:
 
 
 def test_holds_are_shown_by_owner(robot: VirtualService) -> None:
-    robot.supervisor.submit(HoldRequest("operator", "lunch", "test"))
+    robot.supervisor.submit(HoldRequest("operator", "lunch", Actor("test")))
 
     sample = from_json(Sampler(robot.supervisor).sample(0, 0))
 
@@ -76,9 +77,9 @@ def test_task_and_vehicle_are_as_in_their_get() -> None:
 def test_events_are_collected_and_counted_by_kind(robot: VirtualService) -> None:
     sampler = Sampler(robot.supervisor)
     robot.advance_to(seconds(1))
-    robot.supervisor.submit(HoldRequest("operator", "lunch", "test"))
-    robot.supervisor.submit(ReleaseRequest("operator", "test"))
-    robot.supervisor.submit(CancelTaskRequest("test"))
+    robot.supervisor.submit(HoldRequest("operator", "lunch", Actor("test")))
+    robot.supervisor.submit(ReleaseRequest("operator", Actor("test")))
+    robot.supervisor.submit(CancelTaskRequest(Actor("test")))
     sampler.collect_events()
 
     assert (sampler.counts()["hold.set"], sampler.counts()["task.served"]) == (1, 0)
@@ -103,8 +104,8 @@ def test_events_that_the_log_has_forgotten_are_not_left_out_in_silence(
 ) -> None:
     sampler = Sampler(robot.supervisor)
     for _ in range(3_000):
-        robot.supervisor.submit(HoldRequest("operator", "lunch", "test"))
-        robot.supervisor.submit(ReleaseRequest("operator", "test"))
+        robot.supervisor.submit(HoldRequest("operator", "lunch", Actor("test")))
+        robot.supervisor.submit(ReleaseRequest("operator", Actor("test")))
 
     with pytest.raises(TooComplexError, match="too many events"):
         sampler.collect_events()

@@ -191,7 +191,7 @@ def test_what_is_wrong_is_told_with_its_place(text: str, told: str, folder: Fold
         ("{t_s: 0, vehicle: off}", "s.yaml:3:14: INVALID_VALUE steps.0.vehicle: "),
         ("{t_s: 2, vehicle: silent}", "s.yaml:3:6: INVALID_VALUE this is after the end, until_s 1"),
         ("{t_s: 0, reading: {estop: }}", "s.yaml:3:24: INVALID_VALUE steps.0.reading.estop: "),
-        ("{t_s: 0, node: arm}", "s.yaml:3:5: INVALID_VALUE steps.0: a step of a node names"),
+        ("{t_s: 0, node: arm}", "s.yaml:3:5: INVALID_VALUE steps.0: a node step must have"),
         ("{t_s: 0, task: {file: 3}}", "s.yaml:3:21: INVALID_VALUE file: the path of a CSV"),
         ("{t_s: 0, task: {file: no.csv}}", "s.yaml:3:21: UNREADABLE_FILE "),
         ("{t_s: 0, task: {file: a.csv, waypoints: []}}", "s.yaml:3:21: INVALID_VALUE there are"),

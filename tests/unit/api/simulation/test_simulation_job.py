@@ -7,6 +7,7 @@ import pytest
 
 from api.http.body_parsing import InvalidBodyError, MalformedBodyError
 from api.simulation.simulation_job import LiveCopy, copy_of, robot_for, simulate_posted
+from domain.actor import Actor
 from domain.errors import InvalidModelError
 from domain.inputs import HoldRequest
 from domain.timebase import seconds
@@ -27,7 +28,7 @@ def live() -> VirtualService:
     """A robot that is in the middle of something."""
     robot = virtual_robot(scenario())
     robot.advance_to(seconds(0.1))
-    robot.supervisor.submit(HoldRequest("operator", "lunch", "test"))
+    robot.supervisor.submit(HoldRequest("operator", "lunch", Actor("test")))
     robot.advance_to(seconds(2))
     return robot
 

@@ -7,6 +7,7 @@ import pytest
 
 from api.streaming.client_input import STATE_TOPICS
 from api.streaming.encoder import StreamEncoder
+from domain.actor import NOBODY
 from domain.errors import BlockedError
 from domain.events.event import RecordedEvent
 from domain.events.parts import NodeReported
@@ -276,7 +277,7 @@ def test_an_event_may_hold_what_json_does_not_know(encoder: StreamEncoder) -> No
     parameters: Parameters = MappingProxyType({"speed": float("nan"), "gains": (1, 2)})
     reported = NodeReported(PartName("arm"), parameters=parameters)
 
-    shown = read(encoder.event(RecordedEvent(1, seconds(1), None, "", reported)))
+    shown = read(encoder.event(RecordedEvent(1, seconds(1), None, NOBODY, reported)))
 
     assert shown["data"]["parameters"] == {"speed": None, "gains": [1, 2]}
 

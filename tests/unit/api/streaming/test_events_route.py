@@ -9,6 +9,7 @@ import pytest
 
 from api.app import create_app
 from api.streaming.encoder import StreamEncoder
+from domain.actor import Actor
 from domain.events.event import RecordedEvent
 from domain.inputs import ModeRequest
 from domain.state_and_mode import PartName
@@ -26,7 +27,7 @@ async def supervisor() -> AsyncIterator[Supervisor]:
     clock = ManualClock()
     supervisor = make_supervisor(clock)
     async with running(supervisor):
-        supervisor.submit(ModeRequest(PartName("actuation"), "PERFORMANCE", "operator"))
+        supervisor.submit(ModeRequest(PartName("actuation"), "PERFORMANCE", Actor("operator")))
         await clock.advance(2)
         yield supervisor
 

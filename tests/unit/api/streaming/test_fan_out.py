@@ -12,6 +12,7 @@ from api.streaming.client_input import TOPICS, StreamQuery
 from api.streaming.encoder import StreamEncoder
 from api.streaming.fan_out import FanOut
 from api.streaming.websocket_frames import PING, Connection, Listener
+from domain.actor import Actor
 from domain.inputs import EmergencyStopRequest
 from service.supervisor import Supervisor
 from tests.support.live_robot import make_supervisor, running
@@ -90,7 +91,7 @@ def fan_out(supervisor: Supervisor) -> FanOut:
 
 def press_and_release_the_stop(supervisor: Supervisor) -> None:
     for engaged in (True, False):
-        supervisor.submit(EmergencyStopRequest(engaged, "test", "operator"))
+        supervisor.submit(EmergencyStopRequest(engaged, "test", Actor("operator")))
 
 
 async def test_clients_in_step_are_written_the_very_same_bytes(
@@ -114,7 +115,7 @@ async def test_events_and_the_frame_that_follows_are_one_write(
     with fan_out.serve(wire.connection, ALL, "page"):
         await settle()
         wire.written.clear()
-        supervisor.submit(EmergencyStopRequest(True, "test", "operator"))
+        supervisor.submit(EmergencyStopRequest(True, "test", Actor("operator")))
         await settle()
 
     assert len(wire.written) == 1

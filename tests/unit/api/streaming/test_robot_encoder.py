@@ -4,6 +4,7 @@ import math
 import pytest
 
 from api.streaming.robot_encoder import LatestCache, MemberCache, RobotEncoder
+from domain.actor import NOBODY, Actor
 from domain.events.driving import TaskStarted
 from domain.events.event import RecordedEvent
 from domain.events.parts import NodeReported
@@ -36,7 +37,9 @@ def test_an_event_tells_what_happened_when_and_why_and_in_words(
 ) -> None:
     started = TaskStarted(TaskId("t1"), GoalId(1), 0)
 
-    assert json.loads(encoder.event(RecordedEvent(3, seconds(1.5), 2, "http:1", started))) == {
+    assert json.loads(
+        encoder.event(RecordedEvent(3, seconds(1.5), 2, Actor("http:1"), started))
+    ) == {
         "type": "event",
         "epoch": supervisor.epoch,
         "id": 3,
@@ -51,7 +54,7 @@ def test_an_event_tells_what_happened_when_and_why_and_in_words(
 
 
 def test_a_detail_has_words_too_and_is_not_notable(encoder: RobotEncoder) -> None:
-    told = json.loads(encoder.event(RecordedEvent(1, 0, None, "", TimeWasDue())))
+    told = json.loads(encoder.event(RecordedEvent(1, 0, None, NOBODY, TimeWasDue())))
 
     assert told["words"]
     assert told["notable"] is False
@@ -60,7 +63,7 @@ def test_a_detail_has_words_too_and_is_not_notable(encoder: RobotEncoder) -> Non
 def test_what_json_does_not_know_is_shown_as_near_as_can_be(encoder: RobotEncoder) -> None:
     reported = NodeReported(PartName("arm"), parameters={"torque": math.nan, "gains": (1.0, 2.0)})
 
-    shown = json.loads(encoder.event(RecordedEvent(1, 0, None, "", reported)))
+    shown = json.loads(encoder.event(RecordedEvent(1, 0, None, NOBODY, reported)))
 
     assert shown["data"] == {"node": "arm", "parameters": {"torque": None, "gains": [1.0, 2.0]}}
 
@@ -68,7 +71,7 @@ def test_what_json_does_not_know_is_shown_as_near_as_can_be(encoder: RobotEncode
 def test_holds_are_a_map_by_owner_encoded_once_as_long_as_they_are_the_same(
     encoder: RobotEncoder, supervisor: Supervisor
 ) -> None:
-    supervisor.submit(HoldRequest("gate", "closed", "http:1"))
+    supervisor.submit(HoldRequest("gate", "closed", Actor("http:1")))
     driving = supervisor.core.driving
 
     text = encoder.holds(driving.holds)
@@ -80,12 +83,12 @@ def test_holds_are_a_map_by_owner_encoded_once_as_long_as_they_are_the_same(
         "since_at": "2026-01-01T00:00:00.000Z",
     }
     assert encoder.holds(driving.holds) is text
-    supervisor.submit(HoldRequest("operator", "", "http:1"))
+    supervisor.submit(HoldRequest("operator", "", Actor("http:1")))
     assert set(json.loads(encoder.holds(driving.holds))) >= {"gate", "operator"}
 
 
 def test_the_emergency_stop_is_as_in_its_get(encoder: RobotEncoder, supervisor: Supervisor) -> None:
-    supervisor.submit(EmergencyStopRequest(engaged=True, reason="smoke", actor="anna"))
+    supervisor.submit(EmergencyStopRequest(engaged=True, reason="smoke", actor=Actor("anna")))
 
     assert json.loads(encoder.emergency_stop(supervisor.core.emergency_stop())) == {
         "engaged": True,

@@ -12,6 +12,7 @@ from api.http.limits import ServiceLimits
 from api.streaming import route as stream
 from api.streaming import stream_server as stream_server_module
 from api.streaming.stream_server import stream_server
+from domain.actor import Actor
 from domain.inputs import EmergencyStopRequest, ModeRequest
 from domain.state_and_mode import PartName
 from service.supervisor import Supervisor
@@ -20,7 +21,7 @@ from tests.support.manual_clock import ManualClock
 from tests.support.waiting import until
 from tests.support.websocket import WebSocketClient
 
-PERFORMANCE = ModeRequest(PartName("actuation"), "PERFORMANCE", "operator")
+PERFORMANCE = ModeRequest(PartName("actuation"), "PERFORMANCE", Actor("operator"))
 
 
 @pytest.fixture
@@ -111,7 +112,7 @@ async def test_an_emergency_stop_is_told_at_once_and_not_at_the_next_tick(
     async with WebSocketClient(app, topics="system_state") as client:
         await in_step(client)
 
-        supervisor.submit(EmergencyStopRequest(True, "test", "operator"))
+        supervisor.submit(EmergencyStopRequest(True, "test", Actor("operator")))
 
         frame = await client.frame("state")
     assert frame["system_state"]["state"] == "ERROR"
@@ -185,7 +186,7 @@ async def test_without_a_cursor_only_new_events_come(app: FastAPI, supervisor: S
 
     async with WebSocketClient(app, topics="events") as client:
         await client.frame("hello")
-        supervisor.submit(EmergencyStopRequest(True, "test", "operator"))
+        supervisor.submit(EmergencyStopRequest(True, "test", Actor("operator")))
         event = await client.frame()
 
     assert event["id"] == known + 1
@@ -459,6 +460,6 @@ async def test_a_token_that_nobody_asked_for_is_passed_over(
     async with WebSocketClient(app, topics="events") as client:
         await client.frame("hello")
         client.send({"type": "auth", "token": TOKEN})
-        supervisor.submit(EmergencyStopRequest(True, "test", "operator"))
+        supervisor.submit(EmergencyStopRequest(True, "test", Actor("operator")))
 
         assert (await client.frame())["type"] == "event"

@@ -2,6 +2,7 @@
 
 import pytest
 
+from domain.actor import Actor
 from domain.changes.plan import Action, NodeGoal, SetParameters
 from domain.changes.record import Change, Pursuit, Step
 from domain.changes.settings import ChangeSettings
@@ -84,7 +85,7 @@ def test_steps_that_will_not_be_begun_end_and_others_stay() -> None:
 
 
 def _change() -> Change:
-    request = ModeRequest(ACTUATION, "PERFORMANCE", "alice")
+    request = ModeRequest(ACTUATION, "PERFORMANCE", Actor("alice"))
     return Change(C1, ACTUATION, request, {}, started_at=5, cause=3)
 
 

@@ -5,6 +5,7 @@ from collections.abc import Mapping
 
 import pytest
 
+from domain.actor import Actor
 from domain.changes.request_check import check_request, describe_request
 from domain.errors import (
     InvalidValueError,
@@ -171,7 +172,7 @@ def test_a_request_that_sets_nothing_is_refused() -> None:
 @pytest.mark.parametrize(
     ("request_", "shown"),
     [
-        (ModeRequest(BASE, "FAST", "alice"), {"mode": "FAST"}),
+        (ModeRequest(BASE, "FAST", Actor("alice")), {"mode": "FAST"}),
         (TransitionRequest(BASE, Transition.CLEANUP), {"transition": "cleanup"}),
         (ParametersRequest(BASE, {"max_speed": 0.4}), {"parameters": {"max_speed": 0.4}}),
     ],

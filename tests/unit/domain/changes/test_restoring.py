@@ -4,6 +4,7 @@ from collections.abc import Iterable, Mapping
 
 import pytest
 
+from domain.actor import NOBODY, Actor
 from domain.changes.settings import ChangeSettings
 from domain.inputs import (
     BackendStatus,
@@ -106,13 +107,14 @@ def test_without_that_setting_a_node_that_comes_back_is_left_as_it_is() -> None:
 
 def test_the_change_is_caused_by_the_report_that_the_node_is_back() -> None:
     core = bare()
-    core.handle(ModeRequest(BASE, FAST, "operator"), 0)
+    core.handle(ModeRequest(BASE, FAST, Actor("operator")), 0)
     core.handle(TimePassed(), seconds(11))
     events = {event.id: event for event in starts(core, 12).events}
 
     change = core.changes()[0]
     restoring = events[change.cause]
-    assert (restoring.kind, restoring.actor, change.request.actor) == ("node.restoring", "", "")
+    assert restoring.kind == "node.restoring"
+    assert (restoring.actor, change.request.actor) == (NOBODY, NOBODY)
     assert restoring.cause is not None
     assert events[restoring.cause].kind == "node.reported"
     (started,) = (event for event in events.values() if event.kind == "change.step_started")
@@ -406,7 +408,7 @@ def test_it_is_trusted_again_once_somebody_asks_for_it() -> None:
     core.handle(TimePassed(), seconds(11))
     for number in range(4):
         crashes_when_it_is_activated(core, 12 + 5 * number)
-    core.handle(ModeRequest(BASE, SLOW, "operator"), seconds(30))
+    core.handle(ModeRequest(BASE, SLOW, Actor("operator")), seconds(30))
     core.handle(TimePassed(), seconds(42))
 
     assert kinds(crashes_when_it_is_activated(core, 43))[-1] == "node.restoring"
@@ -441,14 +443,14 @@ def test_whoever_frees_a_node_is_not_who_left_it_as_it_is() -> None:
     core = bare()
     # The base refuses and falls, while the arm, which never came, keeps the change running.
     starts(core, 1)
-    core.handle(ModeRequest(ACTUATION, PERFORMANCE, "operator"), seconds(2))
+    core.handle(ModeRequest(ACTUATION, PERFORMANCE, Actor("operator")), seconds(2))
     core.handle(NodeAnswer(1, BASE, accepted=False, reason="not today"), seconds(2))
     falls(core, 3)
     starts(core, 4)
-    core.handle(EmergencyStopRequest(engaged=True, reason="", actor="operator"), seconds(5))
+    core.handle(EmergencyStopRequest(engaged=True, reason="", actor=Actor("operator")), seconds(5))
 
-    request = TransitionRequest(ARM, Transition.CONFIGURE, "mechanic")
+    request = TransitionRequest(ARM, Transition.CONFIGURE, Actor("mechanic"))
     outputs = core.handle(request, seconds(6))
 
     told = [event for event in outputs.events if event.kind == "node.not_restored"]
-    assert [(event.actor, event.data["node"]) for event in told] == [("", BASE)]
+    assert [(event.actor.label, event.data["node"]) for event in told] == [("", BASE)]

@@ -1,3 +1,4 @@
+from domain.actor import NOBODY
 from domain.events.changes import ChangeRequested
 from domain.events.event import RecordedEvent, because
 from domain.events.health import SystemStateChanged
@@ -13,7 +14,7 @@ ARM = PartName("arm")
 def test_data_is_what_clients_see_labels_texts_and_lists() -> None:
     reported = NodeReported(ARM, LifecycleState.ACTIVE, parameters={"gains": (1.0, 2.0)})
 
-    assert RecordedEvent(3, 7, None, "", reported).data == {
+    assert RecordedEvent(3, 7, None, NOBODY, reported).data == {
         "node": "arm",
         "state": "active",
         "parameters": {"gains": (1.0, 2.0)},

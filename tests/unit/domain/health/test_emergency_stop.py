@@ -1,3 +1,4 @@
+from domain.actor import Actor
 from domain.events.event import RecordedEvent
 from domain.health.emergency_stop import EmergencyStop
 from domain.health.health import Health
@@ -18,11 +19,11 @@ class Robot:
         self.stop = EmergencyStop(self.health, self.outbox)
 
     def engage(self, by: str, reason: str, now: int) -> list[str]:
-        self.stop.take_request(EmergencyStopRequest(True, reason, by), now)
+        self.stop.take_request(EmergencyStopRequest(True, reason, Actor(by)), now)
         return self._told()
 
     def release(self, by: str, reason: str, now: int) -> list[str]:
-        self.stop.take_request(EmergencyStopRequest(False, reason, by), now)
+        self.stop.take_request(EmergencyStopRequest(False, reason, Actor(by)), now)
         return self._told()
 
     def stand(self, now: int) -> list[str]:

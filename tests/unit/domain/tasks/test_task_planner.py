@@ -544,7 +544,7 @@ def test_a_task_can_be_traced_to_who_asked_for_it(robot: ScriptedRobot) -> None:
     asked = next(event for event in robot.events if event.kind == "task.requested")
 
     assert robot.task.cause == asked.id
-    assert asked.actor == "operator"
+    assert asked.actor.label == "operator"
 
 
 def test_a_hold_of_a_task_that_has_no_goal_any_more_does_not_make_it_pause_again(

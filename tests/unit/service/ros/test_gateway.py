@@ -186,7 +186,7 @@ async def test_who_asked_is_on_record(native: Offered) -> None:
     await native.call("/drive_base/change_mode", {"mode_name": "FAST"})
 
     events = native.robot.supervisor.events.oldest_first()
-    assert [e.actor for e in events if e.kind == "change.requested"] == ["ros"]
+    assert [e.actor.label for e in events if e.kind == "change.requested"] == ["ros"]
 
 
 async def test_modes_are_asked_and_told_in_the_types_that_stand_in(carried: Offered) -> None:

@@ -6,6 +6,7 @@ from typing import Any, Protocol, TypeAlias
 import numpy as np
 import pytest
 
+from domain.actor import Actor
 from domain.events.event import RecordedEvent
 from domain.inputs import (
     EmergencyStopRequest,
@@ -176,7 +177,7 @@ def test_the_robot_is_advanced_no_more_often_than_it_wants() -> None:
 def test_a_task_is_driven_to_its_end() -> None:
     robot = virtual()
     robot.advance_to(0)
-    robot.supervisor.submit(TaskRequest(straight(20.0), 0, "pure_pursuit", 2.8, "operator"))
+    robot.supervisor.submit(TaskRequest(straight(20.0), 0, "pure_pursuit", 2.8, Actor("operator")))
     robot.advance_to(seconds(40))
 
     kinds = [kind for _, kind in happened(robot.supervisor.events)]
@@ -197,22 +198,22 @@ Act: TypeAlias = Callable[[Story], object]
 
 
 def _drive(story: Story) -> None:
-    story.supervisor.submit(TaskRequest(straight(30.0), 0, "stanley", 2.8, "operator"))
+    story.supervisor.submit(TaskRequest(straight(30.0), 0, "stanley", 2.8, Actor("operator")))
 
 
 STORY: list[tuple[float, Act]] = [
-    (0.5, lambda s: s.supervisor.submit(ModeRequest(ACTUATION, PERFORMANCE, "operator"))),
+    (0.5, lambda s: s.supervisor.submit(ModeRequest(ACTUATION, PERFORMANCE, Actor("operator")))),
     (0.7, lambda s: s.backend.set_fault(BASE, Fault.DIE)),
     (2.5, lambda s: s.backend.set_fault(BASE, None)),
     (3.0, _drive),
     (5.123, lambda s: s.supervisor.readings.submit([Reading("estop", value=True)])),
     (6.0, lambda s: s.supervisor.readings.submit([Reading("estop", value=False)])),
-    (7.0, lambda s: s.supervisor.submit(HoldRequest("operator", "lunch", "operator"))),
-    (8.0, lambda s: s.supervisor.submit(ReleaseRequest("operator", "operator"))),
+    (7.0, lambda s: s.supervisor.submit(HoldRequest("operator", "lunch", Actor("operator")))),
+    (8.0, lambda s: s.supervisor.submit(ReleaseRequest("operator", Actor("operator")))),
     (9.0, lambda s: s.backend.set_vehicle_reporting(False)),
     (9.5, lambda s: s.backend.set_vehicle_reporting(True)),
-    (10.5, lambda s: s.supervisor.submit(EmergencyStopRequest(True, "test", "operator"))),
-    (11.0, lambda s: s.supervisor.submit(EmergencyStopRequest(False, "test", "operator"))),
+    (10.5, lambda s: s.supervisor.submit(EmergencyStopRequest(True, "test", Actor("operator")))),
+    (11.0, lambda s: s.supervisor.submit(EmergencyStopRequest(False, "test", Actor("operator")))),
 ]
 END_S = 40.0
 

@@ -186,7 +186,7 @@ async def test_an_address_is_written_as_in_an_url_and_a_path_is_cut() -> None:
         await messages_of(Audit(route, found.append, declared_policies()), scope)
 
     assert [given.address for given in found] == ["[fd00::1]:50000", "unknown"]
-    assert [given.actor for given in found] == ["http:fd00::1", "http:unknown"]
+    assert [given.actor.label for given in found] == ["http:fd00::1", "http:unknown"]
     assert {len(given.path) for given in found} == {200}
 
 

@@ -6,6 +6,7 @@ import httpx
 import pytest
 from fastapi import FastAPI
 
+from domain.actor import Actor
 from domain.findings import Finding
 from domain.inputs import EmergencyStopRequest, Reading
 from domain.timebase import seconds
@@ -79,7 +80,7 @@ async def test_a_robot_in_error_is_watched_by_a_healthy_service(
     http: httpx.AsyncClient, supervisor: Supervisor
 ) -> None:
     async with running(supervisor):
-        supervisor.submit(EmergencyStopRequest(True, "test", "operator"))
+        supervisor.submit(EmergencyStopRequest(True, "test", Actor("operator")))
 
         assert (await http.get("/readyz")).status_code == 200
         assert (await health(http))["status"] == "ok"

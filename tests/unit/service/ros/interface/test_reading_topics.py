@@ -2,10 +2,11 @@ from typing import Any
 
 import pytest
 
+from domain.actor import Actor
 from domain.errors import InvalidValueError, OutdatedReadingError
 from tests.support.ros_robot import RosRobot
 
-SENDER = "rosbridge:192.0.2.7"
+SENDER = Actor(way="rosbridge", address="192.0.2.7")
 
 
 def send(robot: RosRobot, topic: str, fields: dict[str, Any]) -> None:
@@ -33,7 +34,7 @@ async def test_a_message_is_a_reading_of_its_signal(
     assert robot.interface.heard[topic].type == f"gem_state_msgs/msg/{type_name}"
     view = robot.supervisor.core.signal(topic.removeprefix("/"))
     assert view.value == value
-    assert view.source == SENDER
+    assert view.source == SENDER.label
 
 
 async def test_a_stamp_is_kept_and_zero_is_none(robot: RosRobot) -> None:
@@ -49,9 +50,9 @@ async def test_a_stamp_is_kept_and_zero_is_none(robot: RosRobot) -> None:
 
 
 async def test_one_sender_cannot_release_what_another_presses(robot: RosRobot) -> None:
-    robot.interface.heard["/estop"].take({"enabled": True}, "panel")
+    robot.interface.heard["/estop"].take({"enabled": True}, Actor("panel"))
 
-    robot.interface.heard["/estop"].take({"enabled": False}, "phone")
+    robot.interface.heard["/estop"].take({"enabled": False}, Actor("phone"))
     await robot.clock.advance(1.0)
 
     assert robot.supervisor.core.system_state().errors == ("ESTOP",)
