@@ -1,8 +1,8 @@
-"""Changes of state, mode and parameters as operations: steps, deadlines and a verified end.
+"""Changes of state, mode and parameters as operations: steps, deadlines and a verified result.
 
-A step is done when the node reports that it is there; an answer only says that it was taken. Nodes
-go side by side, each with one step in flight. A step in flight is never recalled: what comes next
-for its node waits for its end or its deadline.
+A step is done when the node reports its goal; an answer only says that it was accepted. Nodes run
+in parallel, each with at most one step in flight. A step in flight is never recalled: the next step
+of its node waits until it ends or times out.
 """
 
 from collections.abc import Mapping, Sequence
@@ -27,15 +27,15 @@ from domain.timebase import Duration, Instant, to_seconds
 
 KEPT_CHANGES = 1_000
 KEPT_PURSUITS = 50_000
-"""Of all changes together, so that the memory of large ones is bounded as well."""
+"""Pursuits of all changes together; bounds the memory of large changes."""
 _TOLD_ERRORS = 20
-"""In the reason of one change; more would be read by nobody."""
+"""Largest number of errors in the reason of one change; more would not be read."""
 _MAX_STEPS = 16
-"""Of one node in one change; more only if somebody else keeps moving the node."""
+"""Steps of one node in one change; more are needed only if something else moves the node."""
 
 
 class Changes:
-    """All changes, running and ended, and the nodes that they drive."""
+    """All changes, running and ended, and the nodes that they are driving."""
 
     def __init__(
         self,
@@ -62,7 +62,7 @@ class Changes:
         """Return a change.
 
         Raises:
-            UnknownChangeError: There is none of that id, or it is forgotten.
+            UnknownChangeError: The id is unknown, or the change is no longer kept.
         """
         found = self._changes.get(ChangeId(change))
         if found is None:
@@ -75,11 +75,11 @@ class Changes:
         return tuple(reversed(self._changes.values()))
 
     def wake_at(self) -> Instant | None:
-        """Return the next deadline."""
+        """Return the next deadline; None: there is none."""
         return self._deadlines.next()
 
     def step_in_flight(self, node: PartName) -> Step | None:
-        """Return the step that a node is at."""
+        """Return the step that a node is executing."""
         return self._in_flight.get(node)
 
     # --- inputs ----------------------------------------------------------------------------------
@@ -87,7 +87,14 @@ class Changes:
     def begin(
         self, part: PartName, request: ChangeRequest, goal: ChangeGoal, now: Instant
     ) -> ChangeId:
-        """Begin an admitted change; it may have ended already when this returns."""
+        """Begin an admitted change; it may already have ended when this returns.
+
+        Args:
+            part: The requested part.
+            request: What was requested.
+            goal: Its targets and node goals, from the admission.
+            now: The current time.
+        """
         self._count += 1
         identity = ChangeId(f"c{self._count}")
         cause = self._outbox.record_input()
@@ -108,12 +115,12 @@ class Changes:
         return identity
 
     def cancel(self, change: ChangeId, now: Instant) -> None:
-        """Begin no further step of a change; nothing happens to one whose nodes have all ended.
+        """Start no further step of a change; without effect if all its nodes have ended.
 
-        One that was superseded has ended, and may still be driving nodes that nobody took over.
+        A superseded change has ended, but may still be driving nodes that no other change took.
 
         Raises:
-            UnknownChangeError: There is none of that id.
+            UnknownChangeError: The id is unknown.
         """
         found = self.get(change)
         if found.open:
@@ -124,7 +131,7 @@ class Changes:
             self._end(found, ChangeStatus.CANCELED, "canceled on request", now)
 
     def report(self, report: NodeReport, now: Instant) -> None:
-        """Judge the step in flight by a report that the inference has taken in, and go on."""
+        """Judge the step in flight by a report that the inference has processed, and continue."""
         step = self._in_flight.get(report.node)
         if step is not None:
             verdict = judge_report(step, report, self._inference.facts[report.node])
@@ -133,15 +140,15 @@ class Changes:
         self._advance(report.node, now)
 
     def answer(self, answer: NodeAnswer, now: Instant) -> None:
-        """End the step in flight if the node refused it."""
+        """Fail the step in flight if the node rejected it."""
         step = self._in_flight.get(answer.node)
         if step is not None and step.request == answer.request and not answer.accepted:
-            reason = f"refused: {answer.reason}" if answer.reason else "refused"
+            reason = f"rejected: {answer.reason}" if answer.reason else "rejected"
             self._end_step(step, StepStatus.FAILED, reason, now)
             self._advance(answer.node, now)
 
     def pass_time(self, now: Instant) -> None:
-        """Handle every deadline up to now."""
+        """Handle all deadlines up to `now`."""
         while (node := self._deadlines.pop_due(now)) is not None:
             if node in self._in_flight:
                 self._step_is_late(self._in_flight[node], now)
@@ -151,7 +158,7 @@ class Changes:
     # --- one node --------------------------------------------------------------------------------
 
     def _advance(self, node: PartName, now: Instant) -> None:
-        """Begin the next step of a node, if it has one and nothing is in flight."""
+        """Start the next step of a node, unless one is in flight."""
         pursuit = self._pursuits.get(node)
         if pursuit is None or node in self._in_flight:
             return
@@ -164,7 +171,7 @@ class Changes:
         actions = next_steps(facts, pursuit.goal)
         if actions is None:
             why = "has no lifecycle" if not facts.has_lifecycle else f"is {state}"
-            self._finish(pursuit, StepStatus.FAILED, f"{node} {why}: no way to the goal", now)
+            self._finish(pursuit, StepStatus.FAILED, f"{node} {why}: no path to the goal", now)
             return
         pursuit.plan(actions)
         step = pursuit.next_step()
@@ -175,13 +182,13 @@ class Changes:
                 pursuit, StepStatus.FAILED, f"{node} keeps leaving the requested state", now
             )
         elif step.action is Transition.ACTIVATE and self._health.is_stopped:
-            why = f"{node} is not activated under ESTOP"
+            why = f"{node} is not activated while ESTOP is active"
             self._finish(pursuit, StepStatus.FAILED, why, now)
         else:
             self._begin_step(pursuit, step, now)
 
     def _foresee(self, pursuit: Pursuit) -> None:
-        """Plan what will be done, though it may have to wait; what is then known decides anew."""
+        """Plan the steps ahead; each step is planned again from the facts before it starts."""
         facts = self._inference.facts[pursuit.node]
         unknown = facts.known_state is LifecycleState.UNKNOWN
         steps = presumed_steps(pursuit.goal) if unknown else next_steps(facts, pursuit.goal)
@@ -208,7 +215,7 @@ class Changes:
         return self._settings.transition_deadline
 
     def _end_step(self, step: Step, status: StepStatus, error: str | None, now: Instant) -> None:
-        """Record the end of a step; its pursuit ends with it unless it succeeded."""
+        """Record the end of a step; unless it succeeded, its pursuit ends as well."""
         step.end(status, now, error)
         del self._in_flight[step.node]
         self._parts.expect_nothing(step.node)
@@ -220,13 +227,13 @@ class Changes:
         self._finish(pursuit, status, f"{step.node}: {step.action_name}: {error}", now)
 
     def _step_is_late(self, step: Step, now: Instant) -> None:
-        """Ask for the real state before saying that a step timed out."""
+        """Query the actual state before a step is declared timed out."""
         facts = self._inference.facts[step.node]
         after = f"within {to_seconds(self._allowed(step)):g} s"
         if facts.reachable is False:
             self._end_step(step, StepStatus.FAILED, f"the node {facts.why_unknown}", now)
         elif step.facts_asked:
-            error = f"not done {after}, and asked for its state the node did not answer"
+            error = f"not done {after}, and the node did not answer a query of its state"
             self._end_step(step, StepStatus.TIMED_OUT, error, now)
         else:
             step.facts_asked = True
@@ -239,7 +246,7 @@ class Changes:
         self._deadlines.set(node, now + self._settings.facts_deadline)
 
     def _wait(self, pursuit: Pursuit, now: Instant) -> None:
-        """Wait for a node to be heard of, or to come to rest, as long as a transition may take."""
+        """Wait, as long as a transition may take, for a node to report or to reach a rest state."""
         if not pursuit.waiting:
             pursuit.waiting, pursuit.facts_asked = True, False
             self._deadlines.set(pursuit.node, now + self._settings.transition_deadline)
@@ -250,7 +257,7 @@ class Changes:
         if state is LifecycleState.UNKNOWN:
             self._finish(pursuit, StepStatus.FAILED, f"{node} {facts.why_unknown}", now)
         elif pursuit.facts_asked:
-            why = f"{node} is still {state}; nothing was begun"
+            why = f"{node} is still {state}; no step was started"
             self._finish(pursuit, StepStatus.FAILED, why, now)
         else:
             pursuit.facts_asked = True
@@ -276,7 +283,7 @@ class Changes:
     # --- whole changes ---------------------------------------------------------------------------
 
     def _supersede(self, nodes: set[PartName], newer: Change, now: Instant) -> None:
-        """Drop what drives `nodes`; changes that lose a node so end, their other nodes go on."""
+        """Drop pursuits of `nodes`; a change that loses a node ends, but its other nodes go on."""
         for node in sorted(nodes & self._pursuits.keys()):
             self._drop(self._pursuits[node], StepStatus.SUPERSEDED, now)
         reason = f"superseded by change {newer.id} of {newer.part}"
@@ -295,7 +302,7 @@ class Changes:
         self._let_go(change, {pursuit.node})
 
     def _conclude(self, change: Change, now: Instant) -> None:
-        """End a running change when its last node has ended; success is verified."""
+        """End a running change after its last node has ended; success is verified."""
         if change.open or change.status is not ChangeStatus.RUNNING:
             return
         for outcome, status in _UNHAPPY_ENDS.items():
@@ -308,7 +315,7 @@ class Changes:
         self._end(change, status, missed, now)
 
     def _missed_target(self, change: Change) -> str | None:
-        """Return in what the asked part is not where it should be, though every step was done."""
+        """Return how the requested part deviates from its target although all steps succeeded."""
         target = change.targets.get(change.part)
         if target is None or self._inference.converged(change.part):
             return None
@@ -328,13 +335,13 @@ class Changes:
         self._outbox.emit(CHANGE_ENDS[status](change.id, change.part, reason))
 
     def _let_go(self, change: Change, parts: set[PartName]) -> None:
-        """Let go of parts of a change that has ended, but for nodes that it still drives."""
+        """Release the parts of an ended change, except nodes that it is still driving."""
         if change.status is ChangeStatus.RUNNING:
             return
         self._parts.let_go(change.id, parts - change.open)
 
     def _forget_old(self) -> None:
-        """Keep the newest changes, and whatever still runs or drives a node."""
+        """Keep the newest changes, and all that are still running or driving a node."""
         excess = len(self._changes) - KEPT_CHANGES
         kept = sum(len(change.pursuits) for change in self._changes.values())
         for identity, change in list(self._changes.items())[:-1]:

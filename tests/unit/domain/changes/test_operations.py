@@ -121,7 +121,7 @@ def test_a_node_that_refuses_fails_the_change_and_the_other_goes_on() -> None:
     view = robot.change(change)
     assert view.status is ChangeStatus.FAILED
     assert view.reason is not None
-    assert view.reason.startswith("manipulator: configure: refused")
+    assert view.reason.startswith("manipulator: configure: rejected")
     assert robot.actual("drive_base") == "active.FAST"
 
 
@@ -265,7 +265,7 @@ def test_under_an_emergency_stop_a_running_change_activates_nothing_and_fails(
     view = robot.change(change)
     assert view.status is ChangeStatus.FAILED
     assert view.reason is not None
-    assert "drive_base is not activated under ESTOP" in view.reason
+    assert "drive_base is not activated while ESTOP is active" in view.reason
     failed = [(node, action) for node, action, status in robot.steps(change) if status == "failed"]
     assert failed == [("manipulator", "activate"), ("drive_base", "activate")]
     assert robot.actual("drive_base") == "inactive"
@@ -434,7 +434,7 @@ def test_a_step_that_was_never_begun_did_not_time_out() -> None:
     change = robot.ask_transition("drive_base", "shutdown")
     robot.advance(30)
     assert robot.change(change).status is ChangeStatus.FAILED
-    assert robot.change(change).reason == "drive_base is still configuring; nothing was begun"
+    assert robot.change(change).reason == "drive_base is still configuring; no step was started"
 
 
 def test_a_blocker_says_since_when(robot: CoreRobot) -> None:
@@ -467,13 +467,13 @@ def test_a_node_that_answers_nothing_at_all_times_out_after_it_was_asked_for_its
     core.handle(TimePassed(), seconds(11))
     assert core.change("c1").status is ChangeStatus.TIMED_OUT
     assert core.change("c1").reason == (
-        "drive_base: configure: not done within 10 s, and asked for its state the node did not"
-        " answer"
+        "drive_base: configure: not done within 10 s, and the node did not answer a query of"
+        " its state"
     )
 
 
 @pytest.mark.parametrize(
-    ("reason", "told"), [("", "refused"), ("doors are open", "refused: doors are open")]
+    ("reason", "told"), [("", "rejected"), ("doors are open", "rejected: doors are open")]
 )
 def test_a_refusal_is_told_with_the_reason_of_the_node(reason: str, told: str) -> None:
     core = _core()
@@ -498,7 +498,7 @@ def test_a_change_that_waits_for_a_node_fails_when_there_is_no_way_left() -> Non
     core.handle(NodeReport(BASE, state=LifecycleState.FINALIZED), seconds(0.2))
     change = core.change("c2")
     assert change.status is ChangeStatus.FAILED
-    assert change.reason == "drive_base is finalized: no way to the goal"
+    assert change.reason == "drive_base is finalized: no path to the goal"
     assert {step.status for step in change.steps[1:]} == {StepStatus.CANCELED}
 
 
@@ -506,7 +506,7 @@ def test_a_node_that_turns_out_to_have_no_lifecycle_cannot_be_configured() -> No
     core = Supervision(actuation_model(), SupervisionSettings(), 0)
     _configure(core)
     core.handle(NodeReport(BASE, has_lifecycle=False), seconds(1))
-    assert core.change("c1").reason == "drive_base has no lifecycle: no way to the goal"
+    assert core.change("c1").reason == "drive_base has no lifecycle: no path to the goal"
 
 
 @pytest.mark.parametrize(
@@ -560,7 +560,7 @@ def test_a_step_that_times_out_ends_when_its_deadline_passes_and_is_told() -> No
     _configure(core)
     outputs = core.handle(TimePassed(), seconds(60))
     (step,) = core.change("c1").steps
-    error = "not done within 10 s, and asked for its state the node did not answer"
+    error = "not done within 10 s, and the node did not answer a query of its state"
     assert (step.status, step.ended_at, step.error) == (StepStatus.TIMED_OUT, seconds(11), error)
     assert core.change("c1").ended_at == seconds(11)
     (told,) = (dict(event.data) for event in outputs.events if event.kind == "change.step_ended")
@@ -610,7 +610,7 @@ def test_a_node_that_stays_between_two_states_is_asked_once_and_then_given_up() 
     core.handle(TimePassed(), seconds(60))
     change = core.change("c1")
     assert (change.status, change.ended_at) == (ChangeStatus.FAILED, seconds(11))
-    assert change.reason == "drive_base is still configuring; nothing was begun"
+    assert change.reason == "drive_base is still configuring; no step was started"
 
 
 def test_what_a_newer_change_takes_over_is_superseded_and_has_no_deadline_left() -> None:
@@ -627,7 +627,7 @@ def test_what_a_newer_change_takes_over_is_superseded_and_has_no_deadline_left()
 
 
 @pytest.mark.parametrize(
-    ("nodes", "end"), [(20, "n19: configure: refused"), (21, "; and 1 more"), (22, "; and 2 more")]
+    ("nodes", "end"), [(20, "n19: configure: rejected"), (21, "; and 1 more"), (22, "; and 2 more")]
 )
 def test_of_many_errors_twenty_are_told(nodes: int, end: str) -> None:
     names = [PartName(f"n{number}") for number in range(nodes)]
@@ -645,7 +645,7 @@ def test_of_many_errors_twenty_are_told(nodes: int, end: str) -> None:
         core.handle(NodeAnswer(number + 1, name, False), 0)
     reason = core.change("c1").reason
     assert reason is not None
-    assert reason.count("refused") == 20
+    assert reason.count("rejected") == 20
     assert reason.endswith(end)
 
 
@@ -720,7 +720,7 @@ def test_a_node_is_given_up_when_that_is_found_out() -> None:
     core.handle(NodeReport(BASE, state=LifecycleState.FINALIZED), seconds(2))
     change = core.change("c2")
     assert change.ended_at == seconds(2)
-    error = "drive_base is finalized: no way to the goal"
+    error = "drive_base is finalized: no path to the goal"
     assert [(step.status, step.ended_at, step.error) for step in change.steps] == [
         (StepStatus.FAILED, seconds(2), error),
         (StepStatus.CANCELED, seconds(2), None),
@@ -741,7 +741,7 @@ def test_what_is_not_activated_under_estop_ends_then() -> None:
     core.handle(NodeReport(BASE, parameters=values), seconds(2.5))
     change = core.change("c1")
     assert (change.status, change.ended_at) == (ChangeStatus.FAILED, seconds(2.5))
-    assert change.steps[-1].error == "drive_base is not activated under ESTOP"
+    assert change.steps[-1].error == "drive_base is not activated while ESTOP is active"
 
 
 def test_after_a_refusal_the_newer_change_goes_on_at_once() -> None:
