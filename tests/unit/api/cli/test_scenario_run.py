@@ -90,7 +90,7 @@ def test_failures_are_told_in_the_order_of_time(story: Path, capsys: Output) -> 
     run(story, STORY.replace("ERROR", "IDLE") + "  - {t_s: 0, reading: {batery: 1}}\n")
 
     told = capsys.readouterr().out
-    assert told.index(":10: refused") < told.index(":9: otherwise")
+    assert told.index(":10: rejected") < told.index(":9: not as")
 
 
 def test_a_step_that_may_be_refused_is_as_expected(story: Path, capsys: Output) -> None:

@@ -164,12 +164,18 @@ def test_the_robot_is_ready_to_go(folder: Folder) -> None:
         ("until_s: soon", "s.yaml:1:1: INVALID_VALUE until_s: Input should be a valid number"),
         ("until_s: 1\nwings: 2", "s.yaml:2:1: INVALID_VALUE wings: there is no such key"),
         ("until_s: 1\nfrom: live", "s.yaml:2:1: INVALID_VALUE a scenario file has no live robot"),
-        ("until_s: 1\n--- \na: 1", "s.yaml:3:1: INVALID_VALUE a scenario file holds one document only"),
+        (
+            "until_s: 1\n--- \na: 1",
+            "s.yaml:3:1: INVALID_VALUE a scenario file holds one document only",
+        ),
         ("until_s: 1\nrobot:\n  wings: 2", "s.yaml:3:3: INVALID_VALUE robot.wings: "),
         ("until_s: 1\nrobot_file: no.yaml", "s.yaml:2:1: UNREADABLE_FILE "),
         ("until_s: 1\nmodel_file: no.yaml", "s.yaml:2:1: UNREADABLE_FILE "),
         ("until_s: 1\nmodel_file: 3", "s.yaml:2:1: INVALID_VALUE model_file: the path of a file"),
-        (f"until_s: 1\nmodel: '{ARM}'\nmodel_file: a", "s.yaml:3:1: INVALID_VALUE model is given as well"),
+        (
+            f"until_s: 1\nmodel: '{ARM}'\nmodel_file: a",
+            "s.yaml:3:1: INVALID_VALUE model is given as well",
+        ),
     ],
 )
 def test_what_is_wrong_is_told_with_its_place(text: str, told: str, folder: Folder) -> None:
@@ -183,12 +189,18 @@ def test_what_is_wrong_is_told_with_its_place(text: str, told: str, folder: Fold
     [
         ("{t_s: 0, vehicle: silent, why: x}", "s.yaml:3:31: INVALID_VALUE steps.0.why: there is"),
         ("{t_s: 0, vehicle: off}", "s.yaml:3:14: INVALID_VALUE steps.0.vehicle: "),
-        ("{t_s: 2, vehicle: silent}", "s.yaml:3:6: INVALID_VALUE this is after the end of the scenario, until_s: 1"),
+        (
+            "{t_s: 2, vehicle: silent}",
+            "s.yaml:3:6: INVALID_VALUE this is after the end of the scenario, until_s: 1",
+        ),
         ("{t_s: 0, reading: {estop: }}", "s.yaml:3:24: INVALID_VALUE steps.0.reading.estop: "),
         ("{t_s: 0, node: arm}", "s.yaml:3:5: INVALID_VALUE steps.0: a step of a node names"),
         ("{t_s: 0, task: {file: 3}}", "s.yaml:3:21: INVALID_VALUE file: the path of a CSV"),
         ("{t_s: 0, task: {file: no.csv}}", "s.yaml:3:21: UNREADABLE_FILE "),
-        ("{t_s: 0, task: {file: a.csv, waypoints: []}}", "s.yaml:3:21: INVALID_VALUE waypoints are given as well"),
+        (
+            "{t_s: 0, task: {file: a.csv, waypoints: []}}",
+            "s.yaml:3:21: INVALID_VALUE waypoints are given as well",
+        ),
         ("{t_s: 0, task: {file: a.csv, heading: up}}", "s.yaml:3:34: INVALID_VALUE heading: one"),
         ("{t_s: 0, task: {heading: deg}}", "s.yaml:3:21: INVALID_VALUE steps.0.task.heading"),
     ],

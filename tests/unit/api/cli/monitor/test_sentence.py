@@ -67,7 +67,9 @@ def test_before_the_first_contact_it_says_what_it_waits_for() -> None:
 
 
 def test_lost_contact_is_told_with_since_when_why_and_of_when_the_picture_is() -> None:
-    said = contact_sentence(view(robot(), Contact(Level.LOST, 14.0, "the connection was lost"), 14.0))
+    said = contact_sentence(
+        view(robot(), Contact(Level.LOST, 14.0, "the connection was lost"), 14.0)
+    )
 
     assert said is not None
     assert said.word == "NO CONTACT"
