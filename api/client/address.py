@@ -1,6 +1,7 @@
-"""Where a service is, how its stream is reached, and the token that opens it."""
+"""The address of a service: its URL, the URL of its stream, and the access token."""
 
 import os
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 from urllib.parse import urlencode, urlsplit
 
@@ -12,23 +13,23 @@ _LOOPBACK = frozenset({"127.0.0.1", "::1", "localhost"})
 
 @dataclass(frozen=True, slots=True)
 class Address:
-    """A service, and what it lets in by."""
+    """The URL of a service, and the token that gives access to it."""
 
     url: str
-    """Without a slash at the end."""
+    """Base URL, without a trailing slash."""
     token: str | None = field(default=None, repr=False)
-    """None: it is asked without one."""
+    """Access token; None: requests are sent without one."""
 
     @classmethod
     def of(cls, url: str, token: str | None = None) -> "Address":
-        """Return the address that somebody gave.
+        """Return the address for a URL.
 
         Args:
-            url: As in `http://127.0.0.1:8000`.
-            token: None: the service is asked without one.
+            url: Base URL, such as `http://127.0.0.1:8000`.
+            token: Access token; None: requests are sent without one.
 
         Raises:
-            NoAnswerError: `url` is no address of a web server.
+            NoAnswerError: `url` is not a valid HTTP or HTTPS URL.
         """
         try:
             parts = urlsplit(url)
@@ -41,10 +42,10 @@ class Address:
 
     @classmethod
     def with_token_of_environment(cls, url: str) -> "Address":
-        """Return the address that somebody gave, with the token of this process's environment.
+        """Return the address for a URL, with the access token set in the environment.
 
         Raises:
-            NoAnswerError: `url` is no address of a web server, or the token cannot be used.
+            NoAnswerError: `url` is not a valid HTTP or HTTPS URL, or the token is invalid.
         """
         try:
             return cls.of(url, read_token(os.environ))
@@ -53,23 +54,27 @@ class Address:
 
     @property
     def headers(self) -> dict[str, str]:
-        """Return what each request and the handshake of the stream carry."""
+        """Return the headers of each request and of the handshake of the stream."""
         return {} if self.token is None else {"Authorization": f"Bearer {self.token}"}
 
     @property
     def loopback(self) -> tuple[str, int] | None:
-        """Return host and port if they are on this machine, where no proxy leads to; else None."""
+        """Return host and port if the service is on this machine, so past any proxy; else None."""
         parts = urlsplit(self.url)
         if parts.hostname not in _LOOPBACK:
             return None
         return parts.hostname, parts.port or (443 if parts.scheme == "https" else 80)
 
-    def stream_url(self, epoch: str | None, last_event_id: int) -> str:
-        """Return the address of the stream.
+    def stream_url(self, topics: Sequence[str], epoch: str | None, last_event_id: int) -> str:
+        """Return the URL of the stream.
 
         Args:
-            epoch: Of the events that are known; None: none is.
-            last_event_id: Of these, the newest.
+            topics: Topics to subscribe to; empty: all.
+            epoch: Epoch of the events received so far; None: none were received.
+            last_event_id: Id of the newest of these events.
         """
-        known = {} if epoch is None else {"after": last_event_id, "epoch": epoch}
-        return f"{self.url.replace('http', 'ws', 1)}/ws?{urlencode(known)}".rstrip("?")
+        query: dict[str, str | int] = {"topics": ",".join(topics)} if topics else {}
+        if epoch is not None:
+            query |= {"after": last_event_id, "epoch": epoch}
+        url = f"{self.url.replace('http', 'ws', 1)}/ws"
+        return f"{url}?{urlencode(query, safe=',')}" if query else url
