@@ -3,7 +3,7 @@
 from itertools import islice
 
 from domain.changes.admission import ChangeAdmission
-from domain.changes.operations import Changes
+from domain.changes.changes import Changes
 from domain.changes.plan import ChangeGoal, next_steps, presumed_steps
 from domain.changes.record import Step
 from domain.changes.request_check import check_request

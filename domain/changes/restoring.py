@@ -6,7 +6,7 @@ be a surprise, unless it was configured. Nothing else begins a change that nobod
 
 from collections.abc import Callable, Iterable
 
-from domain.changes.operations import Changes
+from domain.changes.changes import Changes
 from domain.changes.plan import ChangeGoal
 from domain.changes.record import Step
 from domain.changes.settings import ChangeSettings

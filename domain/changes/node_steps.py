@@ -1,41 +1,34 @@
-"""Changes of state, mode and parameters as operations: steps, deadlines and a verified result.
+"""The nodes that changes are driving, one step at a time each.
 
 A step is done when the node reports its goal; an answer only says that it was accepted. Nodes run
 in parallel, each with at most one step in flight. A step in flight is never recalled: the next step
 of its node waits until it ends or times out.
 """
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Set
 
-from domain.changes.plan import ChangeGoal, SetParameters, next_steps, presumed_steps
-from domain.changes.record import Change, Pursuit, Step
+from domain.changes.plan import SetParameters, next_steps, presumed_steps
+from domain.changes.record import Pursuit, Step
 from domain.changes.settings import ChangeSettings
 from domain.changes.step_judgement import judge_report
 from domain.commands import AskFacts, AskParameters, AskTransition
 from domain.deadlines import Deadlines
-from domain.errors import UnknownChangeError
-from domain.events.changes import CHANGE_ENDS, StepEnded, StepStarted
+from domain.events.changes import StepEnded, StepStarted
 from domain.health.health import Health
-from domain.identifiers import ChangeId
-from domain.inputs import ChangeRequest, NodeAnswer, NodeReport
+from domain.inputs import NodeAnswer, NodeReport
 from domain.lifecycle import LifecycleState, Transition
 from domain.outbox import Outbox
 from domain.parts.parts import Parts
-from domain.snapshot import ChangeStatus, StepStatus
+from domain.snapshot import StepStatus
 from domain.state_and_mode import PartName
 from domain.timebase import Duration, Instant, to_seconds
 
-KEPT_CHANGES = 1_000
-KEPT_PURSUITS = 50_000
-"""Pursuits of all changes together; bounds the memory of large changes."""
-_TOLD_ERRORS = 20
-"""Largest number of errors in the reason of one change; more would not be read."""
 _MAX_STEPS = 16
 """Steps of one node in one change; more are needed only if something else moves the node."""
 
 
-class Changes:
-    """All changes, running and ended, and the nodes that they are driving."""
+class NodeSteps:
+    """Pursuits of nodes: plans, starts and judges their steps, with deadlines."""
 
     def __init__(
         self,
@@ -43,98 +36,78 @@ class Changes:
         settings: ChangeSettings,
         outbox: Outbox,
         health: Health,
+        ended: Callable[[Pursuit, Instant], None],
     ) -> None:
+        """Begin without a pursuit.
+
+        Args:
+            parts: Facts of the nodes.
+            settings: Deadlines of the steps.
+            outbox: Where commands and events go.
+            health: Whether ESTOP is on.
+            ended: Is handed each pursuit that reached its goal or failed, at once.
+        """
         self._parts = parts
-        self._inference = parts.inference
+        self._facts = parts.facts
         self._settings = settings
         self._outbox = outbox
         self._health = health
-        self._changes: dict[ChangeId, Change] = {}
-        self._running: dict[ChangeId, Change] = {}
+        self._ended = ended
         self._pursuits: dict[PartName, Pursuit] = {}
         self._in_flight: dict[PartName, Step] = {}
         self._deadlines: Deadlines[PartName] = Deadlines()
-        self._count = 0
 
     # --- what can be seen ------------------------------------------------------------------------
 
-    def get(self, change: str) -> Change:
-        """Return a change.
+    @property
+    def nodes(self) -> Set[PartName]:
+        """Return the nodes that are on their way."""
+        return self._pursuits.keys()
 
-        Raises:
-            UnknownChangeError: The id is unknown, or the change is no longer kept.
-        """
-        found = self._changes.get(ChangeId(change))
-        if found is None:
-            hint = f"the last {KEPT_CHANGES} changes are kept; see GET /changes"
-            raise UnknownChangeError("change", change, (), hint)
-        return found
+    def pursuit_of(self, node: PartName) -> Pursuit:
+        """Return the pursuit of a node that is on its way."""
+        return self._pursuits[node]
 
-    def all(self) -> tuple[Change, ...]:
-        """Return the changes that are kept, the newest first."""
-        return tuple(reversed(self._changes.values()))
+    def in_flight(self, node: PartName) -> Step | None:
+        """Return the step that a node is executing."""
+        return self._in_flight.get(node)
 
     def wake_at(self) -> Instant | None:
         """Return the next deadline; None: there is none."""
         return self._deadlines.next()
 
-    def step_in_flight(self, node: PartName) -> Step | None:
-        """Return the step that a node is executing."""
-        return self._in_flight.get(node)
+    # --- pursuits --------------------------------------------------------------------------------
 
-    # --- inputs ----------------------------------------------------------------------------------
+    def add(self, pursuit: Pursuit) -> None:
+        """Take over a node, whose earlier pursuit was dropped; `start` lets it move."""
+        self._pursuits[pursuit.node] = pursuit
 
-    def begin(
-        self, part: PartName, request: ChangeRequest, goal: ChangeGoal, now: Instant
-    ) -> ChangeId:
-        """Begin an admitted change; it may already have ended when this returns.
+    def start(self, node: PartName, now: Instant) -> None:
+        """Plan the steps of an added pursuit, and start the first unless one is in flight."""
+        self._foresee(self._pursuits[node])
+        self._advance(node, now)
+
+    def drop(self, pursuit: Pursuit, status: StepStatus, now: Instant) -> None:
+        """Start no further step of a node; one in flight ends by itself.
 
         Args:
-            part: The requested part.
-            request: What was requested.
-            goal: Its targets and node goals, from the admission.
+            pursuit: Of the node.
+            status: Of the steps that are not started: superseded or canceled.
             now: The current time.
         """
-        self._count += 1
-        identity = ChangeId(f"c{self._count}")
-        cause = self._outbox.record_input()
-        change = Change(identity, part, request, dict(goal.targets), now, cause)
-        nodes = {*goal.nodes, *self._inference.model.nodes_below(part)}
-        self._supersede(nodes, change, now)
-        self._changes[identity] = self._running[identity] = change
-        self._parts.put_under(identity, {part, *goal.targets, *goal.nodes})
-        self._parts.ask(goal.targets)
-        for node, node_goal in goal.nodes.items():
-            self._pursuits[node] = change.pursuits[node] = Pursuit(identity, node, node_goal)
-            change.open.add(node)
-        for node in goal.nodes:
-            self._foresee(self._pursuits[node])
-            self._advance(node, now)
-        self._conclude(change, now)
-        self._forget_old()
-        return identity
+        pursuit.outcome = status
+        pursuit.drop_pending(status, now)
+        del self._pursuits[pursuit.node]
+        if pursuit.node not in self._in_flight:
+            self._deadlines.clear(pursuit.node)
 
-    def cancel(self, change: ChangeId, now: Instant) -> None:
-        """Start no further step of a change; without effect if all its nodes have ended.
-
-        A superseded change has ended, but may still be driving nodes that no other change took.
-
-        Raises:
-            UnknownChangeError: The id is unknown.
-        """
-        found = self.get(change)
-        if found.open:
-            self._outbox.record_input()
-        for node in sorted(found.open):
-            self._drop(found.pursuits[node], StepStatus.CANCELED, now)
-        if found.status is ChangeStatus.RUNNING:
-            self._end(found, ChangeStatus.CANCELED, "canceled on request", now)
+    # --- what happens ----------------------------------------------------------------------------
 
     def report(self, report: NodeReport, now: Instant) -> None:
         """Judge the step in flight by a report that the inference has processed, and continue."""
         step = self._in_flight.get(report.node)
         if step is not None:
-            verdict = judge_report(step, report, self._inference.facts[report.node])
+            verdict = judge_report(step, report, self._facts[report.node])
             if verdict is not None:
                 self._end_step(step, verdict.status, verdict.error, now)
         self._advance(report.node, now)
@@ -162,7 +135,7 @@ class Changes:
         pursuit = self._pursuits.get(node)
         if pursuit is None or node in self._in_flight:
             return
-        facts = self._inference.facts[node]
+        facts = self._facts[node]
         state = facts.known_state
         passing = pursuit.goal.state is not None and not state.is_primary
         if state is LifecycleState.UNKNOWN or passing:
@@ -189,7 +162,7 @@ class Changes:
 
     def _foresee(self, pursuit: Pursuit) -> None:
         """Plan the steps ahead; each step is planned again from the facts before it starts."""
-        facts = self._inference.facts[pursuit.node]
+        facts = self._facts[pursuit.node]
         unknown = facts.known_state is LifecycleState.UNKNOWN
         steps = presumed_steps(pursuit.goal) if unknown else next_steps(facts, pursuit.goal)
         pursuit.plan(steps or ())
@@ -197,7 +170,7 @@ class Changes:
     def _begin_step(self, pursuit: Pursuit, step: Step, now: Instant) -> None:
         node, action = step.node, step.action
         step.status, step.started_at = StepStatus.RUNNING, now
-        step.start_state = self._inference.facts[node].known_state
+        step.start_state = self._facts[node].known_state
         step.request = self._outbox.next_request()
         pursuit.waiting = False
         self._in_flight[node] = step
@@ -228,7 +201,7 @@ class Changes:
 
     def _step_is_late(self, step: Step, now: Instant) -> None:
         """Query the actual state before a step is declared timed out."""
-        facts = self._inference.facts[step.node]
+        facts = self._facts[step.node]
         after = f"within {to_seconds(self._allowed(step)):g} s"
         if facts.reachable is False:
             self._end_step(step, StepStatus.FAILED, f"the node {facts.why_unknown}", now)
@@ -252,7 +225,7 @@ class Changes:
             self._deadlines.set(pursuit.node, now + self._settings.transition_deadline)
 
     def _waited_long_enough(self, pursuit: Pursuit, now: Instant) -> None:
-        facts, node = self._inference.facts[pursuit.node], pursuit.node
+        facts, node = self._facts[pursuit.node], pursuit.node
         state = facts.known_state
         if state is LifecycleState.UNKNOWN:
             self._finish(pursuit, StepStatus.FAILED, f"{node} {facts.why_unknown}", now)
@@ -266,7 +239,7 @@ class Changes:
     def _finish(
         self, pursuit: Pursuit, outcome: StepStatus, error: str | None, now: Instant
     ) -> None:
-        """End the pursuit of one node, and the change with the last of them."""
+        """End the pursuit of one node."""
         pursuit.outcome, pursuit.error = outcome, error
         if outcome is not StepStatus.SUCCEEDED:
             step = pursuit.next_step()
@@ -275,91 +248,4 @@ class Changes:
             pursuit.drop_pending(StepStatus.CANCELED, now)
         del self._pursuits[pursuit.node]
         self._deadlines.clear(pursuit.node)
-        change = self._changes[pursuit.change]
-        change.open.discard(pursuit.node)
-        self._conclude(change, now)
-        self._let_go(change, {pursuit.node})
-
-    # --- whole changes ---------------------------------------------------------------------------
-
-    def _supersede(self, nodes: set[PartName], newer: Change, now: Instant) -> None:
-        """Drop pursuits of `nodes`; a change that loses a node ends, but its other nodes go on."""
-        for node in sorted(nodes & self._pursuits.keys()):
-            self._drop(self._pursuits[node], StepStatus.SUPERSEDED, now)
-        reason = f"superseded by change {newer.id} of {newer.part}"
-        for change in list(self._running.values()):
-            if nodes & change.pursuits.keys():
-                self._end(change, ChangeStatus.SUPERSEDED, reason, now)
-
-    def _drop(self, pursuit: Pursuit, status: StepStatus, now: Instant) -> None:
-        pursuit.outcome = status
-        pursuit.drop_pending(status, now)
-        del self._pursuits[pursuit.node]
-        if pursuit.node not in self._in_flight:
-            self._deadlines.clear(pursuit.node)
-        change = self._changes[pursuit.change]
-        change.open.discard(pursuit.node)
-        self._let_go(change, {pursuit.node})
-
-    def _conclude(self, change: Change, now: Instant) -> None:
-        """End a running change after its last node has ended; success is verified."""
-        if change.open or change.status is not ChangeStatus.RUNNING:
-            return
-        for outcome, status in _UNHAPPY_ENDS.items():
-            errors = change.errors_of(outcome)
-            if errors:
-                self._end(change, status, _joined(errors), now)
-                return
-        missed = self._missed_target(change)
-        status = ChangeStatus.FAILED if missed else ChangeStatus.SUCCEEDED
-        self._end(change, status, missed, now)
-
-    def _missed_target(self, change: Change) -> str | None:
-        """Return how the requested part deviates from its target although all steps succeeded."""
-        target = change.targets.get(change.part)
-        if target is None or self._inference.converged(change.part):
-            return None
-        actual = self._inference.actual(change.part)
-        words = f"{change.part} is {actual.state_and_mode.label}, not {target.label}"
-        others = [
-            f"{node} is {self._inference.actual(node).state_and_mode.label}"
-            for node in self._inference.model.nodes_below(change.part)
-            if node != change.part and self._inference.actual(node).state is not target.state
-        ]
-        return _joined([actual.reason or words, *others])
-
-    def _end(self, change: Change, status: ChangeStatus, reason: str | None, now: Instant) -> None:
-        change.status, change.reason, change.ended_at = status, reason, now
-        del self._running[change.id]
-        self._let_go(change, {change.part, *change.targets, *change.pursuits})
-        self._outbox.emit(CHANGE_ENDS[status](change.id, change.part, reason))
-
-    def _let_go(self, change: Change, parts: set[PartName]) -> None:
-        """Release the parts of an ended change, except nodes that it is still driving."""
-        if change.status is ChangeStatus.RUNNING:
-            return
-        self._parts.let_go(change.id, parts - change.open)
-
-    def _forget_old(self) -> None:
-        """Keep the newest changes, and all that are still running or driving a node."""
-        excess = len(self._changes) - KEPT_CHANGES
-        kept = sum(len(change.pursuits) for change in self._changes.values())
-        for identity, change in list(self._changes.items())[:-1]:
-            if excess <= 0 and kept <= KEPT_PURSUITS:
-                return
-            if change.status is not ChangeStatus.RUNNING and not change.open:
-                del self._changes[identity]
-                excess -= 1
-                kept -= len(change.pursuits)
-
-
-def _joined(reasons: Sequence[str]) -> str:
-    more = len(reasons) - _TOLD_ERRORS
-    told = [*reasons[:_TOLD_ERRORS], *([f"and {more} more"] if more > 0 else [])]
-    return "; ".join(told)
-
-
-_UNHAPPY_ENDS: Mapping[StepStatus, ChangeStatus] = {
-    StepStatus.FAILED: ChangeStatus.FAILED,
-    StepStatus.TIMED_OUT: ChangeStatus.TIMED_OUT,
-}
+        self._ended(pursuit, now)
