@@ -32,7 +32,7 @@ export PYTHONDONTWRITEBYTECODE :=
 # `make -j` runs one step after the other: tests that measure time do not share the machine, and two
 # installs do not share the environment.
 .NOTPARALLEL:
-.PHONY: help run test test-image test-ros2 lint types imports pytest format docs bench bench-ros2 coverage mutation soak lowest lock clean
+.PHONY: help run hooks pre-commit test test-image test-ros2 lint types pyright imports pytest format docs bench bench-ros2 coverage mutation soak lowest lock clean
 
 help: ## list the targets
 	@awk -F ':.*## ' '/^[a-z0-9-]+:.*## / {printf "  make %-10s %s\n", $$1, $$2}' $(firstword $(MAKEFILE_LIST))
@@ -49,6 +49,11 @@ lint: $(INSTALLED_DEV) ## ruff: lint and format
 
 types: $(INSTALLED_DEV) ## mypy, strict
 	@$(BIN)/mypy
+
+# Not among the development tools: with its own node it takes 280 MB.
+pyright: $(INSTALLED_DEV) ## pyright, standard: a second opinion about types
+	@$(call INSTALL,$(VENV),'basedpyright>=1.40')
+	@$(BIN)/basedpyright --pythonpath $(BIN)/python
 
 imports: $(INSTALLED_DEV) ## who may import whom
 	@$(BIN)/lint-imports --no-cache --no-logo
@@ -70,6 +75,12 @@ else
 test-ros2:
 	@echo "No tests with ROS 2 nodes here: its wheels are for Linux on x86_64, and this is $$(uname -sm)."
 endif
+
+hooks: ## let git run the fast checks before each commit
+	@git config core.hooksPath .githooks
+
+pre-commit: lint imports ## the fast checks: lint, imports, structure of the repository
+	@$(BIN)/pytest -q --no-header -p no:cacheprovider tests/unit/test_structure.py
 
 format: $(INSTALLED_DEV) ## let ruff format and fix what it can
 	@$(BIN)/ruff check --fix .

@@ -1,11 +1,11 @@
-"""Everything that decides, and the simulated robot: deterministic, without I/O, time handed in.
+"""All decisions, and the simulated robot: deterministic, without I/O; the caller passes the time.
 
-Read `supervision.py` first (one input, what it leads to), then `mode_inference.py` and the packages
-`changes/` (what a request means, and its steps), `health/` (signals and errors) and `tasks/` (what
-is driven, and what holds it). `navigation.py` follows a path with what is in `paths/` and
-`tracking/`; `onboard.py` joins it to the supervision; `simulation/` is the robot itself.
+Read `supervision.py` first (one input and its consequences), then `parts/mode_inference.py` and the
+packages `changes/` (requests and their steps), `health/` (signals and errors) and `tasks/` (tasks
+and the holds that pause them). `navigation.py` follows a path with `paths/` and `tracking/`;
+`onboard.py` connects it to the supervision; `simulation/` is the simulated robot.
 
-The words are those of micro-ROS system_modes and smart_polaris; the types of all of them are in
-`lifecycle.py`, `system_model.py`, `messages.py` (what goes in and out) and `snapshot.py` (what can
-be seen).
+The terms are those of micro-ROS system_modes and smart_polaris; their types are in `lifecycle.py`,
+`parts/system_model.py`, `inputs.py`, `commands.py`, `events/` and `snapshot.py` (all that clients
+can see).
 """

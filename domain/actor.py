@@ -1,25 +1,25 @@
-"""Who asked for something, and how that is known."""
+"""Who sent an input, and through which interface."""
 
 from dataclasses import dataclass
 
 
 @dataclass(frozen=True, slots=True)
 class Actor:
-    """Somebody, or something, that hands in an input.
+    """The sender of an input: a person or a program.
 
     Events, holds and the emergency stop show it by its label.
     """
 
     name: str = ""
-    """What it calls itself, or is: `service`, `ros`; empty: it is known by its address alone."""
+    """Name that it gives, or its kind: `service`, `ros`; empty: only the address is known."""
     way: str = ""
-    """The interface by which it came, such as `http` or `rosbridge`."""
+    """Interface through which the input came, such as `http` or `rosbridge`."""
     address: str = ""
-    """Host from which it came; empty: from this process, or by a middleware that hides it."""
+    """Host of the sender; empty: this process, or a middleware that hides it."""
 
     @property
     def label(self) -> str:
-        """Return its name, or else where it came from: `http:10.0.0.7`; empty: nobody."""
+        """Return the name or else the origin, such as `http:10.0.0.7`; empty: nobody."""
         return self.name or ":".join(filter(None, (self.way, self.address)))
 
 

@@ -1,4 +1,4 @@
-"""What the core asks of nodes, of the vehicle and of its navigation."""
+"""Commands of the core to nodes, vehicle and navigation."""
 
 from dataclasses import dataclass
 from typing import TypeAlias
@@ -22,7 +22,7 @@ class AskTransition:
 
 @dataclass(frozen=True, slots=True)
 class AskParameters:
-    """Ask a node to set parameters, all or none."""
+    """Ask a node to set parameters atomically: all or none."""
 
     request: int
     node: PartName
@@ -31,7 +31,7 @@ class AskParameters:
 
 @dataclass(frozen=True, slots=True)
 class AskFacts:
-    """Ask a node for its real state and parameters; it answers with a report."""
+    """Ask a node for its actual state and parameters; it answers with a report."""
 
     request: int
     node: PartName
@@ -39,32 +39,32 @@ class AskFacts:
 
 @dataclass(frozen=True, slots=True)
 class Drive:
-    """Drive like this until the next command, and for half a second at most."""
+    """Drive; valid until the next command, and for 0.5 s at most."""
 
     command: DriveCommand
 
 
 @dataclass(frozen=True, slots=True)
 class SendGoal:
-    """Let navigation follow a path from a waypoint on; it says how it goes and how it ends."""
+    """Let navigation follow a path; it answers with feedback and a result."""
 
     goal: GoalId
     path: Path
     first_index: int
-    """Where the task began; what is covered counts from there."""
+    """Waypoint at which the task began; progress counts from there."""
     start_index: int
-    """First waypoint not yet passed: where this goal begins."""
+    """First waypoint not yet passed; this goal begins there."""
     controller: str
     speed_mps: float
     reached_m: float = 0.0
-    """How far along the path earlier goals of the task came, from waypoint 0."""
+    """Distance along the path, from waypoint 0, that earlier goals of the task reached, in m."""
     left_out_m: float = 0.0
-    """Of that, what the vehicle was never near."""
+    """Part of `reached_m` that the vehicle never came near, in m."""
 
 
 @dataclass(frozen=True, slots=True)
 class PreemptGoal:
-    """Let navigation drop its goal; not one command to drive may follow."""
+    """Preempt the goal of navigation; no drive command of this goal may follow."""
 
     goal: GoalId
 

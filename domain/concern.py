@@ -1,4 +1,4 @@
-"""A concern: one subject that the core decides about, with its own inputs and its own state."""
+"""A concern: one subject of the core, with its own inputs and its own state."""
 
 from collections.abc import Callable, Mapping, Sequence
 from types import MappingProxyType
@@ -7,7 +7,7 @@ from typing import Any, TypeAlias
 from domain.timebase import Instant
 
 Takers: TypeAlias = Mapping[type, Callable[[Any, Instant], None]]
-"""What takes inputs, by their class; called with the input and the present."""
+"""Handlers by class of input; each is called with the input and the current time."""
 
 NOTHING: Takers = MappingProxyType({})
 
@@ -15,17 +15,17 @@ NOTHING: Takers = MappingProxyType({})
 class Concern:
     """One subject of the core, such as parts, health or driving.
 
-    `Supervision` hands each input to the concerns that take it, in their fixed order, and then lets
-    all of them settle. A concern may read and call those before it, and knows none after it.
+    `Supervision` passes each input to the concerns that handle it, in a fixed order, and then lets
+    all concerns settle. A concern may read and call those before it, and knows none after it.
     """
 
     @property
     def takes(self) -> Takers:
-        """Return what takes each class of input.
+        """Return the handler of each class of input.
 
-        The first concern in the order that takes a class owns it: it checks an input, raises
-        `PilothouseError` with nothing changed if it refuses it, and begins it in the outbox. Those
-        after it take what was accepted, and refuse nothing.
+        The first concern in the order that handles a class owns it: it checks the input, rejects it
+        by raising `PilothouseError` before anything changes, and begins it in the outbox. Those
+        after it get accepted inputs only, and must not reject them.
         """
         return NOTHING
 
@@ -34,27 +34,33 @@ class Concern:
         return None
 
     def pass_time(self, now: Instant) -> None:
-        """Handle what became due up to now."""
+        """Handle all deadlines up to `now`."""
 
     def settle(self, now: Instant) -> bool:
-        """Follow what other concerns changed; return whether that changed something here."""
+        """React to changes of other concerns; return whether that changed anything here."""
         return False
 
 
 class NotSettledError(RuntimeError):
-    """Concerns kept moving each other: a fault of the core, not of an input."""
+    """Concerns keep changing each other: a bug in the core, not a fault of an input."""
 
     def __init__(self, moving: tuple[str, ...], rounds: int) -> None:
-        super().__init__(f"not settled after {rounds} rounds; still moving: {', '.join(moving)}")
+        super().__init__(f"not settled after {rounds} rounds; still changing: {', '.join(moving)}")
         self.moving = moving
 
 
 def settle(concerns: Sequence[Concern], now: Instant, max_rounds: int) -> None:
-    """Let concerns follow each other, round by round, until none of them moves any more.
+    """Let concerns react to each other, round by round, until nothing changes any more.
+
+    Args:
+        concerns: In their order.
+        now: The current time.
+        max_rounds: Limit on the number of rounds.
 
     Raises:
-        NotSettledError: They still move after `max_rounds`.
+        NotSettledError: Concerns still change after `max_rounds`.
     """
+    moving: list[Concern] = []
     for _ in range(max_rounds):
         moving = [concern for concern in concerns if concern.settle(now)]
         if not moving:

@@ -1,4 +1,4 @@
-"""Many deadlines, one of which is next."""
+"""A queue of deadlines by key."""
 
 import heapq
 from collections.abc import Hashable
@@ -10,7 +10,7 @@ KeyT = TypeVar("KeyT", bound=Hashable)
 
 
 class Deadlines(Generic[KeyT]):
-    """At most one deadline per key; the next one is found without a search."""
+    """At most one deadline per key; finding the next one needs no search."""
 
     def __init__(self) -> None:
         self._at: dict[KeyT, tuple[Instant, int]] = {}
@@ -18,22 +18,22 @@ class Deadlines(Generic[KeyT]):
         self._count = 0
 
     def set(self, key: KeyT, at: Instant) -> None:
-        """Set the deadline of `key`, in place of an earlier one."""
+        """Set the deadline of `key`; it replaces an earlier one."""
         self._count += 1
         self._at[key] = (at, self._count)
         heapq.heappush(self._heap, (at, self._count, key))
 
     def clear(self, key: KeyT) -> None:
-        """Forget the deadline of `key`, if it has one."""
+        """Remove the deadline of `key`, if any."""
         self._at.pop(key, None)
 
     def next(self) -> Instant | None:
-        """Return the earliest deadline."""
+        """Return the earliest deadline; None: there is none."""
         self._drop_forgotten()
         return self._heap[0][0] if self._heap else None
 
     def pop_due(self, now: Instant) -> KeyT | None:
-        """Return the key whose deadline is the earliest of those passed, and forget it.
+        """Remove the earliest deadline that has passed and return its key; None: none has passed.
 
         Equal deadlines come in the order in which they were set.
         """

@@ -1,4 +1,4 @@
-"""What can go wrong, as one tree; `api/http/problems.py` maps each class to an HTTP status.
+"""The tree of errors; `api/http/problems.py` maps each class to an HTTP status.
 
     PilothouseError
     +-- UnknownNameError              a part, mode, signal, error or change that does not exist
@@ -10,20 +10,20 @@
     |   +-- UnknownParameterError
     |   +-- UnknownTaskError
     |   +-- UnknownControllerError
-    +-- InvalidValueError             a value that can never be right: type, range, NaN
+    +-- InvalidValueError             a value that is never valid: type, range, NaN
     |   +-- FarStartError             a path that begins too far from the vehicle
     +-- InvalidModelError             a model file with findings
-    +-- RefusedError                  right in itself, but not in this situation
+    +-- RefusedError                  valid, but rejected in the current situation
     |   +-- IllegalTransitionError
     |   +-- BlockedError
     |   +-- OutdatedReadingError
     |   +-- ReservedHoldError
     |   +-- TooManyHoldsError
-    +-- BackendUnavailableError       nothing that nodes could be reached through
+    +-- BackendUnavailableError       the backend is down: no node can be reached
 
-Below the same root, `service` and `api` add what only they can meet: files that cannot be read
-(`service/files/`), a worker that is busy (`service/worker.py`), bodies that are malformed
-(`api/http/body_parsing.py`). A refused input changes nothing.
+`service` and `api` add errors below the same root: files that cannot be read (`service/files/`), a
+worker that is busy (`service/worker.py`), malformed bodies (`api/http/body_parsing.py`). A rejected
+input changes nothing.
 """
 
 from collections.abc import Sequence
@@ -33,7 +33,7 @@ from domain.lifecycle import LifecycleState, Transition
 
 
 class PilothouseError(Exception):
-    """Anything that Pilothouse refuses or fails to do; `code` is stable."""
+    """Anything that Pilothouse rejects or fails to do; `code` is stable."""
 
     code = "INTERNAL"
     hint: str | None = None
@@ -44,7 +44,14 @@ class PilothouseError(Exception):
 
 
 class UnknownNameError(PilothouseError):
-    """A name that nothing is known under."""
+    """An unknown name.
+
+    Args:
+        what: Kind of the name, such as `part`, for the message.
+        name: The name that was given.
+        known: Valid names for the hint; the first 20 are listed.
+        hint: Replaces the list of valid names.
+    """
 
     code = "UNKNOWN_NAME"
 
@@ -58,49 +65,49 @@ class UnknownNameError(PilothouseError):
 
 
 class UnknownPartError(UnknownNameError):
-    """A system or node that the model does not have."""
+    """An unknown part: the model has no system or node of this name."""
 
     code = "UNKNOWN_PART"
 
 
 class UnknownModeError(UnknownNameError):
-    """A mode that the part does not have."""
+    """An unknown mode: the part has no mode of this name."""
 
     code = "UNKNOWN_MODE"
 
 
 class UnknownSignalError(UnknownNameError):
-    """A signal that is not declared."""
+    """An unknown signal: it is not declared."""
 
     code = "UNKNOWN_SIGNAL"
 
 
 class UnknownErrorNameError(UnknownNameError):
-    """A name of no error."""
+    """An unknown error name."""
 
     code = "UNKNOWN_ERROR"
 
 
 class UnknownChangeError(UnknownNameError):
-    """A change that was never made, or so long ago that it is forgotten."""
+    """An unknown change: it never existed, or it is too old to be kept."""
 
     code = "UNKNOWN_CHANGE"
 
 
 class UnknownParameterError(UnknownNameError):
-    """A parameter that the node does not have."""
+    """An unknown parameter: the node has none of this name."""
 
     code = "UNKNOWN_PARAMETER"
 
 
 class UnknownTaskError(UnknownNameError):
-    """A task that was never served, or so long ago that it is forgotten."""
+    """An unknown task: it was never submitted, or it is too old to be kept."""
 
     code = "UNKNOWN_TASK"
 
 
 class UnknownControllerError(UnknownNameError):
-    """A name of no path tracker."""
+    """An unknown path tracker."""
 
     code = "UNKNOWN_CONTROLLER"
 
@@ -116,32 +123,32 @@ class InvalidValueError(PilothouseError):
 
 
 class FarStartError(InvalidValueError):
-    """A path that begins further from the vehicle than a task may."""
+    """A path that begins too far from the vehicle."""
 
     code = "FAR_START"
 
     def __init__(
         self, distance_m: float, limit_m: float, nearest: tuple[int, float] | None = None
     ) -> None:
-        """Say how far it is.
+        """State the distance, and a waypoint that is near enough.
 
         Args:
-            distance_m: Between the vehicle and where the path would begin.
-            limit_m: So far it may be.
-            nearest: The waypoint that is nearest to the vehicle, and how far that is, m; None: it
-                is too far as well.
+            distance_m: From the vehicle to the start of the path, in m.
+            limit_m: Largest distance allowed, in m.
+            nearest: Index of the waypoint nearest to the vehicle, and its distance in m; None: it
+                is too far away as well.
         """
         message = f"the path begins {distance_m:.1f} m from the vehicle; at most {limit_m:g} m"
         super().__init__(message, "waypoints")
         self.nearest = nearest
-        self.hint = "drive closer, or begin at another waypoint with start_index"
+        self.hint = "drive closer, or start at another waypoint with start_index"
         if nearest is not None:
             index, away_m = nearest
-            self.hint = f"waypoint {index} is {away_m:.1f} m away: begin there with start_index"
+            self.hint = f"waypoint {index} is {away_m:.1f} m away: start there with start_index"
 
 
 class InvalidModelError(PilothouseError):
-    """A model that cannot be used; `findings` hold all reasons at once."""
+    """An invalid model; `findings` hold all errors at once."""
 
     code = "INVALID_MODEL"
 
@@ -153,13 +160,13 @@ class InvalidModelError(PilothouseError):
 
 
 class RefusedError(PilothouseError):
-    """A request that is refused in this situation; the same may be accepted later."""
+    """A request that is rejected in the current situation; it may be accepted later."""
 
     code = "REFUSED"
 
 
 class IllegalTransitionError(RefusedError):
-    """A transition that does not exist from where the part is."""
+    """A transition that is illegal in the current state of the part."""
 
     code = "ILLEGAL_TRANSITION"
 
@@ -170,6 +177,14 @@ class IllegalTransitionError(RefusedError):
         state: LifecycleState | None,
         available: Sequence[Transition],
     ) -> None:
+        """State where the part is, and what is legal there.
+
+        Args:
+            part: The requested part.
+            transition: The requested transition.
+            state: Current state of the part; None: its nodes are in different states.
+            available: Transitions that would be accepted.
+        """
         where = f"is {state}" if state else "has parts in different states"
         super().__init__(f"{part} {where}: it cannot {transition}")
         self.available = tuple(available)
@@ -177,7 +192,7 @@ class IllegalTransitionError(RefusedError):
 
 
 class BlockedError(RefusedError):
-    """A change that something stands against; `blockers` say what."""
+    """A change that is blocked; `blockers` list the reasons."""
 
     code = "BLOCKED"
 
@@ -187,27 +202,27 @@ class BlockedError(RefusedError):
 
 
 class OutdatedReadingError(RefusedError):
-    """A reading older than one that is already held, and no worse than it."""
+    """A reading that is older than the one held, and no worse than it."""
 
     code = "OUTDATED_READING"
 
     def __init__(self, signal: str, behind_s: float) -> None:
         super().__init__(f"a newer reading of {signal} is held; this one is {behind_s:.3f} s older")
-        self.hint = "leave out the stamp, or set the sender's clock"
+        self.hint = "omit the stamp, or correct the sender's clock"
 
 
 class ReservedHoldError(RefusedError):
-    """A hold that Pilothouse alone sets and clears."""
+    """A hold that only Pilothouse sets and releases."""
 
     code = "RESERVED_HOLD"
 
     def __init__(self, owner: str) -> None:
-        super().__init__(f"the hold {owner!r} is set and cleared by Pilothouse alone")
-        self.hint = "it ends with its cause; use a name of your own, such as operator"
+        super().__init__(f"only Pilothouse sets and releases the hold {owner!r}")
+        self.hint = "it is released with its cause; use another name, such as operator"
 
 
 class TooManyHoldsError(RefusedError):
-    """One more hold than are kept."""
+    """Too many holds."""
 
     code = "TOO_MANY_HOLDS"
 
@@ -216,7 +231,7 @@ class TooManyHoldsError(RefusedError):
 
 
 class BackendUnavailableError(PilothouseError):
-    """No node can be reached at all; nothing was changed."""
+    """The backend is down: no node can be reached; nothing was changed."""
 
     code = "BACKEND_UNAVAILABLE"
 

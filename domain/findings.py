@@ -1,4 +1,4 @@
-"""Reasons as values: why something cannot be done, and what is wrong with a model."""
+"""Reasons as values: why a request is blocked, and what is wrong with a model."""
 
 from dataclasses import dataclass
 from typing import Literal, TypeAlias
@@ -6,18 +6,18 @@ from typing import Literal, TypeAlias
 from domain.timebase import Instant
 
 Fact: TypeAlias = bool | int | float | str | None
-"""A plain value that can be shown as it is."""
+"""A plain value that needs no conversion to be shown."""
 
 
 @dataclass(frozen=True, slots=True)
 class Blocker:
-    """One reason why a mode cannot be entered, a change is refused, or the robot is in ERROR."""
+    """One reason why a mode cannot be entered, a change is rejected, or the robot is in ERROR."""
 
     code: str
     """Stable, UPPER_SNAKE: an error name (`ESTOP`) or the state of a part (`UNREACHABLE`)."""
     message: str
     path: tuple[str, ...]
-    """From the asked part down to where the reason lies; for an error, the signal."""
+    """Parts from the requested one down to the cause; for an error, the signal."""
     value: Fact = None
     threshold: Fact = None
     since: Instant | None = None
@@ -26,7 +26,7 @@ class Blocker:
 
 @dataclass(frozen=True, slots=True)
 class Finding:
-    """One thing wrong, or at least odd, in a model file."""
+    """One error or warning in a file."""
 
     severity: Literal["error", "warning"]
     code: str
@@ -34,8 +34,8 @@ class Finding:
     message: str
     part: str | None = None
     path: tuple[str, ...] = ()
-    """Keys from the top of the file to the place, the part name being one key."""
+    """Keys from the top of the file to the place; the part name counts as one key."""
     line: int | None = None
-    """From 1; None where the model does not come from a file."""
+    """From 1; None: the model does not come from a file."""
     column: int | None = None
     """From 1."""

@@ -1,4 +1,4 @@
-"""Identifiers that the core gives out; each counts from 1."""
+"""Identifiers that the core assigns; each kind counts from 1."""
 
 from typing import NewType
 

@@ -1,4 +1,4 @@
-"""What goes into the core, as values: facts, and requests."""
+"""The inputs of the core: facts and requests."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -14,7 +14,7 @@ from domain.timebase import Instant
 from domain.vehicle import DriveCommand, Point, VehicleState
 
 SignalValue: TypeAlias = bool | float | str
-"""Of a boolean, numeric or enumerated signal, in this order."""
+"""Value of a boolean, numeric or enumerated signal, in this order."""
 
 
 # --- facts ---------------------------------------------------------------------------------------
@@ -22,21 +22,21 @@ SignalValue: TypeAlias = bool | float | str
 
 @dataclass(frozen=True, slots=True)
 class NodeReport:
-    """What a node, or the backend on its behalf, says about it; None: not said this time."""
+    """What a node, or the backend on its behalf, reports; None: not part of this report."""
 
     node: PartName
     state: LifecycleState | None = None
     mode: ModeName | None = None
     parameters: Parameters | None = None
-    """Merged by name into what is known."""
+    """Values by name; parameters that are not listed keep their known values."""
     reachable: bool | None = None
     has_lifecycle: bool | None = None
-    """False for a plain node: no lifecycle, it counts as active while it is reachable."""
+    """False for a plain node, which has no lifecycle and counts as active while reachable."""
 
 
 @dataclass(frozen=True, slots=True)
 class NodeAnswer:
-    """The answer of a node to a command: taken or refused. Taken is not done; a report is."""
+    """A node accepts or rejects a command. Accepted is not done: a report shows the end."""
 
     request: int
     node: PartName
@@ -51,29 +51,29 @@ class Reading:
     signal: str
     value: SignalValue
     stamp: Instant | None = None
-    """When the sender took it, moved to our clock; None: the sender did not say."""
+    """When the sender measured, converted to our clock; None: the sender did not say."""
 
 
 @dataclass(frozen=True, slots=True)
 class Readings:
-    """Readings that arrived together; all are taken, or none is."""
+    """Readings that arrived together; all are accepted, or none."""
 
     items: tuple[Reading, ...]
     source: str
-    """Who measured: readings of `estop` are kept apart by it, and one cannot release another's."""
+    """Who measured. `estop` is kept per source: one source cannot release another's."""
     actor: Actor = NOBODY
 
 
 @dataclass(frozen=True, slots=True)
 class VehicleReport:
-    """Where the vehicle is and how it moves, as its localization says."""
+    """Pose and motion of the vehicle, from its localization."""
 
     state: VehicleState
 
 
 @dataclass(frozen=True, slots=True)
 class BackendStatus:
-    """Whether nodes can be reached at all."""
+    """Whether the backend works, so that nodes can be reached at all."""
 
     available: bool
     reason: str = ""
@@ -81,48 +81,48 @@ class BackendStatus:
 
 @dataclass(frozen=True, slots=True)
 class GoalFeedback:
-    """How far navigation has come with a goal."""
+    """Progress of navigation towards a goal."""
 
     goal: GoalId
     target_index: int
     """First waypoint that is not yet passed."""
     distance_m: float
-    """Along the path, from its first waypoint to where the vehicle is."""
+    """Distance along the path, from its first waypoint to the vehicle."""
     cross_track_error_m: float
     """Positive: the vehicle is left of the path."""
     lookahead: Point
-    """The point that is steered to."""
+    """The point that the tracker steers to."""
     command: DriveCommand
-    """What the vehicle was told with this."""
+    """The drive command of the same control step."""
     left_out_m: float = 0.0
-    """Of the path behind it, what the vehicle was never near."""
+    """Length of the path behind the vehicle that it never came near, in m."""
 
 
 @dataclass(frozen=True, slots=True)
 class GoalResult:
-    """How navigation ended a goal by itself; a goal that was preempted has none."""
+    """How navigation ended a goal by itself; a preempted goal has no result."""
 
     goal: GoalId
     succeeded: bool
     reason: str = ""
-    """Why it was aborted."""
+    """Why it was aborted; empty: it was not."""
 
 
 @dataclass(frozen=True, slots=True)
 class TimePassed:
-    """Nothing but time."""
+    """Time passes, and nothing else happens."""
 
 
 @dataclass(frozen=True, slots=True)
 class WriteRecord:
-    """A request from outside that was to change something, and how it was answered."""
+    """A write request from outside, and the answer."""
 
     method: str
     path: str
     status: int
-    """Of HTTP."""
+    """HTTP status code."""
     address: str
-    """Host and port of who asked."""
+    """Host and port of the client."""
     actor: Actor = NOBODY
 
 
@@ -131,7 +131,7 @@ class WriteRecord:
 
 @dataclass(frozen=True, slots=True)
 class ModeRequest:
-    """Bring a part into a mode; it is configured and activated on the way if it must be."""
+    """Bring a part into a mode; this configures and activates it where needed."""
 
     part: PartName
     mode: str
@@ -140,7 +140,7 @@ class ModeRequest:
 
 @dataclass(frozen=True, slots=True)
 class TransitionRequest:
-    """Bring a part through a lifecycle transition."""
+    """Request a lifecycle transition of a part."""
 
     part: PartName
     transition: Transition
@@ -149,7 +149,7 @@ class TransitionRequest:
 
 @dataclass(frozen=True, slots=True)
 class ParametersRequest:
-    """Set parameters of a node, all or none."""
+    """Set parameters of a node atomically: all or none."""
 
     node: PartName
     values: Mapping[str, ParameterValue]
@@ -158,7 +158,7 @@ class ParametersRequest:
 
 @dataclass(frozen=True, slots=True)
 class CancelRequest:
-    """Stop a change: no further step is begun; one in flight is not recalled."""
+    """Cancel a change: it starts no further step; a step in flight is not recalled."""
 
     change: ChangeId
     actor: Actor = NOBODY
@@ -175,7 +175,7 @@ class EmergencyStopRequest:
 
 @dataclass(frozen=True, slots=True)
 class AcknowledgeRequest:
-    """Acknowledge an error, so that it may end once its cause is gone."""
+    """Acknowledge an error, so that it clears once its cause is gone."""
 
     error: str
     actor: Actor = NOBODY
@@ -183,11 +183,11 @@ class AcknowledgeRequest:
 
 @dataclass(frozen=True, slots=True)
 class TaskRequest:
-    """Follow a path, in place of the task that there may be."""
+    """Submit a task: follow a path. It replaces the current task, if any."""
 
     path: Path
     start_index: int
-    """The waypoint to begin with."""
+    """Index of the first waypoint to drive to."""
     controller: str
     """Name of a path tracker."""
     speed_mps: float
@@ -197,14 +197,14 @@ class TaskRequest:
 
 @dataclass(frozen=True, slots=True)
 class CancelTaskRequest:
-    """End the current task, if there is one, and stand still."""
+    """Cancel the current task, if any, and stop the vehicle."""
 
     actor: Actor = NOBODY
 
 
 @dataclass(frozen=True, slots=True)
 class HoldRequest:
-    """Keep the vehicle from driving tasks, until `owner` lets go."""
+    """Set a hold: no task runs until `owner` releases it."""
 
     owner: str
     reason: str
@@ -213,7 +213,7 @@ class HoldRequest:
 
 @dataclass(frozen=True, slots=True)
 class ReleaseRequest:
-    """Let go of the hold of `owner`; nothing happens if there is none."""
+    """Release the hold of `owner`; without effect if there is none."""
 
     owner: str
     actor: Actor = NOBODY

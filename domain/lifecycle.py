@@ -1,7 +1,7 @@
-"""The ROS 2 lifecycle of a node as a table, with the ids and labels of `lifecycle_msgs`.
+"""The ROS 2 node lifecycle as a table, with the ids and labels of `lifecycle_msgs`.
 
-A reader can check `TRANSITIONS` against the standard line by line. Everything else in this module
-is derived from it.
+`TRANSITIONS` can be checked line by line against the ROS 2 design page. Everything else in this
+module is derived from it.
 
 Source: ROS 2 design, "Managed nodes" (design.ros2.org/articles/node_lifecycle.html), and
 `lifecycle_msgs/msg/State` and `Transition`. Modes extend the state `active`: deliverable D4.8,
@@ -37,7 +37,7 @@ class LifecycleState(StrEnum):
 
     @property
     def is_primary(self) -> bool:
-        """Tell whether a node can rest in this state."""
+        """Tell whether a node can remain in this state."""
         return self in PRIMARY_STATES
 
 
@@ -66,7 +66,7 @@ PRIMARY_STATES = frozenset(
 
 
 class Transition(StrEnum):
-    """A transition that can be asked of a node or a system."""
+    """A transition that can be requested of a node or a system."""
 
     CONFIGURE = "configure"
     CLEANUP = "cleanup"
@@ -76,7 +76,7 @@ class Transition(StrEnum):
 
     @property
     def goal(self) -> LifecycleState:
-        """Return the primary state that this transition leads to when all goes well."""
+        """Return the primary state that this transition leads to on success."""
         return _GOALS[self]
 
 
@@ -86,13 +86,13 @@ class TransitionRule:
 
     transition: Transition
     id: int
-    """Number in `lifecycle_msgs/msg/Transition`; shutdown has one for each start."""
+    """Number in `lifecycle_msgs/msg/Transition`; shutdown has one per start state."""
     start: LifecycleState
     via: LifecycleState
     """The transitional state while the callback of the node runs."""
     success: LifecycleState
     failure: LifecycleState
-    """Where the node ends when its callback reports failure."""
+    """State of the node after its callback reports failure."""
 
 
 _S = LifecycleState
@@ -110,7 +110,7 @@ TRANSITIONS: tuple[TransitionRule, ...] = (
 """An error in any callback leads to `errorprocessing` instead; see `ERROR_PROCESSED`."""
 
 ERROR_PROCESSED = LifecycleState.UNCONFIGURED
-"""Where a node goes from `errorprocessing` when its error handling succeeds."""
+"""State after `errorprocessing` if the error handling succeeds."""
 
 _GOALS: Mapping[Transition, LifecycleState] = {
     rule.transition: rule.success for rule in TRANSITIONS
@@ -131,7 +131,7 @@ _REQUESTS: Mapping[Transition, frozenset[LifecycleState]] = MappingProxyType(
         _T.SHUTDOWN: frozenset({_S.UNCONFIGURED, _S.INACTIVE, _S.ACTIVE, _S.FINALIZED}),
     }
 )
-"""Where a request is legal: its goal is met, or a path leads there that the request implies.
+"""States in which a request is legal: at its goal, or on a path that the request implies.
 
 Activate implies configure; cleanup and shutdown imply deactivate. Configure never deactivates, and
 deactivate never configures.
@@ -139,14 +139,14 @@ deactivate never configures.
 
 
 def rule_for(start: LifecycleState, transition: Transition) -> TransitionRule | None:
-    """Return the line of the table for `transition` from `start`; None where there is none."""
+    """Return the line of the table for `transition` from `start`; None: there is none."""
     return _RULES.get((start, transition))
 
 
 def arrival(state: LifecycleState) -> LifecycleState:
-    """Return the primary state that a node in `state` ends in when nothing goes wrong.
+    """Return the primary state that a node in `state` reaches if nothing fails.
 
-    A primary state is its own arrival; `errorprocessing` arrives at `unconfigured`.
+    For a primary state this is the state itself; for `errorprocessing` it is `unconfigured`.
     """
     if state is LifecycleState.ERROR_PROCESSING:
         return ERROR_PROCESSED
@@ -154,21 +154,21 @@ def arrival(state: LifecycleState) -> LifecycleState:
 
 
 def is_legal_request(transition: Transition, start: LifecycleState) -> bool:
-    """Tell whether `transition` may be requested of a node that rests in `start`."""
+    """Tell whether `transition` may be requested of a node in the primary state `start`."""
     return start in _REQUESTS[transition]
 
 
 def path(start: LifecycleState, goal: LifecycleState) -> tuple[Transition, ...] | None:
     """Return the shortest sequence of transitions between two primary states.
 
-    Shutdown is a step only towards `finalized`. Returns None where no path leads, as from
+    Shutdown is used only towards `finalized`. Returns None if there is no path, as from
     `finalized`.
     """
     return _PATHS.get((start, goal))
 
 
 def _paths_from(start: LifecycleState) -> dict[LifecycleState, tuple[Transition, ...]]:
-    """Search breadth first; on the way to `finalized` an active node is deactivated first."""
+    """Search breadth-first; towards `finalized`, an active node is deactivated first."""
     found: dict[LifecycleState, tuple[Transition, ...]] = {start: ()}
     waiting = deque([start])
     while waiting:

@@ -1,9 +1,9 @@
-"""Follows one path at a time: goal, feedback, preempt, result, as an action server does.
+"""Follows one path at a time, like an action server: goal, feedback, preemption, result.
 
-Deterministic and advanced like the simulated robot. It decides nothing about whether to drive; it
-ends a goal by itself where going on would be wrong. After a preemption not one command follows.
+Deterministic and advanced like the simulated robot. The task planner decides whether to drive;
+navigation aborts a goal only when a limit is reached. No drive command follows a preemption.
 
-Source: smart_polaris, `controller_action_interface.py`; limits: SEMANTICS section 5.
+Source: smart_polaris, `controller_action_interface.py`; limits: docs/explanation/semantics.md.
 """
 
 import math
@@ -21,10 +21,10 @@ from domain.tracking.trackers import TRACKERS
 from domain.vehicle import DriveCommand, VehicleLimits, VehicleState
 
 PERIOD: Duration = seconds(0.05)
-"""Of control."""
+"""Period of the control loop."""
 
 COVERED_SHARE = 0.95
-"""More of the length than this has to be covered before a goal can succeed."""
+"""A goal succeeds only if more than this share of the length is covered."""
 
 NavigationMessage: TypeAlias = Drive | GoalFeedback | GoalResult
 Trackers: TypeAlias = Mapping[str, Callable[[VehicleLimits], PathTracker]]
@@ -32,16 +32,16 @@ Trackers: TypeAlias = Mapping[str, Callable[[VehicleLimits], PathTracker]]
 
 @dataclass(frozen=True, slots=True)
 class NavigationSettings:
-    """When a goal is given up, and how fast may be driven."""
+    """Limits at which a goal is aborted, and speed limits."""
 
     max_cross_track_m: float = 3.0
     max_cross_track_for: Duration = seconds(1.0)
-    """A larger error than `max_cross_track_m` for so long ends the goal."""
+    """A cross-track error above `max_cross_track_m` for this long aborts the goal."""
     no_progress_for: Duration = seconds(20.0)
-    """So long without `least_progress_m` ends the goal."""
+    """This long without `least_progress_m` of progress aborts the goal."""
     least_progress_m: float = 0.05
     end_tolerance_m: float = 0.3
-    """Standing within this of the last waypoint is arriving."""
+    """A standstill within this distance of the last waypoint counts as arrival."""
     speed: SpeedLimits = field(default_factory=SpeedLimits)
 
 
@@ -55,14 +55,14 @@ class _Run:
     next_at: Instant
     target_index: int
     speed_mps: float
-    """Commanded last; a command rises from it by the acceleration at most."""
+    """Last commanded speed; the next one exceeds it by no more than the acceleration allows."""
     best_m: float
-    """Furthest along the path so far, in steps that count as progress."""
+    """Largest distance along the path that counted as progress."""
     best_at: Instant
     reached_m: float
-    """Up to where along the path it is known what was passed and what left out."""
+    """Distance along the path up to which passed and skipped stretches are known."""
     left_out_m: float
-    """Of the path, together: what lay further from the vehicle than it may be off the path."""
+    """Total length of stretches that were further away than `max_cross_track_m`."""
     off_path_since: Instant | None = None
 
 
@@ -70,13 +70,13 @@ _PASSED_STEP_M = 0.25
 
 
 class _GivenUpError(Exception):
-    """Going on would be wrong; the message says why."""
+    """The goal is aborted; the message says why."""
 
 
 class Navigation:
-    """One vehicle's navigation; the newest goal replaces the one before.
+    """Navigation of one vehicle; a new goal replaces the current one.
 
-    What `now` is given must never fall.
+    `now` must never decrease from call to call.
     """
 
     def __init__(
@@ -89,9 +89,9 @@ class Navigation:
         """Begin without a goal.
 
         Args:
-            limits: What the vehicle can do.
-            settings: When a goal is given up, and how fast may be driven.
-            vehicle: Where the vehicle is, as the supervision knows it.
+            limits: Limits of the vehicle.
+            settings: Limits at which a goal is aborted, and speed limits.
+            vehicle: The vehicle state that the supervision holds.
             trackers: Path trackers by name.
         """
         self._limits = limits
@@ -101,7 +101,7 @@ class Navigation:
         self._run: _Run | None = None
 
     def handle(self, command: SendGoal | PreemptGoal, now: Instant) -> None:
-        """Take a goal, whose first control step is due at once, or drop it."""
+        """Accept a goal, whose first control step is due at once, or preempt it."""
         if isinstance(command, SendGoal):
             self._begin(command, now)
         elif self._run is not None and self._run.goal.goal == command.goal:
@@ -128,7 +128,7 @@ class Navigation:
         return None if self._run is None else self._run.next_at
 
     def advance(self, now: Instant) -> tuple[NavigationMessage, ...]:
-        """Do the control step that is due by now, if one is; a late one is not made up for."""
+        """Do the control step that is due by `now`, if any; missed steps are not made up for."""
         run = self._run
         if run is None or run.next_at > now:
             return ()
@@ -140,7 +140,7 @@ class Navigation:
             return (GoalResult(run.goal.goal, succeeded=False, reason=str(error)),)
 
     def _control(self, run: _Run, now: Instant) -> tuple[NavigationMessage, ...]:
-        """Steer by one step.
+        """Do one control step.
 
         Raises:
             _GivenUpError: A limit was reached.
@@ -173,15 +173,17 @@ class Navigation:
         return state
 
     def _steer(self, run: _Run, state: VehicleState) -> ControlStep:
-        """Ask the tracker; whatever is wrong with it or its answer ends the goal."""
+        """Ask the tracker; an exception or an invalid answer aborts the goal."""
         try:
             step = run.tracker.control_step(state, run.goal.path, run.target_index)
         except Exception as error:
-            # A tracker may be somebody else's: a fault in it ends the drive, not the supervision.
+            # Trackers may be third-party code: a fault aborts the goal, not the supervision.
             kind = type(error).__name__
             raise _GivenUpError(f"{run.goal.controller} failed: {kind}: {error}") from error
         if not math.isfinite(step.steering_angle_rad):
-            raise _GivenUpError(f"{run.goal.controller} commands a number that is not finite")
+            raise _GivenUpError(
+                f"{run.goal.controller} commands a steering angle that is not finite"
+            )
         return step
 
     def _judge(self, run: _Run, step: ControlStep, now: Instant) -> None:
@@ -203,9 +205,10 @@ class Navigation:
             raise _GivenUpError(f"no progress for {to_seconds(settings.no_progress_for):g} s")
 
     def _note_passed(self, run: _Run, step: ControlStep, state: VehicleState) -> None:
-        """Tell what of the path was passed since the step before from what was left out.
+        """Sort the path since the last step into passed and skipped stretches.
 
-        A vehicle that cannot steer a hairpin is found again behind it: the hairpin was not driven.
+        A vehicle that cannot steer a hairpin is projected onto the path behind it: it skipped the
+        hairpin.
         """
         path, pose = run.goal.path, state.pose
         while run.reached_m < step.distance_m:
@@ -217,7 +220,7 @@ class Navigation:
             run.reached_m = until_m
 
     def _command(self, run: _Run, step: ControlStep) -> DriveCommand:
-        """Return steering within its limit, and a speed that rises no faster than is wanted."""
+        """Return steering within its limit, and a speed that rises no faster than allowed."""
         limit = self._limits.max_steering_angle_rad
         steering = min(max(step.steering_angle_rad, -limit), limit)
         gained = self.settings.speed.acceleration_mps2 * to_seconds(PERIOD)
@@ -228,7 +231,7 @@ class Navigation:
         """Tell whether the goal is reached.
 
         Raises:
-            _GivenUpError: It never will be: the end is passed, and too much was left out.
+            _GivenUpError: The end is passed, but too much of the path was skipped.
         """
         path = run.goal.path
         begun = path.distance_of(run.goal.first_index)
@@ -236,7 +239,7 @@ class Navigation:
         is_past_end = step.distance_m >= path.length_m
         if covered <= COVERED_SHARE:
             if is_past_end:
-                raise _GivenUpError(f"the end is passed, and {run.left_out_m:.1f} m were left out")
+                raise _GivenUpError(f"the end is passed, but {run.left_out_m:.1f} m were skipped")
             return False
         if is_past_end:
             return True

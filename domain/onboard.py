@@ -1,7 +1,7 @@
-"""What runs on board: the supervision and the navigation, and what they say to each other.
+"""Connects supervision and navigation.
 
-One input in, commands for nodes and vehicle and events out. Goals never leave, so that a hold and
-the end of driving are one step.
+One input in; commands to nodes and vehicle, and events, out. Goals stay inside, so that a hold
+stops the vehicle in the same step.
 """
 
 from collections.abc import Sequence
@@ -18,14 +18,14 @@ from domain.timebase import Instant
 class Onboard:
     """The core with its navigation.
 
-    At one instant, what the core has due comes before a control step, and both before what arrives.
+    At one instant, deadlines of the core come first, then the control step, then the input.
     """
 
     def __init__(self, core: Supervision, navigation: Navigation) -> None:
         self.core = core
         self.navigation = navigation
         self._untold: list[Outputs] = []
-        """What a refused call led to before it was refused."""
+        """Outputs of calls whose input was rejected; returned by the next call."""
 
     def wake_at(self) -> Instant | None:
         """Return the next instant at which time alone changes something; None: never."""
@@ -35,17 +35,17 @@ class Onboard:
         return min(core, navigation)
 
     def handle(self, given: Input, now: Instant) -> Outputs:
-        """Take in one input, after letting pass what was due before it, each at its own time.
+        """Handle one input, after everything that was due before it, each at its own time.
 
         Args:
             given: A fact or a request.
-            now: When it arrived; it never falls.
+            now: When it arrived; it never decreases.
 
         Returns:
-            What to do and what was decided; after a refusal, this comes with the next call.
+            Commands, events and changed views; after a rejection, the next call returns them.
 
         Raises:
-            PilothouseError: The input is refused; nothing was changed by it.
+            PilothouseError: The input is rejected; it changed nothing.
         """
         self._let_pass(now)
         self._take(given, now)
@@ -83,7 +83,7 @@ class Onboard:
 
 
 def _merged(parts: Sequence[Outputs]) -> Outputs:
-    """Return what several steps led to, in their order."""
+    """Join the outputs of several steps, in order."""
     if len(parts) == 1:
         return parts[0]
     commands: list[Command] = []

@@ -1,4 +1,4 @@
-"""Gathers what one input leads to: events with their cause, commands, and what looks different."""
+"""Gathers the consequences of one input: commands, events with causes, and changed views."""
 
 from dataclasses import dataclass
 
@@ -13,12 +13,12 @@ from domain.timebase import Instant
 
 @dataclass(frozen=True, slots=True)
 class Outputs:
-    """What one input led to."""
+    """The consequences of one input."""
 
     commands: tuple[Command, ...] = ()
     events: tuple[RecordedEvent, ...] = ()
     change: ChangeId | None = None
-    """The change that a request began, or that was already there and is met."""
+    """The change that the request began."""
     parts: frozenset[PartName] = frozenset()
     """Parts whose view changed."""
     signals: frozenset[str] = frozenset()
@@ -28,9 +28,9 @@ class Outputs:
     task: TaskId | None = None
     """The task that a request submitted."""
     task_changed: bool = False
-    """Whether the view of the current task changed, or there is another one or none."""
+    """Whether the view of the current task changed, or the task was replaced or ended."""
     vehicle_changed: bool = False
-    """Whether the vehicle moves differently, is told something else, or steers to another point."""
+    """Whether the motion of the vehicle, its command or its look-ahead point changed."""
 
 
 NOTHING = Outputs()
@@ -39,8 +39,8 @@ NOTHING = Outputs()
 class Outbox:
     """Outputs while they are gathered.
 
-    An input is recorded as an event only once something follows from it: ten readings a second that
-    change nothing leave no trace, and the one that matters is there to be pointed at.
+    An input is recorded as an event only once something follows from it: ten readings per second
+    that change nothing leave no trace, and the one that matters is there as a cause.
     """
 
     def __init__(self) -> None:
@@ -64,29 +64,34 @@ class Outbox:
     def begin(
         self, now: Instant, event: Event, actor: Actor = NOBODY, cause: int | None = None
     ) -> None:
-        """Begin an input, which `event` describes; it is recorded when something follows from it.
+        """Begin an input; it is recorded once something follows from it.
 
         Args:
             now: When it arrived.
-            event: What arrived.
+            event: Describes the input.
             actor: Who sent it.
-            cause: The event that it is a consequence of, if it is one.
+            cause: Id of the event that led to this input, if any.
         """
         self._at, self._input, self._actor, self._cause = now, event, actor, cause
         self._input_id = None
 
     def record_input(self) -> int:
-        """Record the input itself now, if it was not yet; return its id."""
+        """Record the input, unless it is recorded already; return its event id."""
         if self._input_id is None:
             self._input_id = self._append(self._input, self._cause)
         return self._input_id
 
     def emit(self, event: Event, cause: int | None = None) -> int:
-        """Record what follows from the input, or from `cause` if that is nearer; return its id."""
+        """Record an event and return its id.
+
+        Args:
+            event: What follows from the input.
+            cause: Id of a more direct cause than the input; None: the input.
+        """
         return self._append(event, self.record_input() if cause is None else cause)
 
     def next_request(self) -> int:
-        """Return a number for a command, never given before."""
+        """Return a new request number."""
         self._next_request += 1
         return self._next_request - 1
 
@@ -95,7 +100,7 @@ class Outbox:
         self._commands.append(command)
 
     def take(self) -> Outputs:
-        """Return what was gathered since the last call."""
+        """Return all outputs since the last call."""
         if not self._has_anything():
             # Most inputs, such as reports of a vehicle at standstill, lead to nothing.
             return NOTHING

@@ -1,4 +1,4 @@
-"""Values of ROS 2 parameters: their types, and when two are the same."""
+"""Values of ROS 2 parameters: types and equality."""
 
 from collections.abc import Mapping
 from typing import TypeAlias
@@ -15,7 +15,7 @@ ParameterValue: TypeAlias = (
     | tuple[float, ...]
     | tuple[str, ...]
 )
-"""A value of a ROS 2 parameter; 1 and 1.0 are different, as their types are."""
+"""A value of a ROS 2 parameter; 1 and 1.0 differ, since their types differ."""
 
 Parameters: TypeAlias = Mapping[str, ParameterValue]
 
@@ -28,25 +28,25 @@ def same_value(one: ParameterValue, other: ParameterValue) -> bool:
 
 
 def value_type(value: ParameterValue) -> str:
-    """Return the type of a parameter value, as in `double` or `integer_array`; empty: `array`.
+    """Return the type of a parameter value, such as `double` or `integer_array`; empty: `array`.
 
     Raises:
-        InvalidValueError: It is no value of a parameter.
+        InvalidValueError: It is not a parameter value.
 
     Source: `rcl_interfaces/msg/ParameterType`.
     """
     items = value if isinstance(value, tuple) else (value,)
     names = {_TYPE_NAMES.get(type(item), "") for item in items}
     if len(names) > 1 or "" in names:
-        raise InvalidValueError(f"{value!r:.40} is no value of a parameter")
+        raise InvalidValueError(f"{value!r:.40} is not a parameter value")
     name = next(iter(names), "")
     return f"{name}_array".lstrip("_") if isinstance(value, tuple) else name
 
 
 def fits_type(declared: ParameterValue, value: ParameterValue) -> bool:
-    """Tell whether a parameter that holds `declared` takes `value`; 1 is none that takes 1.0.
+    """Tell whether a parameter that holds `declared` accepts `value`; 1 does not fit 1.0.
 
-    An empty array fits every type of array, since nothing in it says otherwise.
+    An empty array fits every type of array.
     """
     if isinstance(declared, tuple) and isinstance(value, tuple) and not (declared and value):
         return True

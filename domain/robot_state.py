@@ -1,4 +1,4 @@
-"""The state of the whole robot: IDLE, RUNNING or ERROR, a view of its errors and its task."""
+"""The state of the whole robot, derived from its errors and its task: IDLE, RUNNING or ERROR."""
 
 from domain.concern import Concern
 from domain.events.health import SystemStateChanged
@@ -10,7 +10,7 @@ from domain.timebase import Instant
 
 
 class RobotState(Concern):
-    """Tells the state once errors and task have settled, so that the robot is made safe before."""
+    """Publishes the state after errors and task have settled: the vehicle is stopped first."""
 
     def __init__(self, health: Health, driving: Driving, outbox: Outbox) -> None:
         self._health = health
@@ -21,7 +21,7 @@ class RobotState(Concern):
         self._told_status = TaskStatus.NO_TASK
 
     def settle(self, now: Instant) -> bool:
-        """Tell the state of the robot if it is another one than told before."""
+        """Publish the state of the robot if it differs from the last published one."""
         status = self._driving.status
         if status is self._told_status and self._health.errors == self._told[1]:
             return False

@@ -1,4 +1,4 @@
-"""What can be seen of the robot at one moment: plain, frozen values, made by the core.
+"""Views of the robot at one moment: plain, frozen values, made by the core.
 
 Nothing here refers to a live object, so a snapshot may be kept, compared and sent.
 """
@@ -36,7 +36,7 @@ class TaskStatus(StrEnum):
 
 @dataclass(frozen=True, slots=True)
 class Actual:
-    """What a part is in, and how that is known."""
+    """Actual state and mode of a part, and how they are known."""
 
     state: LifecycleState
     mode: ModeName | None = None
@@ -46,17 +46,17 @@ class Actual:
     """The mode was inferred, from parts or from parameters."""
     undecidable: bool = False
     reason: str | None = None
-    """Why it is undecidable: which part, and what of it is not known."""
+    """Why it is undecidable: the part, and what is not known about it."""
 
     @property
     def state_and_mode(self) -> StateAndMode:
-        """Return the pair alone."""
+        """Return state and mode as a pair."""
         return StateAndMode(self.state, self.mode)
 
 
 @dataclass(frozen=True, slots=True)
 class EffectiveTarget:
-    """What is pursued now, and why it may differ from what was asked."""
+    """The target in force, and why it may differ from the requested one."""
 
     state: LifecycleState
     mode: ModeName | None
@@ -76,9 +76,9 @@ class PartView:
     converged: bool
     deviation_since: Instant | None
     reachable: bool
-    """Of a system: all its nodes are."""
+    """For a system: whether all its nodes are reachable."""
     change: ChangeId | None
-    """The change that this part is under; it may be superseded, and still drive this part."""
+    """The change that drives this part; it may already be superseded elsewhere."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -98,11 +98,11 @@ class ParameterView:
     value: ParameterValue | None
     """None: never reported."""
     wanted: ParameterValue | None
-    """What the target mode wants; None where it wants nothing."""
+    """Value that the target mode requires; None: it requires none."""
 
 
 class StepStatus(StrEnum):
-    """Where a step of a change stands."""
+    """Status of a step of a change."""
 
     PENDING = "pending"
     RUNNING = "running"
@@ -114,7 +114,7 @@ class StepStatus(StrEnum):
 
 
 class ChangeStatus(StrEnum):
-    """Where a change stands; all but `running` are ends."""
+    """Status of a change; all but `running` are final."""
 
     RUNNING = "running"
     SUCCEEDED = "succeeded"
@@ -154,7 +154,7 @@ class ChangeView:
 
 @dataclass(frozen=True, slots=True)
 class SignalView:
-    """One signal: the value held, and what is judged of it."""
+    """One signal: the value held, and its evaluation."""
 
     signal: str
     value: SignalValue | None
@@ -165,7 +165,7 @@ class SignalView:
     stamp: Instant | None
     stale: bool
     error: str | None
-    """The value error that is on, if any; staleness is told by `stale`."""
+    """The active error of the value, if any; `stale` tells of staleness."""
     pending_error: str | None
     pending_since: Instant | None
     pending_needs: Duration | None
@@ -176,7 +176,7 @@ class SignalView:
 
 @dataclass(frozen=True, slots=True)
 class SystemStateView:
-    """State of the robot with its reasons; error code and state are of one moment."""
+    """State of the robot with its reasons; error code and state always match."""
 
     state: SystemState
     error_code: int
@@ -194,15 +194,15 @@ class EmergencyStopView:
     reason: str | None
     since: Instant | None
     standstill_at: Instant | None
-    """When the vehicle was first seen standing still since; None: not yet, or no vehicle."""
+    """When the vehicle was first seen at standstill since; None: not yet, or no vehicle."""
 
 
 class TaskPhase(StrEnum):
-    """Where a task stands; the last three are ends."""
+    """Status of a task; the last three are final."""
 
     RUNNING = "RUNNING"
     PAUSING = "PAUSING"
-    """Held, and not yet seen to stand still."""
+    """Held; the vehicle is not yet at standstill."""
     PAUSED = "PAUSED"
     SUCCEEDED = "SUCCEEDED"
     CANCELED = "CANCELED"
@@ -217,21 +217,21 @@ class TaskView:
     status: TaskPhase
     controller: str
     speed_mps: float
-    """Cruise speed that was asked for."""
+    """Requested cruise speed."""
     waypoint_count: int
     length_m: float
-    """Along the path from `start_index` to its end."""
+    """Length of the path from `start_index` to its end."""
     start_index: int
     target_index: int
     """First waypoint that is not yet passed."""
     progress: float
     """Covered share of `length_m`, 0 to 1."""
     distance_m: float
-    """Covered along the path, from `start_index`."""
+    """Distance covered along the path, from `start_index`."""
     cross_track_error_m: float | None
     """Positive: left of the path. None: the task never ran."""
     reason: str | None
-    """Why it is held or how it ended."""
+    """Why it is held, or how it ended."""
     created_at: Instant
     ended_at: Instant | None
     cause: int
@@ -240,7 +240,7 @@ class TaskView:
 
 @dataclass(frozen=True, slots=True)
 class HoldView:
-    """One reason why no task may run, and whose it is."""
+    """One hold: while it is set, no task runs."""
 
     owner: str
     reason: str
@@ -251,13 +251,13 @@ class HoldView:
 
 @dataclass(frozen=True, slots=True)
 class VehicleView:
-    """Where the vehicle is, and what it is told."""
+    """Pose and motion of the vehicle, and its command."""
 
     state: VehicleState | None
     """None: never reported."""
     at: Instant | None
-    """When that was reported."""
+    """When `state` was reported."""
     command: DriveCommand
-    """What it was told last."""
+    """The last command."""
     lookahead: Point | None
-    """The point that is steered to; None: nothing is driven."""
+    """The point that the tracker steers to; None: no task is driving."""

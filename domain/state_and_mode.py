@@ -1,4 +1,4 @@
-"""Names of parts and modes, and the pair of lifecycle state and mode that a part is in."""
+"""Names of parts and modes, and the pair of lifecycle state and mode."""
 
 from dataclasses import dataclass
 from typing import NewType
@@ -14,20 +14,20 @@ DEFAULT_MODE = ModeName("__DEFAULT__")
 
 
 def part_name(name: str) -> PartName:
-    """Return the name of a part as models hold it: ROS 2 writes a leading slash, models do not."""
+    """Return the name of a part without the leading slash of ROS 2."""
     return PartName(name.lstrip("/"))
 
 
 @dataclass(frozen=True, slots=True)
 class StateAndMode:
-    """A lifecycle state and, where there is one, the mode in it."""
+    """A lifecycle state and, if any, a mode."""
 
     state: LifecycleState
     mode: ModeName | None = None
 
     @property
     def label(self) -> str:
-        """Return `active.FAST`, or the bare state where there is no mode."""
+        """Return `active.FAST`, or the state alone if there is no mode."""
         return f"{self.state}.{self.mode}" if self.mode else str(self.state)
 
     @classmethod
@@ -35,7 +35,7 @@ class StateAndMode:
         """Read `active.FAST` or `inactive`; a mode is kept only with `active` and `activating`.
 
         Raises:
-            ValueError: The part before the first dot is no label of a lifecycle state.
+            ValueError: The text before the first dot is not the label of a lifecycle state.
         """
         text, _, mode = label.partition(".")
         state = LifecycleState(text)
@@ -43,7 +43,7 @@ class StateAndMode:
         return cls(state, ModeName(mode) if mode and has_mode else None)
 
     def agrees_with(self, other: "StateAndMode") -> bool:
-        """Tell whether both mean the same; only active has modes, and no mode is `__DEFAULT__`."""
+        """Tell whether both mean the same; only `active` has modes, and None is `__DEFAULT__`."""
         if self.state is not other.state:
             return False
         return self.state is not LifecycleState.ACTIVE or (self.mode or DEFAULT_MODE) == (

@@ -1,9 +1,9 @@
-"""The core: one input at a time, in; commands and events, out. It decides everything.
+"""The core: one input at a time in; commands and events out. It makes all decisions.
 
-It does no I/O and has no clock. The live service, a simulation and a test hand in the same inputs
-and times, and get the same outputs.
+It does no I/O and has no clock. The same inputs at the same times give the same outputs, in the
+live service, in a simulation and in a test.
 
-What is decided is decided by its concerns; this module keeps their order.
+Its concerns make the decisions; this module keeps their order.
 """
 
 from collections.abc import Callable, Mapping
@@ -41,7 +41,7 @@ from domain.timebase import Instant
 from domain.vehicle import VehicleLimits
 
 _SPARE_ROUNDS = 100
-"""Of settling, besides one for each part; each restores one node at most."""
+"""Rounds of settling besides one per part; each round restores one node at most."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -58,6 +58,13 @@ class Supervision:
     """The supervision of one robot: its concerns, and the order in which they act."""
 
     def __init__(self, model: SmhModel, settings: SupervisionSettings, start: Instant) -> None:
+        """Begin with all nodes unknown and no readings.
+
+        Args:
+            model: Systems and nodes of the robot.
+            settings: Settings of signals, changes, tasks and vehicle.
+            start: The current time; the times of silent signals count from here.
+        """
         self.model = model
         self._now = start
         self._outbox = Outbox()
@@ -74,7 +81,7 @@ class Supervision:
         )
         self._robot_state = RobotState(self._health, self.driving, self._outbox)
         self._changing = Changing(self._parts, self._health, settings.changes, self._outbox)
-        # The robot is made safe by driving before its state is told and changes go on.
+        # Driving stops the vehicle before the state is published and changes continue.
         self._concerns: tuple[Concern, ...] = (
             self._parts,
             self._health,
@@ -89,7 +96,7 @@ class Supervision:
         self._settling = [c for c in self._concerns if _overrides(c, "settle")]
         self._max_rounds = _SPARE_ROUNDS + len(model.parts)
         self._wake_at = self._next_wake()
-        """Kept: it is asked for several times per input, and only inputs and time change it."""
+        """Cached: it is read several times per input, and only inputs and time change it."""
 
     # --- time and inputs -------------------------------------------------------------------------
 
@@ -98,17 +105,17 @@ class Supervision:
         return self._wake_at
 
     def handle(self, given: Input, now: Instant) -> Outputs:
-        """Take in one input, after letting pass what was due before it, each at its own time.
+        """Handle one input, after everything that was due before it, each at its own time.
 
         Args:
             given: A fact or a request.
             now: When it arrived; a time before the last one counts as the last one.
 
         Returns:
-            What to do and what was decided; after a refusal, this comes with the next call.
+            Commands, events and changed views; after a rejection, the next call returns them.
 
         Raises:
-            PilothouseError: The input is refused; nothing was changed by it.
+            PilothouseError: The input is rejected; it changed nothing.
         """
         self._let_pass(max(now, self._now))
         for take in self._takers[type(given)]:
@@ -117,7 +124,7 @@ class Supervision:
         return self._outbox.take()
 
     def _let_pass(self, now: Instant) -> None:
-        """Handle what became due up to now, in order; what follows later is due then."""
+        """Handle all deadlines up to `now` in order, including those that follow from them."""
         while (due := self._wake_at) is not None and due <= now:
             self._now = max(due, self._now)
             self._outbox.begin(self._now, TimeWasDue())
@@ -141,7 +148,7 @@ class Supervision:
     # --- what can be seen ------------------------------------------------------------------------
 
     def part(self, name: PartName) -> PartView:
-        """Return one part that the model has."""
+        """Return one part; the model must have it."""
         return self._parts.view(name)
 
     def parts(self) -> Mapping[PartName, PartView]:
@@ -149,7 +156,7 @@ class Supervision:
         return self._parts.views()
 
     def modes(self, part: PartName) -> tuple[ModeView, ...]:
-        """Return the modes of a part, and what stands against entering each of them now."""
+        """Return the modes of a part, with the blockers of each."""
         return self._changing.modes(part)
 
     def parameters(self, node: PartName) -> tuple[ParameterView, ...]:
@@ -157,14 +164,14 @@ class Supervision:
         return self._parts.parameters(node)
 
     def available_transitions(self, part: PartName) -> tuple[Transition, ...]:
-        """Return the transitions that would be accepted now and lead somewhere else."""
+        """Return the transitions that would be accepted now and change something."""
         return self._changing.available_transitions(part)
 
     def plan(self, request: ChangeRequest) -> tuple[StepView, ...]:
-        """Return the steps that a request would take now; nothing is changed.
+        """Return the steps that a request would take now, without starting them.
 
         Raises:
-            PilothouseError: The request would be refused.
+            PilothouseError: The request would be rejected.
         """
         return self._changing.plan(request)
 
@@ -172,7 +179,7 @@ class Supervision:
         """Return a change.
 
         Raises:
-            UnknownChangeError: There is none of that id, or it is forgotten.
+            UnknownChangeError: The id is unknown, or the change is no longer kept.
         """
         return self._changing.change(identity)
 
@@ -182,8 +189,8 @@ class Supervision:
         """Return the changes that are kept, the newest first.
 
         Args:
-            limit: At most so many.
-            part: Only those that were asked of this part.
+            limit: Largest number of changes; None: all.
+            part: Only changes that were requested of this part.
         """
         return self._changing.changes(limit, part)
 
@@ -211,7 +218,7 @@ class Supervision:
 def _takers(
     concerns: tuple[Concern, ...],
 ) -> Mapping[type, tuple[Callable[[Any, Instant], None], ...]]:
-    """Return what takes each class of input: its owner first, then those that follow."""
+    """Return the handlers of each class of input, its owner first."""
     takers: dict[type, tuple[Callable[[Any, Instant], None], ...]] = {TimePassed: ()}
     for concern in concerns:
         for kind, take in concern.takes.items():
@@ -220,5 +227,5 @@ def _takers(
 
 
 def _overrides(concern: Concern, method: str) -> bool:
-    """Tell whether a concern does something of its own; asking the others would only cost time."""
+    """Tell whether a concern overrides `method`; calling the empty ones would only cost time."""
     return getattr(type(concern), method) is not getattr(Concern, method)

@@ -1,13 +1,13 @@
-"""Time as the core sees it: whole nanoseconds of a monotonic clock that somebody else reads.
+"""Time in the core: integer nanoseconds of a monotonic clock that the caller reads.
 
-Integers, because the core promises the same outputs for the same inputs: "15 s after the last good
-reading" is then exact, at every time of day, and never a rounding error early or late.
+Integers, so that the same inputs give the same outputs: "15 s after the last good reading" is
+exact at every time of day, without rounding errors.
 """
 
 from typing import TypeAlias
 
 Instant: TypeAlias = int
-"""Nanoseconds of a monotonic clock; only differences mean anything."""
+"""Nanoseconds of a monotonic clock; only differences are meaningful."""
 
 Duration: TypeAlias = int
 """Nanoseconds."""

@@ -1,6 +1,6 @@
-"""Where a vehicle is, what it is told, and what it can do.
+"""Pose, motion, commands and limits of a vehicle.
 
-Positions are those of the middle of the rear axle, in metres; angles are in radians,
+Positions are those of the centre of the rear axle, in metres; angles are in radians,
 counter-clockwise from the x axis (REP 103).
 """
 
@@ -9,13 +9,13 @@ from dataclasses import dataclass
 from domain.timebase import Duration, seconds
 
 COMMAND_VALID_FOR: Duration = seconds(0.5)
-"""So long a vehicle follows a command to drive; then it stands still unless there is a new one, so
-that a dead supervisor stops it."""
+"""How long a drive command is valid. Without a new one the vehicle then stops, so that a dead
+supervisor stops it."""
 
 
 @dataclass(frozen=True, slots=True)
 class Point:
-    """A place on the ground, m."""
+    """A position on the ground, in m."""
 
     x_m: float
     y_m: float
@@ -23,7 +23,7 @@ class Point:
 
 @dataclass(frozen=True, slots=True)
 class Pose:
-    """Place and heading of the rear axle; m and rad."""
+    """Position and heading of the rear axle, in m and rad."""
 
     x_m: float
     y_m: float
@@ -32,7 +32,7 @@ class Pose:
 
 @dataclass(frozen=True, slots=True)
 class VehicleState:
-    """How a vehicle moves at one moment."""
+    """Pose and motion of a vehicle at one moment."""
 
     pose: Pose
     speed_mps: float
@@ -43,7 +43,7 @@ class VehicleState:
 
 @dataclass(frozen=True, slots=True)
 class DriveCommand:
-    """What a vehicle is told to do."""
+    """Commanded speed and steering of a vehicle."""
 
     speed_mps: float
     steering_angle_rad: float
@@ -52,7 +52,7 @@ class DriveCommand:
 
 @dataclass(frozen=True, slots=True)
 class VehicleLimits:
-    """What a vehicle can do; the usual values are those of the Polaris GEM e2.
+    """Limits of a vehicle; the defaults are those of the Polaris GEM e2.
 
     Source: smart_polaris, URDF of the GEM e2.
     """

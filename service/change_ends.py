@@ -1,4 +1,4 @@
-"""The ends of changes: counted, and waited for by whoever asked for one."""
+"""Counts the changes that ended, and wakes the callers that wait for one."""
 
 import asyncio
 from collections import Counter
@@ -15,18 +15,18 @@ from service.clock import Clock
 
 
 class ChangeEnds:
-    """Tells those who wait for a change that it has ended."""
+    """Notifies the callers that wait for a change when it ends."""
 
     def __init__(self, core: Supervision, clock: Clock) -> None:
         self.counts: Counter[str] = Counter()
-        """Changes that ended so far, by how they ended."""
+        """Changes that ended so far, by their final status."""
         self._core = core
         self._clock = clock
         self._stopped = False
         self._waiting: dict[ChangeId, set[asyncio.Future[None]]] = {}
 
     def note(self, events: Iterable[RecordedEvent]) -> None:
-        """Count the changes that ended by these events, and wake those who wait for them."""
+        """Count the changes that these events end, and wake the callers that wait for them."""
         for recorded in events:
             event = recorded.event
             if isinstance(event, ChangeEnded):
@@ -34,7 +34,7 @@ class ChangeEnds:
                 self._wake(event.change)
 
     async def wait(self, change: ChangeId, timeout_s: float) -> ChangeView:
-        """Return a change once it has ended, or as it is after `timeout_s` seconds.
+        """Wait until a change ends, for at most `timeout_s` seconds, and return it.
 
         Raises:
             UnknownChangeError: There is no such change.
@@ -57,7 +57,7 @@ class ChangeEnds:
         return self._core.change(change)
 
     def stop(self) -> None:
-        """Let everybody who waits go, and nobody wait from now on."""
+        """Wake every waiting caller; from now on `wait` returns at once."""
         self._stopped = True
         for change in list(self._waiting):
             self._wake(change)

@@ -1,7 +1,7 @@
-"""Time as something that is handed in, so that tests need not wait for it.
+"""Clocks are passed in, so that tests need not wait.
 
-Everything is decided by monotonic time alone, which never jumps. Wall time is only for showing, and
-for what senders say.
+All decisions use monotonic time, which never jumps. Wall time is used only for display and for the
+time stamps of senders.
 """
 
 import asyncio
@@ -19,21 +19,21 @@ _LATEST = datetime.max.replace(tzinfo=UTC)
 
 
 class Clock(Protocol):
-    """Monotonic time, a way to wait for it, and what a calendar makes of it.
+    """Monotonic time, a way to wait for it, and its conversion to UTC.
 
-    `tests/conformance/test_clock.py` says what each must keep.
+    `tests/conformance/test_clock.py` specifies what every clock must do.
     """
 
     def now(self) -> Instant:
-        """Return monotonic time; it never falls."""
+        """Return monotonic time; it never decreases."""
         ...
 
     def wall_time(self, instant: Instant) -> datetime:
-        """Return `instant` as UTC, to be shown; cut to the years 1 to 9999."""
+        """Return `instant` as UTC for display, limited to the years 1 to 9999."""
         ...
 
     def from_wall(self, moment: datetime) -> Instant:
-        """Return when a sender's stamp was, on this clock; the reverse of `wall_time`.
+        """Convert a sender's time stamp to this clock; the inverse of `wall_time`.
 
         Raises:
             InvalidValueError: `moment` has no offset from UTC.
@@ -41,22 +41,23 @@ class Clock(Protocol):
         ...
 
     async def sleep_until(self, deadline: Instant) -> None:
-        """Return once `now()` is `deadline` or later; let other tasks run at least once."""
+        """Return when `now()` is `deadline` or later; let other tasks run at least once."""
         ...
 
 
 class MonotonicClock:
     """The clock of this machine.
 
-    Wall time is monotonic time plus one offset, which is measured at the start and once a second
-    while it is asked for. It is replaced only when the clocks are 10 ms further apart, and that is
-    when the system clock was stepped, since Linux slews both alike. Anything smaller is the noise
-    of reading two clocks, and would let an instant that is shown twice differ by a millisecond.
-    After a step all instants, also older ones, are shown by the new offset: their distances stay
-    true, and a robot that was started with a wrong date is right from when it gets the time.
+    Wall time is monotonic time plus an offset, which is measured at the start and then at most once
+    a second, when wall time is needed. The offset is replaced only if it has changed by more than
+    10 ms, which means that the system clock was stepped: Linux slews both clocks alike. Smaller
+    differences are the noise of reading two clocks; following them would make an instant that is
+    shown twice differ by a millisecond. After a step the new offset applies to all instants, also
+    to earlier ones: intervals stay correct, and a robot that started with a wrong date shows
+    correct times as soon as its clock is set.
 
     Args:
-        read_monotonic: Nanoseconds that never fall.
+        read_monotonic: Nanoseconds that never decrease.
         read_wall: Nanoseconds since 1970-01-01 UTC.
     """
 
@@ -74,11 +75,11 @@ class MonotonicClock:
         return self._read_monotonic()
 
     def wall_time(self, instant: Instant) -> datetime:
-        """Return `instant` as UTC by what the system clock says now."""
+        """Return `instant` as UTC, by the current setting of the system clock."""
         return to_datetime(instant + self._current_offset())
 
     def from_wall(self, moment: datetime) -> Instant:
-        """Return when `moment` was by what the system clock says now."""
+        """Return `moment` as an instant, by the current setting of the system clock."""
         return since_epoch(moment) - self._current_offset()
 
     async def sleep_until(self, deadline: Instant) -> None:
@@ -89,7 +90,7 @@ class MonotonicClock:
             remaining = deadline - self.now()
             if remaining <= 0:
                 return
-            # uvloop counts in whole milliseconds: about every second of its timers fires early.
+            # uvloop counts in whole milliseconds: about half of its timers fire early.
             delay = max(remaining, _TIMER_RESOLUTION)
 
     def _current_offset(self) -> Duration:
@@ -102,8 +103,8 @@ class MonotonicClock:
     def _measure(self) -> tuple[Duration, Instant]:
         """Return wall time minus monotonic time, and when that was.
 
-        Of several tries the one that took the shortest is taken: a process that is put aside
-        between reading the one and the other clock would otherwise see a step.
+        The fastest of several tries is used: a process that is suspended between the two readings
+        would otherwise see a step.
         """
         tries = []
         for _ in range(_TRIES):
@@ -122,9 +123,9 @@ _TRIES = 3
 
 
 def to_datetime(nanoseconds: int) -> datetime:
-    """Return nanoseconds since the epoch as UTC, cut to microseconds, and to what a datetime holds.
+    """Return nanoseconds since the epoch as UTC, with microseconds.
 
-    A stamp from far away is thus shown as far away, whatever the offset is by then.
+    Values beyond the range of datetime are clamped to it.
     """
     microseconds = nanoseconds // _PER_MICROSECOND
     if microseconds <= _EARLIEST_MICROSECOND:

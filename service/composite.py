@@ -9,9 +9,9 @@ from service.running import run_forever
 
 
 class CompositeRobot:
-    """Routes commands to nodes by the node and commands to drive to the one vehicle.
+    """A `RobotBackend` that routes node commands by node, and drive commands to the vehicle.
 
-    A `RobotBackend`. An adapter that provides several ports is run once.
+    An adapter that provides several ports is run once.
     """
 
     def __init__(
@@ -23,9 +23,9 @@ class CompositeRobot:
         """Prepare; nothing runs yet.
 
         Args:
-            nodes: Where each node is.
-            vehicle: None: the robot has none, and commands to drive go nowhere.
-            signals: Where readings come from.
+            nodes: The backend of each node.
+            vehicle: None: the robot has no vehicle, and drive commands are discarded.
+            signals: The sources of readings.
         """
         self._nodes = nodes
         self._vehicle = vehicle
@@ -35,10 +35,10 @@ class CompositeRobot:
         }
 
     async def run(self, deliver: Deliver) -> None:
-        """Deliver what every adapter says, until cancelled.
+        """Deliver the messages of all adapters, until cancelled.
 
         Raises:
-            ExceptionGroup: Of `TaskFailedError`: an adapter has ended, which ends the others.
+            ExceptionGroup: Of `TaskFailedError`: an adapter ended, which ends the others.
         """
         work = {}
         for number, adapter in enumerate(self._adapters.values(), start=1):
@@ -46,7 +46,7 @@ class CompositeRobot:
         await run_forever(work)
 
     def send(self, command: NodeCommand | Drive, /) -> None:
-        """Pass a command on; one for a node that is nowhere gets no answer."""
+        """Pass a command on; a command for a node without a backend gets no answer."""
         if isinstance(command, Drive):
             if self._vehicle is not None:
                 self._vehicle.send(command)

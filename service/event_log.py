@@ -1,4 +1,4 @@
-"""What was decided, in order: the newest events, for readers that hold nothing but a cursor."""
+"""The newest events in order, for readers that keep nothing but a cursor."""
 
 import secrets
 from collections.abc import Iterator
@@ -13,21 +13,21 @@ DEFAULT_CAPACITY = 10_000
 
 @dataclass(frozen=True, slots=True)
 class Gap:
-    """Events that a reader asked for and that are not there any more."""
+    """Events that a reader asked for and that are no longer in the log."""
 
     first: int
     """Id of the first one that is missing."""
     last: int | None
-    """Id of the last one; None: nobody knows how many followed before the service was restarted."""
+    """Id of the last one; None: unknown, since the service was restarted."""
     epoch: str
     """Epoch that the ids belong to."""
 
 
 class EventLog(Watched):
-    """The newest events in memory; ids count from 1, and the oldest are forgotten.
+    """Keeps the newest events in memory; ids count from 1, and the oldest events are dropped.
 
-    A cursor is an id together with the epoch in which it was given out, since ids begin again when
-    the service is restarted.
+    A cursor is an id together with its epoch, since ids start at 1 again when the service is
+    restarted.
     """
 
     def __init__(
@@ -37,8 +37,8 @@ class EventLog(Watched):
 
         Args:
             capacity: How many events are kept.
-            epoch: Name of this run of the service; None: one that no other run has.
-            before: Id of the last event that was before this log, as for the copy of a robot.
+            epoch: Name of this run of the service; None: a new, unique one.
+            before: Id of the last event before this log; not 0 for the copy of a live robot.
         """
         super().__init__()
         self.epoch = epoch or secrets.token_hex(8)
@@ -49,19 +49,19 @@ class EventLog(Watched):
 
     @property
     def newest(self) -> int:
-        """Id of the newest event; before the first, that of the last one before this log."""
+        """Id of the newest event; while the log is empty, of the last event before it."""
         return self._newest
 
     @property
     def oldest(self) -> int:
-        """Id of the oldest event that is kept, or that will be the first."""
+        """Id of the oldest event that is kept; while the log is empty, of its first event."""
         return max(self._before + 1, self._newest - self._capacity + 1)
 
     def append(self, event: RecordedEvent) -> None:
-        """Keep an event, forget the oldest when there are too many, and wake the readers.
+        """Add an event, drop the oldest one if the log is full, and wake the readers.
 
         Raises:
-            ValueError: Its id does not follow that of the event before.
+            ValueError: Its id does not follow the id of the newest event.
         """
         if event.id != self._newest + 1:
             raise ValueError(f"event {event.id} does not follow event {self._newest}")
@@ -73,15 +73,15 @@ class EventLog(Watched):
         self._wake_watchers()
 
     def oldest_first(self, after: int = 0) -> Iterator[RecordedEvent]:
-        """Yield the events with ids above `after`, as far as they are kept."""
+        """Yield the kept events with ids above `after`."""
         return self._events(range(max(after + 1, self.oldest), self._newest + 1))
 
     def newest_first(self) -> Iterator[RecordedEvent]:
-        """Yield the events that are kept, the other way round."""
+        """Yield the kept events, newest first."""
         return self._events(range(self._newest, self.oldest - 1, -1))
 
     def is_foreign(self, after: int, epoch: str | None) -> bool:
-        """Tell whether a cursor is of another epoch; one that is ahead of the log must be."""
+        """Tell whether a cursor belongs to another epoch, as any cursor ahead of the log does."""
         return after > self._newest or (epoch is not None and epoch != self.epoch)
 
     def _slot(self, number: int) -> int:
@@ -92,16 +92,16 @@ class EventLog(Watched):
 
 
 class EventReader:
-    """The position of one reader in a log: it gets every event, or is told which ones it missed."""
+    """The position of one reader in a log: it gets every event, or a `Gap` for those it missed."""
 
     def __init__(self, log: EventLog, after: int | None = None, epoch: str | None = None) -> None:
-        """Begin behind a cursor.
+        """Start after a cursor.
 
         Args:
-            log: Where to read.
-            after: Id of the last event known, at least 0; None: only what comes from now on.
-            epoch: Epoch of that id; None: the one of the log. To a reader from another epoch all
-                events are new, and it is told of a gap, since more may have happened in its own.
+            log: The log to read.
+            after: Id of the last known event, at least 0; None: only new events.
+            epoch: Epoch of that id; None: the epoch of the log. A reader from another epoch gets
+                all events, after a gap for those that it may have missed in its own epoch.
         """
         self._log = log
         self._lost: Gap | None = None
@@ -112,16 +112,16 @@ class EventReader:
 
     @property
     def position(self) -> tuple[int, Gap | None]:
-        """Return what tells this place from others in the same log."""
+        """Return a value that is equal for readers at the same position in the same log."""
         return self._at, self._lost
 
     @property
     def is_behind(self) -> bool:
-        """Tell whether there is something to take."""
+        """Tell whether there are events, or a gap, to take."""
         return self._at != self._log.newest or self._lost is not None
 
     def take(self, limit: int) -> list[RecordedEvent | Gap]:
-        """Return what follows: at most `limit` events, and the gap before them."""
+        """Return the next events, at most `limit`, after the gap before them if there is one."""
         found: list[RecordedEvent | Gap] = []
         if self._lost is not None:
             found.append(self._lost)

@@ -1,4 +1,4 @@
-"""Hand what the tick publishes to any number of readers; a slow one skips and delays nobody."""
+"""Distributes published frames to any number of readers; a slow reader skips frames."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
@@ -19,25 +19,25 @@ from service.watching import Watched
 
 @dataclass(frozen=True, slots=True)
 class Frame:
-    """What is published at one moment."""
+    """The state of the robot as published at one instant."""
 
     seq: int
-    """Rises by one per frame."""
+    """Increases by one per frame."""
     at: Instant
     system_state: SystemStateView
     parts: Mapping[PartName, PartView]
-    """Those that changed since the frame before; in a full frame, all."""
+    """The parts that changed since the previous frame; in a full frame, all parts."""
     signals: Mapping[str, SignalView]
-    """As `parts`."""
+    """As for `parts`."""
     task: TaskView | None
-    """The current task, or the one that ended last; None: there never was one."""
+    """The current task, or else the last one; None: there has been none."""
     task_changed: bool
-    """Whether `task` is another one, or differs from the frame before; true in a full frame."""
+    """Whether `task` differs from the previous frame; always true in a full frame."""
     vehicle: VehicleView
     vehicle_changed: bool
     """As `task_changed`."""
     holds: Mapping[str, HoldView]
-    """All of them, by owner."""
+    """All holds, by owner."""
     holds_changed: bool
     """As `task_changed`."""
     emergency_stop: EmergencyStopView
@@ -45,14 +45,14 @@ class Frame:
     """As `task_changed`."""
     full: bool
     simulated: tuple[str, ...]
-    """What of the robot is not real."""
+    """The simulated pieces of the robot: `nodes`, `vehicle`, `signals`."""
 
 
 class FrameFeed(Watched):
-    """One slot with the newest frame: memory does not grow with readers that are slow.
+    """A single slot with the newest frame, so that slow readers do not use up memory.
 
-    The feed also keeps the newest view of every part and signal, so that a reader that begins, or
-    that missed something, gets everything without a larger frame for the others.
+    The feed also keeps the newest view of every part and signal. A reader that is new, or that
+    missed a frame, gets a complete frame, and the others still get only the changes.
     """
 
     def __init__(self) -> None:
@@ -65,12 +65,12 @@ class FrameFeed(Watched):
 
     @property
     def newest(self) -> Frame | None:
-        """The frame that was published last; None before the first."""
+        """The newest frame; None before the first."""
         return self._newest
 
     @property
     def wants_full(self) -> bool:
-        """Tell whether no full frame was ever published; readers get nothing until then."""
+        """Tell whether a full frame is needed first: until then readers get nothing."""
         return not self._has_all
 
     def publish(self, frame: Frame) -> None:
@@ -85,7 +85,7 @@ class FrameFeed(Watched):
     def complete(self) -> Frame | None:
         """Return the newest frame with all parts and signals; None before the first full frame.
 
-        It is made once per frame, so that all who need it share the same object.
+        It is built once per frame and shared by all readers that need it.
         """
         if self._complete is None and self._newest is not None and self._has_all:
             self._complete = replace(
@@ -102,7 +102,7 @@ class FrameFeed(Watched):
 
 
 class FrameReader:
-    """The place of one reader in a feed."""
+    """The position of one reader in a feed."""
 
     def __init__(self, feed: FrameFeed) -> None:
         self._feed = feed
@@ -110,17 +110,17 @@ class FrameReader:
 
     @property
     def position(self) -> int | None:
-        """Return the number of the frame that was taken last; None before the first."""
+        """Return the number of the last frame taken; None before the first."""
         return self._seen
 
     def begin_anew(self) -> None:
-        """Take a complete frame next, also if it is the one that was taken last."""
+        """Take a complete frame next, even if it is the one that was taken last."""
         self._seen = None
 
     def take(self) -> tuple[Frame, int] | None:
-        """Return the newest frame and how many were missed before it; None when it is known.
+        """Return the newest frame and how many were skipped; None: there is no new one.
 
-        The first frame, and one after a miss, is complete.
+        The first frame is complete, and so is a frame after skipped ones.
         """
         newest = self._feed.newest
         if newest is None or newest.seq == self._seen:

@@ -1,4 +1,4 @@
-"""Publishes frames: 20 a second, and one at once when the system state changes."""
+"""Publishes frames: 20 per second, and one immediately when the system state changes."""
 
 import logging
 from collections.abc import Callable
@@ -14,28 +14,28 @@ log = logging.getLogger(__name__)
 
 PERIOD = seconds(0.05)
 _TICKS_PER_FULL = 20
-"""One complete frame a second, so that a client that lost something is soon right again."""
+"""One complete frame per second, so that a client that lost data soon recovers."""
 
 
 class FramePublisher:
-    """Makes frames of the views of the core, each of what changed since the one before."""
+    """Makes frames from the views of the core; each holds the changes since the previous one."""
 
     def __init__(self, core: Supervision, clock: Clock, simulated: tuple[str, ...] = ()) -> None:
         """Prepare; nothing is published yet.
 
         Args:
-            core: What frames show.
-            clock: The present.
-            simulated: What of the robot is not real.
+            core: Provides the views.
+            clock: Of the service.
+            simulated: The simulated pieces of the robot, as in `Frame`.
         """
         self.frames = FrameFeed()
         self.seq = 0
         """Number of the newest frame."""
         self.late_ticks = 0
-        """So many ticks were skipped."""
+        """Number of skipped ticks."""
         self.last_tick_at: Instant | None = None
         self.on_tick: list[Callable[[float], None]] = []
-        """Called with the seconds since the tick before; must return at once."""
+        """Called with the time since the previous tick, s; must return at once."""
         self._core = core
         self._clock = clock
         self._simulated = simulated
@@ -46,7 +46,7 @@ class FramePublisher:
         self._vehicle_changed = False
 
     async def run(self) -> None:
-        """Tick on a fixed grid until cancelled; a late tick is skipped and counted."""
+        """Tick at a fixed rate until cancelled; ticks that are missed are skipped and counted."""
         start = self._clock.now()
         count = 0
         while True:
@@ -57,23 +57,23 @@ class FramePublisher:
                 skipped = late // PERIOD + 1
                 count += skipped
                 self.late_ticks += skipped
-                log.warning("%d ticks were skipped: %.0f ms late", skipped, late / 1e6)
+                log.warning("skipped %d ticks: %.0f ms late", skipped, late / 1e6)
             await self._clock.sleep_until(start + count * PERIOD)
 
     def note(self, outputs: Outputs) -> None:
-        """Take in what looks different by now; the next frame shows it."""
+        """Remember what changed; the next frame shows it."""
         self._changed_parts |= outputs.parts
         self._changed_signals |= outputs.signals
         self._task_changed |= outputs.task_changed
         self._vehicle_changed |= outputs.vehicle_changed
 
     def publish_change(self) -> None:
-        """Publish now and not at the next tick, unless nothing was published yet."""
+        """Publish now instead of at the next tick, unless nothing was published yet."""
         if self.seq:
             self._publish()
 
     def _publish(self, *, full: bool = False) -> None:
-        """Publish one frame: everything, or what changed since the last one."""
+        """Publish one frame: everything, or the changes since the previous frame."""
         full = full or self.frames.wants_full
         self.seq += 1
         core = self._core
@@ -93,7 +93,7 @@ class FramePublisher:
             task_changed=full or self._task_changed,
             vehicle=core.driving.vehicle,
             vehicle_changed=full or self._vehicle_changed,
-            # Both are the same objects as long as nothing about them changes.
+            # The core returns the same object as long as nothing in it changes.
             holds=holds,
             holds_changed=full or last is None or holds is not last.holds,
             emergency_stop=emergency_stop,

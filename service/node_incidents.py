@@ -1,4 +1,4 @@
-"""Logs what happens to nodes on its own: lost, being restored, not restored."""
+"""Logs when a node becomes unreachable, is being restored, or cannot be restored."""
 
 import asyncio
 import logging
@@ -15,7 +15,7 @@ _AT_ONCE = 100
 
 
 async def log_node_incidents(events: EventLog) -> None:
-    """Log what comes, until cancelled; a simulation has its events, and nobody who does this."""
+    """Log incidents until cancelled. A simulation does not log them; its events show them."""
     reader, changed = EventReader(events), asyncio.Event()
     with events.watch(changed.set):
         while True:

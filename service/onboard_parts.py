@@ -1,4 +1,4 @@
-"""What supervises a robot, made from its settings: the same live and in a simulation."""
+"""Makes the core of a robot from its settings, the same live and in a simulation."""
 
 from domain.navigation import Navigation
 from domain.onboard import Onboard

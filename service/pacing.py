@@ -1,4 +1,4 @@
-"""Lets deterministic objects, which say themselves when they want to go on, do so in real time."""
+"""Runs deterministic objects, which report when they are due next, in real time."""
 
 import asyncio
 from collections.abc import Callable, Sequence
@@ -12,14 +12,14 @@ MessageT_co = TypeVar("MessageT_co", covariant=True)
 
 
 class Paced(Protocol[MessageT_co]):
-    """Something that is advanced by being told the time."""
+    """An object that advances when it is given the time."""
 
     def advance(self, now: Instant) -> Sequence[MessageT_co]:
-        """Return what is due up to `now`."""
+        """Advance to `now`, and return the messages that are due by then."""
         ...
 
     def wake_at(self) -> Instant | None:
-        """Return when there is next something due; None: only when something is handed in.
+        """Return when a message is due next; None: not before there is new input.
 
         After `advance(now)` this is later than `now`.
         """
@@ -30,7 +30,7 @@ _AT_ONCE = 100
 
 
 class Pacer(Generic[MessageT]):
-    """Advances one object at exactly the times that it asks for, and when it was touched."""
+    """Advances one object at exactly the times that it asks for, and whenever it gets input."""
 
     def __init__(self, paced: Paced[MessageT], clock: Clock) -> None:
         self._paced = paced
@@ -38,25 +38,25 @@ class Pacer(Generic[MessageT]):
         self._resting: asyncio.Future[None] | None = None
 
     def touch(self) -> None:
-        """Say that something was handed in: what is due, and when, may be different now.
+        """Advance soon, since the object got input that may have changed when it is due.
 
-        May be called at any time on the event loop's thread, also from within `deliver`.
+        May be called at any time on the event loop's thread, also from `deliver`.
         """
         if self._resting is not None:
             self._resting.cancel()
 
     async def run(self, deliver: Callable[[MessageT], None]) -> None:
-        """Hand what comes due to `deliver`, in its order, until cancelled."""
+        """Pass messages to `deliver` in order when they are due, until cancelled."""
         while True:
             for number, message in enumerate(self._paced.advance(self._clock.now()), start=1):
                 deliver(message)
                 if number % _AT_ONCE == 0:
-                    # Thousands of nodes appear together, and the rest of the service runs on.
+                    # Thousands of nodes may appear at once; the other tasks must keep running.
                     await asyncio.sleep(0)
             await self._rest()
 
     async def _rest(self) -> None:
-        """Wait until something is due or was handed in."""
+        """Wait until something is due or the object gets input."""
         due = self._paced.wake_at()
         if due is None:
             resting: asyncio.Future[None] = asyncio.get_running_loop().create_future()
@@ -72,7 +72,7 @@ class Pacer(Generic[MessageT]):
 
 
 class Alarm:
-    """Rings at the time that `due` says, which moves with whatever happens."""
+    """Rings at the time that `due` returns, which may change at any time."""
 
     def __init__(
         self, due: Callable[[], Instant | None], ring: Callable[[], object], clock: Clock
@@ -80,9 +80,9 @@ class Alarm:
         """Prepare.
 
         Args:
-            due: When to ring next; None: not at all. After a ring it is later than the present.
-            ring: What to do then.
-            clock: The present.
+            due: Returns when to ring next; None: not at all. After a ring it is in the future.
+            ring: Called then.
+            clock: Of the service.
         """
         self._due = due
         self._ring = ring
@@ -90,7 +90,7 @@ class Alarm:
         self._pacer = Pacer[object](self, clock)
 
     def check(self) -> None:
-        """Look again when to ring, since that may be earlier now."""
+        """Check again when to ring, since that may be earlier now."""
         due = self._due()
         if due is not None and (self._waits_until is None or due < self._waits_until):
             self._pacer.touch()
@@ -107,6 +107,6 @@ class Alarm:
         return ()
 
     def wake_at(self) -> Instant | None:
-        """Return when to ring next, and remember it as what is waited for."""
+        """Return when to ring next, and remember it, so that `check` can compare."""
         self._waits_until = self._due()
         return self._waits_until

@@ -1,7 +1,7 @@
-"""What the service needs from outside, and nothing about who provides it.
+"""The ports of the service; adapters implement them.
 
-An adapter hands every fact to `deliver` on the event loop's thread. What `deliver` raises is no
-matter of the adapter: it ends `run`. One adapter may provide several of these ports.
+An adapter passes every fact to `deliver` on the event loop's thread. It does not catch what
+`deliver` raises: that ends `run`. One adapter may provide several ports.
 """
 
 from collections.abc import Callable
@@ -15,53 +15,53 @@ Deliver: TypeAlias = Callable[[BackendMessage], None]
 
 
 class Adapter(Protocol):
-    """Something that facts about the robot come from."""
+    """A source of facts about the robot."""
 
     async def run(self, deliver: Deliver) -> None:
-        """Deliver all there is to know, then what changes, until cancelled.
+        """Deliver the current state, then every change, until cancelled.
 
-        Is run once; to end otherwise than by being cancelled is an error.
+        Called once. Returning without being cancelled is an error.
         """
         ...
 
 
 class NodeBackend(Adapter, Protocol):
-    """Nodes, wherever they are; `tests/conformance/test_node_backend.py` says what it must keep.
+    """The nodes; `tests/conformance/test_node_backend.py` specifies what an adapter must do.
 
     It delivers `BackendStatus`, `NodeReport` and `NodeAnswer`. A node that cannot be reached is
-    delivered as such, and with all its facts when it is back.
+    reported as unreachable; when it reappears, all its facts are reported.
     """
 
     def send(self, command: NodeCommand, /) -> None:
-        """Ask a node for something; return at once.
+        """Send a command to a node, and return at once.
 
         Called on the event loop's thread. Never raises for a node that is absent or unknown: a
-        command that cannot be delivered gets an answer that says so, or none.
+        command that cannot be delivered gets a negative answer, or none.
         """
         ...
 
 
 class VehicleBackend(Adapter, Protocol):
-    """The vehicle; `tests/conformance/test_vehicle.py` says what it must keep.
+    """The vehicle; `tests/conformance/test_vehicle.py` specifies what an adapter must do.
 
-    It delivers a `VehicleReport` at 20 Hz or so, as long as the pose of the vehicle is known.
+    It delivers a `VehicleReport` at about 20 Hz while the pose of the vehicle is known.
     """
 
     def send(self, command: Drive, /) -> None:
-        """Command speed and steering angle; return at once.
+        """Command speed and steering angle, and return at once.
 
-        Called on the event loop's thread. The vehicle stands still 0.5 s after the last command to
-        drive, so that a dead supervisor stops the robot.
+        Called on the event loop's thread. A command is valid for 0.5 s: then speed 0 is commanded,
+        so that the robot stops when the supervisor dies.
         """
         ...
 
 
 class SignalSource(Adapter, Protocol):
-    """Where readings of signals come from; it delivers `Readings`."""
+    """A source of signal readings; it delivers `Readings`."""
 
 
 class RobotBackend(Adapter, Protocol):
-    """Nodes, vehicle and signals together, as the supervisor sees them."""
+    """Nodes, vehicle and signals behind one port, for the supervisor."""
 
     def send(self, command: NodeCommand | Drive, /) -> None:
         """Pass a command on to a node or to the vehicle; return at once. Never raises."""

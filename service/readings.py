@@ -1,4 +1,4 @@
-"""The way in for readings that somebody sends over HTTP, WebSocket or ROS, or in a scenario."""
+"""The input for readings that clients send over HTTP, WebSocket or ROS, or that a scenario has."""
 
 from collections.abc import Callable, Sequence
 from typing import Protocol, TypeAlias
@@ -8,10 +8,10 @@ from domain.inputs import Input, Reading, Readings, SignalValue
 from domain.outbox import Outputs
 
 UNNAMED = "api"
-"""Source of readings whose sender does not say who measured."""
+"""Source of readings whose sender does not name a source."""
 
 Submit: TypeAlias = Callable[[Input], Outputs]
-"""Hands an input to the core; raises PilothouseError if it is refused."""
+"""Passes an input to the core; raises PilothouseError if it is rejected."""
 
 
 class MockSignalView(Protocol):
@@ -34,10 +34,10 @@ class MockSignalView(Protocol):
 
 
 class Mock(Protocol):
-    """Signals that are published in place of those of a robot."""
+    """Mock signals, published in place of real ones."""
 
     def view(self) -> Sequence[MockSignalView]:
-        """Return every signal of the mock."""
+        """Return all mock signals."""
         ...
 
     def holds(self, signal: str) -> bool:
@@ -45,7 +45,7 @@ class Mock(Protocol):
         ...
 
     def set_publishing(self, signal: str, publishing: bool) -> None:
-        """Stop publishing a signal, to see it go stale, or take it up again.
+        """Stop publishing a signal, so that it becomes stale, or resume.
 
         Raises:
             UnknownSignalError: The mock has no such signal.
@@ -54,31 +54,31 @@ class Mock(Protocol):
 
 
 class ReadingInput(Protocol):
-    """Where readings from outside are handed in."""
+    """The input for external readings."""
 
     @property
     def mock(self) -> Mock | None:
-        """Return the mock that readings from outside change; None: there is none."""
+        """Return the mock that external readings change; None: no mock is running."""
         ...
 
     def submit(
         self, items: Sequence[Reading], source: str | None = None, actor: Actor = NOBODY
     ) -> Outputs:
-        """Hand in readings.
+        """Submit readings.
 
         Args:
-            items: All are taken, or none is.
-            source: Who measured; None: the sender does not say.
-            actor: Who sent them.
+            items: Accepted all or none.
+            source: Name of the sensor or device; None: the sender does not name one.
+            actor: The sender.
 
         Raises:
-            PilothouseError: One of them is refused; none was taken.
+            PilothouseError: One of them is rejected; none was accepted.
         """
         ...
 
 
 class DirectReadings:
-    """Hands readings on as they are: the `ReadingInput` of a robot without a mock."""
+    """The `ReadingInput` of a robot without a mock: passes readings on unchanged."""
 
     mock: None = None
 
@@ -88,5 +88,5 @@ class DirectReadings:
     def submit(
         self, items: Sequence[Reading], source: str | None = None, actor: Actor = NOBODY
     ) -> Outputs:
-        """Hand in readings; those of a sender without a name are of `api`."""
+        """Submit readings; the source of a sender without a name is `api`."""
         return self._submit(Readings(tuple(items), source or UNNAMED, actor))

@@ -1,26 +1,26 @@
-"""Tasks that should run for as long as the service does."""
+"""Background tasks that must run as long as the service does."""
 
 import asyncio
 from collections.abc import Coroutine, Mapping
 
 
 class TaskFailedError(Exception):
-    """A task that should run for as long as the service does has ended."""
+    """A background task ended although it must run as long as the service does."""
 
     def __init__(self, name: str) -> None:
-        super().__init__(f"the task {name!r} has ended")
+        super().__init__(f"background task {name!r} ended")
         self.name = name
 
 
 async def run_forever(work: Mapping[str, Coroutine[object, object, None]]) -> None:
-    """Run tasks until cancelled; the first that ends, ends them all.
+    """Run tasks until cancelled; the first one that ends cancels the others.
 
     Args:
-        work: What each does, by its name.
+        work: Coroutines by task name.
 
     Raises:
-        ExceptionGroup: Of a `TaskFailedError` that names the task and has what it raised as its
-            cause.
+        ExceptionGroup: Of a `TaskFailedError` that names the task; its cause is what the task
+            raised.
     """
     async with asyncio.TaskGroup() as tasks:
         for name, coroutine in work.items():
@@ -28,7 +28,7 @@ async def run_forever(work: Mapping[str, Coroutine[object, object, None]]) -> No
 
 
 async def _forever(name: str, work: Coroutine[object, object, None]) -> None:
-    """Await what should never end, and name it when it does."""
+    """Await a coroutine that must not end, and name the task if it does."""
     try:
         await work
     except Exception as error:

@@ -1,4 +1,4 @@
-"""The task that a robot file names: submitted at the start, driven once nothing holds it."""
+"""The start task of a robot file: submitted at the start, driven once there are no holds."""
 
 from pathlib import Path as FilePath
 
@@ -13,22 +13,22 @@ from service.supervisor import Supervisor
 
 
 class StartTaskError(PilothouseError):
-    """A task to begin with that cannot be driven."""
+    """A start task that cannot be driven."""
 
     code = "INVALID_START_TASK"
 
 
 def submit_start_task(supervisor: Supervisor, task: StartTaskBlock, robot_file: FilePath) -> None:
-    """Submit the task to begin with.
+    """Submit the start task.
 
     Args:
         supervisor: Of the robot that drives it.
-        task: What the robot file says.
-        robot_file: From where a relative path counts.
+        task: The block `start_task` of the robot file.
+        robot_file: Relative paths are resolved against its folder.
 
     Raises:
-        UnreadableFileError: There is no such file, or it is not a text.
-        StartTaskError: It is no path, or one that this vehicle cannot drive.
+        UnreadableFileError: The waypoint file does not exist, or is not text.
+        StartTaskError: The waypoints are invalid, or this vehicle cannot drive their path.
     """
     file = robot_file.parent / task.file
     text = read_text_file(file)

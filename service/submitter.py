@@ -1,4 +1,4 @@
-"""The way into the core: what somebody asks, what an adapter reports, and what time makes due."""
+"""The only input of the core: requests, reports of adapters, and deadlines."""
 
 import logging
 from collections.abc import Callable
@@ -14,31 +14,38 @@ log = logging.getLogger(__name__)
 
 
 class Submitter:
-    """Hands each input to the core at once, and what follows from it to `carry_out`."""
+    """Passes each input to the core at once, and the outputs to `carry_out`."""
 
     def __init__(
         self, onboard: Onboard, clock: Clock, carry_out: Callable[[Outputs], None]
     ) -> None:
+        """Prepare.
+
+        Args:
+            onboard: The core.
+            clock: Of the service.
+            carry_out: Acts on the outputs of the core.
+        """
         self._onboard = onboard
         self._clock = clock
         self._carry_out = carry_out
         self._alarm = Alarm(onboard.wake_at, self.let_pass, clock)
 
     async def run(self) -> None:
-        """Let happen what time alone makes due, at exactly its time, until cancelled."""
+        """Process deadlines exactly when they expire, until cancelled."""
         await self._alarm.run()
 
     def submit(self, given: Input) -> Outputs:
-        """Hand an input to the core and carry out what follows.
+        """Pass an input to the core, and carry out its outputs.
 
         Raises:
-            PilothouseError: It is refused; nothing was changed by it.
+            PilothouseError: The input is rejected; it changed nothing.
         """
         now = self._clock.now()
         try:
             outputs = self._onboard.handle(given, now)
         except PilothouseError:
-            # What was due before it is due all the same.
+            # Deadlines that expired before the rejected input are processed nevertheless.
             self._carry_out(self._onboard.handle(TimePassed(), now))
             raise
         finally:
@@ -47,14 +54,14 @@ class Submitter:
         return outputs
 
     def deliver(self, given: Input) -> None:
-        """Take what an adapter reports; one bad report must not end the adapter."""
+        """Submit a report of an adapter; an invalid report must not end the adapter."""
         try:
             self.submit(given)
         except PilothouseError as error:
-            log.warning("refused %s: %s", type(given).__name__, error)
+            log.warning("rejected %s: %s", type(given).__name__, error)
 
     def let_pass(self) -> None:
-        """Let happen what time alone has made due."""
+        """Process the deadlines that have expired by now."""
         due = self._onboard.wake_at()
         if due is not None and due <= self._clock.now():
             self.submit(TimePassed())

@@ -1,7 +1,7 @@
-"""The shell round the core: hands it what happens, carries out what it says, publishes at 20 Hz.
+"""The shell around the core: passes it every input, carries out its outputs, publishes at 20 Hz.
 
-It decides nothing. Whatever arrives is handed to the core at once (`submitter`), and when something
-becomes due there, it is told so at that time; the tick only publishes (`frame_publisher`).
+It decides nothing. An input is passed to the core at once, and a deadline of the core is processed
+when it expires (`submitter`); the tick only publishes (`frame_publisher`).
 """
 
 from collections.abc import Callable, Sequence
@@ -30,7 +30,7 @@ from service.submitter import Submitter
 
 
 class Supervisor:
-    """Owns the core and every task that feeds it; `run` ends only cancelled or broken."""
+    """Owns the core and every task that feeds it; `run` ends only on cancellation or failure."""
 
     def __init__(
         self,
@@ -42,22 +42,22 @@ class Supervisor:
         simulated: Sequence[str] = (),
         events: EventLog | None = None,
     ) -> None:
-        """Put together what supervises a robot; nothing runs yet.
+        """Prepare; nothing runs yet.
 
         Args:
             loaded: The model of the robot.
             onboard: Its core.
-            clock: The present.
+            clock: Of the service.
             backend: Its nodes, its vehicle and its own signals.
-            readings: Makes the way in for readings from outside.
-            simulated: What of the robot is not real.
-            events: Where events are kept; None: a new log.
+            readings: Makes the input for external readings.
+            simulated: The simulated pieces of the robot, as in `Frame`.
+            events: The event log; None: a new one.
         """
         self.core: Supervision = onboard.core
-        """For looking; what happens goes through `submit`."""
+        """Only for reading; inputs go through `submit`."""
         self.clock = clock
         self.started_at = clock.now()
-        """When this run of the service began, and with it its epoch."""
+        """Start of this run of the service, and of its epoch."""
         self.simulated = tuple(simulated)
         self.events = events or EventLog()
         self.publisher = FramePublisher(onboard.core, clock, self.simulated)
@@ -68,13 +68,13 @@ class Supervisor:
         self._backend = backend
         self._submitter = Submitter(onboard, clock, self._carry_out)
         self.submit: Callable[[Input], Outputs] = self._submitter.submit
-        """Hands an input to the core; raises PilothouseError if it is refused."""
+        """Passes an input to the core; raises PilothouseError if it is rejected."""
         self.deliver: Callable[[Input], None] = self._submitter.deliver
-        """Takes what an adapter reports, and logs what is refused."""
+        """Submits a report of an adapter, and logs it if it is rejected."""
         self.let_pass: Callable[[], None] = self._submitter.let_pass
-        """Lets happen what time alone has made due."""
+        """Processes the deadlines that have expired by now."""
         self.readings = readings(self.submit)
-        """Where readings from outside are handed in."""
+        """The input for external readings."""
 
     @property
     def model(self) -> SmhModel:
@@ -88,12 +88,12 @@ class Supervisor:
 
     @property
     def warnings(self) -> tuple[Finding, ...]:
-        """Return what is odd about the model."""
+        """Return the warnings about the model."""
         return self._loaded.warnings
 
     @property
     def speed_limits(self) -> SpeedLimits:
-        """Return how hard the vehicle may be accelerated."""
+        """Return the acceleration limits of the vehicle."""
         return self._onboard.navigation.settings.speed
 
     @property
@@ -102,11 +102,11 @@ class Supervisor:
         return self.events.epoch
 
     async def run(self) -> None:
-        """Run until cancelled; the first task that ends, ends them all.
+        """Run until cancelled; the first task that ends cancels the others.
 
         Raises:
-            ExceptionGroup: Of a `TaskFailedError` that names the task and has what it raised as its
-                cause.
+            ExceptionGroup: Of a `TaskFailedError` that names the task; its cause is what the task
+                raised.
         """
         await run_forever(
             {
@@ -118,15 +118,15 @@ class Supervisor:
         )
 
     def stop_driving(self) -> None:
-        """Hold the task and let the vehicle stand still, since the service ends."""
-        # Refused only where there is no room for one more hold, and so it stands already.
+        """Hold the task and stop the vehicle, since the service ends."""
+        # Rejected only if the maximum of holds is reached, and then the vehicle is held already.
         with suppress(PilothouseError):
             self.submit(HoldRequest("service", "the service ends", Actor("service")))
 
     def _carry_out(self, outputs: Outputs) -> None:
-        """Act on the robot first, then tell."""
+        """Send commands to the robot first, then publish."""
         for command in outputs.commands:
-            # Goals stay on board; what is left is for nodes and the vehicle.
+            # Goals are for the navigation on board; the rest is for nodes and the vehicle.
             if not isinstance(command, SendGoal | PreemptGoal):
                 self._backend.send(command)
         self.publisher.note(outputs)

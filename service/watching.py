@@ -1,14 +1,14 @@
-"""How those who hand out values tell their readers that there is something new."""
+"""Wakes the readers of a value when it changes."""
 
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 
 
 class Watched:
-    """Something that readers look into at their own pace, woken when it changed.
+    """A value that readers read at their own pace, and that wakes them when it changes.
 
-    A wake-up carries nothing, so that nothing can pile up for a reader that is slow: it looks at
-    what there is then.
+    A wake-up carries no data, so that nothing queues up for a slow reader: it reads the value that
+    is current then.
     """
 
     def __init__(self) -> None:
@@ -16,10 +16,10 @@ class Watched:
 
     @contextmanager
     def watch(self, wake: Callable[[], None]) -> Iterator[None]:
-        """Call `wake` after each change, as long as the context lasts.
+        """Call `wake` after each change while the context is open.
 
         Args:
-            wake: Returns at once and raises nothing, like `asyncio.Event.set`.
+            wake: Must return at once and not raise, as `asyncio.Event.set`.
         """
         self._wakes.append(wake)
         try:

@@ -1,9 +1,9 @@
-"""One process beside ours, for work that would keep the event loop from its 20 Hz.
+"""A worker process, for work that would keep the event loop from ticking at 20 Hz.
 
-A thread would not do: it takes the interpreter's lock from the tick. The process is an interpreter
-started anew, not a fork, so that it holds nothing of ours: no socket, no half-held lock. It is in a
-session of its own, so that Ctrl-C in the terminal does not reach it; and it ends with us, however
-we end, since its standard input ends then.
+A thread would not do: it would hold the interpreter lock that the tick needs. The process is a new
+interpreter and not a fork, so that it inherits no sockets and no locked locks. It has its own
+session, so that Ctrl-C in the terminal does not reach it. It exits when this process ends for
+whatever reason, since its standard input is closed then.
 """
 
 import asyncio
@@ -32,18 +32,18 @@ DEADLINE_S = 10.0
 
 
 class WorkerBusyError(PilothouseError):
-    """Too much work is waiting already; the same may be accepted later."""
+    """The queue is full; the same request may be accepted later."""
 
     code = "BUSY"
     retry_after_s = 2
 
     def __init__(self) -> None:
-        super().__init__(f"{QUEUE_LENGTH} requests of this kind are waiting already")
+        super().__init__(f"{QUEUE_LENGTH} requests of this kind are already waiting")
         self.hint = f"try again in {self.retry_after_s} s"
 
 
 class TooComplexError(PilothouseError):
-    """Work that takes more time or memory than a request may have."""
+    """A job that needs more time or memory than a request may use."""
 
     code = "TOO_COMPLEX"
 
@@ -52,23 +52,23 @@ class TooComplexError(PilothouseError):
 
 
 class WorkerClosedError(PilothouseError):
-    """Work for a service that is ending."""
+    """A job for a service that is shutting down."""
 
     code = "ENDING"
 
     def __init__(self) -> None:
-        super().__init__("the service is ending, and begins no more work of this kind")
+        super().__init__("the service is shutting down")
 
 
 class JobFailedError(Exception):
-    """A fault in the program, met in the worker; the message is its traceback."""
+    """A bug in the program that occurred in the worker; the message is its traceback."""
 
 
 class Jobs(Protocol):
-    """Does work that takes longer than the event loop may be kept, one job after the other."""
+    """Runs jobs that would block the event loop for too long, one after the other."""
 
     async def close(self) -> None:
-        """End for good; jobs that are not done fail."""
+        """Stop; unfinished jobs fail."""
         ...
 
     async def call(self, function: Callable[[*Given], Result], *arguments: *Given) -> Result:
@@ -85,10 +85,10 @@ class Jobs(Protocol):
 
 
 class InlineJobs:
-    """Does jobs at once, for code that runs in a worker process already."""
+    """Runs jobs in this process, for code that runs in a worker process already."""
 
     async def close(self) -> None:
-        """Do nothing: there is no process."""
+        """Do nothing: no process was started."""
 
     async def call(self, function: Callable[[*Given], Result], *arguments: *Given) -> Result:
         """Return what a function returns.
@@ -100,14 +100,14 @@ class InlineJobs:
 
 
 class Worker:
-    """Does one job at a time in its own process, which is started when there is something to do."""
+    """Runs one job at a time in a process that is started for the first job."""
 
     def __init__(self, modules: Sequence[str] = (), deadline_s: float = DEADLINE_S) -> None:
         """Prepare; nothing is started yet.
 
         Args:
-            modules: What the process imports at its start, so that the first job need not.
-            deadline_s: How long one job may take.
+            modules: Imported by the process at its start, so that the first job is not delayed.
+            deadline_s: Time limit of one job, s.
         """
         self._modules = tuple(modules)
         self._deadline_s = deadline_s
@@ -117,7 +117,7 @@ class Worker:
         self._is_closed = False
 
     async def close(self) -> None:
-        """End the process for good: the job that it is at, those that wait and any new one fail."""
+        """End the process; the running job, those in the queue and all later ones fail."""
         self._is_closed = True
         if self._process is not None and self._process.returncode is None:
             self._process.kill()
@@ -127,18 +127,18 @@ class Worker:
                 await _end(process)
 
     async def call(self, function: Callable[[*Given], Result], *arguments: *Given) -> Result:
-        """Return what a function returns, computed in the worker.
+        """Run a function in the worker, and return its result.
 
         Args:
-            function: One that a module names, since it is sent by its name.
-            arguments: What it is called with.
+            function: Defined at the top level of a module, since it is pickled by name.
+            arguments: Passed to the function.
 
         Raises:
-            WorkerBusyError: Too many jobs are waiting.
-            WorkerClosedError: `close` was called, before or while it was done.
-            TooComplexError: It took too long, or ended the process.
+            WorkerBusyError: The queue is full.
+            WorkerClosedError: `close` was called, before or during the job.
+            TooComplexError: The job took too long, or ended the process.
             PilothouseError: Raised by the function.
-            JobFailedError: The function has a fault.
+            JobFailedError: The function has a bug.
         """
         if self._jobs > QUEUE_LENGTH:
             raise WorkerBusyError
@@ -156,9 +156,9 @@ class Worker:
         return cast("Result", reply.value)
 
     async def _exchange(self, job: Sequence[bytes | memoryview]) -> Reply:
-        """Send a job and wait for what becomes of it; a process that fails is not used again.
+        """Send a job and wait for its reply; a process that fails is not used again.
 
-        One that was there before may have died before this job: then a new one is tried.
+        A process from an earlier job may have died since; then the job is sent to a new one.
         """
         is_new = self._process is None
         process = await self._running()
@@ -166,11 +166,11 @@ class Worker:
             async with asyncio.timeout(self._deadline_s):
                 return await _ask(process, job)
         except BaseException as error:
-            # Also when cancelled: the reply to this job must never be taken for the next one's.
+            # Also when cancelled: the reply to this job must never be taken for that of the next.
             self._process = None
             await _end(process)
             if isinstance(error, TimeoutError):
-                how = f"it was not done within {self._deadline_s:g} s"
+                how = f"it took longer than {self._deadline_s:g} s"
                 raise TooComplexError(how) from error
             if isinstance(error, asyncio.IncompleteReadError | ConnectionError):
                 if self._is_closed:
@@ -181,10 +181,11 @@ class Worker:
             raise
 
     async def _running(self) -> Process:
-        """Return the process, or a new one if there is none or it has died.
+        """Return the process, after starting a new one if there is none or it has died.
 
         Raises:
-            WorkerClosedError: `close` was called, maybe while the process started; it then ends it.
+            WorkerClosedError: `close` was called, possibly while the process started; `close` then
+                ends the process.
         """
         if self._is_closed:
             raise WorkerClosedError
@@ -194,7 +195,7 @@ class Worker:
                 sys.executable,
                 "-P",
                 "-c",
-                # Not `-m`: its module would be called __main__ there, and so would its classes.
+                # Not `-m`: the module would be __main__ there, and pickles name its classes.
                 "from service.worker_process import main; main()",
                 *self._modules,
                 stdin=PIPE,
@@ -219,7 +220,7 @@ async def _ask(process: Process, job: Sequence[bytes | memoryview]) -> Reply:
     lengths = numbers_in(await replies.readexactly(count * LENGTH_BYTES))
     reply = unpack([await replies.readexactly(length) for length in lengths])
     if not isinstance(reply, Reply):
-        raise ConnectionError("the worker sent something else than a reply")
+        raise ConnectionError("the worker did not send a reply")
     return reply
 
 

@@ -1,7 +1,7 @@
-"""The other side of `service.worker`: take one job after the other from standard input, for ever.
+"""The process of `service.worker`: runs jobs from its standard input, one after the other.
 
-Messages are pickles. Only `service.worker` writes here, and it writes only functions of this
-program and their arguments.
+Messages are pickles. Only `service.worker` sends them, with functions of this program and their
+arguments.
 """
 
 import importlib
@@ -16,7 +16,7 @@ from typing import Any, BinaryIO, Literal, NamedTuple
 from domain.errors import PilothouseError
 
 MEMORY_LIMIT_BYTES = 2 * 1024**3
-"""Of addresses. Above it a job ends in a MemoryError, and the robot's other processes live on."""
+"""Limit of the address space. A job beyond it gets a MemoryError; other processes are safe."""
 
 _NICENESS = 5
 _LENGTH = struct.Struct("!Q")
@@ -24,15 +24,15 @@ LENGTH_BYTES = _LENGTH.size
 
 
 class Reply(NamedTuple):
-    """What became of a job."""
+    """The result of a job."""
 
     outcome: Literal["done", "refused", "failed"]
     value: object
-    """Done: what it returned. Refused: the error. Failed: the traceback as text."""
+    """done: the return value; refused: the `PilothouseError`; failed: the traceback as text."""
 
 
 class ErrorParcel(NamedTuple):
-    """An error of our own on its way; their constructors take other arguments than they keep."""
+    """A pickled PilothouseError, field by field: its constructor takes other arguments."""
 
     kind: type[PilothouseError]
     message: str
@@ -52,15 +52,15 @@ class ErrorParcel(NamedTuple):
 
 
 def large(value: object) -> object:
-    """Return bytes such that they are sent beside the pickle and not copied into it."""
+    """Wrap bytes so that they are sent next to the pickle instead of being copied into it."""
     return pickle.PickleBuffer(value) if isinstance(value, bytes) else value
 
 
 def pack(message: object) -> list[bytes | memoryview]:
-    """Return a message as it is sent, in pieces: nothing large is copied.
+    """Return a message in the pieces that are sent; large values are not copied.
 
-    First the number of pieces that follow, then the length of each, then they themselves: a pickle,
-    and what lies beside it, such as a body or the numbers of a path.
+    The first piece holds the number and the lengths of the others. They are a pickle and the large
+    values next to it, such as a body or the numbers of a path.
     """
     beside: list[pickle.PickleBuffer] = []
     data = pickle.dumps(message, protocol=5, buffer_callback=beside.append)
@@ -70,23 +70,23 @@ def pack(message: object) -> list[bytes | memoryview]:
 
 
 def unpack(pieces: Sequence[bytes]) -> object:
-    """Return a message of which all pieces are there."""
+    """Return the message that the pieces hold."""
     message: object = pickle.loads(pieces[0], buffers=pieces[1:])
     return message
 
 
 def number_of(value: int) -> bytes:
-    """Return a number or length as it is sent."""
+    """Encode a number or length."""
     return _LENGTH.pack(value)
 
 
 def numbers_in(head: bytes) -> tuple[int, ...]:
-    """Return the numbers or lengths in some bytes."""
+    """Decode numbers or lengths."""
     return tuple(number for (number,) in _LENGTH.iter_unpack(head))
 
 
 def read(stream: BinaryIO) -> object | None:
-    """Return the next message; None: it breaks off, or there is none."""
+    """Return the next message; None: the stream ended, maybe within a message."""
     head = stream.read(LENGTH_BYTES)
     if len(head) < LENGTH_BYTES:
         return None
@@ -96,7 +96,7 @@ def read(stream: BinaryIO) -> object | None:
 
 
 def serve(jobs: BinaryIO, replies: BinaryIO) -> None:
-    """Do jobs until there is nobody who could send more."""
+    """Run jobs until the standard input ends."""
     while (job := read(jobs)) is not None:
         for piece in pack(do(job)):
             replies.write(piece)
@@ -104,14 +104,14 @@ def serve(jobs: BinaryIO, replies: BinaryIO) -> None:
 
 
 def do(job: Any) -> Reply:  # noqa: ANN401  # whatever `service.worker` sent
-    """Do one job.
+    """Run one job.
 
     Args:
         job: A function and its arguments.
 
     Raises:
-        MemoryError: The job wants more than there is. What it left behind is unknown: the process
-            has to end.
+        MemoryError: The job needs more memory than allowed. The process must end, since its state
+            is unknown.
     """
     function, arguments = job
     try:
@@ -121,19 +121,19 @@ def do(job: Any) -> Reply:  # noqa: ANN401  # whatever `service.worker` sent
     except MemoryError:
         raise
     except Exception:
-        # The edge of this process: a fault in one job is told to whoever asked for it.
+        # The edge of this process: the caller gets the traceback of a bug in its job.
         return Reply("failed", traceback.format_exc())
 
 
 def main() -> None:
-    """Step back behind the robot's own work, import the modules in the arguments, then serve."""
+    """Lower the own priority, import the modules named in the arguments, then run jobs."""
     os.nice(_NICENESS)
     if sys.platform != "win32":
         import resource
 
         resource.setrlimit(resource.RLIMIT_AS, (MEMORY_LIMIT_BYTES, MEMORY_LIMIT_BYTES))
     replies = os.fdopen(os.dup(sys.stdout.fileno()), "wb")
-    # What a job prints must not end up between the replies.
+    # Output of a job must not mix with the replies.
     os.dup2(sys.stderr.fileno(), sys.stdout.fileno())
     for module in sys.argv[1:]:
         importlib.import_module(module)

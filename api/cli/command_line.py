@@ -1,7 +1,7 @@
-"""The command `pilothouse`: which commands there are, and how one ends.
+"""The command `pilothouse`: its subcommands and exit codes.
 
-Modules are imported when a command needs them. So `--help` is quick, and `check_packages` can speak
-before the import of a foreign package with the name of one of ours fails.
+Modules are imported when a command needs them. `--help` is therefore quick, and `check_packages`
+can report a foreign package with the name of one of ours before its import fails.
 """
 
 import argparse
@@ -27,15 +27,15 @@ _COMMANDS = (
 
 _EXAMPLES = """\
 examples:
-  pilothouse serve                        the built-in robot, all simulated
-  pilothouse monitor                      watch it, in this terminal
-  pilothouse check robot.yaml             is this model right?
+  pilothouse serve                        run with the built-in simulated robot
+  pilothouse monitor                      watch it in this terminal
+  pilothouse check robot.yaml             check a model file
   pilothouse serve robot.yaml --port 9000 supervise it, with simulated nodes
   pilothouse mode actuation PERFORMANCE   change a mode, and follow the steps
-  pilothouse state drive_base deactivate  take a part through a transition
-  pilothouse task track.csv --preview     look at waypoints before the drive
-  pilothouse task track.csv               drive them, and follow how far it is
-  pilothouse simulate scenario.yaml       does it go as expected?
+  pilothouse state drive_base deactivate  request a lifecycle transition
+  pilothouse task track.csv --preview     preview the waypoints of a task
+  pilothouse task track.csv               submit a task, and follow its progress
+  pilothouse simulate scenario.yaml       run a scenario, and compare results
 """
 
 
@@ -43,7 +43,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     """Run the command and return its exit code.
 
     Args:
-        arguments: Those after the name of the command; None: those of the process.
+        arguments: Command line arguments without the program name; None: those of the process.
     """
     parser = _parser()
     options = parser.parse_args(arguments)
@@ -60,7 +60,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     except KeyboardInterrupt:
         return INTERRUPTED
     except BrokenPipeError:
-        # Who read our output went away, as `head` does; the interpreter would complain at exit.
+        # The reader of our output, such as `head`, has closed the pipe; avoid a message at exit.
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
         return FAILED
     return code
@@ -69,7 +69,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
 def _parser() -> argparse.ArgumentParser:
     parser = argparse.ArgumentParser(
         prog="pilothouse",
-        description="Supervise a robot: what it is in, what it should be in, and why.",
+        description="Supervise a robot: its actual and target states and modes, with reasons.",
         epilog=_EXAMPLES,
         formatter_class=argparse.RawDescriptionHelpFormatter,
     )

@@ -1,4 +1,4 @@
-"""`pilothouse simulate`: let a scenario happen in virtual time, and say whether it went as told."""
+"""`pilothouse simulate`: run a scenario in virtual time, and compare it with what it expects."""
 
 import json
 import sys

@@ -34,7 +34,7 @@ _ENDINGS = frozenset({1001, 1012})
 class Listener(Protocol):
     """Learns what a service says."""
 
-    def take(self, message: Json) -> None:
+    def take(self, message: Json, /) -> None:
         """Take a frame of the stream, or an answer in its form."""
         ...
 

@@ -1,4 +1,4 @@
-"""Answer with a problem document whatever goes wrong on the way to a route or in it."""
+"""Answers every error before or in a route with a problem document."""
 
 from http import HTTPStatus
 
@@ -29,7 +29,7 @@ def add_problem_handlers(app: FastAPI, clock: Clock) -> None:
         if isinstance(error, WorkerBusyError):
             headers["Retry-After"] = str(error.retry_after_s)
         if isinstance(error, BodyTooLargeError):
-            # The rest of the body is not read; without this it would be taken for a next request.
+            # The rest of the body is not read; otherwise it would be read as the next request.
             headers["Connection"] = "close"
         return problem_response(problem_of(error, clock, request.url.path), headers)
 
@@ -46,7 +46,7 @@ def add_problem_handlers(app: FastAPI, clock: Clock) -> None:
 
 
 async def _on_http_error(request: Request, error: Exception) -> Response:
-    """Answer what the framework refuses: unknown paths, other methods."""
+    """Answer errors of the framework: unknown paths and methods that are not allowed."""
     if not isinstance(error, StarletteHTTPException):
         raise error
     status = HTTPStatus(error.status_code)
@@ -60,16 +60,16 @@ async def _on_http_error(request: Request, error: Exception) -> Response:
         more = {"hint": "see /openapi.json"}
     elif status is HTTPStatus.METHOD_NOT_ALLOWED:
         methods = allowed_methods(request.app, request)
-        detail = f"{request.method} is not done here; these are: {', '.join(methods)}"
+        detail = f"{request.method} not allowed; allowed: {', '.join(methods)}"
         headers["Allow"] = ", ".join(methods)
     problem = make_problem(status, code, detail, request.url.path, more=more)
     return problem_response(problem, headers)
 
 
 def allowed_methods(app: FastAPI, request: Request) -> list[str]:
-    """Return the methods of all routes for a path; the framework names those of the first.
+    """Return the methods of all routes for a path; the framework lists those of the first route.
 
-    A path that is there by its own name, as /tasks/preview, is not taken for one of /tasks/{task}.
+    A literal path, such as /tasks/preview, does not count as one of /tasks/{task}.
     """
     named = app.openapi()["paths"].get(request.url.path)
     if named is not None:

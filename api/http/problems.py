@@ -1,6 +1,6 @@
-"""What is answered when something is refused or fails: RFC 9457, from one table.
+"""Answers to rejected and failed requests: problem documents (RFC 9457), from one table.
 
-A class of error becomes a status by `STATUS_OF`; what only HTTP can get wrong is an `HttpError`.
+`STATUS_OF` maps each class of error to a status; `HttpError` is for errors of HTTP itself.
 """
 
 from collections.abc import Mapping
@@ -77,7 +77,7 @@ STATUS_OF: Mapping[type[PilothouseError], HTTPStatus] = {
     WorkerBusyError: HTTPStatus.TOO_MANY_REQUESTS,
     WorkerClosedError: HTTPStatus.SERVICE_UNAVAILABLE,
     BackendUnavailableError: HTTPStatus.SERVICE_UNAVAILABLE,
-    # Files are read before anybody is served.
+    # Files are read before the service accepts requests.
     InvalidRobotFileError: HTTPStatus.INTERNAL_SERVER_ERROR,
     UnreadableFileError: HTTPStatus.INTERNAL_SERVER_ERROR,
     StartTaskError: HTTPStatus.INTERNAL_SERVER_ERROR,
@@ -87,7 +87,7 @@ MEDIA_TYPE = "application/problem+json"
 
 
 class HttpError(HTTPException):
-    """A problem that only HTTP has, with a code of its own."""
+    """An error of HTTP itself, with its own code."""
 
     def __init__(self, status: HTTPStatus, code: str, detail: str, hint: str | None = None) -> None:
         super().__init__(status, detail)
@@ -99,8 +99,8 @@ def problem_of(error: PilothouseError, clock: Clock, instance: str = "") -> Prob
     """Return the document for an error of the core or the service.
 
     Args:
-        error: What was raised.
-        clock: Tells since when blockers have been there.
+        error: The error.
+        clock: Converts the times of blockers.
         instance: Path of the request.
     """
     more: dict[str, object] = {}
@@ -124,7 +124,7 @@ def problem_of(error: PilothouseError, clock: Clock, instance: str = "") -> Prob
 
 
 def status_of(error: PilothouseError) -> HTTPStatus:
-    """Return the status of an error: that of its class, or of the nearest one above it."""
+    """Return the status of an error: that of its class, or of the nearest base class."""
     return next(STATUS_OF[kind] for kind in type(error).__mro__ if kind in STATUS_OF)
 
 
@@ -139,12 +139,12 @@ def make_problem(
     """Return a document.
 
     Args:
-        status: Its status.
+        status: HTTP status.
         code: Stable, UPPER_SNAKE.
-        detail: What happened here.
+        detail: Description of this occurrence.
         instance: Path of the request.
-        title: What happened in general; empty: the phrase of the status.
-        more: Members that apply to this one.
+        title: Description of this kind of problem; empty: the phrase of the status.
+        more: Further members.
     """
     members: dict[str, object] = {
         "type": f"urn:pilothouse:problem:{code.lower().replace('_', '-')}",
@@ -159,5 +159,5 @@ def make_problem(
 
 
 def problem_response(problem: Problem, headers: Mapping[str, str] | None = None) -> Response:
-    """Return the answer that carries a document."""
+    """Return the response with a document."""
     return Response(problem.as_json(), problem.status, headers, MEDIA_TYPE)

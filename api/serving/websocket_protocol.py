@@ -38,7 +38,7 @@ class WebSocketProtocol(WebSocketsSansIOProtocol):
     async def run_asgi(self) -> None:
         """Let the application serve this client, then see that the connection ends."""
         connection = Connection(self.transport, self._listen)
-        self.scope["extensions"][EXTENSION] = {"connection": connection}
+        self.scope.setdefault("extensions", {})[EXTENSION] = {"connection": connection}
         await super().run_asgi()
         self.loop.call_later(_LAST_WORDS_S, self.transport.abort)
 

@@ -36,7 +36,7 @@ Keys = tuple[int | str, ...]
 
 _STANDARD_INPUT = Path("/dev/stdin")
 _NOTHING = frozenset(["", "~", "null", "Null", "NULL"])
-_WORDS = {"extra_forbidden": "there is no such key", "missing": "this key is missing"}
+_WORDS = {"extra_forbidden": "unknown key", "missing": "missing key"}
 
 
 class InvalidScenarioError(Exception):

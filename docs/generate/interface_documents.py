@@ -1,4 +1,4 @@
-"""The documents of the interface, as the service gives them: `openapi.json` and `asyncapi.json`."""
+"""What the service is given and gives, as JSON: documents of the interface, and robot files."""
 
 import json
 from collections.abc import Mapping
@@ -8,6 +8,7 @@ from api.app import create_app
 from api.documents.asyncapi import describe_stream
 from api.serving.composition import ServeOptions, compose
 from service.clock import MonotonicClock
+from service.files.robot_file import RobotSettings
 
 
 def openapi_document() -> str:
@@ -19,6 +20,12 @@ def openapi_document() -> str:
 def asyncapi_document() -> str:
     """Return the text of `asyncapi.json`."""
     return _text(describe_stream())
+
+
+def robot_file_schema() -> str:
+    """Return the text of `robot-file.schema.json`."""
+    schema = RobotSettings.model_json_schema()
+    return _text({"$schema": "https://json-schema.org/draft/2020-12/schema", **schema})
 
 
 def _text(document: Mapping[str, Any]) -> str:

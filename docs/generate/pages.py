@@ -7,7 +7,11 @@ from types import MappingProxyType
 from docs.generate.blockers_page import blockers_page
 from docs.generate.command_line_page import command_line_page
 from docs.generate.events_page import events_page
-from docs.generate.interface_documents import asyncapi_document, openapi_document
+from docs.generate.interface_documents import (
+    asyncapi_document,
+    openapi_document,
+    robot_file_schema,
+)
 from docs.generate.metrics_page import metrics_page
 from docs.generate.problems_page import problems_page
 from docs.generate.settings_page import settings_page
@@ -23,6 +27,7 @@ PAGES: Mapping[str, Callable[[], str]] = MappingProxyType(
         "metrics.md": metrics_page,
         "openapi.json": openapi_document,
         "problems.md": problems_page,
+        "robot-file.schema.json": robot_file_schema,
         "settings.md": settings_page,
     }
 )

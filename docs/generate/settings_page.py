@@ -144,4 +144,4 @@ def _usual() -> Iterator[tuple[str, str]]:
     for name in ("configure", "activate", "deactivate", "cleanup", "shutdown", "set_parameters"):
         yield f"nodes.<node>.{name}_s", _value(to_seconds(getattr(node, name)))
     for name in ("acceleration_mps2", "braking_mps2", "steering_rate_radps"):
-        yield f"vehicle.plant.{name}", "at once"
+        yield f"vehicle.plant.{name}", "no limit"

@@ -1,4 +1,4 @@
-"""Changes of state, mode and parameters: what a request means, whether it may begin, and its steps.
+"""Changes of state, mode and parameters: the meaning of a request, its admission, its steps.
 
-Read `operations.py` first.
+Read `changes.py` first, then `node_steps.py`.
 """

@@ -1,6 +1,6 @@
-"""Whether a change may begin: what is illegal, and what stands against it.
+"""Admission of changes: illegal requests are rejected, and blockers are found.
 
-`GET .../modes` shows what the admission of a request would say, since both come from here.
+`GET .../modes` shows the same blockers that a request would meet.
 """
 
 from collections.abc import Iterable, Mapping, Sequence
@@ -16,38 +16,38 @@ from domain.parts.system_model import SmhModel
 from domain.state_and_mode import PartName
 
 ADVISORY = frozenset({"UNREACHABLE", "UNKNOWN_STATE"})
-"""Shown, but not refused: an absent node may come back before the deadline."""
+"""Shown, but no reason to reject: an absent node may reappear before the deadline."""
 
 MAX_BLOCKERS = 100
-"""Of one request; thousands of absent nodes say no more than a hundred of them."""
+"""Largest number of blockers of one request; more would not be read."""
 
 _CODES = {
     LifecycleState.FINALIZED: "FINALIZED",
     LifecycleState.ERROR_PROCESSING: "ERROR_PROCESSING",
 }
 _WORDS = {
-    LifecycleState.FINALIZED: "is finalized: it must be started anew",
+    LifecycleState.FINALIZED: "is finalized: its process must be restarted",
     LifecycleState.ERROR_PROCESSING: "is processing an error",
 }
 
 
 class ChangeAdmission:
-    """Judges requests by what is known of the nodes at this moment."""
+    """Judges requests by the current facts about the nodes."""
 
     def __init__(self, model: SmhModel, facts: Mapping[PartName, NodeFacts]) -> None:
         self._model = model
         self._facts = facts
 
     def admit(self, request: ChangeRequest, estop: Sequence[Blocker]) -> ChangeGoal:
-        """Return what the request means, if it may begin.
+        """Return the goal of a request that may begin.
 
         Args:
-            request: Its part, mode and parameters are known.
-            estop: Why ESTOP is on; empty when it is not.
+            request: Its part, mode and parameters must be known to exist.
+            estop: Why ESTOP is active; empty: it is not.
 
         Raises:
-            IllegalTransitionError: No path leads from where the part is.
-            BlockedError: Something stands against it.
+            IllegalTransitionError: There is no path from the current state of the part.
+            BlockedError: The request is blocked.
         """
         if isinstance(request, TransitionRequest):
             self._check_legal(request, estop)
@@ -58,17 +58,17 @@ class ChangeAdmission:
         return goal
 
     def blockers(self, request: ChangeRequest, estop: Sequence[Blocker]) -> tuple[Blocker, ...]:
-        """Return what stands against a request, the advisory reasons too."""
+        """Return all blockers of a request, including the advisory ones."""
         goal = goal_of(self._model, request, self._facts)
         return self._blockers(request, goal, estop)
 
     def available_transitions(
         self, part: PartName, estop: Sequence[Blocker]
     ) -> tuple[Transition, ...]:
-        """Return the transitions that would be accepted now and lead somewhere else.
+        """Return the transitions that would be accepted now and change something.
 
-        Wider than `get_available_transitions` of ROS 2 by the paths that a request implies: an
-        unconfigured part may be asked to activate, and is configured on the way.
+        Wider than `get_available_transitions` of ROS 2, since a request implies a path: an
+        unconfigured part can be activated, and is configured on the way.
         """
         states = self._lifecycles(part)
         return tuple(
@@ -76,7 +76,7 @@ class ChangeAdmission:
             for transition in Transition
             if any(state is not transition.goal for state in states)
             and self._is_legal(transition, states)
-            # Towards rest nothing refuses what is legal; thousands of nodes need not be asked.
+            # Nothing blocks a legal transition towards rest, so nodes need not be checked.
             and (
                 transition in TOWARDS_REST
                 or not _refuse(self.blockers(TransitionRequest(part, transition), estop))
@@ -84,7 +84,7 @@ class ChangeAdmission:
         )
 
     def _lifecycles(self, part: PartName) -> list[LifecycleState]:
-        """Return where the nodes below a part rest, or will, if they have a lifecycle."""
+        """Return the primary states that the lifecycle nodes below a part are in, or will reach."""
         below = [self._facts[node] for node in self._model.nodes_below(part)]
         return [arrival(facts.known_state) for facts in below if facts.has_lifecycle]
 
@@ -99,10 +99,10 @@ class ChangeAdmission:
 
     @staticmethod
     def _is_legal(transition: Transition, states: Sequence[LifecycleState]) -> bool:
-        """Judge by all nodes below: towards rest one that can go is enough, otherwise all must.
+        """Judge by all nodes below: towards rest, one legal node is enough; otherwise all must be.
 
-        An unknown node refuses nothing. A finalized one is told by a blocker, since no transition
-        leads out of it; towards rest it is passed by. Plain nodes are active, and nothing else.
+        An unknown node makes nothing illegal. A finalized one is reported as a blocker, since no
+        transition leads out of it; towards rest it is left out. Plain nodes are always active.
         """
         if not states:
             return transition is Transition.ACTIVATE
@@ -117,7 +117,7 @@ class ChangeAdmission:
     def _blockers(
         self, request: ChangeRequest, goal: ChangeGoal, estop: Sequence[Blocker]
     ) -> tuple[Blocker, ...]:
-        """Find what stands against a request: what refuses it first, and not more than is read."""
+        """Find the blockers of a request: those that reject it first, at most `MAX_BLOCKERS`."""
         part = part_of(request)
         resting = isinstance(request, TransitionRequest) and request.transition in TOWARDS_REST
         codes = [(self._code(node, want, resting), node) for node, want in goal.nodes.items()]
@@ -131,7 +131,7 @@ class ChangeAdmission:
         return tuple(blockers)
 
     def _activates(self, node: PartName, goal: NodeGoal) -> bool:
-        """Tell whether a node would be activated; one of unknown state might be."""
+        """Tell whether a node would, or in an unknown state might, be activated."""
         if goal.state is not LifecycleState.ACTIVE:
             return False
         facts = self._facts[node]
@@ -140,7 +140,7 @@ class ChangeAdmission:
         return Transition.ACTIVATE in (next_steps(facts, goal) or ())
 
     def _code(self, node: PartName, goal: NodeGoal, resting: bool) -> str | None:
-        """Return what stands against bringing a node to its goal; None: nothing."""
+        """Return the code of what blocks a node from its goal; None: nothing does."""
         facts = self._facts[node]
         state = facts.known_state
         if state is LifecycleState.UNKNOWN:
@@ -158,7 +158,7 @@ class ChangeAdmission:
         return Blocker(code, f"{node} {words}", path, value, since=facts.state_since)
 
     def _path(self, part: PartName, node: PartName) -> tuple[str, ...]:
-        """Return one way down from the asked part to the node."""
+        """Return one path down from the requested part to the node."""
         if part == node:
             return (part,)
         for child in self._model.systems[part].parts:
@@ -174,5 +174,5 @@ def _refuse(blockers: Iterable[Blocker]) -> bool:
 
 
 def part_of(request: ChangeRequest) -> PartName:
-    """Return the part that a request asks something of."""
+    """Return the part that a request is addressed to."""
     return request.part if isinstance(request, ModeRequest | TransitionRequest) else request.node

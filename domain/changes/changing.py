@@ -1,9 +1,9 @@
-"""Changes as a concern of the core: requests in, steps and verified ends out."""
+"""Changes as a concern of the core: requests in; steps and verified results out."""
 
 from itertools import islice
 
 from domain.changes.admission import ChangeAdmission
-from domain.changes.operations import Changes
+from domain.changes.changes import Changes
 from domain.changes.plan import ChangeGoal, next_steps, presumed_steps
 from domain.changes.record import Step
 from domain.changes.request_check import check_request
@@ -39,7 +39,7 @@ from domain.timebase import Instant
 
 
 class Changing(Concern):
-    """Admits requests, follows the steps of changes, and restores nodes that reappear."""
+    """Admits requests, drives the steps of changes, and restores nodes that reappear."""
 
     def __init__(
         self, parts: Parts, health: Health, settings: ChangeSettings, outbox: Outbox
@@ -56,7 +56,7 @@ class Changing(Concern):
 
     @property
     def takes(self) -> Takers:
-        """Return what takes each class of input."""
+        """Return the handler of each class of input."""
         return {
             ModeRequest: self._take_request,
             TransitionRequest: self._take_request,
@@ -72,11 +72,11 @@ class Changing(Concern):
         return self._changes.wake_at()
 
     def pass_time(self, now: Instant) -> None:
-        """Handle every deadline up to now."""
+        """Handle all deadlines up to `now`."""
         self._changes.pass_time(now)
 
     def settle(self, now: Instant) -> bool:
-        """Begin the next change that restores a node; return whether there was one."""
+        """Begin the next change that restores a node; return whether one began."""
         return self._restoring.begin_next(now)
 
     def _take_request(self, request: ChangeRequest, now: Instant) -> None:
@@ -97,7 +97,7 @@ class Changing(Concern):
         self._changes.cancel(request.change, now)
 
     def _follow_report(self, report: NodeReport, now: Instant) -> None:
-        """Judge the step in flight by what the report made of its node."""
+        """Judge the step in flight by the node's new facts."""
         step = self._changes.step_in_flight(report.node)
         self._changes.report(report, now)
         self._restoring.take_report(report, step)
@@ -119,7 +119,7 @@ class Changing(Concern):
     # --- what can be seen ------------------------------------------------------------------------
 
     def modes(self, part: PartName) -> tuple[ModeView, ...]:
-        """Return the modes of a part, and what stands against entering each of them now."""
+        """Return the modes of a part, with the blockers of each."""
         stop = self._health.stop_reasons
         views = []
         for mode in self._parts.model.modes_of(part):
@@ -128,14 +128,14 @@ class Changing(Concern):
         return tuple(views)
 
     def available_transitions(self, part: PartName) -> tuple[Transition, ...]:
-        """Return the transitions that would be accepted now and lead somewhere else."""
+        """Return the transitions that would be accepted now and change something."""
         return self._admission.available_transitions(part, self._health.stop_reasons)
 
     def plan(self, request: ChangeRequest) -> tuple[StepView, ...]:
-        """Return the steps that a request would take now; nothing is changed.
+        """Return the steps that a request would take now, without starting them.
 
         Raises:
-            PilothouseError: The request would be refused.
+            PilothouseError: The request would be rejected.
         """
         check_request(self._parts.model, self._parts.facts, request)
         goal = self._admit(request)
@@ -151,7 +151,7 @@ class Changing(Concern):
         """Return a change.
 
         Raises:
-            UnknownChangeError: There is none of that id, or it is forgotten.
+            UnknownChangeError: The id is unknown, or the change is no longer kept.
         """
         return self._changes.get(identity).view()
 
@@ -161,8 +161,8 @@ class Changing(Concern):
         """Return the changes that are kept, the newest first.
 
         Args:
-            limit: At most so many.
-            part: Only those that were asked of this part.
+            limit: Largest number of changes; None: all.
+            part: Only changes that were requested of this part.
         """
         kept = (c for c in self._changes.all() if part is None or c.part == part)
         return tuple(change.view() for change in islice(kept, limit))

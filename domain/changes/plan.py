@@ -1,9 +1,9 @@
-"""What a change asks of each part, and the steps that lead a node there.
+"""The targets that a change sets for each part, and the steps that lead a node there.
 
-Pure functions: the same plan is shown by a dry run and followed by a change.
+Pure functions: a dry run shows the same plan that a change follows.
 
-Source: deliverable D4.8, 4.1.2; the wishes in micro-ROS system_modes issues #25 and #27 (find the
-path of transitions) and #60 (no redundant requests).
+Source: micro-ROS deliverable D4.8, section 4.1.2; requests in micro-ROS system_modes issues #25 and
+#27 (find the path of transitions) and #60 (no redundant requests).
 """
 
 from collections.abc import Mapping
@@ -18,16 +18,16 @@ from domain.parts.system_model import SmhModel
 from domain.state_and_mode import DEFAULT_MODE, ModeName, PartName, StateAndMode
 
 TOWARDS_REST = (Transition.DEACTIVATE, Transition.CLEANUP, Transition.SHUTDOWN)
-"""What is done to those parts of a system that can go; the others are passed by."""
+"""Transitions of a system that apply only to the parts in which they are legal."""
 
 
 @dataclass(frozen=True, slots=True)
 class SetParameters:
-    """The step that sets parameters, all or none."""
+    """The step that sets parameters atomically: all or none."""
 
     values: Parameters
     mode: ModeName | None = None
-    """The mode that a node which reports its mode has to report, for the step to be done."""
+    """The step is done only when a node that reports its mode reports this one."""
 
 
 Action: TypeAlias = Transition | SetParameters
@@ -35,33 +35,38 @@ Action: TypeAlias = Transition | SetParameters
 
 @dataclass(frozen=True, slots=True)
 class NodeGoal:
-    """Where a node shall end."""
+    """Target state, mode and parameters of a node."""
 
     state: LifecycleState | None
-    """None: whatever it is in."""
+    """None: any state."""
     mode: ModeName | None = None
     parameters: Parameters = field(default_factory=dict)
     configures: bool = True
-    """False: a node that turns out to be unconfigured is left so; deactivating never configures."""
+    """False: a node that turns out to be unconfigured stays so; deactivating never configures."""
 
 
 @dataclass(frozen=True, slots=True)
 class ChangeGoal:
-    """What a request means for the asked part and all parts below it."""
+    """What a request means for the requested part and all parts below it."""
 
     targets: Mapping[PartName, StateAndMode]
-    """New targets; empty for a request that sets parameters only."""
+    """New targets; empty for a request that only sets parameters."""
     nodes: Mapping[PartName, NodeGoal]
 
 
 def goal_of(
     model: SmhModel, request: ChangeRequest, facts: Mapping[PartName, NodeFacts]
 ) -> ChangeGoal:
-    """Return what `request` asks of each part; part and mode must be known.
+    """Return the goal of a request for each part.
 
-    Activating without naming a mode means `__DEFAULT__`. Nodes that a request to a system passes
-    by, such as an unconfigured one when the system is deactivated, keep the state they rest in.
-    Of a plain node, a transition of its system asks nothing but parameters.
+    Activating without a mode means `__DEFAULT__`. Nodes in which a transition of their system is
+    not legal, such as an unconfigured one when the system is deactivated, keep their state. For a
+    plain node, a transition of its system only sets parameters.
+
+    Args:
+        model: The model.
+        request: Its part and mode must be known to exist.
+        facts: Facts about all nodes.
     """
     if isinstance(request, ParametersRequest):
         return ChangeGoal({}, {request.node: NodeGoal(None, None, dict(request.values))})
@@ -89,9 +94,9 @@ def goal_of(
 def _spread(
     model: SmhModel, part: PartName, wanted: StateAndMode, targets: dict[PartName, StateAndMode]
 ) -> None:
-    """Record what is wanted of `part`, and of all parts below it."""
+    """Record the targets of `part` and of all parts below it."""
     if part in targets:
-        # Shared by two systems. What the file says first counts, and no part is gone through twice.
+        # Shared by two systems: the first one in the file counts, and no part is visited twice.
         return
     targets[part] = wanted
     system = model.systems.get(part)
@@ -110,7 +115,7 @@ def _pass_by(
     facts: Mapping[PartName, NodeFacts],
     targets: dict[PartName, StateAndMode],
 ) -> None:
-    """Let nodes below the asked part be where `request` has nothing to do with them."""
+    """Set the target of nodes to which `request` does not apply to their current state."""
     for part in targets.keys() & facts.keys() - {request.part}:
         resting = arrival(facts[part].known_state)
         if _stays(resting, request.transition):
@@ -118,7 +123,7 @@ def _pass_by(
 
 
 def _stays(state: LifecycleState, transition: Transition) -> bool:
-    """Tell whether a node that rests in `state` stays there when its system goes towards rest."""
+    """Tell whether a node in `state` stays there when its system goes towards rest."""
     if transition is Transition.DEACTIVATE and state is LifecycleState.UNCONFIGURED:
         return True
     return transition in TOWARDS_REST and state is LifecycleState.FINALIZED
@@ -127,9 +132,9 @@ def _stays(state: LifecycleState, transition: Transition) -> bool:
 def _is_left_out(
     request: ChangeRequest, part: PartName, target: StateAndMode, facts: NodeFacts
 ) -> bool:
-    """Tell whether a plain node is left as it is, since its system is asked for a transition.
+    """Tell whether a transition of its system leaves a plain node out.
 
-    It is active and nothing else, and must not keep the others from going.
+    A plain node is always active, and must not block the others.
     """
     is_asked_itself = not isinstance(request, TransitionRequest) or part == request.part
     return not (is_asked_itself or facts.has_lifecycle or target.state is LifecycleState.ACTIVE)
@@ -144,10 +149,10 @@ def _node_goal(model: SmhModel, node: PartName, target: StateAndMode) -> NodeGoa
 
 
 def next_steps(facts: NodeFacts, goal: NodeGoal) -> tuple[Action, ...] | None:
-    """Return the steps from where a node is, or will arrive, to its goal; None: there is no path.
+    """Return the steps from the state of a node, or the one it will reach, to its goal.
 
     Parameters are set before the node is activated, so that it never runs in a mode that nobody
-    asked for. The state must be known.
+    requested. The state must be known. Returns None if there is no path.
     """
     transitions: tuple[Transition, ...] | None = ()
     if goal.state is not None:
@@ -178,7 +183,7 @@ def _parameters_missing(facts: NodeFacts, goal: NodeGoal) -> bool:
 
 
 def presumed_steps(goal: NodeGoal) -> tuple[Action, ...]:
-    """Return the last step towards a goal, for a node of which nothing is known."""
+    """Return the last step towards a goal, for a node in an unknown state."""
     if goal.state is None or goal.state is LifecycleState.UNKNOWN:
         return (SetParameters(goal.parameters),)
     if not goal.configures:

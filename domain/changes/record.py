@@ -1,4 +1,4 @@
-"""A change while it runs and after it ended: what was asked, step by step."""
+"""The record of a change: its request, its steps and its result."""
 
 from dataclasses import dataclass, field
 
@@ -23,12 +23,12 @@ class Step:
     ended_at: Instant | None = None
     error: str | None = None
     request: int = 0
-    """Number of the command that is awaited."""
+    """Number of the command whose answer is awaited."""
     event: int | None = None
-    """Id of the event that said the step began."""
+    """Id of the event that recorded the start of the step."""
     start_state: LifecycleState = LifecycleState.UNKNOWN
     seen_on_the_way: bool = False
-    """The node reported the transitional state, so that falling back is a failure."""
+    """The node reported the transitional state, so that a return to the start is a failure."""
     facts_asked: bool = False
 
     def end(self, status: StepStatus, now: Instant, error: str | None = None) -> None:
@@ -37,7 +37,7 @@ class Step:
 
     @property
     def action_name(self) -> str:
-        """Return the name of the action as shown."""
+        """Return the name of the action for clients."""
         return "set_parameters" if isinstance(self.action, SetParameters) else str(self.action)
 
     def view(self) -> StepView:
@@ -55,20 +55,20 @@ class Step:
 
 @dataclass(slots=True)
 class Pursuit:
-    """One node on its way to what a change wants of it."""
+    """One node on its way to the goal of a change."""
 
     change: ChangeId
     node: PartName
     goal: NodeGoal
     steps: list[Step] = field(default_factory=list)
     waiting: bool = False
-    """Nothing can be begun, because the node's state is unknown or passing."""
+    """No step can start, because the node's state is unknown or transitional."""
     facts_asked: bool = False
     outcome: StepStatus = StepStatus.RUNNING
     error: str | None = None
 
     def plan(self, actions: tuple[Action, ...]) -> None:
-        """Replace the pending steps, if other ones lead to the goal now."""
+        """Replace the pending steps, if the path to the goal has changed."""
         done = [step for step in self.steps if step.status is not StepStatus.PENDING]
         pending = [step.action for step in self.steps if step.status is StepStatus.PENDING]
         if pending != list(actions):
@@ -76,11 +76,11 @@ class Pursuit:
             self.steps[:] = [*done, *new]
 
     def next_step(self) -> Step | None:
-        """Return the first step that has not begun."""
+        """Return the first pending step; None: there is none."""
         return next((step for step in self.steps if step.status is StepStatus.PENDING), None)
 
     def drop_pending(self, status: StepStatus, now: Instant) -> None:
-        """End all steps that have not begun."""
+        """End all pending steps."""
         for step in self.steps:
             if step.status is StepStatus.PENDING:
                 step.end(status, now)

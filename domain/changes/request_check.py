@@ -1,4 +1,4 @@
-"""Whether a request for a change names things that exist, with values that can be right."""
+"""Checks that a request names parts, modes and parameters that exist, with valid values."""
 
 import math
 from collections.abc import Mapping
@@ -14,20 +14,25 @@ from domain.state_and_mode import PartName
 def check_request(
     model: SmhModel, facts: Mapping[PartName, NodeFacts], request: ChangeRequest
 ) -> PartName:
-    """Return the part that a request is about.
+    """Return the part that a request is addressed to.
+
+    Args:
+        model: The model.
+        facts: Facts about all nodes, for their parameters.
+        request: What is requested.
 
     Raises:
-        UnknownPartError: There is no such part, or parameters are asked of what is no node.
+        UnknownPartError: There is no such part, or parameters are requested of a system.
         UnknownModeError: The part has no such mode.
-        UnknownParameterError: The node is known to have no such parameter.
-        InvalidValueError: A value of another type than the node has, or not finite.
+        UnknownParameterError: The node has no such parameter.
+        InvalidValueError: No parameters, or a value that is not finite or of the wrong type.
     """
     if isinstance(request, ParametersRequest):
         if request.node not in model.nodes:
             raise UnknownPartError("node", request.node, tuple(model.nodes))
         known = facts[request.node].parameters
         if not request.values:
-            raise InvalidValueError("no parameter is named")
+            raise InvalidValueError("no parameters are given")
         for name, value in request.values.items():
             _check_value(request.node, known, name, value)
         return request.node
@@ -41,7 +46,7 @@ def check_request(
 def _check_value(
     node: PartName, known: Mapping[str, ParameterValue], name: str, value: ParameterValue
 ) -> None:
-    """Compare with what the node reported; of a node that reported nothing, all may be right."""
+    """Compare with the reported parameters; if there are none, accept any name and type."""
     numbers = value if isinstance(value, tuple) else (value,)
     if any(isinstance(number, float) and not math.isfinite(number) for number in numbers):
         raise InvalidValueError(f"{name} must be finite", name)
@@ -55,7 +60,7 @@ def _check_value(
 
 
 def describe_request(request: ChangeRequest) -> dict[str, object]:
-    """Return what a request asks, as it is shown: `{"mode": ...}` and the like."""
+    """Return a request as clients see it, such as `{"mode": ...}`."""
     if isinstance(request, ModeRequest):
         return {"mode": request.mode}
     if isinstance(request, TransitionRequest):

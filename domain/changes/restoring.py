@@ -1,12 +1,12 @@
-"""Nodes that return after they were gone, and are brought back to what was asked of them.
+"""Restores nodes that reappear to their targets.
 
-Only those that the settings name: a node that moves by itself because its process was started anew
-is a surprise, unless somebody wanted it so. Nothing else begins a change that nobody asked for.
+Only nodes that the settings name: a node that changes state because its process was restarted would
+be a surprise, unless it was configured. Nothing else begins a change that nobody requested.
 """
 
 from collections.abc import Callable, Iterable
 
-from domain.changes.operations import Changes
+from domain.changes.changes import Changes
 from domain.changes.plan import ChangeGoal
 from domain.changes.record import Step
 from domain.changes.settings import ChangeSettings
@@ -21,17 +21,17 @@ from domain.state_and_mode import DEFAULT_MODE, PartName, StateAndMode
 from domain.timebase import Instant, seconds, to_seconds
 
 MAX_RESTORES = 3
-"""Of one node within `WINDOW`; one that falls whenever it is activated is left alone then."""
+"""Largest number per node within `WINDOW`, for nodes that crash whenever they are activated."""
 WINDOW = seconds(60)
 
 _SEEN_ON_ITS_WAY = frozenset(
     {LifecycleState.UNCONFIGURED, LifecycleState.CLEANING_UP, LifecycleState.ERROR_PROCESSING}
 )
-"""From where a process that goes on comes to be unconfigured."""
+"""States from which a process that keeps running becomes unconfigured."""
 
 
 class Restoring:
-    """Notes which nodes returned, and begins a change of each once no other one holds it."""
+    """Notes which nodes reappeared, and restores each once no change is driving it."""
 
     def __init__(
         self,
@@ -41,6 +41,15 @@ class Restoring:
         outbox: Outbox,
         admit: Callable[[ChangeRequest], ChangeGoal],
     ) -> None:
+        """Begin without nodes to restore.
+
+        Args:
+            parts: Facts, inferred states and targets of all parts.
+            changes: Begins the changes that restore nodes.
+            settings: Names the nodes to restore.
+            outbox: Receives events.
+            admit: Returns the goal of a request, or raises the error that rejects it.
+        """
         self._parts = parts
         self._inference = parts.inference
         self._changes = changes
@@ -48,16 +57,16 @@ class Restoring:
         self._outbox = outbox
         self._admit = admit
         self._returned: dict[PartName, int] = {}
-        """By node, the event of the report by which it was back."""
+        """By node, the event of the report with which it reappeared."""
         self._begun: dict[PartName, list[Instant]] = {}
         self._given_up: set[PartName] = set()
 
     def take_report(self, report: NodeReport, step: Step | None) -> None:
-        """Note that a node reappeared, unless a change takes it up by itself.
+        """Note that a node reappeared, unless a change drives it to its target already.
 
         Args:
-            report: The newest report of the node; parts and changes have taken it in.
-            step: What was in flight before.
+            report: The newest report of the node; parts and changes have processed it.
+            step: The step that was in flight before the report.
         """
         if self._is_return(report):
             self._note_return(report.node, step)
@@ -65,8 +74,8 @@ class Restoring:
     def _is_return(self, report: NodeReport) -> bool:
         """Tell whether a node reappeared with the newest report.
 
-        Nothing was known of it until then; or a complete report says that it is unconfigured, and
-        it was not seen on the way there: its process was restarted before it was missed.
+        Its state was unknown before; or a complete report says that it is unconfigured, without a
+        transition there: its process was restarted before it was found missing.
         """
         if report.node not in self._restored:
             return False
@@ -85,19 +94,19 @@ class Restoring:
             self._returned[node] = self._outbox.record_input()
 
     def forget(self, parts: Iterable[PartName]) -> None:
-        """Leave parts to somebody who asked something of them, and trust them again."""
+        """Drop pending restores of parts that got a new request, and reset their limits."""
         for part in parts:
             self._returned.pop(part, None)
             self._begun.pop(part, None)
             self._given_up.discard(part)
 
     def cancel(self, change: ChangeId) -> None:
-        """Leave nodes alone that wait for the end of a change that somebody cancels."""
+        """Drop pending restores of nodes that wait for the end of a canceled change."""
         for node in [n for n in self._returned if self._parts.change_of(n) == change]:
             del self._returned[node]
 
     def begin_next(self, now: Instant) -> bool:
-        """Begin a change of the next node that can be restored; return whether there was one."""
+        """Begin to restore the next node that can be; return whether a change began."""
         for node, cause in list(self._returned.items()):
             is_gone = not self._inference.facts[node].reachable
             if not is_gone and self._parts.change_of(node) is not None:
@@ -111,7 +120,7 @@ class Restoring:
         return False
 
     def _is_missed(self, node: PartName, target: StateAndMode) -> bool:
-        """Tell whether a node should be elsewhere; who starts a finalized one anew wants it."""
+        """Tell whether a node is off its target; one that was shut down is left as it is."""
         return target.state is not LifecycleState.FINALIZED and not self._inference.converged(node)
 
     def _begin(self, node: PartName, target: StateAndMode, cause: int, now: Instant) -> bool:
@@ -121,7 +130,7 @@ class Restoring:
         if len(begun) == MAX_RESTORES:
             self._given_up.add(node)
             often = f"it was restored {MAX_RESTORES} times within {to_seconds(WINDOW):g} s"
-            reason = f"{often}, and is left as it is until it is asked for"
+            reason = f"{often}; it is not restored again until a change of it is requested"
             self._tell_not_restored(NodeNotRestored(node, target, reason), cause, now)
             return False
         request = self._request(node, target)
@@ -136,12 +145,12 @@ class Restoring:
         return True
 
     def _tell_not_restored(self, told: NodeNotRestored, cause: int, now: Instant) -> None:
-        # An input of its own: nobody asked for it, whoever asked for what is being concluded.
+        # An input of its own: the actor of the current input did not request it.
         self._outbox.begin(now, told, cause=cause)
         self._outbox.record_input()
 
     def _request(self, node: PartName, target: StateAndMode) -> ChangeRequest:
-        """Return what somebody would ask to bring a node to its target."""
+        """Return the request that brings a node to its target."""
         if target.state is LifecycleState.ACTIVE:
             if self._inference.model.modes_of(node):
                 return ModeRequest(node, target.mode or DEFAULT_MODE)

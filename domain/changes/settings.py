@@ -8,11 +8,11 @@ from domain.timebase import Duration, seconds
 
 @dataclass(frozen=True, slots=True)
 class ChangeSettings:
-    """Deadlines of the steps of a change, and the nodes that are restored when they reappear."""
+    """Deadlines of the steps of changes, and the nodes that are restored when they reappear."""
 
     transition_deadline: Duration = seconds(10)
     parameters_deadline: Duration = seconds(2)
     facts_deadline: Duration = seconds(1)
-    """For the node's state, which is asked before a step is said to have timed out."""
+    """For the query of the node's state before a step is declared timed out."""
     restored_nodes: frozenset[PartName] = frozenset()
     """Nodes that are restored to their target when they reappear."""

@@ -1,4 +1,4 @@
-"""Whether a report ends the step that a node is at, and how."""
+"""Decides whether a report ends the step that a node is executing, and how."""
 
 from dataclasses import dataclass
 
@@ -23,12 +23,12 @@ _DONE = Verdict(StepStatus.SUCCEEDED)
 
 
 def judge_report(step: Step, report: NodeReport, facts: NodeFacts) -> Verdict | None:
-    """Return how `report` ends `step`; None: it goes on.
+    """Return how `report` ends `step`; None: the step continues.
 
     Args:
-        step: In flight; it remembers here that its node was seen on the way.
+        step: The step in flight; it notes that its node was seen in the transitional state.
         report: The newest report of its node.
-        facts: What is known of the node, `report` included.
+        facts: Facts about the node, including `report`.
     """
     if isinstance(step.action, SetParameters):
         return _judge_parameters(step, step.action, report, facts)
@@ -38,7 +38,7 @@ def judge_report(step: Step, report: NodeReport, facts: NodeFacts) -> Verdict | 
 def _judge_parameters(
     step: Step, action: SetParameters, report: NodeReport, facts: NodeFacts
 ) -> Verdict | None:
-    """Done when all values are there, and a node that reports its mode reports the new one."""
+    """Done when all values are set, and a node that reports its mode reports the new one."""
     if report.parameters is None and report.mode is None:
         return None
     known = facts.parameters
@@ -48,12 +48,12 @@ def _judge_parameters(
     if not wrong:
         return _DONE
     if step.facts_asked:
-        return Verdict(StepStatus.TIMED_OUT, f"not taken over: {', '.join(wrong)}")
+        return Verdict(StepStatus.TIMED_OUT, f"not applied: {', '.join(wrong)}")
     return None
 
 
 def _judge_transition(step: Step, transition: Transition, report: NodeReport) -> Verdict | None:
-    """Follow the lifecycle table; falling back counts as failure once the node was on the way."""
+    """Follow the lifecycle table; a return to the start state after the transition is a failure."""
     rule = rule_for(step.start_state, transition)
     if rule is None or report.state is None:
         return None

@@ -1,5 +1,5 @@
-"""What happened, as values: one small class per kind of event.
+"""Events as values: one small class per kind.
 
-Read `event.py` first. To add a kind, add a class to the module of its subject, with its words, and
-emit it: the stream, the log, the page and the reference of events follow.
+Read `event.py` first. To add a kind, add a class with its words to the module of its subject, and
+emit it: stream, log, page and the reference of events need no change.
 """

@@ -1,4 +1,4 @@
-"""What is told of changes of state, mode and parameters, and of nodes that reappear."""
+"""Events of changes of state, mode and parameters, and of nodes that reappear."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -14,7 +14,7 @@ from domain.state_and_mode import PartName, StateAndMode
 
 @dataclass(frozen=True, slots=True)
 class ChangeRequested(Event):
-    """Somebody requests a change of state, mode or parameters."""
+    """A change of state, mode or parameters is requested."""
 
     kind = "change.requested"
     is_input = True
@@ -34,7 +34,7 @@ class ChangeRequested(Event):
 
 @dataclass(frozen=True, slots=True)
 class ChangeCancelRequested(Event):
-    """Somebody cancels a change."""
+    """A cancel of a change is requested."""
 
     kind = "change.cancel_requested"
     is_input = True
@@ -98,7 +98,7 @@ class NodeAnswered(Event):
 
 @dataclass(frozen=True, slots=True)
 class ChangeEnded(Event):
-    """A change ended; each way to end is a kind of its own."""
+    """A change ended; each status has its own kind."""
 
     status: ClassVar[ChangeStatus]
 
@@ -113,7 +113,7 @@ class ChangeEnded(Event):
 
 @dataclass(frozen=True, slots=True)
 class ChangeSucceeded(ChangeEnded):
-    """A change succeeded: every node was verified to be where it should be."""
+    """A change succeeded: every node was verified to be in its target state and mode."""
 
     kind = "change.succeeded"
     status = ChangeStatus.SUCCEEDED

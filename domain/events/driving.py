@@ -1,4 +1,4 @@
-"""What is told of the vehicle, its task and its holds."""
+"""Events of the vehicle, its task and its holds."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -58,7 +58,7 @@ class GoalEnded(Event):
 
 @dataclass(frozen=True, slots=True)
 class TaskRequested(Event):
-    """Somebody submits a task."""
+    """A task is submitted."""
 
     kind = "task.requested"
     is_input = True
@@ -77,7 +77,7 @@ class TaskRequested(Event):
 
 @dataclass(frozen=True, slots=True)
 class TaskCancelRequested(Event):
-    """Somebody cancels the current task."""
+    """A cancel of the current task is requested."""
 
     kind = "task.cancel_requested"
     is_input = True
@@ -103,7 +103,7 @@ class TaskServed(Event):
 
 @dataclass(frozen=True, slots=True)
 class _TaskDriven(Event):
-    """Navigation was given a goal of the task."""
+    """Navigation received a goal of the task."""
 
     verb: ClassVar[str]
 
@@ -206,7 +206,7 @@ TASK_ENDS: Mapping[TaskPhase, type[_TaskEnded]] = {
 
 @dataclass(frozen=True, slots=True)
 class HoldRequested(Event):
-    """Somebody requests a hold."""
+    """A hold is requested."""
 
     kind = "hold.requested"
     is_input = True
@@ -221,7 +221,7 @@ class HoldRequested(Event):
 
 @dataclass(frozen=True, slots=True)
 class HoldReleaseRequested(Event):
-    """Somebody requests that a hold be released."""
+    """The release of a hold is requested."""
 
     kind = "hold.release_requested"
     is_input = True

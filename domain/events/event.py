@@ -1,8 +1,8 @@
-"""The base of all events, and their place in the log.
+"""The base class of events, and their entry in the log.
 
-An event is emitted with `Outbox.emit`, and read by its class and fields. What clients see of it
-follows from the class: `kind`, `data`, the sentence for an operator in `words`, and whether that
-belongs in a short list (`notable`).
+`Outbox.emit` records an event; the core reads its class and fields. Clients see what follows from
+the class: `kind`, `data`, a sentence for an operator in `words`, and whether that belongs in a
+short list (`notable`).
 """
 
 from collections.abc import Mapping
@@ -16,24 +16,24 @@ from domain.timebase import Instant
 
 
 class Event:
-    """Something that was decided, or that became known."""
+    """A decision, or a fact that became known."""
 
     __slots__ = ()
 
     kind: ClassVar[str]
-    """Its name for clients, such as `change.succeeded`."""
+    """Name of the kind for clients, such as `change.succeeded`."""
     is_input: ClassVar[bool] = False
-    """It came from outside or from the clock; recorded once something follows from it."""
+    """An input, from outside or from the clock; recorded once something follows from it."""
     optional: ClassVar[frozenset[str]] = frozenset()
-    """Fields that `data` leaves out while they are None."""
+    """Fields that `data` omits while they are None."""
     hidden: ClassVar[frozenset[str]] = frozenset()
-    """Fields that `data` never has."""
+    """Fields that `data` always omits."""
     is_notable: ClassVar[bool] = True
-    """Whether a short list for operators has events of this kind."""
+    """Whether a short list for operators shows events of this kind."""
 
     @property
     def words(self) -> str:
-        """Return what happened, as one sentence for an operator."""
+        """Return what happened, in one sentence for an operator."""
         return self._words()
 
     def _words(self) -> str:
@@ -41,7 +41,7 @@ class Event:
 
     @property
     def notable(self) -> bool:
-        """Tell whether a short list for operators has this event."""
+        """Tell whether a short list for operators shows this event."""
         return self.is_notable
 
     @classmethod
@@ -61,20 +61,20 @@ class Event:
 
 @dataclass(frozen=True, slots=True)
 class RecordedEvent:
-    """An event in its place in the log."""
+    """An entry of the event log."""
 
     id: int
     """Rises by one per event."""
     at: Instant
     cause: int | None
-    """The event that led to this one; None: it came from outside, or from the clock."""
+    """Id of the event that led to this one; None: it came from outside, or from the clock."""
     actor: Actor
-    """Who asked for it."""
+    """Who requested it."""
     event: Event
 
     @property
     def kind(self) -> str:
-        """Return the name of its kind for clients."""
+        """Return the name of the kind for clients."""
         return self.event.kind
 
     @property
@@ -108,5 +108,5 @@ def _plain(value: object) -> object:
 
 
 def because(words: str, reason: str | None) -> str:
-    """Return words with the reason behind them, where there is one."""
+    """Return words followed by the reason, if there is one."""
     return f"{words}: {reason}" if reason else words

@@ -1,4 +1,4 @@
-"""What is told of signals, errors, the emergency stop and the state of the robot."""
+"""Events of signals, errors, the emergency stop and the state of the robot."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -26,7 +26,7 @@ class SignalRead(Event):
 
 @dataclass(frozen=True, slots=True)
 class SignalPending(Event):
-    """A signal is bad, and becomes an error unless it recovers in time."""
+    """A signal is bad; an error follows unless it recovers in time."""
 
     kind = "signal.pending"
     is_notable = False
@@ -40,7 +40,7 @@ class SignalPending(Event):
 
 @dataclass(frozen=True, slots=True)
 class SignalSettled(Event):
-    """A signal recovered before it became an error."""
+    """A signal recovered before an error was raised."""
 
     kind = "signal.settled"
     is_notable = False
@@ -94,7 +94,7 @@ class ErrorCleared(Event):
 
 @dataclass(frozen=True, slots=True)
 class ErrorAcknowledged(Event):
-    """Somebody acknowledges an error."""
+    """An error is acknowledged."""
 
     kind = "error.acknowledged"
     is_input = True
@@ -107,7 +107,7 @@ class ErrorAcknowledged(Event):
 
 @dataclass(frozen=True, slots=True)
 class EmergencyStopEngaged(Event):
-    """Somebody engages the emergency stop."""
+    """The emergency stop is engaged."""
 
     kind = "emergency_stop.engaged"
     is_input = True
@@ -120,7 +120,7 @@ class EmergencyStopEngaged(Event):
 
 @dataclass(frozen=True, slots=True)
 class EmergencyStopReleased(Event):
-    """Somebody releases the emergency stop."""
+    """The emergency stop is released."""
 
     kind = "emergency_stop.released"
     is_input = True

@@ -1,4 +1,4 @@
-"""All kinds of events by name, for the documents of the interface."""
+"""All kinds of events by name, for the interface documents."""
 
 from collections.abc import Iterator, Mapping
 from types import ModuleType

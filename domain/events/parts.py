@@ -1,4 +1,4 @@
-"""What is told of nodes and systems."""
+"""Events of nodes and systems."""
 
 from dataclasses import dataclass, field
 
@@ -34,7 +34,7 @@ class NodeReported(Event):
 
 @dataclass(frozen=True, slots=True)
 class NodeReachable(Event):
-    """A node is heard from, for the first time or again."""
+    """A node is reachable, for the first time or again."""
 
     kind = "node.reachable"
     node: PartName
@@ -45,7 +45,7 @@ class NodeReachable(Event):
 
 @dataclass(frozen=True, slots=True)
 class NodeUnreachable(Event):
-    """A node is no longer heard from."""
+    """A node is no longer reachable."""
 
     kind = "node.unreachable"
     node: PartName
@@ -66,7 +66,7 @@ class PartActualChanged(Event):
     was: StateAndMode
     reason: str | None
     of_system: bool = field(default=False, kw_only=True)
-    """The part is a system; what becomes of its nodes one by one is detail."""
+    """Whether the part is a system; changes of single nodes are detail."""
 
     def _words(self) -> str:
         return f"{self.part}: {self.was.label} -> {self.actual.label}"

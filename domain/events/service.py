@@ -1,4 +1,4 @@
-"""What is told of the service itself: writes, and time."""
+"""Events of the service itself: writes and time."""
 
 from dataclasses import dataclass
 
@@ -7,7 +7,7 @@ from domain.events.event import Event
 
 @dataclass(frozen=True, slots=True)
 class WriteAnswered(Event):
-    """A request that was to change something was answered; the audit trail."""
+    """A write request was answered; the audit trail."""
 
     kind = "audit.write"
     is_input = True
@@ -16,9 +16,9 @@ class WriteAnswered(Event):
     method: str
     path: str
     status: int
-    """Of HTTP."""
+    """HTTP status code."""
     address: str
-    """Host and port of who asked."""
+    """Host and port of the client."""
 
     def _words(self) -> str:
         return f"{self.method} {self.path} from {self.address} answered {self.status}"
@@ -26,7 +26,7 @@ class WriteAnswered(Event):
 
 @dataclass(frozen=True, slots=True)
 class TimeWasDue(Event):
-    """A deadline passed, or something was old or bad for long enough."""
+    """A deadline passed, or something has been stale or bad for long enough."""
 
     kind = "time.passed"
     is_input = True

@@ -1,4 +1,4 @@
-"""Health: signals, for how long they have been bad or silent, and which errors follow.
+"""Health: signals, how long they have been bad or stale, and the errors that follow.
 
 Read `signals.py` for the table, then `state_manager.py`. The emergency stop is here too.
 """

@@ -1,4 +1,4 @@
-"""The emergency stop: a latch that no reading releases, only a person."""
+"""The emergency stop: a latch that only a person releases, never a reading."""
 
 from dataclasses import replace
 
@@ -16,12 +16,12 @@ from domain.timebase import Instant
 
 
 class EmergencyStop(Concern):
-    """The latch with who set it, why and since when.
+    """The latch: who engaged it, why and since when.
 
-    Both acts are idempotent: repeating one keeps who did it first. It starts released, since it is
-    not stored yet.
+    Engage and release are idempotent: a repetition keeps the first actor. The latch starts
+    released, since it is not stored yet.
 
-    Source: ISO 13850, which wants a stop to stay until it is reset by hand.
+    Source: ISO 13850, which requires a stop to remain until it is reset manually.
     """
 
     def __init__(self, health: Health, outbox: Outbox) -> None:
@@ -33,11 +33,11 @@ class EmergencyStop(Concern):
 
     @property
     def takes(self) -> Takers:
-        """Return what takes each class of input."""
+        """Return the handler of each class of input."""
         return {EmergencyStopRequest: self.take_request}
 
     def take_request(self, request: EmergencyStopRequest, now: Instant) -> None:
-        """Engage or release the stop; to repeat it changes nothing."""
+        """Engage or release the stop; a repetition changes nothing."""
         if request.engaged is self._view.engaged:
             return
         self._view = EmergencyStopView(
@@ -53,11 +53,11 @@ class EmergencyStop(Concern):
         self._health.press_stop(now, engaged=request.engaged)
 
     def note_standstill(self, now: Instant) -> None:
-        """Learn that the vehicle stands, and tell when that is first known since the stop."""
+        """Record the first standstill of the vehicle since the stop was engaged."""
         if self._view.engaged and self._view.standstill_at is None:
             self._view = replace(self._view, standstill_at=now)
             self._outbox.emit(EmergencyStopStandstill())
 
     def view(self) -> EmergencyStopView:
-        """Return the latch as it is; the same object as long as nothing changed."""
+        """Return the latch; the same object until it changes."""
         return self._view

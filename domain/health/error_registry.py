@@ -1,4 +1,4 @@
-"""The errors of the robot, from whatever source: which are on, why, and until when."""
+"""The errors of the robot from all sources: which are active, and why."""
 
 from collections.abc import Iterable, Iterator, Mapping
 from typing import Protocol
@@ -14,29 +14,29 @@ class ErrorSource(Protocol):
 
     @property
     def bits(self) -> Mapping[str, int]:
-        """Return the errors that it may raise, with the bit of each in the error code."""
+        """Return the errors that it can raise, with the bit of each in the error code."""
         ...
 
     @property
     def errors(self) -> frozenset[str]:
-        """Return the errors that are on."""
+        """Return the active errors."""
         ...
 
     @property
     def present(self) -> frozenset[str]:
-        """Return the errors that are on and whose cause is still there."""
+        """Return the active errors whose cause is still present."""
         ...
 
     def reasons(self) -> Iterator[Blocker]:
-        """Tell why the errors are on, one reason per cause; its code is the error."""
+        """Yield why errors are active, one reason per cause; its code is the error."""
         ...
 
     def acknowledge(self, error: str, now: Instant) -> None:
-        """Acknowledge an error if it is on here."""
+        """Acknowledge an error if it is active here."""
         ...
 
     def judge(self, now: Instant) -> None:
-        """Let errors begin and end as of now."""
+        """Raise and clear errors as of `now`."""
         ...
 
     def wake_at(self) -> Instant | None:
@@ -45,13 +45,13 @@ class ErrorSource(Protocol):
 
 
 class ErrorRegistry:
-    """All sources together. Several may raise the same error, which is on while one of them does.
+    """All sources together. Several may raise the same error; it is active while one of them does.
 
-    A source changes by itself, too, when it is told something; what is seen here follows at once.
+    Sources also change on their own inputs; the registry reflects that at once.
     """
 
     def __init__(self, sources: Iterable[ErrorSource]) -> None:
-        """Begin with what is on already.
+        """Join the sources.
 
         Raises:
             InvalidValueError: Two sources give the same error different bits.
@@ -62,11 +62,11 @@ class ErrorRegistry:
 
     @property
     def names(self) -> tuple[str, ...]:
-        """Return the errors that there may be, in the order of their bits."""
+        """Return all errors that can be raised, in the order of their bits."""
         return tuple(self._bits)
 
     def errors(self) -> tuple[str, ...]:
-        """Return the errors that are on, in the order of their bits."""
+        """Return the active errors, in the order of their bits."""
         on = frozenset[str]().union(*(source.errors for source in self._sources))
         return tuple(error for error in self._bits if error in on)
 
@@ -78,7 +78,7 @@ class ErrorRegistry:
         return code
 
     def reasons(self) -> tuple[Blocker, ...]:
-        """Tell why errors are on: the stop first, then by bit, and last what is merely kept on."""
+        """Return why errors are active: ESTOP first, then by bit, those without a cause last."""
         ranked = []
         for source in self._sources:
             for reason in source.reasons():
@@ -89,12 +89,12 @@ class ErrorRegistry:
         return tuple(reason for _, reason in ranked)
 
     def acknowledge(self, error: str, now: Instant) -> None:
-        """Acknowledge an error wherever it is on."""
+        """Acknowledge an error in all sources."""
         for source in self._sources:
             source.acknowledge(error, now)
 
     def judge(self, now: Instant) -> None:
-        """Let errors begin and end as of now."""
+        """Raise and clear errors as of `now`."""
         for source in self._sources:
             source.judge(now)
 

@@ -1,14 +1,14 @@
-"""Room for one error of a signal: what keeps it on after its cause is gone."""
+"""One error of a signal, and what keeps it active after its cause is gone."""
 
 from domain.health.signals import Recovery
 from domain.timebase import Duration, Instant
 
 
 class ErrorSlot:
-    """Holds at most one error, for a least time and, if so set, until it is acknowledged.
+    """Holds at most one error, for a minimum time and, if configured, until it is acknowledged.
 
-    Errors that share a slot exclude each other: a new one takes the place of the old one at once,
-    least time or not, since the robot stays in ERROR all the same.
+    Errors that share a slot exclude each other: a new one replaces the old one at once, minimum
+    time or not, since the robot stays in ERROR either way.
     """
 
     def __init__(self, min_on: Duration, recovery: Recovery) -> None:
@@ -17,21 +17,21 @@ class ErrorSlot:
         self._hold_until: Instant = 0
         self._acknowledged = False
         self.error: str | None = None
-        """The error that is on."""
+        """The active error."""
         self.cause: str | None = None
         """The error whose cause is present now."""
         self.since: Instant = 0
-        """When the error that is on came on."""
+        """When the active error was raised."""
 
     def begin_with(self, error: str, start: Instant) -> None:
-        """Let `error` be on from the start, for no longer than its cause."""
+        """Raise `error` at the start; it has no minimum time."""
         self.error = self.cause = error
         self.since = self._hold_until = start
 
     def update(self, cause: str | None, now: Instant) -> None:
-        """Say which cause is present now, and let end what may end.
+        """Set the cause that is present now, and clear the error if it may end.
 
-        A cause that comes back while its error is still on needs a new acknowledgement.
+        A cause that reappears while its error is still active needs a new acknowledgement.
         """
         if cause is not None and cause != self.cause:
             self._acknowledged = False
@@ -44,15 +44,15 @@ class ErrorSlot:
             self.error = None
 
     def acknowledge(self) -> None:
-        """Acknowledge the error that is on; call `update` to let it end.
+        """Acknowledge the active error; call `update` to clear it.
 
-        While the cause is present, this is remembered until the cause goes.
+        While the cause is present, the acknowledgement is kept until the cause is gone.
         """
         self._acknowledged = self.error is not None
 
     @property
     def wake_at(self) -> Instant | None:
-        """Return when time alone ends the error; None: never."""
+        """Return when time alone clears the error; None: never."""
         return self._hold_until if self._ends_with_time else None
 
     @property

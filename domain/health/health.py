@@ -1,4 +1,4 @@
-"""Health as a concern of the core: readings and acknowledgements in, errors and reasons out."""
+"""Health as a concern of the core: readings and acknowledgements in; errors and reasons out."""
 
 from collections.abc import Iterable, Mapping
 
@@ -22,16 +22,16 @@ from domain.timebase import Instant
 
 
 class Health(Concern):
-    """Judges with the state manager, and tells what that decided.
+    """Passes inputs to the state manager, and publishes its decisions as events.
 
-    An error that time alone raised is caused by the reading that first was bad, not by the clock.
+    The cause of an error that time alone raised is the first bad reading, not the clock.
     """
 
     def __init__(self, signals: Iterable[SignalSettings], outbox: Outbox, start: Instant) -> None:
         self._manager = StateManager(signals, start)
         self._outbox = outbox
         self._pending: dict[str, int] = {}
-        """By error, the event that told that it is pending."""
+        """By error, the event that recorded it as pending."""
         self.decided_by: int | None = None
         """The newest event that raised or cleared an error; None: there was none yet."""
 
@@ -39,22 +39,22 @@ class Health(Concern):
 
     @property
     def takes(self) -> Takers:
-        """Return what takes each class of input."""
+        """Return the handler of each class of input."""
         return {Readings: self.take_readings, AcknowledgeRequest: self.acknowledge}
 
     def wake_at(self) -> Instant | None:
-        """Return when an error begins or ends by time alone."""
+        """Return when time alone raises or clears an error."""
         return self._manager.wake_at()
 
     def pass_time(self, now: Instant) -> None:
-        """Let errors begin and end that are due."""
+        """Raise and clear the errors that are due."""
         self._tell(self._manager.pass_time(now))
 
     def take_readings(self, readings: Readings, now: Instant) -> None:
-        """Take readings, and decide at once.
+        """Accept readings, and decide at once.
 
         Raises:
-            PilothouseError: One of them cannot be taken; none was.
+            PilothouseError: One reading is rejected, and so all of them are.
         """
         self._manager.check(readings, now)
         values = {reading.signal: reading.value for reading in readings.items}
@@ -62,7 +62,7 @@ class Health(Concern):
         self._tell(self._manager.receive(readings, now))
 
     def acknowledge(self, request: AcknowledgeRequest, now: Instant) -> None:
-        """Acknowledge an error, which ends when its cause is gone.
+        """Acknowledge an error, so that it clears once its cause is gone.
 
         Raises:
             UnknownErrorNameError: There is no error of this name.
@@ -71,29 +71,29 @@ class Health(Concern):
         self._tell(self._manager.acknowledge(request.error, now))
 
     def press_stop(self, now: Instant, *, engaged: bool) -> None:
-        """Let the emergency stop be a cause of ESTOP, or end that."""
+        """Raise ESTOP for the emergency stop, or remove that cause."""
         self._tell(self._manager.set_emergency_stop(engaged, now))
 
     # --- what can be seen ------------------------------------------------------------------------
 
     @property
     def errors(self) -> tuple[str, ...]:
-        """Return the errors that are on, in the order of their bits."""
+        """Return the active errors, in the order of their bits."""
         return self._manager.errors
 
     @property
     def reasons(self) -> tuple[Blocker, ...]:
-        """Return why errors are on, the most urgent first; the same object until that changes."""
+        """Return why errors are active, the most urgent first; the same object until it changes."""
         return self._manager.reasons
 
     @property
     def is_stopped(self) -> bool:
-        """Tell whether ESTOP is on: nothing may be activated."""
+        """Tell whether ESTOP is active: no node may be activated."""
         return ESTOP in self._manager.errors
 
     @property
     def stop_reasons(self) -> tuple[Blocker, ...]:
-        """Return why ESTOP is on; empty when it is not."""
+        """Return why ESTOP is active; empty: it is not."""
         if not self.is_stopped:
             return ()
         return tuple(reason for reason in self._manager.reasons if reason.code == ESTOP)
@@ -107,17 +107,17 @@ class Health(Concern):
         return self._manager.signal(name)
 
     def signals(self) -> Mapping[str, SignalView]:
-        """Return all signals as declared; the same object as long as nothing changed."""
+        """Return all signals in the order of declaration; the same object until one changes."""
         return self._manager.signals()
 
     def system_state(self, task_status: TaskStatus) -> SystemStateView:
-        """Return the state of the robot, given whether it has a task."""
+        """Return the state of the robot for a given task status."""
         return self._manager.system_state(task_status)
 
     # --- inside ----------------------------------------------------------------------------------
 
     def _tell(self, changes: HealthChanges) -> None:
-        """Record what changed, causes first."""
+        """Record changes as events, causes first."""
         emit = self._outbox.emit
         for signal, error in changes.pending:
             self._pending[error] = emit(SignalPending(signal, error))

@@ -1,6 +1,6 @@
-"""What a signal was last read as, by whom, and which late readings are refused.
+"""The last readings of a signal by source, and which late readings are rejected.
 
-Age is judged by when a reading arrived. A sender's stamp only tells the order of its readings.
+The age of a reading counts from its arrival. The sender's stamp only orders its readings.
 """
 
 from dataclasses import dataclass
@@ -10,13 +10,13 @@ from domain.inputs import Reading, SignalValue
 from domain.timebase import Duration, Instant, seconds
 
 MAX_SKEW = seconds(1.0)
-"""A stamp further from our clock than this says that a clock is wrong."""
+"""If a stamp is further from our clock than this, one of the clocks is wrong."""
 
 MAX_QUIET_SOURCES = 64
-"""Sources of a stop that do not press it are remembered up to this number, the latest ones."""
+"""Largest number of sources kept that do not press a stop; the latest ones are kept."""
 
 MAX_PRESSING_SOURCES = 1_000
-"""Beyond this, further sources that press a stop are remembered as one, which nobody releases."""
+"""Beyond this number, further sources that press a stop share one entry that nobody releases."""
 
 _FURTHER_SOURCES = "further sources"
 
@@ -30,9 +30,9 @@ class HeldReading:
     received_at: Instant
     stamp: Instant | None
     newest_stamp: Instant | None
-    """Of all its readings; stamps that are too far ahead of our clock do not count."""
+    """Newest stamp of this source; stamps too far ahead of our clock do not count."""
     since: Instant
-    """When it was first read as this value, without another in between."""
+    """When the source first read this value without another one in between."""
 
     @property
     def skewed(self) -> bool:
@@ -43,19 +43,19 @@ class HeldReading:
 class HeldReadings:
     """The readings held of one signal.
 
-    All sources of a signal speak for the same thing, so the last reading counts. Sources of a stop
-    are kept apart: it is pressed while one of them presses it, and each stream of stamps is
-    ordered by itself.
+    All sources of a signal measure the same quantity, so the last reading counts. Sources of a stop
+    are kept apart: the stop is pressed while one of them presses it, and the stamps of each source
+    are ordered separately.
     """
 
     def __init__(self, settings: SignalSettings) -> None:
         self._settings = settings
         self._by_source: dict[str, HeldReading] = {}
         self.newest: HeldReading | None = None
-        """The reading that arrived last, of whatever source."""
+        """The reading that arrived last, from any source."""
 
     def copy(self) -> "HeldReadings":
-        """Return a copy to try readings on."""
+        """Return a copy for a trial."""
         copy = HeldReadings(self._settings)
         copy._by_source = dict(self._by_source)
         copy.newest = self.newest
@@ -63,23 +63,23 @@ class HeldReadings:
 
     @property
     def value(self) -> SignalValue | None:
-        """Return the value that counts: the last one, or true while a source presses a stop."""
+        """Return the value in force: the last one, or true while a source presses a stop."""
         if self.pressing:
             return True
         return None if self.newest is None else self.newest.value
 
     @property
     def pressing(self) -> tuple[HeldReading, ...]:
-        """Return the readings that press a stop, the longest first; none of another signal."""
+        """Return the readings that press a stop, the oldest first; empty for other signals."""
         if not self._settings.spec.is_stop:
             return ()
         pressing = [held for held in self._by_source.values() if held.value is True]
         return tuple(sorted(pressing, key=lambda held: (held.since, held.source)))
 
     def behind(self, reading: Reading, source: str) -> Duration | None:
-        """Return by how much a reading is too old to be taken; None: it may be taken.
+        """Return by how much a reading is too old; None: it is accepted.
 
-        Worse news is taken however late, and pressing a stop is never refused.
+        A worse value is accepted however late it is, and a pressed stop is never rejected.
         """
         held = self._by_source.get(self._key(source))
         if held is None or held.newest_stamp is None or reading.stamp is None:
@@ -92,12 +92,18 @@ class HeldReadings:
         return held.newest_stamp - reading.stamp
 
     def take(self, reading: Reading, source: str, now: Instant) -> None:
-        """Hold a checked reading that arrived at `now`."""
+        """Hold a checked reading.
+
+        Args:
+            reading: Must have passed `behind`.
+            source: Who measured.
+            now: When it arrived.
+        """
         key = self._key(source)
         if reading.value is True and key not in self._by_source and self._is_full:
-            # No source has an empty name, so none can let go for the others.
+            # No source has an empty name, so none can release this entry.
             key, source = "", _FURTHER_SOURCES
-        # Put at the end, so that the order of the dictionary is that of arrival.
+        # Appended at the end, so that the dictionary stays in order of arrival.
         held = self._by_source.pop(key, None)
         stamps = [] if held is None or held.newest_stamp is None else [held.newest_stamp]
         if reading.stamp is not None and reading.stamp <= now + MAX_SKEW:
@@ -120,7 +126,7 @@ class HeldReadings:
         return len(self._by_source) >= MAX_PRESSING_SOURCES + MAX_QUIET_SOURCES
 
     def _forget_long_quiet_source(self) -> None:
-        """Keep senders that invent source names from filling the memory."""
+        """Bound the memory against senders that invent source names."""
         quiet = [key for key, held in self._by_source.items() if held.value is not True]
         if len(quiet) > MAX_QUIET_SOURCES:
             del self._by_source[quiet[0]]

@@ -1,4 +1,4 @@
-"""Watches one signal: what is held of it, for how long it has been bad, and whether it is stale."""
+"""Monitors one signal: its readings, how long it has been bad, and whether it is stale."""
 
 from collections.abc import Iterator, Mapping
 from types import MappingProxyType
@@ -16,15 +16,15 @@ from domain.timebase import Duration, Instant, to_seconds
 class SignalMonitor:
     """One signal and its two errors: that of its value, and STALE_DATA.
 
-    What is judged follows from what was read and from the instant of the last `judge`. The caller
-    calls that at each `wake_at` in turn, before anything that happens then or later.
+    The result follows from the readings and from the instant of the last `judge`. The caller must
+    call `judge` at each `wake_at`, before anything else that happens then or later.
 
-    A reading is good when it meets no condition. "For 15 s" counts from the last good reading, or
-    from the start where there was none; all conditions of a signal share that timer. When the value
-    goes from one error to another without a good reading between, the second follows at once.
+    A reading is good if it meets no condition. "For 15 s" counts from the last good reading, or
+    from the start if there was none; all conditions of a signal share that timer. If the value
+    goes from one error to another without a good reading in between, the second is raised at once.
 
-    A stop is as fresh as the newest reading of any source. Were each source to be fresh, one that
-    spoke once, as a person does by hand, would make the robot stale for ever.
+    A stop is as fresh as the newest reading from any source. If every source had to be fresh, a
+    source that sends once, such as a person by hand, would make the stop stale for ever.
     """
 
     def __init__(self, settings: SignalSettings, start: Instant) -> None:
@@ -38,38 +38,44 @@ class SignalMonitor:
         self.bits: Mapping[str, int] = MappingProxyType(
             {STALE_DATA: STALE_DATA_BIT, **{c.error: c.bit for c in settings.conditions}}
         )
-        """The errors that it may raise, with their bits."""
+        """The errors that it can raise, with their bits."""
         self._value_slot = ErrorSlot(settings.min_on, settings.recovery)
         self._stale_slot = ErrorSlot(settings.min_on, Recovery.AUTOMATIC)
         if settings.stale_after:
-            # Nobody has to see this one for a while: a first reading ends it at once.
+            # No minimum time: the first reading clears it at once.
             self._stale_slot.begin_with(STALE_DATA, start)
         self.view = self._make_view(start)
-        """The same object as long as nothing changed."""
+        """The same object until something changes."""
 
     # --- what happens ----------------------------------------------------------------------------
 
     def receive(self, reading: Reading, source: str, now: Instant) -> None:
-        """Take a checked reading that arrived at `now`."""
+        """Process a checked reading.
+
+        Args:
+            reading: Of this signal; valid and not outdated.
+            source: Who measured.
+            now: When it arrived.
+        """
         self.readings.take(reading, source, now)
         if not self._met_by_readings():
             self._last_good = now
         self.judge(now)
 
     def set_engaged(self, *, engaged: bool, now: Instant) -> None:
-        """Press or release a stop besides its sources; it takes effect at once."""
+        """Press or release the stop independently of its sources; this takes effect at once."""
         if engaged is not (self._engaged_since is not None):
             self._engaged_since = now if engaged else None
             self.judge(now)
 
     def acknowledge(self, error: str, now: Instant) -> None:
-        """Acknowledge `error` if it is the one that is on."""
+        """Acknowledge `error` if it is the active one."""
         if self._value_slot.error == error:
             self._value_slot.acknowledge()
             self.judge(now)
 
     def judge(self, now: Instant) -> None:
-        """Judge what is held as of `now`."""
+        """Evaluate the readings as of `now`."""
         cause = self._find_cause(now)
         if cause is not self._cause:
             self._cause = cause
@@ -91,18 +97,18 @@ class SignalMonitor:
 
     @property
     def errors(self) -> frozenset[str]:
-        """Return the errors that are on."""
+        """Return the active errors."""
         errors = (self._value_slot.error, self._stale_slot.error)
         return frozenset(error for error in errors if error is not None)
 
     @property
     def present(self) -> frozenset[str]:
-        """Return the errors that are on and whose cause is still there."""
+        """Return the active errors whose cause is still present."""
         causes = (self._value_slot.cause, self._stale_slot.cause)
         return frozenset(cause for cause in causes if cause is not None)
 
     def reasons(self) -> Iterator[Blocker]:
-        """Tell why the errors are on, one reason per cause."""
+        """Yield why the errors are active, one reason per cause."""
         value = self.readings.value
         if self._value_slot.error is not None and self._cause is None:
             yield self._reason(self._value_slot, kept_reason(self.settings, self._value_slot))
@@ -167,7 +173,7 @@ class SignalMonitor:
     # --- what is judged --------------------------------------------------------------------------
 
     def _met_by_readings(self) -> list[Condition]:
-        """Return the conditions that the value held meets, the most urgent first."""
+        """Return the conditions that the value meets, the most urgent first."""
         value = self.readings.value
         if value is None:
             return []
@@ -178,7 +184,7 @@ class SignalMonitor:
         ]
 
     def _met(self) -> list[Condition]:
-        """Return the conditions that are met, an engaged emergency stop meeting all."""
+        """Return the conditions that are met; an engaged emergency stop meets all."""
         if self._engaged_since is not None:
             return list(self.settings.conditions)
         return self._met_by_readings()
@@ -187,7 +193,7 @@ class SignalMonitor:
         return self._engaged_since is not None or now - self._last_good >= condition.for_
 
     def _find_cause(self, now: Instant) -> Condition | None:
-        """Return the most urgent condition that is met and due, or that already was an error."""
+        """Return the most urgent condition that is met and due, or is an error already."""
         met = self._met()
         for condition in met:
             if condition is self._cause or self._is_due(condition, now):
@@ -195,16 +201,16 @@ class SignalMonitor:
         return met[0] if met and self._cause is not None else None
 
     def _waiting(self) -> list[Condition]:
-        """Return the conditions that are met and would be the cause if they were due."""
+        """Return the conditions that are met and will become the cause when they are due."""
         met = self._met()
         return met[: met.index(self._cause)] if self._cause in met else met
 
     def _stale_at(self) -> Instant | None:
-        """Return when the value held becomes stale; None: it is, or it never does."""
+        """Return when the value becomes stale; None: it is stale already, or never will be."""
         newest = self.readings.newest
         if not self.settings.stale_after or newest is None or self._stale_slot.cause is not None:
             return None
-        # Strictly older, so the instant after that of the limit.
+        # "Older than" is strict: the instant after the limit.
         return newest.received_at + self.settings.stale_after + 1
 
     def _is_stale(self, now: Instant) -> bool:

@@ -1,4 +1,4 @@
-"""Says in words why an error of a signal is on."""
+"""Messages that tell why an error of a signal is active."""
 
 from domain.health.error_slot import ErrorSlot
 from domain.health.held_readings import HeldReadings
@@ -18,16 +18,13 @@ _NAMED_SOURCES = 3
 def value_reason(
     settings: SignalSettings, condition: Condition, value: SignalValue, bad_for: Duration
 ) -> str:
-    """Say what is wrong with a value.
+    """Return what is wrong with a value, such as "battery 42 % is below 50 %".
 
     Args:
-        settings: The signal's.
-        condition: The one whose error is on.
-        value: The reading held.
-        bad_for: For how long at least there was no good reading when the error came.
-
-    Returns:
-        As in "battery 42 % is below 50 %".
+        settings: Settings of the signal.
+        condition: The condition whose error is active.
+        value: The value held.
+        bad_for: Minimum time without a good reading when the error was raised.
     """
     spec = settings.spec
     if spec.kind is SignalKind.NUMBER:
@@ -42,7 +39,7 @@ def value_reason(
 
 
 def pressed_reason(readings: HeldReadings, spec: SignalSpec) -> str:
-    """Say who presses a stop, as in "e-stop is pressed (source api)"."""
+    """Return who presses a stop, such as "e-stop is pressed (source api)"."""
     sources = [held.source for held in readings.pressing]
     named = ", ".join(sources[:_NAMED_SOURCES])
     more = len(sources) - _NAMED_SOURCES
@@ -52,22 +49,22 @@ def pressed_reason(readings: HeldReadings, spec: SignalSpec) -> str:
 
 
 def stale_reason(settings: SignalSettings, *, is_seen: bool) -> str:
-    """Say that there is no reading, or none that is young enough."""
+    """Return that there is no reading yet, or none that is recent enough."""
     if not is_seen:
         return f"no reading of {settings.spec.name} yet"
     return f"no reading of {settings.spec.name} for {_duration(settings.stale_after)}"
 
 
 def kept_reason(settings: SignalSettings, slot: ErrorSlot) -> str:
-    """Say why an error is still on although its cause is gone."""
+    """Return why an error is still active although its cause is gone."""
     gone = f"{_label(settings.spec)} no longer causes {slot.error}, which"
     if slot.waits_for_acknowledgement:
-        return f"{gone} waits to be acknowledged"
-    return f"{gone} stays on for at least {_duration(settings.min_on)}"
+        return f"{gone} waits for acknowledgement"
+    return f"{gone} stays active for at least {_duration(settings.min_on)}"
 
 
 def _number_reason(spec: SignalSpec, condition: Condition, value: float, bad_for: Duration) -> str:
-    # Between the two thresholds, it is the clear threshold that the value has not reached.
+    # Between the two thresholds, the value has not reached the clear threshold.
     is_beyond = condition.is_met_by(value)
     limit = float(condition.threshold) if is_beyond else condition.clear_limit
     comparison = f"{condition.comparison} {_quantity(spec, limit)}"
@@ -80,7 +77,7 @@ def _number_reason(spec: SignalSpec, condition: Condition, value: float, bad_for
 
 
 def _quantity(spec: SignalSpec, value: float, other: float | None = None) -> str:
-    """Write a number with its unit, with as many digits as tell it from `other`."""
+    """Format a number with its unit, with enough digits to tell it from `other`."""
     scale, unit = (100.0, "%") if spec.unit == RATIO else (1.0, spec.unit)
     for digits in (6, 9, 12, 17):
         text = f"{value * scale:.{digits}g}"

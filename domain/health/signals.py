@@ -1,7 +1,7 @@
-"""What the robot's signals are, which values are errors, and the table of the usual five.
+"""Types of signals and their error conditions, and the table of the five default signals.
 
-The table is that of smart_polaris (`gem_state_manager`), whose error bits it keeps; further signals
-are declared with the same types.
+The table and its error bits are those of smart_polaris (`gem_state_manager`); further signals are
+declared with the same types.
 """
 
 import math
@@ -18,14 +18,14 @@ ESTOP = "ESTOP"
 STALE_DATA = "STALE_DATA"
 STALE_DATA_BIT = 64
 DECLARED_BIT = 128
-"""Shared by the errors of all declared signals; their names tell them apart."""
+"""Bit shared by the errors of all declared signals; their names tell them apart."""
 
 RATIO = "ratio"
-"""Unit of a number from 0 to 1 that is a percentage in words."""
+"""Unit of a number from 0 to 1 that messages show as a percentage."""
 
 
 class SignalKind(StrEnum):
-    """What the values of a signal are."""
+    """Type of the values of a signal."""
 
     NUMBER = "number"
     BOOLEAN = "boolean"
@@ -41,48 +41,52 @@ class Comparison(StrEnum):
 
 
 class Recovery(StrEnum):
-    """How an error ends once its cause is gone."""
+    """How an error clears once its cause is gone."""
 
     AUTOMATIC = "automatic"
     ACKNOWLEDGE = "acknowledge"
-    """Only when an operator has acknowledged it, before or after the cause went."""
+    """Only after an operator has acknowledged it, before or after the cause was gone."""
 
 
 @dataclass(frozen=True, slots=True)
 class SignalSpec:
-    """What a signal can say."""
+    """Name, type and range of a signal.
+
+    Raises:
+        InvalidValueError: Members that do not fit the type, or a stop that is not boolean.
+    """
 
     name: str
     kind: SignalKind
     unit: str = ""
     label: str = ""
-    """Its name in a sentence; empty: the name itself."""
+    """Its name in messages; empty: `name`."""
     minimum: float | None = None
     maximum: float | None = None
     members: tuple[str, ...] = ()
-    """Of an enumeration, from good to bad."""
+    """Values of an enumeration, from good to bad."""
     codes: tuple[int, ...] = ()
-    """Numbers that stand for the members, as in a ROS message; empty: there are none."""
+    """Numeric codes of the members, as in a ROS message; empty: there are none."""
     is_stop: bool = False
-    """True stops the robot: one source cannot release what another presses, and a reading that
-    presses is never refused.
+    """The value true stops the robot. One source cannot release what another presses, and a
+    reading that presses is never rejected.
     """
 
     def __post_init__(self) -> None:
         if (self.kind is SignalKind.ENUMERATION) is not bool(self.members):
             raise InvalidValueError(
-                f"{self.name}: an enumeration has members, and nothing else has", self.name
+                f"{self.name}: an enumeration needs members; other kinds have none", self.name
             )
         if len(set(self.members)) != len(self.members):
-            raise InvalidValueError(f"{self.name}: a member is named twice", self.name)
+            raise InvalidValueError(f"{self.name}: duplicate member", self.name)
         if self.is_stop and self.kind is not SignalKind.BOOLEAN:
-            raise InvalidValueError(f"{self.name}: a stop is a boolean", self.name)
+            raise InvalidValueError(f"{self.name}: a stop must be boolean", self.name)
 
     def checked(self, value: object) -> SignalValue:
         """Return `value` as this signal holds it: a number as a float, -0.0 as 0.0.
 
         Raises:
-            InvalidValueError: It is of another type, not finite, out of range or no member. A
+            InvalidValueError: It has the wrong type, is not finite, out of range or not a member. A
                 boolean is not a number, and a number is not a boolean.
         """
         match self.kind:
@@ -120,21 +124,21 @@ class SignalSpec:
 
 @dataclass(frozen=True, slots=True)
 class Condition:
-    """Which values of a signal are an error, and for how long they have to be."""
+    """Which values of a signal are an error, and after how long."""
 
     error: str
     comparison: Comparison
     threshold: SignalValue
     clear_threshold: float | None = None
-    """Of a number: where the error ends once it is on; None: at the threshold."""
+    """For a number: where an active error clears (hysteresis); None: at the threshold."""
     for_: Duration = 0
-    """How long after the last good reading the error comes; 0: at once."""
+    """How long after the last good reading the error is raised; 0: at once."""
     bit: int = DECLARED_BIT
     key: str = ""
-    """Tells the settings of several conditions of one signal apart, as in `lost_for_s`."""
+    """Prefix that tells the settings of several conditions apart, as in `lost_for_s`."""
 
     def is_met_by(self, value: SignalValue, *, error_is_on: bool = False) -> bool:
-        """Tell whether `value` is bad; while the error is on, the clear threshold decides."""
+        """Tell whether `value` is bad; while the error is active, the clear threshold decides."""
         if self.comparison is Comparison.EQUAL:
             return value == self.threshold
         limit = self.clear_limit if error_is_on else float(self.threshold)
@@ -144,18 +148,18 @@ class Condition:
 
     @property
     def clear_limit(self) -> float:
-        """Return where the error of a number ends."""
+        """Return where the error of a number clears."""
         return float(self.threshold) if self.clear_threshold is None else self.clear_threshold
 
     def badness(self, value: float) -> float:
-        """Return how far a number is on the bad side of the threshold; negative: on the good."""
+        """Return by how much a number exceeds the threshold on its bad side; negative: good."""
         excess = value - float(self.threshold)
         return excess if self.comparison is Comparison.ABOVE else -excess
 
 
 @dataclass(frozen=True, slots=True)
 class SignalSettings:
-    """A signal with everything that can be set about it.
+    """A signal with its conditions and settings.
 
     Raises:
         InvalidValueError: A condition does not fit the signal; `pointer` is
@@ -164,17 +168,17 @@ class SignalSettings:
 
     spec: SignalSpec
     conditions: tuple[Condition, ...] = ()
-    """Most urgent first; a number needs none to be worth showing."""
+    """Most urgent first; empty for a number that is only shown."""
     stale_after: Duration = seconds(2.0)
-    """A reading older than this is stale; 0 turns staleness off."""
+    """Readings older than this are stale; 0 turns staleness off."""
     min_on: Duration = seconds(0.2)
-    """An error of this signal stays on for at least so long, so that a short one is seen."""
+    """Minimum time that an error of this signal stays active, so that a short one is seen."""
     recovery: Recovery = Recovery.AUTOMATIC
-    """Of the errors of its values; staleness always ends by itself."""
+    """Recovery of value errors; staleness always recovers automatically."""
 
     def __post_init__(self) -> None:
         if len({condition.key for condition in self.conditions}) != len(self.conditions):
-            raise self._invalid("key", "tells its conditions apart, and must differ")
+            raise self._invalid("key", "must differ between conditions")
         for duration, setting in ((self.stale_after, "stale_after_s"), (self.min_on, "min_on_s")):
             if duration < 0:
                 raise self._invalid(setting, "must not be negative")
@@ -182,7 +186,7 @@ class SignalSettings:
             self._check_condition(condition)
 
     def is_worse(self, value: SignalValue, held: SignalValue) -> bool:
-        """Tell whether `value` is worse news than the one held."""
+        """Tell whether `value` is worse than the one held."""
         return self._badness(value) > self._badness(held)
 
     def facts(self) -> dict[str, Fact]:
@@ -214,7 +218,7 @@ class SignalSettings:
     def _check_condition(self, condition: Condition) -> None:
         is_number = self.spec.kind is SignalKind.NUMBER
         if is_number is (condition.comparison is Comparison.EQUAL):
-            words = "numbers are compared above or below, everything else is compared equal"
+            words = "must be compared above or below for numbers, and equal for everything else"
             raise self._invalid(_prefixed(condition, "threshold"), words)
         self._check_threshold(condition, "threshold", condition.threshold)
         if condition.for_ < 0:
@@ -223,7 +227,7 @@ class SignalSettings:
             return
         setting = _prefixed(condition, "clear_threshold")
         if not is_number:
-            raise self._invalid(setting, "is only for numbers")
+            raise self._invalid(setting, "is for numbers only")
         self._check_threshold(condition, "clear_threshold", condition.clear_threshold)
         if condition.badness(condition.clear_threshold) > 0:
             raise self._invalid(setting, "must be on the good side of the threshold")
@@ -285,9 +289,9 @@ _DEFAULT_SIGNALS = (
 def default_signals() -> tuple[SignalSettings, ...]:
     """Return the five signals of smart_polaris with its thresholds and error bits.
 
-    Its README says when an error comes (">= 15 s"), which its code misses by one instant; the
-    README is followed. Staleness is on, which there it is not.
+    Its README specifies inclusive times (">= 15 s"), which its code misses by one instant; this
+    follows the README. Staleness is on here, and off there.
 
-    Source: smart_polaris, README and `state_manager.cpp`, `SystemStateStamped.msg`.
+    Source: smart_polaris, README, `state_manager.cpp` and `SystemStateStamped.msg`.
     """
     return _DEFAULT_SIGNALS

@@ -1,7 +1,7 @@
-"""Judges the health of the robot from its signals: which errors are on, and why.
+"""Derives the health of the robot from its signals: which errors are active, and why.
 
 Source: smart_polaris, `gem_state_manager`, whose error bits and thresholds are the defaults. Unlike
-there, everything is decided when a reading arrives or a time is reached, and not at the next cycle.
+there, decisions are made when a reading arrives or a time is reached, not at the next cycle.
 """
 
 from collections.abc import Iterable, Iterator, Mapping
@@ -29,27 +29,27 @@ from domain.timebase import Instant, to_seconds
 class HealthChanges:
     """What a call changed.
 
-    An error in both `raised` and `cleared` was cleared first if it is on now, else raised first.
+    If an error is in both `raised` and `cleared`, it was cleared first if it is active now.
     """
 
     raised: tuple[Blocker, ...] = ()
-    """One per error that came on: its most urgent reason."""
+    """The most urgent reason of each error that was raised."""
     cleared: tuple[str, ...] = ()
     pending: tuple[tuple[str, str], ...] = ()
-    """Signal and error that began to count."""
+    """Signals and errors whose time began to count."""
     settled: tuple[tuple[str, str], ...] = ()
-    """Signal and error that stopped counting without becoming one."""
+    """Signals and errors whose time stopped before the error was raised."""
     signals: frozenset[str] = frozenset()
     """Signals whose view changed."""
     skewed: tuple[str, ...] = ()
-    """Signals whose sender's clock began to differ from ours."""
+    """Signals whose sender's clock now differs from ours."""
     state_changed: bool = False
-    """Whether the errors or their reasons differ."""
+    """Whether errors or reasons changed."""
 
 
 @dataclass(frozen=True, slots=True)
 class _Seen:
-    """What was to be seen at one moment."""
+    """Errors, reasons and views at one moment."""
 
     errors: tuple[str, ...]
     reasons: tuple[Blocker, ...]
@@ -80,7 +80,7 @@ class _Gathered:
         self.state_changed |= before.reasons != after.reasons
 
     def build(self) -> HealthChanges:
-        """Return what was gathered."""
+        """Return the changes."""
         return HealthChanges(
             tuple(self.raised),
             tuple(self.cleared),
@@ -104,12 +104,12 @@ class _Gathered:
 
 
 class StateManager:
-    """The signals of the robot, and what follows from them.
+    """The signals of the robot, and the errors that follow from them.
 
-    Deterministic: errors and reasons follow from what was received when, whatever the instants at
-    which anybody lets time pass. What is due at an instant comes before what arrives at it.
+    Deterministic: errors and reasons depend only on what was received and when, not on when time is
+    advanced. At one instant, deadlines come before inputs.
 
-    Every call's `now` is that of one monotonic clock and never falls.
+    `now` is of one monotonic clock, and never decreases from call to call.
     """
 
     def __init__(self, settings: Iterable[SignalSettings], start: Instant) -> None:
@@ -124,12 +124,12 @@ class StateManager:
         self._registry = ErrorRegistry(self._monitors.values())
         self._seen = self._look()
         self._wake_at = self._registry.next_wake()
-        """Kept, since it is asked for at every input of the core."""
+        """Cached, since every input of the core reads it."""
 
     # --- what happens ----------------------------------------------------------------------------
 
     def check(self, readings: Readings, now: Instant) -> None:
-        """Refuse readings of which one cannot be taken; nothing is changed.
+        """Check readings without changing anything; one bad reading rejects all of them.
 
         Raises:
             UnknownSignalError: A signal is not declared.
@@ -147,7 +147,7 @@ class StateManager:
             held.take(reading, readings.source, now)
 
     def receive(self, readings: Readings, now: Instant) -> HealthChanges:
-        """Take readings that `check` did not refuse."""
+        """Process readings that passed `check`."""
         checked = self._checked(readings)
         with self._gathering(now) as gathered:
             for reading in checked:
@@ -155,15 +155,15 @@ class StateManager:
         return gathered.build()
 
     def set_emergency_stop(self, engaged: bool, now: Instant) -> HealthChanges:
-        """Let the emergency stop be a cause of ESTOP, which no reading releases, or end that."""
+        """Raise ESTOP for the emergency stop, which no reading releases, or remove that cause."""
         with self._gathering(now) as gathered:
             self._monitors[ESTOP_SIGNAL].set_engaged(engaged=engaged, now=now)
         return gathered.build()
 
     def acknowledge(self, error: str, now: Instant) -> HealthChanges:
-        """Acknowledge an error: it ends when its cause is gone, which may be now.
+        """Acknowledge an error: it clears once its cause is gone, which may be now.
 
-        An error that is not on, or that ends by itself, needs none; nothing is remembered then.
+        For an error that is not active, or that clears by itself, this has no effect.
 
         Raises:
             UnknownErrorNameError: There is no error of this name.
@@ -175,7 +175,7 @@ class StateManager:
         return gathered.build()
 
     def pass_time(self, now: Instant) -> HealthChanges:
-        """Let happen what is due up to `now`, each thing at its own instant."""
+        """Handle all deadlines up to `now`, each at its own instant."""
         with self._gathering(now) as gathered:
             pass
         return gathered.build()
@@ -188,18 +188,18 @@ class StateManager:
 
     @property
     def errors(self) -> tuple[str, ...]:
-        """Return the errors that are on, in the order of their bits."""
+        """Return the active errors, in the order of their bits."""
         return self._seen.errors
 
     @property
     def reasons(self) -> tuple[Blocker, ...]:
-        """Return why errors are on, the most urgent first."""
+        """Return why errors are active, the most urgent first."""
         return self._seen.reasons
 
     def system_state(self, task_status: TaskStatus) -> SystemStateView:
         """Return the state of the robot with its reasons, the most urgent first.
 
-        ERROR while an error is on, else RUNNING while there is a task, be it paused, else IDLE.
+        ERROR while an error is active, else RUNNING while there is a task (also paused), else IDLE.
 
         Source: smart_polaris, `state_manager.cpp`.
         """
@@ -213,7 +213,7 @@ class StateManager:
         return SystemStateView(state, error_code, self.errors, self._seen.reasons, task_status)
 
     def signal(self, name: str) -> SignalView:
-        """Return one signal; the same object as long as nothing changed.
+        """Return one signal; the same object until it changes.
 
         Raises:
             UnknownSignalError: It is not declared.
@@ -221,7 +221,7 @@ class StateManager:
         return self._monitor(name).view
 
     def signals(self) -> Mapping[str, SignalView]:
-        """Return all signals as declared; the same object as long as nothing changed."""
+        """Return all signals in the order of declaration; the same object until one changes."""
         return self._seen.views
 
     # --- inside ----------------------------------------------------------------------------------
@@ -241,7 +241,7 @@ class StateManager:
 
     @contextmanager
     def _gathering(self, now: Instant) -> Iterator[_Gathered]:
-        """Let time pass up to `now`, then let the body happen, and gather what changes."""
+        """Advance time to `now`, then run the body, and gather the changes."""
         gathered = _Gathered()
         while (due := self.wake_at()) is not None and due <= now:
             self._registry.judge(due)
@@ -253,7 +253,7 @@ class StateManager:
         before = self._seen
         now = self._look()
         if all(view is before.views[name] for name, view in now.views.items()):
-            # Whoever holds the mapping sees by its identity that it is still the same.
+            # Keep the mapping, so that its identity shows that nothing changed.
             now = replace(now, views=before.views)
         self._seen = now
         self._wake_at = self._registry.next_wake()
@@ -265,7 +265,7 @@ class StateManager:
 
 
 def _check_declared(declared: tuple[SignalSettings, ...]) -> None:
-    """Refuse signals that cannot be told apart, or that leave out the e-stop."""
+    """Reject duplicate names of signals or errors, and a missing e-stop."""
     names = [item.spec.name for item in declared]
     errors = [STALE_DATA, *(c.error for item in declared for c in item.conditions)]
     for kind, given in (("signal", names), ("error", errors)):

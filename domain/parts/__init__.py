@@ -1,4 +1,4 @@
-"""The parts of the robot: their model, what is known of them, what follows, and what is wanted.
+"""The parts of the robot: their model, facts, inferred states and targets.
 
 Read `system_model.py` first, then `mode_inference.py`.
 """

@@ -13,10 +13,10 @@ class Deviations:
         self._since: dict[PartName, Instant] = {}
 
     def look(self, part: PartName, now: Instant) -> bool | None:
-        """Compare a part with its target again.
+        """Compare a part with its target.
 
         Returns:
-            True: a deviation began; False: one ended; None: neither.
+            True: a deviation began; False: it ended; None: no change.
         """
         deviates = not self._inference.converged(part)
         if deviates is (part in self._since):
@@ -28,5 +28,5 @@ class Deviations:
         return deviates
 
     def since(self, part: PartName) -> Instant | None:
-        """Return since when a part deviates; None: it does not."""
+        """Return since when a part deviates; None: it does not deviate."""
         return self._since.get(part)

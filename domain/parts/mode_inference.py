@@ -1,12 +1,12 @@
-"""Infer what systems and nodes are in from what nodes report.
+"""Infers states and modes of systems and nodes from the reports of nodes.
 
-A system is virtual: nobody can be asked for its state. It is deduced from its parts and from what
-was asked of it. A report touches only the systems that its node belongs to.
+A system is virtual and reports nothing: its state is inferred from its parts and its target. A
+report affects only the systems that its node belongs to.
 
-Source: deliverable D4.8, 4.1.2; micro-ROS system_modes, `mode_inference.cpp`, whose order of visits
-and ties are kept: parts and modes by byte order of their names, the target mode first, then
-`__DEFAULT__`. Different on purpose: a state is never deduced from parameters or from a reported
-mode, and what cannot be decided is a result with a reason (docs/conformance.md).
+Source: micro-ROS deliverable D4.8, section 4.1.2; micro-ROS system_modes, `mode_inference.cpp`,
+whose order of evaluation is kept: parts and modes by byte order of their names, the target mode
+first, then `__DEFAULT__`. Intended differences: a state is never inferred from parameters or from a
+reported mode, and an undecidable state is a result with a reason (docs/conformance.md).
 """
 
 from collections.abc import Iterable, Mapping
@@ -24,7 +24,7 @@ from domain.state_and_mode import DEFAULT_MODE, ModeName, PartName, StateAndMode
 from domain.timebase import Instant
 
 Wanted: TypeAlias = tuple[tuple[PartName, LifecycleState, ModeName | None], ...]
-"""What one mode wants of each part, in the order in which parts are visited."""
+"""State and mode that one mode requires of each part, in order of evaluation."""
 
 _AT_REST = (LifecycleState.INACTIVE, LifecycleState.UNCONFIGURED)
 _ON_THE_WAY = {
@@ -41,13 +41,13 @@ def _by_bytes(name: str) -> bytes:
 
 @dataclass(frozen=True, slots=True)
 class _SystemPlan:
-    """A system with everything about it sorted once."""
+    """A system with parts and modes in order of evaluation."""
 
     parts: tuple[PartName, ...]
     own: dict[ModeName, Wanted]
-    """Parts as each mode names them; used for the target mode."""
+    """Requirements of each mode on the parts that it names; used for the target mode."""
     modes: tuple[tuple[ModeName, Wanted], ...]
-    """All modes by byte order, each over the parts of `__DEFAULT__`."""
+    """All modes by byte order, each restricted to the parts of `__DEFAULT__`."""
 
     @classmethod
     def of(cls, system: SystemModel) -> "_SystemPlan":
@@ -76,11 +76,11 @@ def _is_there(actual: StateAndMode, target: StateAndMode) -> bool:
 
 
 class _UndecidableError(Exception):
-    """A part of which too little is known; never leaves this module."""
+    """Too little is known about a part; never leaves this module."""
 
 
 class ModeInference:
-    """Facts and targets of all parts, and what follows from them, kept up to date."""
+    """Facts and targets of all parts, and the states inferred from them, kept up to date."""
 
     def __init__(self, model: SmhModel) -> None:
         self.model = model
@@ -105,11 +105,11 @@ class ModeInference:
             self._actual[system] = self._infer_system(system)
 
     def report(self, report: NodeReport, now: Instant | None = None) -> set[PartName]:
-        """Take in a report; return the parts whose actual state or mode is different now.
+        """Process a report; return the parts whose actual state or mode changed.
 
         Args:
-            report: What a node said.
-            now: When it arrived; None: it does not matter, as for facts that are posted.
+            report: From a node.
+            now: When it arrived; None: not relevant, as for posted facts.
 
         Raises:
             UnknownPartError: The node is not in the model.
@@ -120,10 +120,10 @@ class ModeInference:
         return self._infer((report.node,)) if is_different else set()
 
     def set_targets(self, targets: Mapping[PartName, StateAndMode | None]) -> set[PartName]:
-        """Record what is pursued for parts; return the parts whose actual is different now.
+        """Set the targets in force; return the parts whose actual state or mode changed.
 
         Raises:
-            UnknownPartError: A part is not in the model; nothing is recorded.
+            UnknownPartError: A part is not in the model; no target was set.
         """
         for part in targets:
             if part not in self.model:
@@ -136,20 +136,20 @@ class ModeInference:
         return self._infer(targets)
 
     def target(self, part: PartName) -> StateAndMode | None:
-        """Return what is pursued for a part."""
+        """Return the target in force of a part; None: it has none."""
         return self._targets.get(part)
 
     def actual(self, part: PartName) -> Actual:
-        """Return what a part is in."""
+        """Return the actual state and mode of a part."""
         return self._actual[part]
 
     @property
     def facts(self) -> Mapping[PartName, NodeFacts]:
-        """Return what is known of each node, to be read only."""
+        """Return the facts about each node; read only."""
         return self._facts
 
     def facts_of(self, node: PartName) -> NodeFacts:
-        """Return what is known of a node.
+        """Return the facts about a node.
 
         Raises:
             UnknownPartError: The node is not in the model.
@@ -160,7 +160,10 @@ class ModeInference:
         return facts
 
     def as_seen(self, part: PartName) -> StateAndMode | None:
-        """Return a part as its parents see it, with a mode only when active; None: undecidable."""
+        """Return state and mode of a part as its parents see it; None: undecidable.
+
+        Only an active part has a mode.
+        """
         actual = self._actual[part]
         if actual.state is LifecycleState.UNKNOWN:
             return None
@@ -169,15 +172,15 @@ class ModeInference:
         return StateAndMode(actual.state)
 
     def converged(self, part: PartName) -> bool:
-        """Tell whether a part is where it should be, or nothing was asked of it.
+        """Tell whether a part is in its target state and mode, or has no target.
 
-        An active part whose mode is not known is not in `__DEFAULT__`.
+        An active part with an unknown mode does not count as in `__DEFAULT__`.
         """
         target = self._targets.get(part)
         return target is None or _is_there(self._actual[part].state_and_mode, target)
 
     def deviations(self) -> list[tuple[PartName, StateAndMode, StateAndMode]]:
-        """Return part, target and actual of each decidable part that is not where it should be."""
+        """Return part, target and actual of each decidable part that deviates from its target."""
         found = []
         for part in sorted(self._targets, key=_by_bytes):
             seen = self.as_seen(part)
@@ -186,7 +189,7 @@ class ModeInference:
         return found
 
     def _infer(self, parts: Iterable[PartName]) -> set[PartName]:
-        """Infer parts and, bottom up, every system that they belong to, each once."""
+        """Infer parts and, bottom-up, every system above them, each once."""
         nodes = [part for part in parts if part in self._facts]
         systems = {part for part in parts if part not in self._facts}
         for part in parts:
@@ -206,7 +209,7 @@ class ModeInference:
     # --- nodes -----------------------------------------------------------------------------------
 
     def _infer_node(self, name: PartName) -> Actual:
-        """Return the reported state, and when active the reported mode or else a matching one."""
+        """Return the reported state and, if active, the reported or else a matching mode."""
         facts = self._facts[name]
         state = facts.known_state
         if state is LifecycleState.UNKNOWN:
@@ -224,8 +227,8 @@ class ModeInference:
     def _matching_mode(self, name: PartName) -> ModeName | None:
         """Return the mode that a node's parameters match: target mode first, then `__DEFAULT__`.
 
-        The target is recognised whatever its values are. Modes that nobody asked for are not
-        guessed from lists, as in system_modes.
+        The target mode is matched on all types of values. As in system_modes, other modes are not
+        inferred if the node has list parameters.
         """
         node = self.model.nodes[name]
         target = self._targets.get(name)
@@ -255,7 +258,7 @@ class ModeInference:
             )
 
     def _decide(self, name: PartName, target: StateAndMode | None) -> Actual:
-        """Choose the rule by what was asked of the system."""
+        """Select the rule by the target of the system."""
         plan = self._plans[name]
         if target is None:
             return self._common_state(plan.parts)
@@ -265,13 +268,13 @@ class ModeInference:
             return self._towards_active(plan, target.mode)
         if target.state in _ON_THE_WAY:
             return self._towards_rest(plan.parts, target.state)
-        raise _UndecidableError(f"{target.state} is no state that a system can be asked for")
+        raise _UndecidableError(f"{target.state} cannot be the target of a system")
 
     def _state_of(self, part: PartName) -> LifecycleState:
         """Return the state of a part.
 
         Raises:
-            _UndecidableError: It is not known, with the innermost reason.
+            _UndecidableError: It is unknown; the message is the innermost reason.
         """
         actual = self._actual[part]
         if actual.state is LifecycleState.UNKNOWN:
@@ -279,7 +282,7 @@ class ModeInference:
         return actual.state
 
     def _common_state(self, parts: tuple[PartName, ...]) -> Actual:
-        """Without a target: the state that all parts share, never a mode."""
+        """Without a target: the state that all parts have in common, without a mode."""
         common: LifecycleState | None = None
         parts = self._with_lifecycle(parts) or parts
         first = parts[0] if parts else None
@@ -291,14 +294,14 @@ class ModeInference:
                 common = state
             elif common is not state:
                 raise _UndecidableError(
-                    f"nothing was asked for, and {first} is {common} while {part} is {state}"
+                    f"there is no target, and {first} is {common} while {part} is {state}"
                 )
         return Actual(common or LifecycleState.UNKNOWN, inferred=True)
 
     def _with_lifecycle(self, parts: tuple[PartName, ...]) -> tuple[PartName, ...]:
-        """Return the parts that say where a system rests: of plain nodes, those that are unknown.
+        """Return the parts that decide whether a system is at rest: no plain nodes that are known.
 
-        A plain node is active and nothing else, and would keep its system from ever being at rest.
+        A plain node is always active, and would keep its system from ever being at rest.
         """
         if not self._plain:
             return parts
@@ -318,7 +321,7 @@ class ModeInference:
         return Actual(LifecycleState.INACTIVE, inferred=True)
 
     def _towards_rest(self, parts: tuple[PartName, ...], goal: LifecycleState) -> Actual:
-        """Towards `unconfigured` or `finalized`: there when all parts are."""
+        """Towards `unconfigured` or `finalized`: reached when all parts have reached it."""
         arrived = True
         for part in self._with_lifecycle(parts):
             state = self._state_of(part)
@@ -328,9 +331,9 @@ class ModeInference:
         return Actual(goal if arrived else _ON_THE_WAY[goal], inferred=True)
 
     def _towards_active(self, plan: _SystemPlan, target: ModeName | None) -> Actual:
-        """Active once all parts are as the target mode wants; until then activating.
+        """Active once all parts satisfy the target mode; until then activating.
 
-        While activating, the mode is the one that all parts happen to match, if there is one.
+        While activating, the mode is the one that all parts match at the moment, if any.
         """
         wanted = plan.own.get(target) if target is not None else None
         if wanted is not None:
@@ -354,7 +357,7 @@ class ModeInference:
         return Actual(LifecycleState.ACTIVATING, inferred=True)
 
     def _satisfies(self, part: PartName, state: LifecycleState, mode: ModeName | None) -> bool:
-        """Tell whether a part is exactly in `state` and, when active, in `mode`."""
+        """Tell whether a part is in exactly `state` and, if active, in `mode`."""
         actual = self._actual[part]
         if actual.state is not state:
             return False

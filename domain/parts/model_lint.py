@@ -1,6 +1,6 @@
-"""What is odd in a model that can be used: things that its author will not have meant.
+"""Warnings about valid models: constructs that the author probably did not intend.
 
-Source: the wishes and faults that users of micro-ROS system_modes report (issues #43, #94).
+Source: reports of users of micro-ROS system_modes (issues #43, #94).
 """
 
 from collections import defaultdict
@@ -14,7 +14,7 @@ from domain.state_and_mode import DEFAULT_MODE, ModeName, PartName, StateAndMode
 
 
 def lint(model: SmhModel) -> list[Finding]:
-    """Return warnings; the effort grows with the size of the model and no faster."""
+    """Return warnings; the effort is linear in the size of the model."""
     findings: list[Finding] = []
     for node in model.nodes.values():
         findings.extend(_modes_alike(node.name, _node_looks(node)))
@@ -36,7 +36,7 @@ def _warning(code: str, message: str, *path: str) -> Finding:
 
 
 def _node_looks(node: NodeModel) -> Iterator[tuple[ModeName, Hashable]]:
-    """Return each mode with what tells it from others: types and values of parameters."""
+    """Yield each mode with its identity: types and values of its parameters."""
     for mode, parameters in node.modes.items():
         yield mode, frozenset((n, value_type(v), v) for n, v in parameters.items())
 
@@ -47,7 +47,7 @@ def _system_looks(system: SystemModel) -> Iterator[tuple[ModeName, Hashable]]:
 
 
 def _meaning(pair: StateAndMode) -> StateAndMode:
-    """Return the same for pairs that agree: only active has modes, and no mode is the default."""
+    """Return one value for pairs that agree: only active has modes, and None is the default."""
     if pair.state is not LifecycleState.ACTIVE:
         return StateAndMode(pair.state)
     return StateAndMode(pair.state, pair.mode or DEFAULT_MODE)
@@ -58,10 +58,7 @@ def _modes_alike(part: PartName, looks: Iterator[tuple[ModeName, Hashable]]) -> 
     for mode, look in looks:
         other = first.setdefault(look, mode)
         if other != mode:
-            message = (
-                f"{part}: {mode} is the same as {other}; inference cannot tell which of the two "
-                "it is in"
-            )
+            message = f"{part}: {mode} is the same as {other}; inference cannot tell the two apart"
             yield _warning("MODES_ALIKE", message, part, "modes", mode)
 
 
@@ -76,21 +73,21 @@ def _types_that_differ(node: NodeModel) -> Iterator[Finding]:
             if usual != own:
                 message = (
                     f"{node.name} in {mode}: {name} is {own} here and {usual} in {DEFAULT_MODE}; "
-                    "a node accepts one of them at most"
+                    "a node accepts only one of these types"
                 )
                 yield _warning("TYPE_DIFFERS", message, node.name, "modes", mode, name)
 
 
 def _never_inferred(node: NodeModel) -> Iterator[Finding]:
-    """Find values that are never found equal; those taken over from the default told once."""
+    """Find values that never compare equal; values inherited from the default are told once."""
     default = node.modes.get(DEFAULT_MODE, {})
     for mode, parameters in node.modes.items():
         for name, value in parameters.items():
             taken_over = mode != DEFAULT_MODE and default.get(name) is value
             if not taken_over and _is_never_equal(value):
                 message = (
-                    f"{node.name} in {mode}: {name} is not a number, which is never found equal; "
-                    "the mode is never recognised by its parameters"
+                    f"{node.name} in {mode}: {name} holds NaN, which never equals anything; "
+                    "the mode is never inferred from its parameters"
                 )
                 yield _warning("NEVER_INFERRED", message, node.name, "modes", mode, name)
 
@@ -110,7 +107,7 @@ def _rules_that_undo_a_request(system: SystemModel) -> Iterator[Finding]:
         if part in wanted and wanted[part].agrees_with(condition):
             message = (
                 f"rule {rule.name} of {system.name} gives up {rule.if_target.label} when {part} is "
-                f"{condition.label}, which is what {rule.if_target.label} wants of it"
+                f"{condition.label}, which {rule.if_target.label} itself requires"
             )
             yield _warning("RULE_UNDOES_REQUEST", message, system.name, "rules", rule.name)
 
@@ -122,7 +119,7 @@ def _wanted(system: SystemModel, target: StateAndMode) -> Mapping[PartName, Stat
 
 
 def _rules_in_a_circle(system: SystemModel) -> Iterator[Finding]:
-    """Find targets that rules lead back to; told at the rule that closes the circle."""
+    """Find cycles of targets; each is reported at the rule that closes it."""
     rules: dict[StateAndMode, list[Rule]] = defaultdict(list)
     for rule in system.rules:
         rules[_meaning(rule.if_target)].append(rule)
@@ -142,7 +139,7 @@ def _rules_in_a_circle(system: SystemModel) -> Iterator[Finding]:
             if goal in trail:
                 labels = [target.label for target in trail]
                 circle = " > ".join([*labels[labels.index(goal.label) :], goal.label])
-                message = f"rules of {system.name} lead in a circle: {circle}"
+                message = f"rules of {system.name} form a cycle: {circle}"
                 yield _warning("RULE_CIRCLE", message, system.name, "rules", next_rule.name)
             elif goal not in done and goal in rules:
                 trail[goal] = None
@@ -153,7 +150,7 @@ def _rules_in_a_circle(system: SystemModel) -> Iterator[Finding]:
 
 
 def _conflicts(model: SmhModel) -> Iterator[Finding]:
-    """Find parts of which two systems can want different things at a time."""
+    """Find parts of which two systems can require different states or modes at the same time."""
     wants: dict[PartName, dict[PartName, dict[StateAndMode, ModeName]]] = defaultdict(dict)
     for system in model.systems.values():
         for mode, wanted in system.modes.items():
@@ -165,9 +162,9 @@ def _conflicts(model: SmhModel) -> Iterator[Finding]:
             pair = _first_conflict(its, other)
             if pair is not None:
                 message = (
-                    f"{part} belongs to {first} and to {second}, which can want different things "
-                    f"of it: {first} in {its[pair[0]]} wants {pair[0].label}, {second} in "
-                    f"{other[pair[1]]} wants {pair[1].label}"
+                    f"{part} belongs to {first} and to {second}, whose requirements can conflict: "
+                    f"{first} in {its[pair[0]]} requires {pair[0].label}, {second} in "
+                    f"{other[pair[1]]} requires {pair[1].label}"
                 )
                 path = (second, "modes", other[pair[1]], part)
                 yield _warning("CONFLICTING_SYSTEMS", message, *path)

@@ -1,7 +1,6 @@
-"""What is known of one node, each fact kept apart from the others.
+"""The facts about one node, each kept apart from the others.
 
-Nothing is derived here from anything else: that a node's parameters match a mode says nothing about
-whether it is active.
+No fact is derived from another one: parameters that match a mode do not make a node active.
 """
 
 from dataclasses import dataclass, field
@@ -23,16 +22,16 @@ class NodeFacts:
     reachable: bool | None = None
     has_lifecycle: bool = True
     state_since: Instant | None = None
-    """Since when the node is in its known state; None: nobody said when."""
+    """Since when the node is in its known state; None: unknown."""
 
     def take(self, report: NodeReport, now: Instant | None = None) -> bool:
-        """Take over what the report says; return whether anything is different now.
+        """Update the facts from a report; return whether any of them changed.
 
-        Leaving `active` ends the reported mode, as it does in system_modes.
+        A node that leaves `active` loses its reported mode, as in system_modes.
 
         Args:
-            report: What the node said.
-            now: When it arrived; None: it does not matter.
+            report: From the node.
+            now: When it arrived; None: not relevant.
         """
         known = self.known_state
         before = (self.state, self.mode, self.reachable, self.has_lifecycle)
@@ -59,7 +58,7 @@ class NodeFacts:
 
     @property
     def known_state(self) -> LifecycleState:
-        """Return the state that holds now: `unknown` for a node that is silent or never spoke.
+        """Return the current state: `unknown` if the node is unreachable or never reported.
 
         A plain node has no lifecycle; it counts as active while it is reachable.
         """
@@ -71,7 +70,7 @@ class NodeFacts:
 
     @property
     def why_unknown(self) -> str:
-        """Return why the state is unknown, in words that follow the node's name."""
+        """Return why the state is unknown, as a phrase that follows the node's name."""
         if self.reachable is False:
             return "is unreachable"
         return "has never reported a state"

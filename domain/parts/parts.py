@@ -1,4 +1,4 @@
-"""The parts as a concern of the core: what nodes report, what follows, and what is wanted."""
+"""The parts as a concern of the core: reports of nodes, inferred states and targets."""
 
 from collections.abc import Iterable, Mapping
 
@@ -30,12 +30,12 @@ _UNKNOWN = StateAndMode(LifecycleState.UNKNOWN)
 
 
 class Parts(Concern):
-    """All parts: facts, inference, targets and deviations, and what is told of them."""
+    """All parts: facts, inference, targets, deviations and their events."""
 
     def __init__(self, model: SmhModel, outbox: Outbox) -> None:
         self.model = model
         self.inference = ModeInference(model)
-        """To be read; what it is told comes from here."""
+        """Read only for others."""
         self._targets = Targets(self.inference)
         self._deviations = Deviations(self.inference)
         self._reachability = Reachability(model)
@@ -44,24 +44,24 @@ class Parts(Concern):
         self._touched: set[PartName] = set()
         """Parts about which something changed since the last `settle`."""
         self._views: dict[PartName, PartView] = {}
-        """Kept until something about their part changes."""
+        """Cached until something about the part changes."""
         self._changes: dict[PartName, ChangeId] = {}
         self._steps: dict[PartName, int] = {}
         self.state_before = LifecycleState.UNKNOWN
-        """State that the node of the newest report was known to be in before it."""
+        """Known state of the node of the newest report, before that report."""
 
     # --- what happens ----------------------------------------------------------------------------
 
     @property
     def takes(self) -> Takers:
-        """Return what takes each class of input."""
+        """Return the handler of each class of input."""
         return {NodeReport: self.take_report}
 
     def take_report(self, report: NodeReport, now: Instant) -> None:
-        """Take in what a node reports, and tell what it changed.
+        """Process a report of a node, and publish what it changed.
 
         Raises:
-            InvalidValueError: A parameter has a value of a type that parameters do not have.
+            InvalidValueError: A value is not a ROS 2 parameter value.
             UnknownPartError: The node is not in the model.
         """
         for value in (report.parameters or {}).values():
@@ -75,37 +75,37 @@ class Parts(Concern):
         self._tell_actuals(changed)
 
     def ask(self, wanted: Mapping[PartName, StateAndMode]) -> None:
-        """Record what somebody asks of parts; it is what is pursued."""
+        """Set requested targets; they are in force at once."""
         self.touch(self._targets.ask(wanted))
         self.touch(wanted)
 
     def put_under(self, change: ChangeId, parts: Iterable[PartName]) -> None:
-        """Record that parts are under a change, instead of an earlier one."""
+        """Record that a change drives parts; it replaces an earlier one."""
         for part in parts:
             self._changes[part] = change
             self.touch((part,))
 
     def let_go(self, change: ChangeId, parts: Iterable[PartName]) -> None:
-        """Record that parts are not under a change any more; those under another one stay so."""
+        """Record that a change no longer drives parts; parts of another change are not affected."""
         for part in parts:
             if self._changes.get(part) == change:
                 del self._changes[part]
                 self.touch((part,))
 
     def expect_report(self, node: PartName, step: int) -> None:
-        """Record the event of the step that a node is at; its reports are a consequence of that."""
+        """Record the event of a node's step in flight; it becomes the cause of its reports."""
         self._steps[node] = step
 
     def expect_nothing(self, node: PartName) -> None:
-        """Record that a node is at no step."""
+        """Record that a node has no step in flight."""
         self._steps.pop(node, None)
 
     def touch(self, parts: Iterable[PartName]) -> None:
-        """Note that something about parts changed."""
+        """Mark parts as changed."""
         self._touched.update(parts)
 
     def settle(self, now: Instant) -> bool:
-        """Tell where touched parts are, and where deviations began or ended."""
+        """Publish states of changed parts, and deviations that began or ended."""
         touched, self._touched = self._touched, set()
         if not touched:
             return False
@@ -122,19 +122,19 @@ class Parts(Concern):
 
     @property
     def facts(self) -> Mapping[PartName, NodeFacts]:
-        """Return what is known of each node, to be read only."""
+        """Return the facts about each node; read only."""
         return self.inference.facts
 
     def target(self, part: PartName) -> StateAndMode | None:
-        """Return what is pursued for a part; None: nothing."""
+        """Return the target in force of a part; None: it has none."""
         return self.inference.target(part)
 
     def change_of(self, part: PartName) -> ChangeId | None:
-        """Return the change that a part is under."""
+        """Return the change that drives a part; None: there is none."""
         return self._changes.get(part)
 
     def view(self, part: PartName) -> PartView:
-        """Return the view of a part that the model has; the same object until it changes."""
+        """Return the view of a part of the model; the same object until it changes."""
         view = self._views.get(part)
         if view is None:
             view = self._views[part] = self._build(part)
@@ -145,7 +145,7 @@ class Parts(Concern):
         return {part: self.view(part) for part in self.model.parts}
 
     def parameters(self, node: PartName) -> tuple[ParameterView, ...]:
-        """Return the parameters of a node, and what its effective target wants of them."""
+        """Return the parameters of a node, with the values that its target requires."""
         known = self.facts[node].parameters
         target = self.target(node)
         modes = self.model.nodes[node].modes
@@ -162,7 +162,7 @@ class Parts(Concern):
             self._outbox.emit(NodeReachable(node) if reachable else NodeUnreachable(node))
 
     def _tell_actuals(self, parts: Iterable[PartName]) -> None:
-        """Tell of each part whose actual state or mode is another one than told before."""
+        """Publish the parts whose actual state or mode differs from the last published one."""
         for part in sorted(parts):
             actual = self.inference.actual(part)
             now, was = actual.state_and_mode, self._told.get(part, _UNKNOWN)

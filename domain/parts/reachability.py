@@ -1,11 +1,11 @@
-"""Which nodes can be reached, counted for the systems above them."""
+"""Which nodes are reachable, with counts for the systems above them."""
 
 from domain.parts.system_model import SmhModel
 from domain.state_and_mode import PartName
 
 
 class Reachability:
-    """Nodes that cannot be reached; none can before it was heard from."""
+    """The unreachable nodes; every node is unreachable until its first report."""
 
     def __init__(self, model: SmhModel) -> None:
         self._model = model
@@ -16,7 +16,7 @@ class Reachability:
                 self._below[system] += 1
 
     def note(self, node: PartName, *, reachable: bool) -> bool:
-        """Note whether a node can be reached; return whether that is different now."""
+        """Record whether a node is reachable; return whether that changed."""
         if reachable is (node not in self._unreachable):
             return False
         if reachable:
@@ -28,7 +28,7 @@ class Reachability:
         return True
 
     def reaches(self, part: PartName) -> bool:
-        """Tell whether a node can be reached; of a system, all nodes below it."""
+        """Tell whether a node is reachable; for a system, whether all nodes below it are."""
         if part in self._below:
             return self._below[part] == 0
         return part not in self._unreachable

@@ -1,9 +1,10 @@
-"""The model of a robot: systems and nodes, their modes, and how they hang together.
+"""The model of a robot: systems and nodes, their modes and their hierarchy.
 
-Called SMH (system modes and hierarchy) in micro-ROS system_modes. Immutable, and it checks itself:
-an `SmhModel` that exists is free of cycles, unknown parts and unknown modes.
+Called SMH (system modes and hierarchy) in micro-ROS system_modes. Immutable and checked: an
+`SmhModel` that exists is free of cycles, unknown parts and unknown modes.
 
-Source: deliverable D4.8, 4.1; micro-ROS system_modes, `mode_inference.cpp` and README.
+Source: micro-ROS deliverable D4.8, section 4.1; micro-ROS system_modes, `mode_inference.cpp` and
+README.
 """
 
 from collections.abc import Collection, Iterable, Mapping
@@ -18,10 +19,10 @@ from domain.parameters import Parameters
 from domain.state_and_mode import DEFAULT_MODE, ModeName, PartName, StateAndMode
 
 MAX_LEVELS = 64
-"""Of systems in systems. No robot comes near, and no walk through a model has to fear more."""
+"""Largest depth of nested systems; bounds every traversal, and is far above that of any robot."""
 
 MAX_ANCESTORS = 1_000_000
-"""Of all parts together; a balanced model of 10,000 nodes has less than 50,000."""
+"""Ancestors of all parts together; a balanced model of 10,000 nodes has less than 50,000."""
 
 _MAX_CYCLES_TOLD = 100
 _MAX_NAMES_TOLD = 12
@@ -29,16 +30,16 @@ _MAX_NAMES_TOLD = 12
 
 @dataclass(frozen=True, slots=True)
 class NodeModel:
-    """A node: something that runs, and has a lifecycle and parameters of its own."""
+    """A node: it runs, and has a lifecycle and parameters."""
 
     name: PartName
     modes: Mapping[ModeName, Parameters] = field(default_factory=dict)
-    """Parameters of each mode, those of `__DEFAULT__` merged in; empty: only a lifecycle state."""
+    """Parameters of each mode, including those of `__DEFAULT__`; empty: the node has no modes."""
 
 
 @dataclass(frozen=True, slots=True)
 class Rule:
-    """What to pursue instead of a given target of a system while one part is in a given state."""
+    """The target that replaces `if_target` of a system while a part is in a given state."""
 
     name: str
     if_target: StateAndMode
@@ -52,8 +53,8 @@ class SystemModel:
 
     name: PartName
     modes: Mapping[ModeName, Mapping[PartName, StateAndMode]]
-    """What each mode wants of its parts, in the order of the file, `__DEFAULT__` merged in; empty
-    for a system of no parts.
+    """What each mode requires of its parts, in the order of the file, including `__DEFAULT__`;
+    empty for a system without parts.
     """
     rules: tuple[Rule, ...] = ()
 
@@ -64,7 +65,7 @@ class SystemModel:
 
     @property
     def named_parts(self) -> tuple[PartName, ...]:
-        """Return the parts that any mode names, so also those that `__DEFAULT__` leaves out."""
+        """Return the parts that any mode names, also those that `__DEFAULT__` does not."""
         return tuple(dict.fromkeys(part for wanted in self.modes.values() for part in wanted))
 
 
@@ -73,14 +74,14 @@ class SmhModel:
     """Systems and nodes of one robot.
 
     Raises:
-        InvalidModelError: A cycle, or a part or mode that is named but not there, or systems in
-            systems beyond `MAX_LEVELS` or `MAX_ANCESTORS`.
+        InvalidModelError: A cycle, an unknown part or mode, or nesting beyond `MAX_LEVELS` or
+            `MAX_ANCESTORS`.
     """
 
     nodes: Mapping[PartName, NodeModel]
     systems: Mapping[PartName, SystemModel]
     ancestors: Mapping[PartName, tuple[PartName, ...]] = field(init=False)
-    """Every system that a part belongs to, directly or not; children before their parents."""
+    """Every system that a part belongs to, directly or indirectly; children before parents."""
 
     def __post_init__(self) -> None:
         """Check the model, then freeze it."""
@@ -95,7 +96,7 @@ class SmhModel:
 
     @property
     def parts(self) -> tuple[PartName, ...]:
-        """Return all names: systems first, each in the order of the file."""
+        """Return all names: systems first, then nodes, each in the order of the file."""
         return (*self.systems, *self.nodes)
 
     def __contains__(self, name: str) -> bool:
@@ -103,7 +104,7 @@ class SmhModel:
         return name in self.systems or name in self.nodes
 
     def modes_of(self, part: PartName) -> tuple[ModeName, ...]:
-        """Return the modes of a part in the order of the file; empty where it has none.
+        """Return the modes of a part in the order of the file; empty: it has none.
 
         Raises:
             UnknownPartError: There is no such part.
@@ -147,7 +148,7 @@ class SmhModel:
 def find_errors(
     nodes: Mapping[PartName, NodeModel], systems: Mapping[PartName, SystemModel]
 ) -> list[Finding]:
-    """Return everything that makes a model unusable: unknown parts and modes, and cycles."""
+    """Return all errors of a model: unknown parts and modes, cycles, too deep nesting."""
     modes_of: dict[PartName, Collection[ModeName]] = {
         **{name: node.modes for name, node in nodes.items()},
         **{name: system.modes for name, system in systems.items()},
@@ -178,7 +179,7 @@ def _missing_default(part: PartName) -> Finding:
 def _check_wants(
     modes_of: Mapping[PartName, Collection[ModeName]], system: SystemModel
 ) -> Iterable[Finding]:
-    """Check the lines of all modes; what a mode took over from `__DEFAULT__` is told there."""
+    """Check the lines of all modes; lines inherited from `__DEFAULT__` are reported there only."""
     default = system.modes.get(DEFAULT_MODE, {})
     for mode, wanted in system.modes.items():
         for part, want in wanted.items():
@@ -209,7 +210,16 @@ def _check_pair(
     owner: PartName,
     place: tuple[str, ...],
 ) -> Iterable[Finding]:
-    """Check that a part is there, and has the mode that is said of it."""
+    """Check that a part exists and has the mode.
+
+    Args:
+        modes_of: Modes by part.
+        where: The place in words, for the message.
+        part: The part to check.
+        pair: State and mode that the place names.
+        owner: The part whose block holds the place.
+        place: Keys that lead to the place.
+    """
     modes = modes_of.get(part)
     if modes is None:
         message = f"{where}: there is no part {part!r}"
@@ -232,18 +242,18 @@ def _cycle(systems: Mapping[PartName, SystemModel], cycle: tuple[PartName, ...])
 
 @dataclass(frozen=True, slots=True)
 class _Hierarchy:
-    """How systems contain systems, found in one walk without recursion."""
+    """The hierarchy of systems, found in one traversal without recursion."""
 
     children: Mapping[PartName, tuple[PartName, ...]]
     """The systems in each system."""
     order: tuple[PartName, ...]
     """All systems, each after those that it contains."""
     cycles: tuple[tuple[PartName, ...], ...]
-    """Each from a system back to itself; not all, but none only if there is none."""
+    """Cycles, each from a system back to itself; not all of them, but empty only without cycles."""
 
     @classmethod
     def of(cls, systems: Mapping[PartName, SystemModel]) -> "_Hierarchy":
-        """Walk depth first; a system that is met again on the way down closes a cycle."""
+        """Traverse depth-first; a system that is met again on the way down closes a cycle."""
         children = {
             name: tuple(part for part in system.named_parts if part in systems)
             for name, system in systems.items()
@@ -270,14 +280,14 @@ class _Hierarchy:
         return cls(children, tuple(order), tuple(cycles))
 
     def heights(self) -> dict[PartName, int]:
-        """Return how far each system is above the nodes: higher than all that it contains."""
+        """Return the height of each system: one more than the highest system that it contains."""
         height: dict[PartName, int] = {}
         for name in self.order:
             height[name] = 1 + max((height[child] for child in self.children[name]), default=0)
         return height
 
     def too_deep(self) -> PartName | None:
-        """Return a system with too many levels below it; there must be no cycle."""
+        """Return a system with too many levels below it; None: there is none. Needs no cycles."""
         heights = self.heights()
         return next((name for name in self.order if heights[name] > MAX_LEVELS), None)
 
@@ -285,7 +295,7 @@ class _Hierarchy:
 def _ancestors(
     systems: Mapping[PartName, SystemModel], nodes: Mapping[PartName, NodeModel]
 ) -> dict[PartName, tuple[PartName, ...]]:
-    """Return the ancestors of each part, bottom up, so that one pass over them infers them all."""
+    """Return the ancestors of each part, bottom-up, so that one pass infers all of them."""
     parents: dict[PartName, list[PartName]] = {name: [] for name in (*systems, *nodes)}
     for system in systems.values():
         for part in system.named_parts:

@@ -1,4 +1,4 @@
-"""What is wanted of parts: what was asked of each, what is pursued instead, and why."""
+"""Targets of parts: requested and in force."""
 
 from collections.abc import Mapping
 
@@ -7,14 +7,14 @@ from domain.snapshot import EffectiveTarget
 from domain.state_and_mode import PartName, StateAndMode
 
 REQUESTED = "requested"
-"""Why a target is pursued: somebody asked for it."""
+"""Reason of a target in force that was requested."""
 
 
 class Targets:
-    """The only place that sets a target.
+    """The only place that sets targets.
 
-    The target of a part is what somebody asked of it. The effective one is pursued, and says why;
-    inference and `converged` go by it.
+    The target of a part is the requested one. The effective target is the one in force, with a
+    reason; inference and `converged` use it.
     """
 
     def __init__(self, inference: ModeInference) -> None:
@@ -23,16 +23,16 @@ class Targets:
         self._effective: dict[PartName, EffectiveTarget] = {}
 
     def ask(self, wanted: Mapping[PartName, StateAndMode]) -> set[PartName]:
-        """Record what somebody asks of parts, and pursue it; return whose actual differs now."""
+        """Set requested targets, in force at once; return the parts whose actual changed."""
         for part, target in wanted.items():
             self._asked[part] = target
             self._effective[part] = EffectiveTarget(target.state, target.mode, REQUESTED)
         return self._inference.set_targets(wanted)
 
     def asked(self, part: PartName) -> StateAndMode | None:
-        """Return what was asked of a part; None: nothing."""
+        """Return the requested target of a part; None: there is none."""
         return self._asked.get(part)
 
     def effective(self, part: PartName) -> EffectiveTarget | None:
-        """Return what is pursued for a part, and why; None: nothing."""
+        """Return the target in force of a part, with its reason; None: there is none."""
         return self._effective.get(part)

@@ -1,1 +1,1 @@
-"""Waypoints as geometry: length, curvature, where a vehicle is along them, and how fast to go."""
+"""Geometry of waypoints: length, curvature, projection of a vehicle, and speed profile."""

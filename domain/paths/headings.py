@@ -1,6 +1,6 @@
-"""How well the headings of waypoints fit the way that leads along them.
+"""How well the headings of waypoints fit the direction of the path.
 
-For whoever doubts in which unit, or from which direction, headings are counted.
+Used to check the unit and the zero direction of headings.
 """
 
 from math import hypot, pi
@@ -9,17 +9,17 @@ import numpy as np
 from numpy.typing import NDArray
 
 _CHORD_M = 0.5
-"""Ways are looked at over so much, or a tenth of the path, since a receiver at rest jitters."""
+"""Directions are taken over this chord, or a tenth of the path, since a receiver jitters."""
 
 
 class Ways:
-    """Where the way between waypoints leads."""
+    """Directions of the path between waypoints."""
 
     def __init__(self, places: NDArray[np.float64]) -> None:
-        """Take the places.
+        """Find the directions.
 
         Args:
-            places: Shape (n, 2), n >= 1: x m, y m; finite.
+            places: Positions of the waypoints, shape (n, 2), n >= 1: x m, y m; finite.
         """
         kept = _apart(places)
         steps = np.diff(places[kept], axis=0)
@@ -28,16 +28,16 @@ class Ways:
 
     @property
     def count(self) -> int:
-        """Return how many ways are looked at; 0 if all places are the same."""
+        """Return the number of directions; 0 if all positions are the same."""
         return len(self._angles)
 
     def misfit(self, yaws: NDArray[np.float64]) -> float:
-        """Return the median angle between heading and way, rad; 0 to pi / 2.
+        """Return the median angle between heading and path, rad; 0 to pi / 2.
 
-        Who drives backwards all the time fits as well as who drives forwards.
+        Headings against the path fit as well: the recording vehicle may have driven backwards.
 
         Args:
-            yaws: Of all waypoints, shape (n,), rad counter-clockwise from the x axis.
+            yaws: Headings of all waypoints, shape (n,), rad counter-clockwise from the x axis.
         """
         errors = np.abs(wrapped(yaws[self._middles] - self._angles))
         median = float(np.median(errors))
@@ -45,12 +45,12 @@ class Ways:
 
 
 def wrapped(angles: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Return angles from -pi to below pi; shape as given, rad."""
+    """Return angles wrapped to [-pi, pi), rad; same shape."""
     return np.asarray((angles + pi) % (2 * pi) - pi)
 
 
 def _apart(places: NDArray[np.float64]) -> NDArray[np.int64]:
-    """Return the indexes of waypoints a chord or more apart, the first among them; shape (k,)."""
+    """Return the indices of waypoints at least a chord apart, from the first one; shape (k,)."""
     extent = float(np.hypot(*(places - places[0]).T).max())
     chord = min(_CHORD_M, extent / 10)
     kept = [0]

@@ -1,4 +1,4 @@
-"""What there is to know of a path before it is driven."""
+"""Properties of a path and warnings, before it is driven."""
 
 import math
 from dataclasses import dataclass
@@ -22,13 +22,13 @@ _LEAST_SPEED_MPS = 0.1
 
 @dataclass(frozen=True, slots=True)
 class PathWarning:
-    """Something about a path that a person should look at."""
+    """A property of a path that a person should check."""
 
     code: str
     """Stable, UPPER_SNAKE."""
     message: str
     index: int | None = None
-    """The waypoint that it is about."""
+    """Index of the waypoint concerned; None: none in particular."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -42,29 +42,29 @@ class Spacing:
 
 @dataclass(frozen=True, slots=True)
 class StartDistance:
-    """How far the vehicle is from where a path begins."""
+    """Distance and heading error of the vehicle at the start of a path."""
 
     distance_m: float
     heading_error_rad: float
-    """Of the vehicle against the path; 0: it looks along it."""
+    """Heading of the vehicle minus heading of the path; 0: it faces along the path."""
 
 
 @dataclass(frozen=True, slots=True)
 class PathPreview:
-    """A path against the vehicle that would drive it."""
+    """Properties of a path for the vehicle that would drive it."""
 
     waypoint_count: int
     length_m: float
     spacing: Spacing
     min_radius_m: float | None
-    """Of its tightest bend; None: it is straight."""
+    """Radius of the tightest bend; None: the path is straight."""
     vehicle_min_radius_m: float
     steerable: bool
-    """Whether the vehicle can steer its tightest bend."""
+    """Whether the vehicle can steer the tightest bend."""
     start: StartDistance | None
-    """None: it is not known where the vehicle is."""
+    """None: the pose of the vehicle is unknown."""
     duration_s: float
-    """Estimate, from rest to rest."""
+    """Estimated driving time from standstill to standstill."""
     warnings: tuple[PathWarning, ...]
 
 
@@ -75,14 +75,14 @@ def preview(
     vehicle: VehicleLimits,
     limits: SpeedLimits,
 ) -> PathPreview:
-    """Describe a path.
+    """Return the properties of a path and warnings about it.
 
     Args:
-        path: What would be driven.
+        path: The path to be driven.
         cruise_mps: Speed where nothing else limits it; > 0.
-        pose: Of the vehicle; None: it is not known.
-        vehicle: What it can do.
-        limits: How hard it may be accelerated.
+        pose: Pose of the vehicle; None: unknown.
+        vehicle: Limits of the vehicle.
+        limits: Limits of its acceleration.
     """
     steps = min(max(math.ceil(path.length_m / _STEP_M), 1), _MAX_STEPS)
     at = np.linspace(0.0, path.length_m, steps + 1)
@@ -98,7 +98,7 @@ def preview(
     warnings = [*_spacing_warnings(distances), *_start_warnings(start)]
     if not steerable and radius is not None:
         message = (
-            f"a bend of {radius:.1f} m radius; the vehicle needs {vehicle_radius:.1f} m, "
+            f"a bend of {radius:.1f} m radius; the vehicle needs {vehicle_radius:.1f} m "
             "and will leave the path there"
         )
         index = path.index_after(float(at[tightest]))
@@ -124,15 +124,15 @@ def _start(path: Path, pose: Pose) -> StartDistance:
 
 
 def _spacing_warnings(distances: NDArray[np.float64]) -> list[PathWarning]:
-    """Tell of waypoints that are far from each other, or not at all; distances in m, shape (n,)."""
+    """Warn about waypoints that are far apart or coincide; distances in m, shape (n,)."""
     warnings = []
     widest = float(distances.max())
     if widest > _SPARSE_M:
-        message = f"{widest:.1f} m from one waypoint to the next: straight in between"
+        message = f"{widest:.1f} m between two waypoints; the path is straight in between"
         warnings.append(PathWarning("SPARSE", message, int(distances.argmax())))
     standing = int((distances < _STANDING_M).sum())
     if standing > _MANY_STANDING:
-        message = f"{standing} waypoints stand where the one before them does"
+        message = f"{standing} waypoints are at the position of the one before"
         warnings.append(PathWarning("STANDS_STILL", message))
     return warnings
 
@@ -140,10 +140,10 @@ def _spacing_warnings(distances: NDArray[np.float64]) -> list[PathWarning]:
 def _start_warnings(start: StartDistance | None) -> list[PathWarning]:
     warnings = []
     if start is not None and start.distance_m > _FAR_START_M:
-        message = f"it begins {start.distance_m:.1f} m from the vehicle"
+        message = f"the path begins {start.distance_m:.1f} m from the vehicle"
         warnings.append(PathWarning("FAR_START", message, 0))
     if start is not None and abs(start.heading_error_rad) > _TURNED_RAD:
-        message = "the vehicle looks away from where the path leads"
+        message = "the vehicle faces away from the direction of the path"
         warnings.append(PathWarning("TURNED_AWAY", message, 0))
     return warnings
 
@@ -155,10 +155,10 @@ def _duration(
     limits: SpeedLimits,
     at: NDArray[np.float64],
 ) -> float:
-    """Estimate how long the path takes from rest to rest, s."""
+    """Estimate the driving time from standstill to standstill, s."""
     profile = SpeedProfile(path, cruise_mps, limits, vehicle)
     allowed = np.array([profile.speed_at(distance) for distance in at.tolist()])
-    # From rest, v^2 rises by 2 a per metre at most, from whichever place is the slowest before.
+    # From standstill, v^2 rises by at most 2 a per metre from the slowest position before.
     gained = 2 * limits.acceleration_mps2 * at
     squares = np.minimum.accumulate(np.concatenate(([0.0], (allowed**2 - gained)[1:]))) + gained
     speeds = np.maximum(np.sqrt(np.maximum(squares, 0.0)), _LEAST_SPEED_MPS)

@@ -1,7 +1,7 @@
-"""How fast a vehicle may be where along a path: no faster than its bends and its end allow.
+"""Speed limit along a path: as its bends and its end allow.
 
-Only braking is planned ahead. How fast the command rises is a matter of the moment, since a vehicle
-also starts in the middle of a path, after a pause; whoever commands keeps to `acceleration_mps2`.
+Only braking is planned ahead. A vehicle can also start in the middle of a path, after a pause;
+therefore navigation limits the rise of the command by `acceleration_mps2`.
 """
 
 from dataclasses import dataclass
@@ -13,20 +13,20 @@ from domain.paths.path import Path
 from domain.vehicle import VehicleLimits
 
 STEP_M = 0.5
-"""Distance between two places where the curvature is looked at; it is smoothed over more."""
+"""Distance between two samples of the curvature, which is smoothed over more."""
 MAX_STEPS = 200_000
-"""On paths longer than 100 km such places are further apart."""
+"""On paths longer than 100 km the samples are further apart."""
 CRAWL_MPS = 0.05
-"""Slowest command before the end, or it would never be reached; to stop from it is no jerk."""
+"""Lowest command before the end, which would otherwise never be reached; stops without a jerk."""
 BRAKING_SHARE = 0.8
-"""Planned of the braking that is allowed: a vehicle that is told late has to brake harder then."""
+"""Planned share of the allowed braking: a vehicle that reacts late has to brake harder."""
 REACTION_S = 0.15
-"""Between what is commanded and what the wheels do; without it the end would be run over."""
+"""Delay from a command to the wheels; without it the vehicle would overrun the end."""
 
 
 @dataclass(frozen=True, slots=True)
 class SpeedLimits:
-    """How hard a vehicle may be accelerated."""
+    """Limits of the acceleration of a vehicle."""
 
     lateral_acceleration_mps2: float = 2.0
     acceleration_mps2: float = 1.0
@@ -34,7 +34,7 @@ class SpeedLimits:
 
 
 class SpeedProfile:
-    """The greatest speed by distance along one path."""
+    """The speed limit by distance along one path."""
 
     def __init__(
         self, path: Path, cruise_mps: float, limits: SpeedLimits, vehicle: VehicleLimits
@@ -42,11 +42,11 @@ class SpeedProfile:
         """Plan the speed.
 
         Args:
-            path: What is driven.
+            path: The path to be driven.
             cruise_mps: Speed where nothing else limits it.
-            limits: All > 0.
-            vehicle: Its greatest speed, and its tightest bend: a path that bends more, as at the
-                corner of a polygon, is driven as fast as that one.
+            limits: Limits of the acceleration; all > 0.
+            vehicle: Limits of the vehicle. Where the path bends more than it can steer, as at the
+                corner of a polygon, its tightest bend sets the speed.
         """
         self._length_m = path.length_m
         braking = BRAKING_SHARE * limits.braking_mps2
@@ -56,24 +56,24 @@ class SpeedProfile:
         at = np.linspace(0.0, path.length_m, self._steps + 1)
         tightest = tan(vehicle.max_steering_angle_rad) / vehicle.wheelbase_m
         bends = np.minimum(np.abs(path.curvatures_at(at)), tightest)
-        # A bend so wide is driven at the greatest speed, and nothing is divided by zero.
+        # A bend as wide as this is driven at top speed; also avoids a division by zero.
         widest = limits.lateral_acceleration_mps2 / self._top_mps**2
         squares = limits.lateral_acceleration_mps2 / np.maximum(bends, widest)
-        # v^2 falls by 2 b per metre of braking, so what is left of v^2 + 2 b s of every place ahead
-        # is what can still be braked for.
+        # v^2 falls by 2 b per metre of braking, so the minimum of v^2 + 2 b s over all positions
+        # ahead limits the speed here.
         braked = squares + 2 * braking * at
         ahead = np.minimum.accumulate(braked[::-1])[::-1] - 2 * braking * at
         self._squares: list[float] = ahead.tolist()
 
     def speed_at(self, distance_m: float) -> float:
-        """Return the greatest speed at a distance from waypoint 0, m/s; 0 at the end and beyond."""
+        """Return the speed limit at a distance from waypoint 0, m/s; 0 at the end and beyond."""
         left = self._length_m - distance_m
         if left <= 0:
             return 0.0
         place = max(distance_m, 0.0) / self._length_m * self._steps
         index = min(int(place), self._steps - 1)
         before, after = self._squares[index : index + 2]
-        # Straight in v^2, as braking is.
+        # Interpolated in v^2, which is linear while braking.
         bends = sqrt(before + (after - before) * (place - index))
         # Solves v^2 = 2 b (left - REACTION_S v).
         late = self._braking_mps2 * REACTION_S

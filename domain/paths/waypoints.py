@@ -1,4 +1,4 @@
-"""Which waypoints can be a path: how many, and how far out."""
+"""Limits on the waypoints of a path: number and range."""
 
 import numpy as np
 from numpy.typing import NDArray
@@ -11,14 +11,14 @@ COLUMNS = ("x_m", "y_m", "yaw_rad")
 
 
 def check_waypoints(waypoints: NDArray[np.float64]) -> None:
-    """Refuse waypoints that cannot be a path.
+    """Reject waypoints that cannot be a path.
 
     Args:
         waypoints: Shape (n, 3): x and y in m, yaw in rad.
 
     Raises:
         InvalidValueError: There are fewer than 2 or more than `MAX_WAYPOINTS`, or a number is not
-            finite or too large; `pointer` leads to it.
+            finite or out of range; `pointer` leads to it.
     """
     count = len(waypoints)
     if not 2 <= count <= MAX_WAYPOINTS:

@@ -1,1 +1,1 @@
-"""The simulated robot: nodes with times and faults, and mock signals, advanced like the core."""
+"""The simulated robot: nodes with durations and faults, a vehicle, and mock signals."""

@@ -1,4 +1,4 @@
-"""Signals of a robot that is not there: values that somebody set, published over and over."""
+"""Mock signals: held values that are published periodically."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -21,12 +21,12 @@ GOOD_VALUES: Mapping[str, SignalValue] = MappingProxyType(
         "temperature": 30.0,
     }
 )
-"""What is held at the start: no error. Source: smart_polaris, the mock node's own start."""
+"""Initial values, without errors. Source: smart_polaris, initial values of its mock node."""
 
 
 @dataclass(frozen=True, slots=True)
 class MockSignal:
-    """One signal of the mock, and what is done with it."""
+    """One signal of the mock."""
 
     signal: str
     value: SignalValue
@@ -34,11 +34,11 @@ class MockSignal:
 
 
 class MockSignals:
-    """Publishes the five signals at 10 Hz as one message, the first at `start` itself.
+    """Publishes the five signals at 10 Hz as one message, the first one at `start`.
 
-    Deterministic, and advanced like the core. Publishing keeps to `start + n * PERIOD`; when time
-    was not told for longer, what was missed is not made up for. What `now` is given must never
-    fall. Values are taken as they are: whoever holds one has checked it as any reading.
+    Deterministic, and advanced like the core. Messages are published at `start + n * PERIOD`;
+    missed ones are not made up for. `now` must never decrease from call to call. Values are not
+    checked here: the caller checks them like any reading.
     """
 
     def __init__(self, start: Instant) -> None:
@@ -49,13 +49,13 @@ class MockSignals:
         self._next = start
 
     def advance(self, now: Instant) -> tuple[Readings, ...]:
-        """Return everything due up to `now`."""
+        """Return all messages due up to `now`."""
         self._catch_up(now)
         messages, self._messages = tuple(self._messages), []
         return messages
 
     def wake_at(self) -> Instant:
-        """Return when `advance` next has something to say."""
+        """Return when the next message is due."""
         return self._messages_at if self._messages else self._next
 
     def holds(self, signal: str) -> bool:
@@ -63,7 +63,7 @@ class MockSignals:
         return signal in self._values
 
     def hold(self, signal: str, value: SignalValue, now: Instant) -> None:
-        """Hold `value` from now on, and publish it at once unless the signal's publishing is off.
+        """Hold `value` from now on, and publish it at once unless publishing is stopped.
 
         Raises:
             UnknownSignalError: The mock has no such signal.
@@ -75,7 +75,7 @@ class MockSignals:
             self._publish((signal,), now)
 
     def set_publishing(self, signal: str, publishing: bool, now: Instant) -> None:
-        """Stop publishing a signal, to see it go stale, or take it up again at once.
+        """Stop publishing a signal, so that it becomes stale, or resume at once.
 
         Raises:
             UnknownSignalError: The mock has no such signal.
@@ -103,7 +103,7 @@ class MockSignals:
         if now < self._next:
             return
         publishing = tuple(signal for signal in self._values if signal not in self._stopped)
-        # A node that publishes late does so once, and keeps to its grid from then on.
+        # A node that is late publishes once, and keeps its period from then on.
         last_due = now - (now - self._next) % PERIOD
         if publishing:
             self._publish(publishing, last_due)

@@ -1,4 +1,4 @@
-"""Parameters of a simulated node: what it starts with, and which values it takes."""
+"""Parameters of a simulated node: initial values, and which values it accepts."""
 
 from collections.abc import Mapping
 
@@ -8,9 +8,9 @@ from domain.parts.system_model import NodeModel
 
 
 def declared_parameters(node: NodeModel) -> dict[str, ParameterValue]:
-    """Return every parameter that a mode of `node` sets, with a value of the type that it has.
+    """Return every parameter that a mode of `node` sets, with a value of its type.
 
-    Where modes differ in the type, the first mode of the file decides.
+    If modes differ in the type, the first mode of the file decides.
     """
     declared: dict[str, ParameterValue] = {}
     for values in node.modes.values():
@@ -20,14 +20,14 @@ def declared_parameters(node: NodeModel) -> dict[str, ParameterValue]:
 
 
 def start_parameters(declared: Parameters) -> dict[str, ParameterValue]:
-    """Return the values that a node starts with: those of a node that was never told any."""
+    """Return the initial values of a node, before anything sets them."""
     return {name: _start_value(value) for name, value in declared.items()}
 
 
 def find_refusal(declared: Parameters, values: Parameters) -> PilothouseError | None:
-    """Return why a node with the `declared` parameters would not take `values`; None: it would.
+    """Return why a node with the `declared` parameters rejects `values`; None: it accepts them.
 
-    A type is never changed: 1 is no value of a parameter that holds 1.0, as in ROS 2.
+    As in ROS 2, types are never converted: a parameter that holds 1.0 does not accept 1.
     """
     for name, value in values.items():
         if name not in declared:

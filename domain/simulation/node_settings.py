@@ -1,4 +1,4 @@
-"""What a simulated node is like: how long it takes, and what can be wrong with it."""
+"""Settings of a simulated node: durations and faults."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -10,24 +10,24 @@ from domain.timebase import Duration, seconds
 
 
 class Fault(StrEnum):
-    """One thing that can be wrong with a node; it lasts until it is replaced or taken away."""
+    """A fault of a node; it lasts until it is replaced or removed."""
 
     SLOW = "slow"
-    """What is begun takes `SLOWDOWN` times as long."""
+    """Transitions and parameter sets take `SLOWDOWN` times as long."""
     REFUSE = "refuse"
-    """Every transition and parameter set is answered with a refusal."""
+    """The node rejects every transition and parameter set."""
     FAIL = "fail"
-    """A callback that ends reports failure: the node goes where the lifecycle table says."""
+    """Callbacks report failure; the lifecycle table gives the next state."""
     ERROR = "error"
-    """A callback that ends leads to `errorprocessing`, and from there to `unconfigured`."""
+    """Callbacks end in `errorprocessing`, and from there in `unconfigured`."""
     SILENT = "silent"
-    """The node hears and acts, but answers and reports nothing."""
+    """The node executes commands, but sends no answers and reports."""
     DIE = "die"
-    """The process is gone, and what it was at is lost; without this fault it starts anew."""
+    """The process has died, and its work is lost; removing the fault restarts it."""
 
     @property
     def is_mute(self) -> bool:
-        """Tell whether nothing is heard of a node with this fault."""
+        """Tell whether a node with this fault sends nothing."""
         return self in NOTICED_AFTER
 
 
@@ -36,12 +36,12 @@ SLOWDOWN = 20
 NOTICED_AFTER: Mapping[Fault, Duration] = MappingProxyType(
     {Fault.SILENT: seconds(3.0), Fault.DIE: seconds(1.0)}
 )
-"""After how long a node of which nothing is heard is reported as unreachable."""
+"""How long a node must send nothing before it is reported as unreachable."""
 
 
 @dataclass(frozen=True, slots=True)
 class NodeSettings:
-    """Durations of one simulated node, as of a small real one, and how it starts."""
+    """Durations of one simulated node, and its initial fault; the defaults suit a small node."""
 
     configure: Duration = seconds(0.3)
     activate: Duration = seconds(0.2)
@@ -50,14 +50,14 @@ class NodeSettings:
     shutdown: Duration = seconds(0.2)
     set_parameters: Duration = seconds(0.02)
     process_error: Duration = seconds(0.5)
-    """From `errorprocessing` to `unconfigured`."""
+    """Time from `errorprocessing` to `unconfigured`."""
     fault: Fault | None = None
-    """What is wrong with the node from the start."""
+    """Fault from the start; None: none."""
     plain: bool = False
     """Whether the node has parameters only, and no lifecycle."""
 
     def time_of(self, transition: Transition) -> Duration:
-        """Return how long the callback of `transition` takes."""
+        """Return the duration of the callback of `transition`."""
         match transition:
             case Transition.CONFIGURE:
                 return self.configure

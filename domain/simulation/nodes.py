@@ -1,8 +1,8 @@
-"""Nodes that exist only here: with a lifecycle, parameters, times and faults of their own.
+"""Simulated nodes with lifecycle, parameters, durations and faults.
 
 Deterministic and advanced like the core: the same commands and faults at the same times lead to the
-same messages, whether time passes in one step or in many. Nothing here waits for anything, and one
-node's work never delays another's.
+same messages, whether time advances in one step or in many. Nodes work in parallel and never delay
+each other.
 """
 
 import heapq
@@ -27,7 +27,7 @@ NodeMessage: TypeAlias = NodeReport | NodeAnswer
 
 @dataclass(slots=True)
 class _Node:
-    """One node as it really is, and what the backend has told about it."""
+    """The actual state of one node, and what the backend has reported about it."""
 
     name: PartName
     settings: NodeSettings
@@ -36,11 +36,11 @@ class _Node:
     state: LifecycleState = LifecycleState.UNKNOWN
     parameters: dict[str, ParameterValue] = field(default_factory=dict)
     process: int = 0
-    """Counts the processes that ended: work that one of them was at is lost."""
+    """Number of processes that ended; work of an ended process is lost."""
     parameters_free_at: Instant = 0
-    """Until when it is busy with parameter sets, which it does one after the other."""
+    """Until when it is busy with parameter sets, which it executes one after the other."""
     unreachable_at: Instant | None = None
-    """When the backend will notice that nothing is heard of it."""
+    """When the backend will notice that the node sends nothing."""
     told_unreachable: bool = False
 
     @property
@@ -52,24 +52,24 @@ class _Node:
         return self.fault is None or not self.fault.is_mute
 
     def start(self, at: Instant) -> None:
-        """Begin a process: unconfigured, with the parameters of a node that was told nothing."""
+        """Start a process: unconfigured, with the initial parameters."""
         plain = self.settings.plain
         self.state = LifecycleState.UNKNOWN if plain else LifecycleState.UNCONFIGURED
         self.parameters = start_parameters(self.declared)
         self.parameters_free_at = at
 
     def stop(self) -> None:
-        """End the process, and with it all that it was at."""
+        """End the process, and with it all its work."""
         self.process += 1
         self.state = LifecycleState.UNKNOWN
         self.parameters = {}
 
     def takes(self, duration: Duration) -> Duration:
-        """Return how long something takes now that takes `duration` when all is well."""
+        """Return a nominal duration as it is with the current fault."""
         return duration * SLOWDOWN if self.fault is Fault.SLOW else duration
 
     def facts(self) -> NodeReport:
-        """Return all there is to say."""
+        """Return a complete report."""
         plain = self.settings.plain
         return NodeReport(
             self.name,
@@ -111,14 +111,14 @@ _Work: TypeAlias = _CallbackEnds | _ErrorIsProcessed | _ParametersAreSet | _Sile
 
 
 class SimulatedNodes:
-    """All nodes of a model, and the backend's view of which of them can be reached.
+    """All nodes of a model, and which of them the backend can reach.
 
     Each starts unconfigured, with every parameter that its modes set, at `0`, `0.0`, `False` or
-    `"none"`. What `now` is given must never fall.
+    `"none"`. `now` must never decrease from call to call.
 
-    A transition that the lifecycle table has is answered at once, then reported as the transitional
-    state and, after its time, as its end; any other is refused. Parameter sets are all or nothing,
-    and are answered and reported when they are done.
+    A legal transition is accepted at once, reported as the transitional state, and after its
+    duration as the resulting state; any other is rejected. Parameter sets are atomic, and are
+    answered and reported when they are done.
 
     Raises:
         UnknownPartError: There are settings of a node that the model does not have.
@@ -144,28 +144,28 @@ class SimulatedNodes:
             self._appear(node, start)
 
     def handle(self, command: NodeCommand, now: Instant) -> None:
-        """Take in what a node is asked; what follows comes out of `advance`."""
+        """Accept a command for a node; `advance` returns what follows."""
         self._catch_up(now)
         node = self._nodes.get(command.node)
         if node is None:
             self._refuse(command, "there is no such node", now)
         elif not node.runs:
-            # Until it is noticed, a dead node is one that has not answered yet.
+            # Until its death is noticed, a dead node is one that has not answered yet.
             if node.told_unreachable:
                 self._refuse(command, "not reachable", now)
         else:
             self._hear(node, command, now)
 
     def advance(self, now: Instant) -> tuple[NodeMessage, ...]:
-        """Return everything due up to `now`, in order of time, then in order of issue."""
+        """Return all messages due up to `now`, in order of time, then in order of issue."""
         self._catch_up(now)
         messages, self._messages = tuple(self._messages), []
         return messages
 
     def wake_at(self) -> Instant | None:
-        """Return when `advance` next has something to say, or None: only when something is asked.
+        """Return when something is due next, even if a silent node sends no message then.
 
-        Also a time at which a node only acts, silently.
+        None: nothing is due until the next command.
         """
         if self._messages:
             return self._messages_at
@@ -174,9 +174,9 @@ class SimulatedNodes:
         return self._due[0][0] if self._due else None
 
     def set_fault(self, node: PartName, fault: Fault | None, now: Instant) -> None:
-        """Let something be wrong with a node from now on; None: all is well again.
+        """Set the fault of a node; None removes it.
 
-        What it was already at keeps its time. A node that is heard again says all that it is in.
+        Work in progress keeps its duration. A node that can send again sends a complete report.
 
         Raises:
             UnknownPartError: There is no such node.
@@ -192,25 +192,25 @@ class SimulatedNodes:
             self._appear(it, now)
 
     def set_parameters(self, node: PartName, values: Parameters, now: Instant) -> None:
-        """Change parameters of a node from outside, all or none, at once.
+        """Set parameters of a node from outside, atomically and at once.
 
         Raises:
             UnknownPartError: There is no such node.
             UnknownParameterError: It has no such parameter.
-            InvalidValueError: A value is not of the parameter's type.
-            RefusedError: The node does not run.
+            InvalidValueError: A value has the wrong type.
+            RefusedError: The node is not running.
         """
         self._catch_up(now)
         it = self._require(node)
         if not it.runs:
-            raise RefusedError(f"{node} does not run")
+            raise RefusedError(f"{node} is not running")
         refusal = find_refusal(it.declared, values)
         if refusal is not None:
             raise refusal
         self._take_over(it, values, now)
 
     def state_of(self, node: PartName) -> LifecycleState:
-        """Return what a node really is in; `unknown` without a process or a lifecycle.
+        """Return the actual state of a node; `unknown` without a process or a lifecycle.
 
         Raises:
             UnknownPartError: There is no such node.
@@ -218,7 +218,7 @@ class SimulatedNodes:
         return self._require(node).state
 
     def parameters_of(self, node: PartName) -> Parameters:
-        """Return what a node really has set; nothing while it does not run.
+        """Return the actual parameters of a node; empty while it is not running.
 
         Raises:
             UnknownPartError: There is no such node.
@@ -237,7 +237,7 @@ class SimulatedNodes:
         self._messages_at = at
 
     def _say(self, node: _Node, message: NodeMessage, at: Instant) -> None:
-        """Let a node speak, if it can."""
+        """Send a message of a node, unless a fault keeps it from sending."""
         if node.speaks:
             self._emit(message, at)
 
@@ -245,14 +245,14 @@ class SimulatedNodes:
         self._emit(NodeAnswer(command.request, command.node, False, reason), at)
 
     def _appear(self, node: _Node, at: Instant) -> None:
-        """Say everything of a node that is heard; otherwise wait until that is noticed."""
+        """Send a complete report of a node that can send, or schedule the notice of its silence."""
         if node.speaks:
             node.unreachable_at = None
             node.told_unreachable = False
             self._emit(node.facts(), at)
         elif node.fault is not None and not node.told_unreachable:
             noticed = at + NOTICED_AFTER[node.fault]
-            # One that was silent before it died is noticed as early as either would be.
+            # A node that was silent before it died is noticed at the earlier of both times.
             if node.unreachable_at is None or noticed < node.unreachable_at:
                 node.unreachable_at = noticed
                 self._schedule(_SilenceIsNoticed(node, noticed), noticed)
@@ -260,7 +260,7 @@ class SimulatedNodes:
     # --- what nodes do ---------------------------------------------------------------------------
 
     def _hear(self, node: _Node, command: NodeCommand, now: Instant) -> None:
-        """Let a running node take up a command."""
+        """Let a running node execute a command."""
         match command:
             case AskFacts():
                 self._say(node, node.facts(), now)
@@ -306,7 +306,7 @@ class SimulatedNodes:
 
     def _take_over(self, node: _Node, values: Parameters, at: Instant) -> None:
         node.parameters.update(values)
-        # All that was set, changed or not, as in the parameter events of ROS 2.
+        # All values of the request, changed or not, as in ROS 2 parameter events.
         self._say(node, NodeReport(node.name, parameters=MappingProxyType(dict(values))), at)
 
     # --- time ------------------------------------------------------------------------------------
@@ -316,7 +316,7 @@ class SimulatedNodes:
         heapq.heappush(self._due, (at, self._issues, work))
 
     def _catch_up(self, now: Instant) -> None:
-        """Do what is due up to `now`, each at its own time."""
+        """Do all work due up to `now`, each at its own time."""
         while self._due and self._due[0][0] <= now:
             at, _, work = heapq.heappop(self._due)
             if not _is_void(work):
@@ -338,11 +338,11 @@ class SimulatedNodes:
 
 
 _USUAL = NodeSettings()
-_REFUSES = "the node refuses"
+_REFUSES = "the node rejects it"
 
 
 def _why_no_transition(node: _Node, transition: Transition, rule: TransitionRule | None) -> str:
-    """Return why a node does not take a transition; empty: it does."""
+    """Return why a node rejects a transition; empty: it accepts it."""
     if node.settings.plain:
         return "the node has no lifecycle"
     if rule is None:
@@ -351,7 +351,7 @@ def _why_no_transition(node: _Node, transition: Transition, rule: TransitionRule
 
 
 def _is_void(work: _Work) -> bool:
-    """Tell whether work was overtaken: its process ended, or its node is heard again."""
+    """Tell whether work is void: its process ended, or its node sends again."""
     if isinstance(work, _SilenceIsNoticed):
         return work.node.unreachable_at != work.at
     return work.node.process != work.process

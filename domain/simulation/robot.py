@@ -1,7 +1,7 @@
-"""The simulated robot: nodes, vehicle and mock signals as one thing that is advanced.
+"""The simulated robot: nodes, vehicle and mock signals, advanced together.
 
-As one, since what several of them say at the same instant has one order then, live and in a
-simulation: nodes, signals, vehicle.
+Together, so that messages at the same instant have the same order live and in a simulation: nodes,
+signals, vehicle.
 """
 
 from collections.abc import Mapping
@@ -24,7 +24,7 @@ _NO_NODES: Mapping[PartName, NodeSettings] = {}
 
 
 class SimulatedRobot:
-    """Everything of a robot that can be simulated. What `now` is given must never fall.
+    """All simulated parts of a robot. `now` must never decrease from call to call.
 
     Raises:
         UnknownPartError: There are settings of a node that the model does not have.
@@ -42,11 +42,11 @@ class SimulatedRobot:
         """Begin at `start`.
 
         Args:
-            model: Says which nodes there are.
-            start: The present.
-            nodes: Settings of those nodes that differ from the usual.
-            vehicle: None: an ideal one at the origin.
-            mock: Whether the five signals are published as well.
+            model: The nodes to simulate.
+            start: The current time.
+            nodes: Settings of the nodes that differ from the default.
+            vehicle: Settings of the vehicle; None: an ideal one at the origin.
+            mock: Whether to publish the five mock signals.
         """
         self.nodes = SimulatedNodes(model, nodes, start)
         self.mock = MockSignals(start) if mock else None
@@ -54,23 +54,23 @@ class SimulatedRobot:
 
     @property
     def what(self) -> tuple[str, ...]:
-        """Return what of the robot is simulated, as it is shown."""
+        """Return which parts of the robot are simulated, for clients."""
         return ("nodes", "vehicle") if self.mock is None else ("nodes", "signals", "vehicle")
 
     def handle(self, command: NodeCommand | Drive, now: Instant) -> None:
-        """Take in what a node is asked or the vehicle is told."""
+        """Accept a command for a node or the vehicle."""
         if isinstance(command, Drive):
             self.vehicle.drive(command.command, now)
         else:
             self.nodes.handle(command, now)
 
     def advance(self, now: Instant) -> tuple[RobotMessage, ...]:
-        """Return everything due up to `now`."""
+        """Return all messages due up to `now`."""
         readings = () if self.mock is None else self.mock.advance(now)
         return (*self.nodes.advance(now), *readings, *self.vehicle.advance(now))
 
     def wake_at(self) -> Instant:
-        """Return when `advance` next has something to say."""
+        """Return when something is due next."""
         due = self.vehicle.wake_at()
         if self.mock is not None:
             due = min(due, self.mock.wake_at())

@@ -1,9 +1,10 @@
-"""A vehicle that exists only here: a kinematic bicycle with limits, lag, delay and noise.
+"""A simulated vehicle: a kinematic bicycle with limits, lag, delay and noise.
 
 Deterministic and advanced like the core: the same commands at the same times lead to the same
-reports, whether time passes in one step or in many.
+reports, whether time advances in one step or in many.
 
-Source: the model of smart_polaris section 12, which is `ks` of the CommonRoad vehicle models.
+Source: kinematic single-track model (KS) of M. Althoff, M. Koschi, S. Manzinger, "CommonRoad:
+Composable Benchmarks for Motion Planning on Roads", IEEE Intelligent Vehicles Symposium 2017.
 """
 
 import math
@@ -21,15 +22,16 @@ REPORT_PERIOD: Duration = seconds(0.05)
 
 _STEP: Duration = seconds(0.01)
 _AS_GOOD_AS_THERE = 1e-6
-"""What lags would approach for ever and never reach: m/s or rad from it, it is reached."""
+"""Difference, in m/s or rad, at which a lag counts as settled; it would never reach its target."""
 _AT_REST = DriveCommand(0.0, 0.0)
 
 
 class SimulatedVehicle:
-    """One vehicle, its reference the middle of its rear axle. What `now` is given must never fall.
+    """One vehicle; its reference point is the centre of the rear axle.
 
-    It reports itself at 20 Hz from `start` on. A command takes effect after the delay of the plant,
-    and is void 0.5 s later; then the vehicle brakes and keeps its steering.
+    It reports its state at 20 Hz from `start` on. A command takes effect after the delay of the
+    plant and expires 0.5 s later; then the vehicle brakes and keeps its steering angle. `now` must
+    never decrease from call to call.
     """
 
     def __init__(self, settings: VehicleSettings, start: Instant) -> None:
@@ -44,7 +46,7 @@ class SimulatedVehicle:
         self._coming: deque[tuple[Instant, DriveCommand]] = deque()
         self._start = start
         self._at = start
-        """Up to when the state is integrated."""
+        """Time up to which the state is integrated."""
         self._reports: list[VehicleReport] = []
         self._reports_at = start
         self._next_report = start
@@ -53,13 +55,13 @@ class SimulatedVehicle:
     # --- what is done to it ----------------------------------------------------------------------
 
     def drive(self, command: DriveCommand, now: Instant) -> None:
-        """Tell it how to drive; what is beyond its limits is cut, what is no number is a stop."""
+        """Command the vehicle; values are clipped to its limits, and a non-finite one stops it."""
         self._catch_up(now)
         self._coming.append((now + self._plant.delay, command))
         self._catch_up(now)
 
     def set_reporting(self, reporting: bool, now: Instant) -> None:
-        """Let it stop telling where it is, as a localization that is lost, or tell it again."""
+        """Stop the reports of the vehicle, like a lost localization, or resume them."""
         self._catch_up(now)
         self._reporting = reporting
 
@@ -72,12 +74,12 @@ class SimulatedVehicle:
         return reports
 
     def wake_at(self) -> Instant:
-        """Return when `advance` next has something to say."""
+        """Return when the next report is due."""
         return self._reports_at if self._reports else self._next_report
 
     @property
     def state(self) -> VehicleState:
-        """Return how it really moves, without noise, at its last report or change of command."""
+        """Return the actual state, without noise, at the last report or change of command."""
         return self._state
 
     @property
@@ -88,7 +90,7 @@ class SimulatedVehicle:
     # --- commands --------------------------------------------------------------------------------
 
     def _possible(self, command: DriveCommand) -> DriveCommand:
-        """Return what the vehicle can do of a command that follows the one in effect."""
+        """Return a command clipped to the limits; a non-finite one becomes a stop."""
         numbers = (command.speed_mps, command.steering_angle_rad)
         if not all(map(math.isfinite, numbers)):
             return replace(self._command, speed_mps=0.0)
@@ -115,7 +117,7 @@ class SimulatedVehicle:
     # --- time ------------------------------------------------------------------------------------
 
     def _catch_up(self, now: Instant) -> None:
-        """Let happen what is due up to `now`, each at its own time."""
+        """Process everything due up to `now`, each at its own time."""
         while (due := self._next_due()) <= now:
             self._integrate(due)
             self._take_commands(due)
@@ -132,7 +134,7 @@ class SimulatedVehicle:
         return due if self._expires_at is None else min(due, self._expires_at)
 
     def _integrate(self, until: Instant) -> None:
-        """Move up to `until`, in steps from `start` on, so that only events part them."""
+        """Integrate up to `until`, in steps aligned to `start` that only events interrupt."""
         if self._rests:
             self._at = until
             return
@@ -150,7 +152,7 @@ class SimulatedVehicle:
 
     @property
     def _rests(self) -> bool:
-        """Tell whether nothing moves and nothing is about to."""
+        """Tell whether the vehicle is at rest and its command keeps it so."""
         state, command = self._state, self._command
         return (
             state.speed_mps == 0.0
@@ -159,7 +161,7 @@ class SimulatedVehicle:
         )
 
     def _respond(self, dt_s: float) -> None:
-        """Let speed and steering follow the command for a short time, and move meanwhile."""
+        """Let speed and steering follow the command for `dt_s`, and move the vehicle."""
         plant, state, command = self._plant, self._state, self._command
         speed = state.speed_mps
         slower = abs(command.speed_mps) < abs(speed) or command.speed_mps * speed < 0.0
@@ -177,10 +179,10 @@ class SimulatedVehicle:
         self._state = VehicleState(self._moved(way, middle), new_speed, steering)
 
     def _moved(self, way_m: float, steering_angle_rad: float) -> Pose:
-        """Return the pose that an arc leads to."""
+        """Return the pose at the end of an arc."""
         pose = self._state.pose
         half = way_m * math.tan(steering_angle_rad) / self._limits.wheelbase_m / 2
-        # By the chord, which is as exact for an arc of next to no curvature as for any other.
+        # By the chord, which is exact also for arcs of almost no curvature.
         chord = way_m * math.sin(half) / half if half else way_m
         direction = pose.yaw_rad + half
         return Pose(
@@ -191,7 +193,7 @@ class SimulatedVehicle:
 
 
 class _NoiseSource:
-    """Adds the same noise in each run."""
+    """Adds reproducible noise."""
 
     def __init__(self, noise: Noise) -> None:
         self._noise = noise
@@ -211,7 +213,7 @@ class _NoiseSource:
 
 
 def _is_ideal(plant: Plant) -> bool:
-    """Tell whether speed and steering follow at once, so that the vehicle drives exact arcs."""
+    """Tell whether speed and steering follow instantly, so that the vehicle drives exact arcs."""
     limits = (plant.acceleration_mps2, plant.braking_mps2, plant.steering_rate_radps)
     return limits == (None, None, None) and plant.speed_lag_s == plant.steering_lag_s == 0.0
 
@@ -219,7 +221,15 @@ def _is_ideal(plant: Plant) -> bool:
 def _approached(
     value: float, target: float, lag_s: float, rate: float | None, dt_s: float
 ) -> float:
-    """Return where a first-order lag with a limited rate has come after `dt_s`."""
+    """Return the value of a first-order lag with a limited rate after `dt_s`.
+
+    Args:
+        value: Current value.
+        target: Commanded value.
+        lag_s: Time constant, s; 0: none.
+        rate: Largest rate of change, per second; None: unlimited.
+        dt_s: Time step, s.
+    """
     wanted = target - value
     if lag_s > 0:
         wanted *= 1 - math.exp(-dt_s / lag_s)
@@ -234,5 +244,5 @@ def _clipped(value: float, limit: float) -> float:
 
 
 def _wrapped(angle: float) -> float:
-    """Return an angle within -pi and pi."""
+    """Return an angle wrapped to [-pi, pi], rad."""
     return math.remainder(angle, math.tau)

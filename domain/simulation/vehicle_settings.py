@@ -1,4 +1,4 @@
-"""What a simulated vehicle is like: where it begins, how it responds, and what its sensors add."""
+"""Settings of a simulated vehicle: initial pose, dynamics and sensor noise."""
 
 from dataclasses import dataclass, field
 
@@ -10,7 +10,7 @@ ORIGIN = Pose(0.0, 0.0, 0.0)
 
 @dataclass(frozen=True, slots=True)
 class Noise:
-    """Standard deviations of what is added to each report; 0: nothing."""
+    """Standard deviations of the noise of each report; 0: none."""
 
     position_m: float = 0.0
     yaw_rad: float = 0.0
@@ -21,7 +21,7 @@ class Noise:
 
 @dataclass(frozen=True, slots=True)
 class Plant:
-    """How a vehicle follows its commands; None: at once."""
+    """Dynamics of a vehicle; limits that are None do not apply."""
 
     acceleration_mps2: float | None = None
     braking_mps2: float | None = None
@@ -31,13 +31,13 @@ class Plant:
     speed_lag_s: float = 0.0
     """Time constant of the speed, s; 0: none."""
     delay: Duration = 0
-    """From a command to when it takes effect."""
+    """Delay until a command takes effect."""
     noise: Noise = field(default_factory=Noise)
 
 
 @dataclass(frozen=True, slots=True)
 class VehicleSettings:
-    """A simulated vehicle; the usual one is ideal and stands at the origin."""
+    """A simulated vehicle; the default is ideal, at standstill at the origin."""
 
     pose: Pose = ORIGIN
     plant: Plant = field(default_factory=Plant)

@@ -1,4 +1,4 @@
-"""Waypoint tasks: what is driven, what holds it, and where the vehicle is.
+"""Waypoint tasks, holds, and the state of the vehicle.
 
-Read `task_planner.py` first. Following a path is the work of `domain.navigation`.
+Read `task_planner.py` first. `domain.navigation` follows the path.
 """

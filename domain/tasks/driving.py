@@ -1,4 +1,4 @@
-"""Driving as a concern of the core: where the vehicle is, its task, and who holds it."""
+"""Driving as a concern of the core: the vehicle, its task and its holds."""
 
 from collections.abc import Iterator, Mapping
 
@@ -38,7 +38,7 @@ _REASONS_TOLD = 3
 
 
 class Driving(Concern):
-    """Feeds the task planner, and sets the two holds that are Pilothouse's own."""
+    """Feeds the task planner, and sets the holds `error` and `vehicle`."""
 
     def __init__(
         self,
@@ -49,27 +49,27 @@ class Driving(Concern):
         outbox: Outbox,
         start: Instant,
     ) -> None:
-        """Begin without a pose, and so held.
+        """Begin without a pose, and so with the hold `vehicle`.
 
         Args:
             settings: When a task may begin, and when the vehicle counts as lost or at standstill.
-            limits: What the vehicle can do.
-            health: Whose errors hold the task.
-            emergency_stop: Is told when the vehicle is at standstill.
-            outbox: Where commands and events go.
-            start: The present.
+            limits: Limits of the vehicle.
+            health: Its errors set the hold `error`.
+            emergency_stop: Informed when the vehicle is at standstill.
+            outbox: Receives commands and events.
+            start: The current time.
         """
         self.limits = limits
         self.watch = VehicleWatch(settings, outbox)
-        """Where the vehicle is; navigation steers by it too."""
+        """The vehicle state; navigation uses it too."""
         self._settings = settings
         self._health = health
         self._emergency_stop = emergency_stop
         self._outbox = outbox
         self._planner = TaskPlanner(settings, limits, self.watch, outbox)
         self._followed = health.reasons
-        # How things are at the start is no event.
-        self._planner.holds.set(VEHICLE_HOLD, "the vehicle never told where it is", "", start)
+        # The initial state is not an event.
+        self._planner.holds.set(VEHICLE_HOLD, "the vehicle never reported a pose", "", start)
         if self._followed:
             self._planner.holds.set(ERROR_HOLD, _words(self._followed), "", start)
 
@@ -77,7 +77,7 @@ class Driving(Concern):
 
     @property
     def takes(self) -> Takers:
-        """Return what takes each class of input."""
+        """Return the handler of each class of input."""
         return {
             VehicleReport: self._take_report,
             GoalFeedback: self._take_feedback,
@@ -89,11 +89,11 @@ class Driving(Concern):
         }
 
     def wake_at(self) -> Instant | None:
-        """Return when the pose becomes too old."""
+        """Return when the pose becomes stale."""
         return self.watch.wake_at()
 
     def pass_time(self, now: Instant) -> None:
-        """Hold the task once the pose is too old."""
+        """Hold the task once the pose is stale."""
         if self.watch.pass_time(now):
             limit_s = to_seconds(self._settings.pose_stale_after)
             reason = f"no pose of the vehicle for {limit_s:g} s"
@@ -168,7 +168,7 @@ class Driving(Concern):
 
     @property
     def vehicle(self) -> VehicleView:
-        """Return what is known of the vehicle."""
+        """Return the view of the vehicle."""
         return self.watch.view
 
     @property
@@ -178,7 +178,7 @@ class Driving(Concern):
 
     @property
     def current_task(self) -> TaskView | None:
-        """Return the current task."""
+        """Return the current task; None: there is none."""
         return self._planner.current
 
     @property
@@ -190,7 +190,7 @@ class Driving(Concern):
         """Return a task.
 
         Raises:
-            UnknownTaskError: There is none of that id, or it is forgotten.
+            UnknownTaskError: The id is unknown, or the task is no longer kept.
         """
         return self._planner.task(identity).view()
 
@@ -198,7 +198,7 @@ class Driving(Concern):
         """Return the path of a task.
 
         Raises:
-            UnknownTaskError: There is none of that id, or it is forgotten.
+            UnknownTaskError: The id is unknown, or the task is no longer kept.
         """
         return self._planner.task(identity).path
 

@@ -1,6 +1,6 @@
-"""Holds: whoever has a reason keeps the vehicle from driving, each under a name of its own.
+"""Holds: named reasons that keep tasks from running, each set and released by its owner.
 
-Source: smart_polaris, whose one hold is `allow_run_tasks`; here each owner has its own.
+Source: smart_polaris, whose only hold is `allow_run_tasks`; see docs/explanation/semantics.md.
 """
 
 from collections.abc import Mapping
@@ -12,7 +12,7 @@ from domain.timebase import Instant
 ERROR_HOLD = "error"
 """Set while the robot is in ERROR."""
 VEHICLE_HOLD = "vehicle"
-"""Set while it is not known where the vehicle is."""
+"""Set while the pose of the vehicle is unknown or stale."""
 
 RESERVED = frozenset({ERROR_HOLD, VEHICLE_HOLD})
 MAX_HOLDS = 64
@@ -35,29 +35,36 @@ class Holds:
 
     @property
     def reason(self) -> str:
-        """Return why nothing may be driven, in words; empty: it may."""
+        """Return why no task may run, in words; empty: there are no holds."""
         return "; ".join(hold.reason or hold.owner for hold in self._holds.values())
 
     def check(self, owner: str) -> None:
-        """Refuse a hold that somebody else than Pilothouse may not set or clear.
+        """Reject the name of a hold that only Pilothouse may set and release.
 
         Raises:
-            ReservedHoldError: Pilothouse sets and clears this one.
+            ReservedHoldError: The name is reserved.
         """
         if owner in RESERVED:
             raise ReservedHoldError(owner)
 
     def check_room(self, owner: str) -> None:
-        """Refuse one hold too many.
+        """Reject a new hold if there are too many.
 
         Raises:
-            TooManyHoldsError: There are `MAX_HOLDS` of others.
+            TooManyHoldsError: There are `MAX_HOLDS` others.
         """
         if owner not in self._holds and len(self._holds) >= MAX_HOLDS:
             raise TooManyHoldsError(MAX_HOLDS)
 
     def set(self, owner: str, reason: str, by: str, now: Instant) -> bool:
-        """Set a hold; return whether it is new. One that is there keeps who set it and when."""
+        """Set a hold, or update the reason of an existing one; return whether it is new.
+
+        Args:
+            owner: Name of the hold.
+            reason: Why it is set; may be empty.
+            by: Who sets it; empty: Pilothouse itself. An existing hold keeps this and its time.
+            now: The current time.
+        """
         known = self._holds.get(owner)
         if known is None:
             self._holds = {**self._holds, owner: HoldView(owner, reason, by, now)}
@@ -68,7 +75,7 @@ class Holds:
         return False
 
     def release(self, owner: str) -> bool:
-        """Clear a hold; return whether there was one."""
+        """Release a hold; return whether there was one."""
         if owner not in self._holds:
             return False
         self._holds = {name: hold for name, hold in self._holds.items() if name != owner}

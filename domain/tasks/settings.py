@@ -7,11 +7,11 @@ from domain.timebase import Duration, seconds
 
 @dataclass(frozen=True, slots=True)
 class TaskSettings:
-    """When a task may begin, and when the vehicle counts as lost or as standing."""
+    """When a task may begin, and when the vehicle counts as lost or at standstill."""
 
     max_start_distance_m: float = 5.0
-    """Between the vehicle and the waypoint that a task begins with."""
+    """Largest distance from the vehicle to the first waypoint of a task."""
     pose_stale_after: Duration = seconds(0.3)
-    """A pose that is older holds the task."""
+    """A pose older than this holds the task."""
     standstill_mps: float = 0.05
-    """Below this the vehicle stands still."""
+    """Below this speed the vehicle counts as at standstill."""

@@ -1,4 +1,4 @@
-"""A task while it runs and after it ended."""
+"""The record of a task."""
 
 from dataclasses import dataclass
 
@@ -11,7 +11,7 @@ from domain.timebase import Instant
 
 @dataclass(slots=True)
 class Task:
-    """One path to be followed, and how far it is."""
+    """One path to follow, and the progress on it."""
 
     id: TaskId
     path: Path
@@ -22,13 +22,13 @@ class Task:
     cause: int
     phase: TaskPhase = TaskPhase.PAUSED
     goal: GoalId | None = None
-    """The goal that navigation has; None: it has none of this task."""
+    """The goal that navigation is following; None: none of this task."""
     has_run: bool = False
     target_index: int = 0
     distance_m: float = 0.0
     cross_track_error_m: float | None = None
     left_out_m: float = 0.0
-    """Of the path behind it, what the vehicle was never near."""
+    """Length of the path behind the vehicle that it never came near, in m."""
     reason: str | None = None
     ended_at: Instant | None = None
 
@@ -37,16 +37,16 @@ class Task:
 
     @property
     def length_m(self) -> float:
-        """Return how long the path is from where the task began."""
+        """Return the length of the path from the start of the task."""
         return self.path.length_m - self.path.distance_of(self.start_index)
 
     @property
     def reached_m(self) -> float:
-        """Return how far along the path it came, from waypoint 0."""
+        """Return the distance reached along the path, from waypoint 0."""
         return self.path.distance_of(self.start_index) + self.distance_m
 
     def advance(self, feedback: GoalFeedback) -> None:
-        """Take over how far it is; never backwards."""
+        """Update the progress; it never goes backwards."""
         begun = self.path.distance_of(self.start_index)
         self.target_index = max(self.target_index, feedback.target_index)
         self.distance_m = max(self.distance_m, feedback.distance_m - begun)
@@ -54,7 +54,7 @@ class Task:
         self.left_out_m = feedback.left_out_m
 
     def end(self, phase: TaskPhase, reason: str | None, now: Instant) -> None:
-        """Record how it ended."""
+        """Record the end of the task."""
         self.phase, self.reason, self.ended_at = phase, reason, now
         self.goal = None
 

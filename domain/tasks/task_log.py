@@ -1,4 +1,4 @@
-"""The tasks that can still be asked for: the current one, and those that ended, up to a limit."""
+"""The tasks that are kept: the current one, and ended ones up to a limit."""
 
 from collections.abc import Iterator
 
@@ -11,13 +11,13 @@ MAX_KEPT_POINTS = 300_000
 
 
 class TaskLog:
-    """Tasks by id, the oldest forgotten first."""
+    """Tasks by id; the oldest are dropped first."""
 
     def __init__(self) -> None:
         self._tasks: dict[str, Task] = {}
 
     def add(self, task: Task) -> None:
-        """Keep a task, and forget old ones that are too much; the newest is always kept."""
+        """Add a task, and drop the oldest ones beyond the limits; the newest is always kept."""
         self._tasks[task.id] = task
         points = sum(kept.path.count for kept in self._tasks.values())
         while len(self._tasks) > 1 and (len(self._tasks) > MAX_KEPT or points > MAX_KEPT_POINTS):
@@ -28,7 +28,7 @@ class TaskLog:
         """Return a task.
 
         Raises:
-            UnknownTaskError: There is none of that id, or it is forgotten.
+            UnknownTaskError: The id is unknown, or the task is no longer kept.
         """
         task = self._tasks.get(identity)
         if task is None:

@@ -1,8 +1,8 @@
 """Decides whether the vehicle drives its task: submit, replace, hold, resume, cancel, end.
 
-A task runs only while there are no holds. A hold takes the goal from navigation and stops the
-vehicle in the same step; when the last one goes, one goal is sent that goes on from the first
-waypoint not yet passed. So each start sends exactly one goal, where smart_polaris sends two.
+A task runs only while there are no holds. A hold preempts the goal of navigation and stops the
+vehicle in the same step; when the last hold is released, one goal continues from the first waypoint
+not yet passed. Each start sends exactly one goal, where smart_polaris sends two.
 
 Source: smart_polaris, `task_planner_node.py`.
 """
@@ -39,11 +39,11 @@ from domain.tracking.trackers import TRACKERS
 from domain.vehicle import Point, VehicleLimits
 
 MIN_CRUISE_MPS = 0.1
-"""Slower than this a task would soon be given up for want of progress."""
+"""A slower task would soon be aborted for lack of progress."""
 
 
 def check_cruise(speed_mps: float, limits: VehicleLimits) -> None:
-    """Refuse a cruise speed that the vehicle cannot go.
+    """Reject a cruise speed that the vehicle cannot drive.
 
     Raises:
         InvalidValueError: It is less than `MIN_CRUISE_MPS`, or more than the vehicle's top speed.
@@ -55,7 +55,7 @@ def check_cruise(speed_mps: float, limits: VehicleLimits) -> None:
 
 
 class TaskPlanner:
-    """One current task at most, the holds, and the goal that navigation has."""
+    """The current task, if any, the holds, and the goal of navigation."""
 
     def __init__(
         self,
@@ -77,13 +77,13 @@ class TaskPlanner:
     # --- tasks -----------------------------------------------------------------------------------
 
     def check(self, request: TaskRequest) -> None:
-        """Refuse a task that could not be driven.
+        """Reject a task that cannot be driven.
 
         Raises:
             UnknownControllerError: There is no path tracker of that name.
-            InvalidValueError: A start that is no waypoint with a path behind it, or a speed that
-                the vehicle does not go.
-            FarStartError: It begins too far from the vehicle.
+            InvalidValueError: The start index is out of range or leaves no path, or the vehicle
+                cannot drive the cruise speed.
+            FarStartError: The path begins too far from the vehicle.
         """
         if request.controller not in TRACKERS:
             raise UnknownControllerError("controller", request.controller, tuple(TRACKERS))
@@ -92,14 +92,14 @@ class TaskPlanner:
             message = f"start_index {index} is not within 0 to {path.count - 2}"
             raise InvalidValueError(message, "start_index")
         if path.distance_of(index) >= path.length_m:
-            raise InvalidValueError("nothing of the path is left from there", "start_index")
+            raise InvalidValueError("no path is left after this waypoint", "start_index")
         check_cruise(request.speed_mps, self._limits)
         if (distance := self._too_far(path.waypoint(index))) is not None:
             limit_m = self._settings.max_start_distance_m
             raise FarStartError(distance, limit_m, self._nearest(path))
 
     def submit(self, request: TaskRequest, now: Instant) -> TaskId:
-        """Take a checked task in place of the current one, and start it unless it is held."""
+        """Replace the current task by a checked one, and start it unless there are holds."""
         self._tasks_accepted += 1
         task = Task(
             TaskId(f"t{self._tasks_accepted}"),
@@ -124,7 +124,7 @@ class TaskPlanner:
         return task.id
 
     def cancel(self, now: Instant) -> None:
-        """End the current task, if there is one, and stop."""
+        """Cancel the current task, if any, and stop the vehicle."""
         if self._current is not None:
             self._drop_goal(self._current)
             self._stop()
@@ -135,7 +135,15 @@ class TaskPlanner:
     def hold(
         self, owner: str, reason: str, by: str, now: Instant, cause: int | None = None
     ) -> None:
-        """Set a hold, and stop in the same step; to repeat it only renews its reason."""
+        """Set a hold and stop the vehicle in the same step; a repetition only updates the reason.
+
+        Args:
+            owner: Name of the hold.
+            reason: Why it is set; may be empty.
+            by: Who sets it; empty: Pilothouse itself.
+            now: The current time.
+            cause: Id of the event that led to it; None: the current input.
+        """
         if not self.holds.set(owner, reason, by, now):
             self._renew_reason()
             return
@@ -148,7 +156,13 @@ class TaskPlanner:
         self._renew_reason()
 
     def release(self, owner: str, now: Instant, cause: int | None = None) -> None:
-        """Clear a hold; with the last one the task goes on, also while it is still pausing."""
+        """Release a hold; with the last one the task resumes, even while it is still pausing.
+
+        Args:
+            owner: Name of the hold.
+            now: The current time.
+            cause: Id of the event that led to it; None: the current input.
+        """
         if not self.holds.release(owner):
             return
         released = self._outbox.emit(HoldReleased(owner), cause)
@@ -159,7 +173,7 @@ class TaskPlanner:
     # --- what navigation and the vehicle say -----------------------------------------------------
 
     def take_feedback(self, feedback: GoalFeedback) -> None:
-        """Take over how far the goal is; what comes late of another goal is void."""
+        """Update the progress of the task; late feedback of another goal is ignored."""
         task = self._current
         if task is None or task.goal != feedback.goal:
             return
@@ -168,7 +182,7 @@ class TaskPlanner:
         self._outbox.task_changed = True
 
     def take_result(self, result: GoalResult, now: Instant) -> None:
-        """End the task as navigation ended its goal, and stop."""
+        """End the task with the result of its goal, and stop the vehicle."""
         task = self._current
         if task is None or task.goal != result.goal:
             return
@@ -177,7 +191,7 @@ class TaskPlanner:
         self._end(task, phase, result.reason or None, now)
 
     def note_standstill(self) -> None:
-        """Learn that the vehicle was seen to stand still."""
+        """Record that the vehicle is at standstill: a pausing task is paused."""
         task = self._current
         if task is not None and task.phase is TaskPhase.PAUSING:
             task.phase = TaskPhase.PAUSED
@@ -198,7 +212,7 @@ class TaskPlanner:
 
     @property
     def current(self) -> TaskView | None:
-        """Return the current task."""
+        """Return the current task; None: there is none."""
         return None if self._current is None else self._current.view()
 
     @property
@@ -210,7 +224,7 @@ class TaskPlanner:
         """Return a task.
 
         Raises:
-            UnknownTaskError: There is none of that id, or it is forgotten.
+            UnknownTaskError: The id is unknown, or the task is no longer kept.
         """
         return self._log.get(identity)
 
@@ -223,7 +237,8 @@ class TaskPlanner:
     def _start(self, task: Task, cause: int, now: Instant) -> None:
         """Send one goal.
 
-        Where the vehicle was unknown when the task was submitted, its start is judged now.
+        If the pose was unknown when the task was submitted, the distance to the start is checked
+        now.
         """
         distance = None if task.has_run else self._too_far(task.path.waypoint(task.start_index))
         if distance is not None:
@@ -251,7 +266,7 @@ class TaskPlanner:
         )
 
     def _pause(self, task: Task, cause: int, *, was_driving: bool) -> None:
-        """Wait for the end of the holds; what was driven until now is not known to stand yet."""
+        """Pause until there are no holds; a vehicle that was driving is not yet at standstill."""
         stands = self._vehicle.stands and not was_driving
         task.phase = TaskPhase.PAUSED if stands else TaskPhase.PAUSING
         task.reason = self.holds.reason
@@ -265,7 +280,7 @@ class TaskPlanner:
             self._outbox.task_changed = True
 
     def _drop_goal(self, task: Task) -> bool:
-        """Take the goal from navigation; return whether it had one."""
+        """Preempt the goal of navigation; return whether there was one."""
         if task.goal is None:
             return False
         self._outbox.command(PreemptGoal(task.goal))
@@ -290,12 +305,12 @@ class TaskPlanner:
         self._current = None
 
     def _emit(self, event: Event, cause: int | None = None) -> int:
-        """Record what became of a task."""
+        """Record an event of a task."""
         self._outbox.task_changed = True
         return self._outbox.emit(event, cause)
 
     def _nearest(self, path: Path) -> tuple[int, float] | None:
-        """Return the waypoint nearest to the vehicle that a task may begin with, and how far."""
+        """Return index and distance, in m, of the nearest waypoint at which a task may begin."""
         state = self._vehicle.view.state
         if state is None:
             return None
@@ -306,7 +321,7 @@ class TaskPlanner:
         return (index, away_m) if away_m <= self._settings.max_start_distance_m else None
 
     def _too_far(self, start: Point) -> float | None:
-        """Return the distance to where a path begins if it is too large."""
+        """Return the distance to the start of a path, in m, if it is too large; else None."""
         distance = self._vehicle.distance_to(start)
         limit_m = self._settings.max_start_distance_m
         return distance if distance is not None and distance > limit_m else None

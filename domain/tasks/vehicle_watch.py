@@ -1,4 +1,4 @@
-"""Where the vehicle was last seen, whether that is still known, and what it was told."""
+"""The last reported state of the vehicle, whether it is stale, and the last command."""
 
 import math
 
@@ -14,7 +14,7 @@ _AT_REST = DriveCommand(0.0, 0.0)
 
 
 class VehicleWatch:
-    """Keeps the newest report; a pose that was never told is as one that is too old."""
+    """Keeps the newest report; a pose that was never reported counts as stale."""
 
     def __init__(self, settings: TaskSettings, outbox: Outbox) -> None:
         self.settings = settings
@@ -27,7 +27,7 @@ class VehicleWatch:
         """No report, or none within `pose_stale_after`."""
 
     def check(self, report: VehicleReport) -> None:
-        """Refuse a report that is no place on the ground.
+        """Reject an invalid report.
 
         Raises:
             InvalidValueError: A number is not finite.
@@ -39,57 +39,57 @@ class VehicleWatch:
             raise InvalidValueError("the vehicle reports a number that is not finite", "pose")
 
     def take(self, report: VehicleReport, now: Instant) -> None:
-        """Take a checked report."""
+        """Hold a checked report."""
         if report.state != self._state:
             self._outbox.vehicle_changed = True
         self._state, self._at = report.state, now
         self.is_lost = False
 
     def told(self, command: DriveCommand, lookahead: Point | None) -> None:
-        """Remember what the vehicle was told, and towards which point."""
+        """Record the last command and the look-ahead point; None: no task is driving."""
         if command != self._command or lookahead != self._lookahead:
             self._command, self._lookahead = command, lookahead
             self._outbox.vehicle_changed = True
 
     def stop_command(self) -> DriveCommand:
-        """Return the command to stand still with the wheels as they are now."""
+        """Return the command to stop with the current steering angle."""
         steering = 0.0 if self._state is None else self._state.steering_angle_rad
         return DriveCommand(0.0, steering)
 
     def fresh_state(self, now: Instant) -> VehicleState | None:
-        """Return the newest report; None: there is none, or it is too old."""
+        """Return the newest state; None: there is none, or it is stale."""
         if self._at is None or now - self._at > self.settings.pose_stale_after:
             return None
         return self._state
 
     @property
     def state(self) -> VehicleState | None:
-        """Return the newest report, however old; None: there was none."""
+        """Return the newest state, however old; None: there is none."""
         return self._state
 
     @property
     def stands(self) -> bool:
-        """Tell whether the vehicle is known to stand still."""
+        """Tell whether the vehicle is known to be at standstill."""
         if self._state is None or self.is_lost:
             return False
         return abs(self._state.speed_mps) < self.settings.standstill_mps
 
     def distance_to(self, point: Point) -> float | None:
-        """Return how far away a point is, in m; None: it is not known where the vehicle is."""
+        """Return the distance to a point, in m; None: the pose is unknown."""
         if self._state is None or self.is_lost:
             return None
         pose = self._state.pose
         return math.hypot(point.x_m - pose.x_m, point.y_m - pose.y_m)
 
     def wake_at(self) -> Instant | None:
-        """Return when the pose will be too old if none comes; None: it is lost already."""
+        """Return when the pose becomes stale without a new report; None: it is already."""
         if self.is_lost or self._at is None:
             return None
-        # "Older than" is strict, and time is counted in whole nanoseconds.
+        # "Older than" is strict, and time counts in integer nanoseconds.
         return self._at + self.settings.pose_stale_after + 1
 
     def pass_time(self, now: Instant) -> bool:
-        """Return whether the pose became too old by now."""
+        """Return whether the pose became stale by now."""
         due = self.wake_at()
         if due is None or due > now:
             return False
@@ -98,5 +98,5 @@ class VehicleWatch:
 
     @property
     def view(self) -> VehicleView:
-        """Return what is known of the vehicle."""
+        """Return the view of the vehicle."""
         return VehicleView(self._state, self._at, self._command, self._lookahead)

@@ -1,1 +1,1 @@
-"""Path trackers: where to steer to stay on a path. Read `tracker.py` first, then any of them."""
+"""Path trackers: steering that follows a path. Read `tracker.py` first, then any tracker."""

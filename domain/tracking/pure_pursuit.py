@@ -1,6 +1,6 @@
 """Pure pursuit: steer along the arc that leads from the rear axle to a point ahead on the path.
 
-Source: R. C. Coulter, Implementation of the Pure Pursuit Path Tracking Algorithm,
+Source: R. C. Coulter, "Implementation of the Pure Pursuit Path Tracking Algorithm",
 CMU-RI-TR-92-01, 1992.
 """
 
@@ -11,12 +11,12 @@ from domain.tracking.tracker import ControlStep
 from domain.vehicle import VehicleLimits, VehicleState
 
 LOOKAHEAD_S = 0.75
-"""The look-ahead grows with the speed, or the delays of a vehicle would make it swing."""
+"""The look-ahead grows with the speed; otherwise delays of the vehicle cause oscillation."""
 LOOKAHEAD_NEAR = 7.0
-"""It grows with the cross-track error, at first by so much, or slow steering would overshoot."""
+"""It grows with a small cross-track error by this factor; otherwise slow steering overshoots."""
 LOOKAHEAD_OFF_M = 2.5
 LOOKAHEAD_OFF = 1.25
-"""Further off it grows less than that, or the way back to the path would be long."""
+"""Beyond that it grows by this smaller factor; otherwise the return to the path takes long."""
 MIN_LOOKAHEAD_M = 2.2
 MAX_LOOKAHEAD_M = 9.0
 
@@ -28,7 +28,7 @@ class PurePursuit:
         self._limits = limits
 
     def control_step(self, state: VehicleState, path: Path, start_index: int) -> ControlStep:
-        """Steer towards `path` by one control period; see `PathTracker`."""
+        """Do one control step; see `PathTracker`."""
         pose = state.pose
         here = path.project(pose.x_m, pose.y_m, start_index)
         off = abs(here.cross_track_error_m)
@@ -38,7 +38,7 @@ class PurePursuit:
         aim = path.point_at(here.distance_m + reach)
         dx, dy = aim.x_m - pose.x_m, aim.y_m - pose.y_m
         bearing = atan2(dy, dx) - pose.yaw_rad
-        # What lies behind is turned to as hard as what lies abeam: the sine would steer straight.
+        # A point behind is steered to as hard as one abeam; the sine alone would steer straight.
         side = sin(bearing) if cos(bearing) >= 0 else copysign(1.0, sin(bearing))
         wheels = atan2(2 * self._limits.wheelbase_m * side, hypot(dx, dy))
         most = self._limits.max_steering_angle_rad

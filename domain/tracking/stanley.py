@@ -1,7 +1,7 @@
-"""Stanley: turn the front wheels along the way of the front axle, and towards it by how far off.
+"""Stanley: steer the front wheels along the path of the front axle, and towards it by its offset.
 
-Source: G. M. Hoffmann, C. J. Tomlin, M. Montemerlo, S. Thrun, Autonomous Automobile Trajectory
-Tracking for Off-Road Driving, American Control Conference 2007; damping and softening are its too.
+Source: G. M. Hoffmann, C. J. Tomlin, M. Montemerlo, S. Thrun, "Autonomous Automobile Trajectory
+Tracking for Off-Road Driving", American Control Conference 2007, including damping and softening.
 """
 
 from math import atan, cos, pi, sin
@@ -12,35 +12,35 @@ from domain.vehicle import Point, VehicleLimits, VehicleState
 
 GAIN_PER_S = 0.9
 SOFTENING_MPS = 0.3
-"""Keeps the approach gentle at standstill, and noise harmless at low speed."""
+"""Limits the approach angle at standstill, and the effect of noise at low speed."""
 MAX_APPROACH_RAD = 0.25
-"""From a steeper approach slow steering cannot turn in before it is across the path."""
+"""After a steeper approach, slow steering would turn in too late and cross the path."""
 CALM_NEAR_PER_M = 2.0
-"""Off the path it turns more gently, or slow steering would turn too far and swing."""
+"""The gain falls with the cross-track error; otherwise slow steering overshoots and oscillates."""
 CALM_OFF = 0.5
 CALM_OFF_PER_M = 0.5
-"""Further off this grows less, or the way back to the path would be long."""
+"""Further off it falls less; otherwise the return to the path takes long."""
 TURN_PER_S = 2.0
-"""Headings are corrected no faster, or at high speed late steering would swing."""
+"""Upper limit of the heading correction; otherwise delayed steering oscillates at high speed."""
 DAMPING_S = 0.2
-"""The heading that counts is that in a moment, if the wheels stay as they are."""
+"""The heading is predicted by this time, with the current steering angle."""
 PREVIEW_S = 0.1
-"""Bends are steered for so much ahead: between a vehicle that steers at once and a slow one."""
+"""Bends are steered this time ahead: a compromise between fast and slow steering."""
 
 
 class Stanley:
-    """Steers the front axle such that the rear axle is what stays on the path.
+    """Steers the front axle such that the rear axle stays on the path.
 
-    The law of the source steers the front axle onto the path, and the rear one then cuts every
-    bend. Here the front axle follows the way that it takes while the rear axle is on the path: one
-    wheelbase ahead along the heading, and turned by what the bend needs.
+    The original law steers the front axle onto the path, so that the rear axle cuts every bend.
+    Here the front axle follows the line that it takes while the rear axle is on the path: one
+    wheelbase ahead along the heading, turned by the steering angle that the bend needs.
     """
 
     def __init__(self, limits: VehicleLimits) -> None:
         self._limits = limits
 
     def control_step(self, state: VehicleState, path: Path, start_index: int) -> ControlStep:
-        """Steer towards `path` by one control period; see `PathTracker`."""
+        """Do one control step; see `PathTracker`."""
         pose, speed, wheelbase = state.pose, abs(state.speed_mps), self._limits.wheelbase_m
         here = path.project(pose.x_m, pose.y_m, start_index)
         foot, heading = path.point_at(here.distance_m), here.heading_rad

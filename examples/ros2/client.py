@@ -57,7 +57,7 @@ def type_of(node: Node, service: str) -> str:
     """Return the type of a service as soon as it exists."""
     end = time.monotonic() + THERE_WITHIN_S
     while time.monotonic() < end:
-        types = dict(node.get_service_names_and_types()).get(service)
+        types: list[str] = dict(node.get_service_names_and_types()).get(service, [])
         if types:
             return types[0]
         time.sleep(0.05)

@@ -1,4 +1,4 @@
-"""Files that a person writes: models and robot files, with line and column of what is wrong.
+"""Files written by people: models, robot files and waypoints; findings have line and column.
 
 Read `model_file.py` first; below it the layers go down to YAML.
 """

@@ -1,4 +1,4 @@
-"""What can be set about tasks and how they are driven, and the task to begin with."""
+"""Settings of tasks and navigation, and the start task."""
 
 from typing import Annotated, TypeAlias
 
@@ -16,34 +16,34 @@ SomeSeconds: TypeAlias = Annotated[float, Field(gt=0, le=86_400, allow_inf_nan=F
 
 
 class DrivingBlock(SettingsBlock):
-    """When a task may begin, how fast it is driven, and when it is given up."""
+    """When a task may begin, how fast it is driven, and when it is aborted."""
 
     max_start_distance_m: Positive = 5.0
-    """A path that begins further from the vehicle is refused."""
+    """Largest distance from the vehicle to the start of a path, in m; others are rejected."""
     pose_stale_after_s: SomeSeconds = 0.3
-    """A pose that is older holds the task."""
+    """A pose older than this, in seconds, holds the task."""
     max_cross_track_m: Positive = 3.0
-    """Further beside the path, for `max_cross_track_for_s`, the task is given up."""
+    """A larger cross-track error, in m, for `max_cross_track_for_s` aborts the task."""
     max_cross_track_for_s: Seconds = 1.0
-    """For how many seconds."""
+    """Time with a larger cross-track error after which the task is aborted, in seconds."""
     no_progress_for_s: SomeSeconds = 20.0
-    """A task that comes no further for so many seconds is given up."""
+    """Time without progress after which the task is aborted, in seconds."""
     lateral_acceleration_mps2: Positive = 2.0
-    """Curves are driven so that no more than this is felt, in m/s2."""
+    """Largest lateral acceleration in bends, in m/s2; it limits the speed there."""
     acceleration_mps2: Positive = 1.0
-    """How quickly the commanded speed rises, in m/s2."""
+    """Rate at which the commanded speed rises, in m/s2."""
     braking_mps2: Positive = 1.0
-    """How quickly the commanded speed falls before curves and the end, in m/s2."""
+    """Rate at which the commanded speed falls before bends and the end, in m/s2."""
 
     def to_task_settings(self) -> TaskSettings:
-        """Return what the supervision wants to know."""
+        """Return the settings for the supervision."""
         return TaskSettings(
             max_start_distance_m=self.max_start_distance_m,
             pose_stale_after=seconds(self.pose_stale_after_s),
         )
 
     def to_navigation_settings(self) -> NavigationSettings:
-        """Return what the navigation wants to know."""
+        """Return the settings for the navigation."""
         return NavigationSettings(
             max_cross_track_m=self.max_cross_track_m,
             max_cross_track_for=seconds(self.max_cross_track_for_s),
@@ -58,7 +58,7 @@ class DrivingBlock(SettingsBlock):
 
 def _known_controller(name: str) -> str:
     if name not in TRACKERS:
-        raise ValueError(f"there is no path tracker {name!r}; there are {', '.join(TRACKERS)}")
+        raise ValueError(f"unknown path tracker {name!r}; known: {', '.join(TRACKERS)}")
     return name
 
 
@@ -68,11 +68,11 @@ Controller: TypeAlias = Annotated[
 
 
 class StartTaskBlock(SettingsBlock):
-    """A task that is submitted when the service starts; it waits until nothing holds it."""
+    """A task that is submitted when the service starts; it waits until there are no holds."""
 
     file: str = Field(min_length=1, max_length=1_000)
-    """CSV with `x,y,yaw` in m, m and rad; a relative path counts from the robot file."""
+    """CSV file with `x,y,yaw` in m, m and rad; a relative path is relative to the robot file."""
     controller: Controller = "pure_pursuit"
-    """What follows the path."""
+    """Path tracker."""
     speed_mps: Positive = 2.8
     """Cruise speed, in m/s."""

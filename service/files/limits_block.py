@@ -1,4 +1,4 @@
-"""What can be set about how much clients may ask of the service."""
+"""Settings of limits on what clients may request."""
 
 from typing import Annotated, TypeAlias
 
@@ -14,22 +14,22 @@ _FileBytes: TypeAlias = Annotated[int, Field(ge=KIB, le=16 * MIB)]
 
 
 class LimitsBlock(SettingsBlock):
-    """How much clients may ask of the service. Without effect in simulations, where nobody asks.
+    """Limits on what clients may request. Without effect in simulations, which have no clients.
 
-    What makes the robot safe is never refused for being asked too often: the emergency stop, holds,
-    the end of a task, readings.
+    Requests that make the robot safe are never rejected by the rate limit: the emergency stop,
+    holds, the cancel of a task, readings.
     """
 
     json_bytes: _MessageBytes = 256 * KIB
-    """Largest JSON body, in bytes, where none of the following holds. It is read by the loop that
-    drives the robot, at some 3 ms for 256 KiB."""
+    """Largest JSON body, in bytes, if none of the following limits applies. The event loop that
+    drives the robot parses it, at some 3 ms for 256 KiB."""
     model_bytes: _FileBytes = 8 * MIB
-    """Largest body that may hold a model, in bytes: a check, an inference, a simulation."""
+    """Largest body that can contain a model, in bytes: check, inference, simulation."""
     waypoints_bytes: _FileBytes = 16 * MIB
-    """Largest body that holds waypoints, in bytes; 16 MiB are 100,000 of them with all digits."""
+    """Largest body with waypoints, in bytes; 16 MiB suffice for 100,000 of them with all digits."""
     message_bytes: _MessageBytes = 64 * KIB
-    """Largest message of a client over the WebSocket, in bytes."""
+    """Largest WebSocket message from a client, in bytes."""
     stream_clients: Annotated[int, Field(ge=1, le=100_000)] = 2_500
-    """So many clients the stream has at most; a further one is told to come later."""
+    """Largest number of stream clients; further ones are told to try again later."""
     requests_per_s: Annotated[int, Field(ge=1, le=1_000_000)] = 1_000
-    """Requests per second of one client address; twice as many may come at once."""
+    """Requests per second from one client address; a burst may have twice as many."""

@@ -1,9 +1,9 @@
-"""Model files: SMH as YAML, in which micro-ROS system_modes describes a robot.
+"""Model files: SMH (system modes and hierarchy) of micro-ROS system_modes, as YAML.
 
-What its C++ accepts is accepted, so that one file serves both, except what that would crash on or
-misread. All that is wrong is told at once, each with its place.
+Every file that its C++ code reads correctly is accepted, so that one file serves both; what that
+code would crash on or misread is an error. All findings are reported at once, each with its place.
 
-Source: deliverable D4.8, 4.1; micro-ROS system_modes, README.
+Source: micro-ROS deliverable D4.8, section 4.1; micro-ROS system_modes, README.
 """
 
 import gc
@@ -22,12 +22,12 @@ from service.files.text_file import read_text_file
 from service.files.yaml_tree import Mapping, Node, Scalar, in_order, read_tree
 
 MAX_FINDINGS = 1_000
-"""Told of one model; the rest is counted."""
+"""Largest number of findings reported for one model; the rest is counted."""
 
 
 @dataclass(frozen=True, slots=True)
 class LoadedModel:
-    """A model with the text that it was read from."""
+    """A model with its source text."""
 
     model: SmhModel
     warnings: tuple[Finding, ...]
@@ -38,8 +38,8 @@ def load_model(path: Path) -> LoadedModel:
     """Read a model from a file.
 
     Raises:
-        UnreadableFileError: There is no such file, or it is not a text.
-        InvalidModelError: The text is not a model; `findings` tell all that is wrong.
+        UnreadableFileError: There is no such file, or it is not a text file.
+        InvalidModelError: The model is invalid; `findings` hold all errors.
     """
     return read_model(read_text_file(path))
 
@@ -48,7 +48,7 @@ def read_model(text: str) -> LoadedModel:
     """Read a model from YAML.
 
     Raises:
-        InvalidModelError: The text is not a model; `findings` tell all that is wrong.
+        InvalidModelError: The model is invalid; `findings` hold all errors.
     """
     model, findings = _read(text)
     if model is None:
@@ -62,14 +62,14 @@ def check_model(text: str) -> tuple[Finding, ...]:
 
 
 def _read(text: str) -> tuple[SmhModel | None, tuple[Finding, ...]]:
-    """Return the model, if it is one, and all findings."""
+    """Return the model, if it is valid, and all findings."""
     with _collector_paused():
         return _read_all(text)
 
 
 @contextmanager
 def _collector_paused() -> Iterator[None]:
-    """Keep the garbage collector from searching what is being read, all of which is in use.
+    """Pause the garbage collector while reading, since all new objects are in use.
 
     Reading a model of 10,000 nodes takes three times as long otherwise.
     """
@@ -107,13 +107,13 @@ def _build(parts: SmhParts) -> tuple[SmhModel | None, list[Finding]]:
         return None, list(error.findings)
     found = lint(model)
     if not model.parts:
-        message = "there are no parts in this model"
+        message = "the model has no parts"
         found.append(Finding("warning", "NO_PARTS", message, line=1, column=1))
     return model, found
 
 
 def _limited(findings: list[Finding]) -> tuple[Finding, ...]:
-    """Return the first of too many findings, errors before warnings."""
+    """Return at most `MAX_FINDINGS`, errors before warnings."""
     if len(findings) <= MAX_FINDINGS:
         return tuple(findings)
     kept = sorted(findings, key=lambda finding: finding.severity)[: MAX_FINDINGS - 1]
@@ -123,14 +123,14 @@ def _limited(findings: list[Finding]) -> tuple[Finding, ...]:
 
 
 class _Places:
-    """Finds the place of a path of keys; each map is indexed once."""
+    """Finds the place of a path of keys; each mapping is indexed once."""
 
     def __init__(self, sources: dict[str, NodeParameters]) -> None:
         self._sources = sources
         self._indices: dict[int, dict[str, tuple[Scalar, Node | None]]] = {}
 
     def placed(self, finding: Finding) -> Finding:
-        """Return the finding with line and column of its path, or of what there is of the path."""
+        """Return the finding with line and column of its path, as far as the path exists."""
         if not finding.path:
             return finding
         source = self._sources[finding.path[0]]
@@ -138,9 +138,9 @@ class _Places:
         return replace(finding, line=key.line, column=key.column)
 
     def _find(self, tree: Mapping, path: tuple[str, ...]) -> Scalar | None:
-        """Return the key at a path, or the last one towards it; None: there is not even that.
+        """Return the key at a path, or the last one on the way there; None: there is none.
 
-        A key may hold several steps of the path, with dots between.
+        A key may hold several steps of the path, separated by dots.
         """
         index = self._index(tree)
         for length in range(1, len(path) + 1):

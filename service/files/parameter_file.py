@@ -1,8 +1,8 @@
 """ROS 2 parameter files as rcl reads them: nodes, each with dotted parameters in order.
 
-A node is `name: {ros__parameters: ...}`, in namespaces if there are maps around it. Names of maps
-in each other are joined by dots, so that `a: {b: 1}` and `a.b: 1` are the same. Scalars are not
-those of any YAML schema: `y` and `on` are booleans, `010` is 8, `~` is a text.
+A node is `name: {ros__parameters: ...}`; mappings around it are namespaces. Keys of nested mappings
+are joined by dots, so that `a: {b: 1}` and `a.b: 1` are the same. Scalars follow no YAML schema:
+`y` and `on` are booleans, `010` is 8, `~` is a string.
 
 Source: ROS 2 `rcl_yaml_param_parser`, `parse.c` (`parse_file_events`, `get_value`).
 """
@@ -42,9 +42,9 @@ class Parameter:
     """With dots, as in `modes.FAST.ros__parameters.max_speed`."""
     key: Scalar
     value: ParameterValue | None
-    """None: what stands there was already complained of."""
+    """None: a finding has already been reported for it."""
     place: Node
-    """Where the value is, or the key where there is none."""
+    """Place of the value, or of the key if there is none."""
 
 
 @dataclass(slots=True)
@@ -60,7 +60,7 @@ class NodeParameters:
 
 @dataclass(slots=True)
 class ParameterFile:
-    """All nodes in the order of the file, and what is wrong with it."""
+    """All nodes in the order of the file, and the findings."""
 
     nodes: dict[str, NodeParameters] = field(default_factory=dict)
     findings: list[Finding] = field(default_factory=list)
@@ -73,13 +73,13 @@ def read_parameter_file(documents: Values[Node | None]) -> ParameterFile:
         if isinstance(document, Mapping):
             reader.read_namespace(document, None)
         elif document is not None:
-            message = f"there must be names of parts here, each with {PARAMETERS_KEY} below it"
+            message = f"expected names of parts, each with {PARAMETERS_KEY} below it"
             reader.complain(document, "NOT_A_BLOCK", message)
     return reader.file
 
 
 def scalar_value(scalar: Scalar) -> bool | int | float | str | None:
-    """Return the value of a scalar; None where there is nothing, not even quotes."""
+    """Return the value of a scalar; None: it is empty and not quoted."""
     if scalar.is_quoted or scalar.tag == STRING_TAG:
         return scalar.text
     return plain_value(scalar.text) if scalar.text else None
@@ -87,10 +87,10 @@ def scalar_value(scalar: Scalar) -> bool | int | float | str | None:
 
 @lru_cache(maxsize=10_000)
 def plain_value(text: str) -> bool | int | float | str:
-    """Return what rcl takes a scalar without quotes for.
+    """Return the value that rcl reads from an unquoted scalar.
 
-    Numbers too large for a 64 bit integer become doubles; those out of the range of a double stay
-    text, as `strtod` refuses them.
+    Numbers too large for a 64-bit integer become doubles; those out of the range of a double stay
+    strings, since `strtod` rejects them.
     """
     if text in _TRUE:
         return True
@@ -126,7 +126,7 @@ def _double(text: str) -> float | str:
 
 
 class _Reader:
-    """Walks through the trees; the depth of what it is given is limited."""
+    """Traverses the trees, whose depth is limited."""
 
     def __init__(self) -> None:
         self.file = ParameterFile()
@@ -136,7 +136,7 @@ class _Reader:
         self.file.findings.append(finding_at(place, code, message))
 
     def read_namespace(self, tree: Mapping, above: str | None) -> None:
-        """Read what stands above `ros__parameters`."""
+        """Read the keys above `ros__parameters`."""
         own: Scalar | None = None
         for key, value in tree.entries:
             if key.text == PARAMETERS_KEY:
@@ -145,8 +145,8 @@ class _Reader:
                     self.complain(key, "MISPLACED_KEY", f"{PARAMETERS_KEY} must be below a name")
             elif own is not None:
                 message = (
-                    f"rcl misreads what follows {PARAMETERS_KEY}; write {key.text} before it, or "
-                    "with its full name at the top"
+                    f"rcl misreads keys after {PARAMETERS_KEY}; write {key.text} before it, or "
+                    "with its full name at the top level"
                 )
                 self.complain(key, "MISPLACED_KEY", message)
             elif isinstance(value, Mapping):
@@ -170,18 +170,20 @@ class _Reader:
         if tree is None:
             return
         if not isinstance(tree, Mapping):
-            self.complain(below, "NOT_A_BLOCK", f"{PARAMETERS_KEY} of {name} must have keys below")
+            self.complain(
+                below, "NOT_A_BLOCK", f"{PARAMETERS_KEY} of {name} must have keys below it"
+            )
             return
         if not _NAME.fullmatch(name) or len(name) > _LONGEST_NAME:
             message = (
-                f"{name!r:.80} is no name of ROS 2: letters, digits and underscores, not beginning "
-                "with a digit; namespaces are set off by slashes"
+                f"invalid ROS 2 name {name!r:.80}: use letters, digits and underscores, no digit "
+                "first; slashes separate namespaces"
             )
             self.complain(key, "INVALID_NAME", message)
             return
         if name in self.file.nodes:
             line = self.file.nodes[name].key.line
-            self.complain(key, "DUPLICATE_KEY", f"{name!r} is already in line {line}")
+            self.complain(key, "DUPLICATE_KEY", f"duplicate key {name!r}; first in line {line}")
             return
         node = NodeParameters(name, key, tree)
         self.file.nodes[name] = node
@@ -201,7 +203,9 @@ class _Reader:
                 continue
             if name in known:
                 self.complain(
-                    key, "DUPLICATE_KEY", f"{name!r} is already in line {known[name].line}"
+                    key,
+                    "DUPLICATE_KEY",
+                    f"duplicate key {name!r}; first in line {known[name].line}",
                 )
                 continue
             known[name] = key
@@ -225,7 +229,7 @@ class _Reader:
             if item is None:
                 return None
             if not isinstance(item, Scalar):
-                message = f"{key.text}: a parameter is a list of plain values, not of lists or maps"
+                message = f"{key.text}: a list parameter must hold plain values, not lists or maps"
                 self.complain(item, "INVALID_ARRAY", message)
                 return None
             value = self._scalar(key, item)
@@ -233,7 +237,7 @@ class _Reader:
                 return None
             if values and type(value) is not type(values[0]):
                 message = (
-                    f"{key.text}: {item.text} and {values[0]} are not of one type; y, n, yes, no, "
+                    f"{key.text}: {item.text} and {values[0]} have different types; y, n, yes, no, "
                     "on, off, true and false are booleans unless quoted"
                 )
                 self.complain(item, "INVALID_ARRAY", message)
@@ -245,5 +249,5 @@ class _Reader:
         return tuple(values)  # type: ignore[return-value]  # all are of one type
 
     def _complain_of_nothing(self, key: Scalar, place: Node) -> None:
-        message = f"{key.text} has no value; leave it out, or write '' for an empty text"
+        message = f"{key.text} has no value; remove it, or write '' for an empty string"
         self.complain(place, "EMPTY_VALUE", message)

@@ -1,6 +1,6 @@
-"""Robot files: what can be set about a robot besides its model, as YAML.
+"""Robot files: the settings of a robot besides its model, as YAML.
 
-The keys are documented by docs/reference/robot-file.schema.json.
+The keys are documented in docs/reference/robot-file.schema.json.
 """
 
 from collections.abc import Iterator
@@ -29,11 +29,11 @@ from service.files.text_file import read_text_file
 from service.files.vehicle_block import VehicleBlock
 from service.files.yaml_tree import Mapping, Node, Scalar, Sequence, finding_at, in_order, read_tree
 
-_WORDS = {"extra_forbidden": "there is no such key", "model_type": "there must be keys below"}
+_WORDS = {"extra_forbidden": "unknown key", "model_type": "expected keys below"}
 
 
 class InvalidRobotFileError(PilothouseError):
-    """A robot file with faults; `findings` hold all of them."""
+    """An invalid robot file; `findings` hold all errors."""
 
     code = "INVALID_ROBOT_FILE"
 
@@ -44,41 +44,42 @@ class InvalidRobotFileError(PilothouseError):
 
 
 class RobotSettings(SettingsBlock):
-    """Settings of a robot. What is left out keeps its usual value."""
+    """Settings of a robot. Omitted keys keep their default."""
 
     backend: Literal["simulated", "ros2"] = "simulated"
-    """Through what nodes are reached. Without effect in simulations."""
+    """Backend through which nodes are reached. Without effect in simulations."""
     mock: bool | None = None
-    """Whether signals are mocked. Left out: as the service is told, which mocks them with simulated
-    nodes."""
+    """Whether to publish mock signals. Default: as `pilothouse serve` is started; with simulated
+    nodes they are published."""
     signals: SignalsBlock = SignalsBlock()
-    """When a signal is an error."""
+    """Error conditions of signals."""
     nodes: dict[str, NodeBlock] = Field(default_factory=dict)
-    """The nodes that differ from the usual, by name."""
+    """Settings of nodes that differ from the default, by name."""
     changes: ChangesBlock = ChangesBlock()
     """Deadlines of changes."""
     vehicle: VehicleBlock = VehicleBlock()
-    """What the vehicle can do, and what a simulated one is like."""
+    """Limits of the vehicle, and dynamics of a simulated one."""
     driving: DrivingBlock = DrivingBlock()
-    """When a task may begin, how fast it is driven, and when it is given up."""
+    """When a task may begin, how fast it is driven, and when it is aborted."""
     limits: LimitsBlock = LimitsBlock()
-    """How much clients may ask of the service."""
+    """Limits on what clients may request."""
     ros2: Ros2Block = Ros2Block()
-    """Topics of a robot in ROS 2. Without effect where the robot is simulated."""
+    """ROS 2 topics of the robot. Without effect for a simulated robot."""
     start_task: StartTaskBlock | None = None
-    """A task that is submitted when the service starts. Not in simulations, which name no files."""
+    """A task that is submitted when the service starts. Not allowed in simulations, which do not
+    read files."""
 
     def to_signal_settings(self) -> tuple[SignalSettings, ...]:
-        """Return all signals: the usual five as they are set here, then the declared ones.
+        """Return all signals: the five default ones with these settings, then the declared ones.
 
         Raises:
-            InvalidValueError: A threshold cannot be reached, or lies on the wrong side of the
-                other; `pointer` is `<signal>/<setting>`.
+            InvalidValueError: A threshold is out of range, or on the wrong side of the other one;
+                `pointer` is `<signal>/<setting>`.
         """
         return self.signals.to_domain()
 
     def to_change_settings(self) -> ChangeSettings:
-        """Return the deadlines of changes, and which nodes are restored."""
+        """Return the deadlines of changes, and the nodes to restore."""
         return ChangeSettings(
             restored_nodes=frozenset(
                 PartName(name) for name, node in self.nodes.items() if node.on_return == "restore"
@@ -88,15 +89,15 @@ class RobotSettings(SettingsBlock):
         )
 
     def to_vehicle_limits(self) -> VehicleLimits:
-        """Return what the vehicle can do."""
+        """Return the limits of the vehicle."""
         return self.vehicle.to_limits()
 
     def to_task_settings(self) -> TaskSettings:
-        """Return when a task may begin."""
+        """Return the settings of tasks."""
         return self.driving.to_task_settings()
 
     def to_navigation_settings(self) -> NavigationSettings:
-        """Return how tasks are driven."""
+        """Return the settings of navigation."""
         return self.driving.to_navigation_settings()
 
 
@@ -104,14 +105,14 @@ def load_robot_file(path: Path, model: SmhModel) -> RobotSettings:
     """Read the settings of the robot that `model` describes from a file.
 
     Raises:
-        UnreadableFileError: There is no such file, or it is not a text.
+        UnreadableFileError: There is no such file, or it is not a text file.
         InvalidRobotFileError: A key or value is wrong, or names a node that is not in the model.
     """
     return read_robot_file(read_text_file(path), model)
 
 
 def read_robot_file(text: str, model: SmhModel) -> RobotSettings:
-    """Read settings from YAML; scalars mean what they mean in a model.
+    """Read settings from YAML; scalars are read as in a model.
 
     Raises:
         InvalidRobotFileError: A key or value is wrong, or names a node that is not in the model.
@@ -120,7 +121,7 @@ def read_robot_file(text: str, model: SmhModel) -> RobotSettings:
     findings = list(tree.findings)
     root = tree.documents[0] if tree.documents else Mapping(1, 1)
     if len(tree.documents) > 1 and tree.documents[1] is not None:
-        message = "a robot file is one document"
+        message = "a robot file must be a single YAML document"
         findings.append(finding_at(tree.documents[1], "INVALID_VALUE", message))
     settings = None
     if root is not None and not findings:
@@ -133,14 +134,14 @@ def read_robot_file(text: str, model: SmhModel) -> RobotSettings:
 
 
 def robot_settings_of(data: AnyMapping[str, object], model: SmhModel) -> RobotSettings:
-    """Return settings that were sent as JSON; they name no files.
+    """Return settings that were sent as JSON; they must not name files.
 
     Raises:
         InvalidValueError: A key or value is wrong; `pointer` leads to it.
     """
     if "start_task" in data:
         raise InvalidValueError(
-            "a start task names a file, which only a robot file may", "/start_task"
+            "start_task names a file; it is allowed only in a robot file", "/start_task"
         )
     try:
         settings = RobotSettings.model_validate(data)
@@ -161,7 +162,7 @@ def robot_settings_of(data: AnyMapping[str, object], model: SmhModel) -> RobotSe
 
 
 def _pointer(*keys: int | str) -> str:
-    """Return a JSON pointer (RFC 6901); names of nodes may have slashes."""
+    """Return a JSON pointer (RFC 6901); slashes in names are escaped."""
     return "".join(f"/{str(key).replace('~', '~0').replace('/', '~1')}" for key in keys)
 
 
@@ -185,7 +186,7 @@ def _settings(
     for name in settings.nodes:
         if name not in model.nodes:
             what = "a system" if name in model.systems else "not in the model"
-            message = f"there is no node {name!r}; it is {what}"
+            message = f"there is no node {name!r}: it is {what}"
             place = _place(root, ("nodes", name))
             findings.append(finding_at(place, "UNKNOWN_NODE", message))
     for keys, code, message in _faults_of_topics(settings):
@@ -205,7 +206,7 @@ def _plain(node: Node | None, findings: list[Finding]) -> Any:  # noqa: ANN401  
         case Scalar():
             value = scalar_value(node)
             if value is None:
-                message = "there is no value here; leave the key out"
+                message = "missing value; remove the key"
                 findings.append(finding_at(node, "EMPTY_VALUE", message))
             return value
         case Sequence():
@@ -224,7 +225,7 @@ def _complaint(root: Node, location: tuple[int | str, ...], kind: str, message: 
 
 
 def _place(root: Node, location: tuple[int | str, ...]) -> Node:
-    """Return the last thing on the way to `location` that is in the file."""
+    """Return the last node of the tree on the way to `location` that is in the file."""
     place, tree = root, root
     for step in location:
         if not isinstance(tree, Mapping):

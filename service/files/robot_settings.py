@@ -1,7 +1,7 @@
-"""What can be set about a robot besides its model: signals, nodes, deadlines.
+"""Settings of a robot besides its model: signals, nodes, deadlines.
 
-The same keys are in a robot file and in the `robot` of a simulation. What is left out keeps the
-value that the core gives it.
+A robot file and the `robot` of a simulation have the same keys. Omitted keys keep the default of
+the core.
 """
 
 from collections.abc import Iterator
@@ -30,7 +30,7 @@ _ErrorName: TypeAlias = Annotated[str, Field(pattern=r"^[A-Z][A-Z0-9_]{0,63}$")]
 
 
 class SettingsBlock(BaseModel):
-    """A block of settings: strict, frozen, and without keys that mean nothing."""
+    """A block of settings: strict, frozen, without unknown keys."""
 
     model_config = ConfigDict(
         strict=True, extra="forbid", frozen=True, use_attribute_docstrings=True
@@ -38,22 +38,22 @@ class SettingsBlock(BaseModel):
 
 
 class AnySignal(SettingsBlock):
-    """What can be set about every signal."""
+    """Settings of every signal."""
 
     stale_after_s: Seconds | None = None
-    """A reading older than this, in seconds, is stale; 0: readings never are. Left out: as for all
+    """Age in seconds above which a reading is stale; 0 turns staleness off. Default: as set for all
     signals."""
     min_on_s: Seconds | None = None
-    """An error of this signal stays on for at least so many seconds. Left out: 0.2."""
+    """Minimum time in seconds that an error of this signal stays active. Default: 0.2."""
     recovery: Literal["automatic", "acknowledge"] | None = None
-    """Whether an error ends with its cause, or only once somebody acknowledged it too. Left out:
-    automatic."""
+    """Whether an error clears when its cause is gone, or only after it was acknowledged as well.
+    Default: automatic."""
 
     def applied_to(self, settings: SignalSettings) -> SignalSettings:
-        """Return `settings` with what is set here.
+        """Return `settings` with the values that are set here.
 
         Raises:
-            InvalidValueError: A threshold cannot be reached, or is on the wrong side of the other.
+            InvalidValueError: A threshold is out of range, or on the wrong side of the other one.
         """
         return replace(
             settings,
@@ -68,14 +68,14 @@ class AnySignal(SettingsBlock):
 
 
 class NumberSignal(AnySignal):
-    """What can be set about a number with a threshold."""
+    """Settings of a numeric signal with a threshold."""
 
     threshold: Number | None = None
-    """Beyond this the value is an error, in the unit of the signal."""
+    """Threshold beyond which the value is an error, in the unit of the signal."""
     clear_threshold: Number | None = None
-    """Where the error ends once it is on, in the unit of the signal. Left out: at the threshold."""
+    """Threshold at which an active error clears, in the signal's unit. Default: `threshold`."""
     for_s: Seconds | None = None
-    """For how many seconds after the last good reading the value has to be bad."""
+    """Time in seconds after the last good reading until the error is raised."""
 
     def _condition(self, condition: Condition) -> Condition:
         threshold = condition.threshold if self.threshold is None else self.threshold
@@ -88,14 +88,14 @@ class NumberSignal(AnySignal):
 
 
 class StrengthSignal(AnySignal):
-    """What can be set about the signal strength, which has two errors."""
+    """Settings of the signal strength, which has two errors."""
 
     lost_for_s: Seconds | None = None
-    """For how many seconds after the last CONNECTED there has to be NOT_CONNECTED. Left out: 10."""
+    """Time in seconds after the last CONNECTED until NOT_CONNECTED raises an error. Default: 10."""
     low_for_s: Seconds | None = None
-    """For how many seconds after the last CONNECTED there has to be LOW_SIGNAL. Left out: 20."""
+    """Time in seconds after the last CONNECTED until LOW_SIGNAL raises an error. Default: 20."""
     for_s: Seconds | None = None
-    """Both times at once, as far as they are not set by themselves."""
+    """Default of `lost_for_s` and `low_for_s`, in seconds."""
 
     def _condition(self, condition: Condition) -> Condition:
         own = self.lost_for_s if condition.key == "lost" else self.low_for_s
@@ -105,42 +105,46 @@ class StrengthSignal(AnySignal):
 
 
 class DeclaredSignal(AnySignal):
-    """A further signal: a number, and when it is an error."""
+    """A further numeric signal and its error condition."""
 
     unit: str = Field(default="", max_length=32)
-    """Unit of its values, for showing."""
+    """Unit of its values, for display."""
     label: str = Field(default="", max_length=64)
-    """Its name in a sentence. Left out: the name itself."""
+    """Its name in messages. Default: the name of the signal."""
     minimum: Number | None = None
-    """A reading below this is refused."""
+    """A reading below this is rejected."""
     maximum: Number | None = None
-    """A reading above this is refused."""
+    """A reading above this is rejected."""
     error: _ErrorName | None = None
-    """Name of its error; needs `above` or `below`."""
+    """Name of its error; requires `above` or `below`."""
     above: Number | None = None
-    """A value above this is the error."""
+    """A value above this is an error."""
     below: Number | None = None
-    """A value below this is the error."""
+    """A value below this is an error."""
     clear_threshold: Number | None = None
-    """Where the error ends once it is on. Left out: at `above` or `below`."""
+    """Threshold at which an active error clears. Default: `above` or `below`."""
     for_s: Seconds = 0.0
-    """For how many seconds after the last good reading the value has to be bad."""
+    """Time in seconds after the last good reading until the error is raised."""
 
     @model_validator(mode="after")
     def _is_whole(self) -> Self:
         limits = sum(limit is not None for limit in (self.above, self.below))
         if limits > 1:
-            raise ValueError("above and below exclude each other")
+            raise ValueError("above and below are mutually exclusive")
         if (self.error is None) != (limits == 0):
-            raise ValueError("an error needs above or below, and above and below need an error")
+            raise ValueError("error requires above or below, and above and below require error")
         if limits == 0 and (self.clear_threshold is not None or self.for_s):
-            raise ValueError("clear_threshold and for_s need an error")
+            raise ValueError("clear_threshold and for_s require error")
         if self.minimum is not None and self.maximum is not None and self.minimum > self.maximum:
             raise ValueError("minimum is above maximum")
         return self
 
     def declared(self, name: str, general: AnySignal) -> SignalSettings:
-        """Return the signal as the core knows it; `general` holds for what is not set here.
+        """Return the settings of the signal for the core.
+
+        Args:
+            name: Name of the signal.
+            general: Settings of all signals, for those that are not set here.
 
         Raises:
             InvalidValueError: A threshold is outside of minimum and maximum, or on the wrong side.
@@ -160,26 +164,26 @@ class DeclaredSignal(AnySignal):
 
 
 class SignalsBlock(SettingsBlock):
-    """The signals; every other key declares a further one."""
+    """Settings of the default signals; every other key declares a further signal."""
 
     model_config = ConfigDict(extra="allow")
-    __pydantic_extra__: dict[_SignalName, DeclaredSignal]  # type: ignore[mutable-override]
+    __pydantic_extra__: dict[_SignalName, DeclaredSignal] = Field(init=False)  # type: ignore[mutable-override]
 
     stale_after_s: Seconds | None = None
-    """Of all signals that say nothing else, in seconds; 0 turns staleness off. Left out: 2."""
+    """Default of `stale_after_s` of all signals, in seconds; 0 turns staleness off. Default: 2."""
     battery_level: NumberSignal = NumberSignal()
     """Charge from 0 to 1; BATTERY_LOW below 0.5."""
     estop: AnySignal = AnySignal()
-    """The robot's own stop button; ESTOP while it is pressed."""
+    """The stop button of the robot; ESTOP while it is pressed."""
     gps_accuracy: NumberSignal = NumberSignal()
-    """In mm; GPS_LOST above 200 for 15 s."""
+    """Position accuracy in mm; GPS_LOST above 200 for 15 s."""
     signal_strength: StrengthSignal = StrengthSignal()
-    """SIGNAL_LOST and SIGNAL_LOW."""
+    """Radio connection; SIGNAL_LOST and SIGNAL_LOW."""
     temperature: NumberSignal = NumberSignal()
-    """In degrees Celsius; TEMPERATURE_HIGH above 55."""
+    """Temperature in degrees Celsius; TEMPERATURE_HIGH above 55."""
 
     def to_domain(self) -> tuple[SignalSettings, ...]:
-        """Return all signals as the core knows them; see `RobotSettings.to_signal_settings`."""
+        """Return the settings of all signals; see `RobotSettings.to_signal_settings`."""
         general = AnySignal(stale_after_s=self.stale_after_s)
         usual = (
             getattr(self, settings.spec.name).applied_to(general.applied_to(settings))
@@ -198,40 +202,40 @@ class SignalsBlock(SettingsBlock):
         taken = {STALE_DATA} | {c.error for s in default_signals() for c in s.conditions}
         for name, signal in self.further.items():
             if signal.error in taken:
-                raise ValueError(f"{signal.error} of {name} is the name of another error")
+                raise ValueError(f"{signal.error} of {name} is already the name of another error")
             taken |= {signal.error} if signal.error else set()
         return self
 
 
 class NodeBlock(SettingsBlock):
-    """A node. All but `on_return` matters only when it is simulated, as a small one if left out."""
+    """Settings of a node. All but `on_return` apply to simulated nodes only."""
 
     on_return: Literal["leave", "restore"] = "leave"
-    """What happens when it becomes reachable and is not in what was asked of it: nothing, or a
-    change that brings it there."""
+    """What happens when the node reappears and is not in its target state and mode: nothing, or a
+    change restores it to its target."""
     configure_s: Seconds | None = None
-    """How long its callback takes, in seconds."""
+    """Duration of its configure callback, in seconds."""
     activate_s: Seconds | None = None
-    """How long its callback takes, in seconds."""
+    """Duration of its activate callback, in seconds."""
     deactivate_s: Seconds | None = None
-    """How long its callback takes, in seconds."""
+    """Duration of its deactivate callback, in seconds."""
     cleanup_s: Seconds | None = None
-    """How long its callback takes, in seconds."""
+    """Duration of its cleanup callback, in seconds."""
     shutdown_s: Seconds | None = None
-    """How long its callback takes, in seconds."""
+    """Duration of its shutdown callback, in seconds."""
     set_parameters_s: Seconds | None = None
-    """How long it takes to set parameters, in seconds."""
+    """Duration of setting parameters, in seconds."""
     fault: Literal["slow", "refuse", "fail", "error", "silent", "die"] | None = None
-    """What is wrong with it from the start."""
+    """Fault of the node from the start."""
 
 
 class ChangesBlock(SettingsBlock):
-    """How long a step of a change may take before the node's real state is asked."""
+    """Deadlines of the steps of changes; after a deadline the node's actual state is queried."""
 
     transition_deadline_s: Seconds = 10.0
-    """For one lifecycle transition, in seconds."""
+    """Deadline of a lifecycle transition, in seconds."""
     parameters_deadline_s: Seconds = 2.0
-    """For setting parameters, in seconds."""
+    """Deadline of setting parameters, in seconds."""
 
 
 def _duration(own: float | None, usual: Duration) -> Duration:

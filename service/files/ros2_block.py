@@ -1,4 +1,4 @@
-"""What can be set about a robot in ROS 2: topics of its signals, odometry and commands."""
+"""Settings of a robot in ROS 2: topics of its signals, odometry and commands."""
 
 import re
 from collections.abc import Iterator, Mapping
@@ -10,13 +10,13 @@ from domain.health.signals import SignalKind
 from service.files.robot_settings import Number, SettingsBlock
 
 NAV_SAT_FIX = "sensor_msgs/msg/NavSatFix"
-"""The one type of which a signal is calculated, if no field is named."""
+"""The only type from which a signal is computed if no field is given."""
 
 _TOPIC = r"^(/[A-Za-z_][A-Za-z0-9_]*)+$"
 _TYPE = r"^[a-z][a-z0-9_]*/msg/[A-Z][A-Za-z0-9]*$"
 _FIELD = r"^[a-z][a-z0-9_]*(\.([a-z][a-z0-9_]*|[0-9]+))*$"
 _LONGEST = 247
-"""What ROS 2 allows for the name of a topic: 255 less 8, which the middleware puts before it."""
+"""Longest topic name in ROS 2: 255 minus 8 for the prefix of the middleware."""
 _USUAL_FIELDS = {
     "sensor_msgs/msg/BatteryState": "percentage",
     "sensor_msgs/msg/Temperature": "temperature",
@@ -26,19 +26,25 @@ _PLAIN_TYPES = re.compile(r"std_msgs/msg/(Bool|String|Float(32|64)|U?Int(8|16|32
 
 def _topic(name: str) -> str:
     if len(name) > _LONGEST or not re.fullmatch(_TOPIC, name):
-        raise ValueError(f"{name!r:.60} is no full name of a topic, as /battery_state is")
+        raise ValueError(
+            f"invalid topic name {name!r:.60}; give the full name, such as /battery_state"
+        )
     return name
 
 
 def _type(name: str) -> str:
     if len(name) > _LONGEST or not re.fullmatch(_TYPE, name):
-        raise ValueError(f"{name!r:.60} is no type of message, as std_msgs/msg/Bool is")
+        raise ValueError(
+            f"invalid message type {name!r:.60}; expected a type such as std_msgs/msg/Bool"
+        )
     return name
 
 
 def _field(path: str) -> str:
     if len(path) > _LONGEST or not re.fullmatch(_FIELD, path):
-        raise ValueError(f"{path!r:.60} is no field, as data is, or position_covariance.0")
+        raise ValueError(
+            f"invalid field {path!r:.60}; expected a path such as data or position_covariance.0"
+        )
     return path
 
 
@@ -60,28 +66,28 @@ CommandType: TypeAlias = Literal[
 
 
 class SignalTopicBlock(SettingsBlock):
-    """Where a signal is read from.
+    """Topic that a signal is read from.
 
-    Without `field`, a NavSatFix gives the accuracy of the position in mm, from its covariance.
+    Without `field`, a NavSatFix gives the position accuracy in mm, computed from its covariance.
     """
 
     topic: TopicName
-    """Full name."""
+    """Full name of the topic."""
     type: MessageType
-    """Of its messages."""
+    """Message type of the topic."""
     field: FieldPath | None = None
-    """What of a message is the value; dots lead into it, and numbers into lists. Left out: what a
-    BatteryState, a Temperature or a plain message of std_msgs holds."""
+    """Path of the value in the message: fields separated by dots, numbers index lists. Default: the
+    value of a BatteryState, a Temperature or a plain std_msgs message."""
     scale: Number = 1.0
-    """A number is multiplied by this; 0.01 for a battery in percent."""
+    """Factor for a number, such as 0.01 for a battery in percent."""
     offset: Number = 0.0
-    """And this is added to it then."""
+    """Added to a number after scaling."""
     invert: bool = False
-    """Whether true means false, as where a topic says that driving is enabled."""
+    """Whether to invert a boolean, as for a topic that tells that driving is enabled."""
 
     @property
     def path(self) -> tuple[str | int, ...] | None:
-        """Return the steps into a message: fields and places in lists; None: it is calculated."""
+        """Return the path into a message: fields and list indices; None: the value is computed."""
         field = self.field or self._usual_field
         if field is None:
             return None
@@ -94,52 +100,52 @@ class SignalTopicBlock(SettingsBlock):
     @model_validator(mode="after")
     def _has_a_value(self) -> Self:
         if self.path is None and self.type != NAV_SAT_FIX:
-            raise ValueError(f"which field of a {self.type} is the value? Say so with field")
+            raise ValueError(f"{self.type} has no default field; set field")
         return self
 
 
 class OdometryBlock(SettingsBlock):
-    """Where the vehicle says how it moves."""
+    """Topic of the vehicle's odometry."""
 
     topic: TopicName
-    """Full name; of type nav_msgs/msg/Odometry, of the middle of the rear axle, in the frame in
-    which waypoints are given."""
+    """Full name of a topic of type nav_msgs/msg/Odometry, for the centre of the rear axle, in the
+    frame of the waypoints."""
 
 
 class CommandBlock(SettingsBlock):
-    """Where the vehicle is told how to drive."""
+    """Topic of the drive commands to the vehicle."""
 
     topic: TopicName
-    """Full name."""
+    """Full name of the topic."""
     type: CommandType
-    """What the vehicle listens to. A Twist has no steering angle, so that the wheels of a vehicle
-    that stands cannot be turned by it."""
+    """Message type that the vehicle subscribes to. A Twist has no steering angle and cannot turn
+    the wheels of a vehicle at standstill."""
 
 
 class Ros2Block(SettingsBlock):
-    """Topics of a robot in ROS 2."""
+    """ROS 2 topics of the robot."""
 
     signals: dict[str, SignalTopicBlock] = Field(default_factory=dict)
-    """Where signals are read from, by their names: the usual five, and those that are declared."""
+    """Topics of signals by name of the signal: the five default ones and the declared ones."""
     odometry: OdometryBlock | None = None
-    """Where the vehicle says how it moves. Left out: nobody knows, and no task is driven."""
+    """Topic of the vehicle's odometry. Without it the pose is unknown and no task runs."""
     command: CommandBlock | None = None
-    """Where the vehicle is told how to drive. Left out: it is told nothing."""
+    """Topic of the drive commands. Without it no commands are published."""
 
     def faults(self, kinds: Mapping[str, SignalKind]) -> Iterator[tuple[tuple[str, ...], str, str]]:
-        """Tell what does not fit the signals that there are.
+        """Yield what does not match the signals.
 
         Args:
-            kinds: What the values of each signal are.
+            kinds: Kind of each signal by name.
 
         Yields:
-            The keys that lead to it, the code of the fault, and what it is.
+            The keys that lead to the fault, its code and its message.
         """
         types: dict[str, str] = {}
         for name, block in self.signals.items():
             place = ("signals", name)
             if types.setdefault(block.topic, block.type) != block.type:
-                message = f"{block.topic} is {types[block.topic]} for another signal"
+                message = f"{block.topic} has type {types[block.topic]} for another signal"
                 yield (*place, "type"), "INVALID_VALUE", message
             kind = kinds.get(name)
             if kind is None:
@@ -148,8 +154,8 @@ class Ros2Block(SettingsBlock):
                 continue
             for key in sorted({"scale", "offset"} & block.model_fields_set):
                 if kind is not SignalKind.NUMBER:
-                    message = f"{key} is only for numbers, and {name} is none"
+                    message = f"{key} is for numbers only; {name} is not a number"
                     yield (*place, key), "INVALID_VALUE", message
             if "invert" in block.model_fields_set and kind is not SignalKind.BOOLEAN:
-                message = f"invert is only for true and false, and {name} is neither"
+                message = f"invert is for booleans only; {name} is not a boolean"
                 yield (*place, "invert"), "INVALID_VALUE", message

@@ -1,4 +1,4 @@
-"""The parameters of one part of an SMH file, sorted by what they are about."""
+"""The parameters of one part of an SMH file, sorted by subject."""
 
 from collections import defaultdict
 
@@ -11,7 +11,7 @@ _RESERVED_NAMES = frozenset(("state", "states", "mode", "modes", "parameters"))
 
 
 class SmhBlock:
-    """What is written about one part; `type`, `parts`, `modes` and `rules` mean something."""
+    """The block of one part: its `type`, `parts`, `modes` and `rules`; other keys are ignored."""
 
     def __init__(self, source: NodeParameters) -> None:
         self.name = PartName(source.name)
@@ -20,15 +20,15 @@ class SmhBlock:
         self.type: Parameter | None = None
         self.parts: list[Parameter] = []
         self.modes: dict[ModeName, list[tuple[str, Parameter]]] = {}
-        """Of each mode what is written in it: name below the mode, and the parameter."""
+        """The lines of each mode: name below the mode, and the parameter."""
         self.rules: dict[str, dict[str, Parameter]] = defaultdict(dict)
         for parameter in source.parameters:
             self._sort(parameter)
         self.is_node = self._tell_kind()
         if self.name.rpartition("/")[2] in _RESERVED_NAMES:
             message = (
-                f"{self.name}: the last word of a name must not be one of "
-                f"{', '.join(sorted(_RESERVED_NAMES))}, which stand for something in addresses"
+                f"{self.name}: the last segment of a name must not be one of "
+                f"{', '.join(sorted(_RESERVED_NAMES))}, which are reserved in URLs"
             )
             self.complain(self.key, "RESERVED_NAME", message)
 
@@ -62,17 +62,17 @@ class SmhBlock:
                 self._complain_of_block(parameter, what)
 
     def _complain_of_block(self, parameter: Parameter, what: str) -> None:
-        self.complain(parameter.key, "NOT_A_BLOCK", f"{what}: there must be keys below")
+        self.complain(parameter.key, "NOT_A_BLOCK", f"{what}: expected keys below")
 
     def _tell_kind(self) -> bool:
-        """Tell nodes from systems; where the type is missing, by what the modes hold."""
+        """Tell nodes from systems; without a type, by the contents of the modes."""
         if self.type is None:
-            message = f"{self.name} has no type; write type: node or type: system"
+            message = f"{self.name} has no type; add type: node or type: system"
             self.complain(self.key, "MISSING_TYPE", message)
             return any(
                 PARAMETERS_KEY in below for lines in self.modes.values() for below, _ in lines
             )
         if self.type.value not in (None, "node", "system"):
-            message = f"{self.name} has type {self.type.value!r} and is taken as a system"
+            message = f"{self.name} has the unknown type {self.type.value!r}; read as a system"
             self.warn(self.type.place, "UNKNOWN_TYPE", message)
         return self.type.value == "node"

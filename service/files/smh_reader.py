@@ -1,6 +1,6 @@
-"""Systems and nodes from the parameters that an SMH file gives each part.
+"""Reads systems and nodes from the parameters of each part of an SMH file.
 
-Takes what the C++ of system_modes takes, and complains of what that takes and misreads.
+Accepts what the C++ code of system_modes reads correctly, and reports what it would misread.
 
 Source: micro-ROS system_modes, `mode_inference.cpp` (`read_modes_from_model`).
 """
@@ -18,14 +18,14 @@ from service.files.smh_block import SmhBlock
 from service.files.smh_values import fitted, read_part_name, read_rule, read_want
 
 MAX_LINES = 2_000_000
-"""Of all modes, each with what it takes over; a model of 10,000 nodes has 100,000."""
+"""Lines of all modes, including inherited ones; a model of 10,000 nodes has 100,000."""
 
 _NAMES_IN_TEXT = re.compile(r"[/\w]+(?:[\s,]+[/\w]+)*")
 
 
 @dataclass(slots=True)
 class SmhParts:
-    """All parts of an SMH file, and what is wrong with each by itself."""
+    """All parts of an SMH file, and the findings about each."""
 
     nodes: dict[PartName, NodeModel] = field(default_factory=dict)
     systems: dict[PartName, SystemModel] = field(default_factory=dict)
@@ -33,7 +33,7 @@ class SmhParts:
 
 
 def read_parts(sources: Mapping[str, NodeParameters]) -> SmhParts:
-    """Read all parts; one with faults is there as far as it can be read."""
+    """Read all parts; one with errors is included as far as it can be read."""
     blocks = [SmhBlock(source) for source in sources.values()]
     with_modes = frozenset(block.name for block in blocks if block.modes)
     parts = SmhParts()
@@ -41,7 +41,7 @@ def read_parts(sources: Mapping[str, NodeParameters]) -> SmhParts:
     for block in blocks:
         own = len(block.modes) * len(block.modes.get(DEFAULT_MODE, ()))
         if lines + own > MAX_LINES:
-            message = f"more than {MAX_LINES:,} lines in all modes, with those of {DEFAULT_MODE}"
+            message = f"more than {MAX_LINES:,} lines in all modes, including {DEFAULT_MODE}"
             block.complain(block.key, "TOO_LARGE", message)
             block.modes.clear()
         else:
@@ -55,9 +55,9 @@ def read_parts(sources: Mapping[str, NodeParameters]) -> SmhParts:
 
 
 def _read_node(block: SmhBlock) -> NodeModel:
-    """Read a node: each mode is a set of parameters over that of `__DEFAULT__`."""
+    """Read a node: each mode overrides parameters of `__DEFAULT__`."""
     for rule in block.rules.values():
-        message = f"{block.name} is a node; rules have an effect in systems only"
+        message = f"{block.name} is a node; rules apply to systems only"
         block.warn(next(iter(rule.values())).key, "RULES_OF_A_NODE", message)
     own = {mode: _named_parameters(block, mode) for mode in block.modes}
     default = own.get(DEFAULT_MODE)
@@ -66,8 +66,8 @@ def _read_node(block: SmhBlock) -> NodeModel:
         for name, parameter in parameters.items():
             if default is not None and name not in default:
                 message = (
-                    f"{block.name} in {mode}: there is no parameter {name!r} in {DEFAULT_MODE}, "
-                    "which must name them all"
+                    f"{block.name} in {mode}: parameter {name!r} is not in {DEFAULT_MODE}, which "
+                    "must list all parameters"
                 )
                 block.complain(parameter.key, "PARAMETER_NOT_IN_DEFAULT", message)
         merged = {**(default or {}), **parameters}
@@ -76,7 +76,7 @@ def _read_node(block: SmhBlock) -> NodeModel:
 
 
 def _named_parameters(block: SmhBlock, mode: ModeName) -> dict[str, Parameter]:
-    """Return what stands below `ros__parameters` of a mode, by name."""
+    """Return the parameters below `ros__parameters` of a mode, by name."""
     named: dict[str, Parameter] = {}
     for below, parameter in block.modes[mode]:
         key, _, name = below.partition(".")
@@ -86,17 +86,17 @@ def _named_parameters(block: SmhBlock, mode: ModeName) -> dict[str, Parameter]:
             _complain_of_dots(block, mode, below, parameter)
         else:
             message = (
-                f"{block.name} in {mode}: {below!r} is not below {PARAMETERS_KEY}; the modes of a "
-                "node hold parameters"
+                f"{block.name} in {mode}: {below!r} must be below {PARAMETERS_KEY}; the modes of a "
+                "node hold parameters only"
             )
             block.complain(parameter.key, "MISSING_ROS_PARAMETERS", message)
     return named
 
 
 def _read_system(block: SmhBlock, with_modes: Collection[PartName]) -> SystemModel:
-    """Read a system: each mode says what is wanted of parts, over what `__DEFAULT__` says."""
+    """Read a system: each mode overrides what `__DEFAULT__` requires of the parts."""
     if not block.modes:
-        message = f"{block.name} is a system without modes, and so without parts"
+        message = f"{block.name} is a system without modes and therefore without parts"
         block.warn(block.key, "NO_PARTS", message)
     named = {part_name(below) for below, _ in block.modes.get(DEFAULT_MODE, ())}
     if named:
@@ -114,12 +114,19 @@ def _read_wants(
     named: Collection[PartName],
     with_modes: Collection[PartName],
 ) -> dict[PartName, StateAndMode]:
-    """Read the lines of one mode; `named` are the parts that `__DEFAULT__` names."""
+    """Read the lines of one mode.
+
+    Args:
+        block: Block of the system.
+        mode: The mode to read.
+        named: Parts that `__DEFAULT__` names.
+        with_modes: All parts that have modes.
+    """
     where = f"{block.name} in {mode}"
     wanted: dict[PartName, StateAndMode] = {}
     for below, parameter in block.modes[mode]:
         if below.partition(".")[0] == PARAMETERS_KEY:
-            message = f"{where}: only a node has parameters; is {block.name} of type node?"
+            message = f"{where}: only nodes have parameters; should {block.name} be a node?"
             block.complain(parameter.key, "PARAMETERS_OF_A_SYSTEM", message)
             continue
         if "." in below:
@@ -127,11 +134,11 @@ def _read_wants(
             continue
         part = read_part_name(block, where, below, parameter.key)
         if part in wanted:
-            message = f"{where}: {part} is there twice, with a slash before it and without"
+            message = f"{where}: duplicate part {part}, with and without a leading slash"
             block.complain(parameter.key, "DUPLICATE_KEY", message)
             continue
         if named and part not in named:
-            message = f"{where}: {part} is not in {DEFAULT_MODE}, and so no part of {block.name}"
+            message = f"{where}: {part} is not in {DEFAULT_MODE} and so not a part of {block.name}"
             block.warn(parameter.key, "PART_NOT_IN_DEFAULT", message)
         if parameter.value is not None:
             want = read_want(block, f"{where}: {part}", parameter.value, parameter.place)
@@ -141,13 +148,13 @@ def _read_wants(
 
 
 def _complain_of_dots(block: SmhBlock, mode: ModeName, below: str, parameter: Parameter) -> None:
-    """Names are told apart by dots, so that C++ cuts off a name at a dot in it."""
-    message = f"{block.name}: neither a mode nor a part can have a dot in its name: {mode}.{below}"
+    """Report a dot in a name: the C++ code truncates names at dots."""
+    message = f"{block.name}: names of modes and parts must not contain dots: {mode}.{below}"
     block.complain(parameter.key, "DOTTED_NAME", message)
 
 
 def _compare_parts(block: SmhBlock, named: set[PartName]) -> None:
-    """Warn if `parts`, which nothing else reads, tells of other parts than `__DEFAULT__`."""
+    """Warn if `parts`, which is otherwise ignored, differs from the parts of `__DEFAULT__`."""
     for parameter in block.parts:
         names = parameter.value
         if isinstance(names, str) and _NAMES_IN_TEXT.fullmatch(names):
@@ -162,7 +169,7 @@ def _compare_parts(block: SmhBlock, named: set[PartName]) -> None:
         words += [f"it lacks {', '.join(fewer)}"] * bool(fewer)
         if words:
             message = (
-                f"parts of {block.name} differs from {DEFAULT_MODE}, which counts: "
+                f"parts of {block.name} differs from {DEFAULT_MODE}, which is used: "
                 f"{' and '.join(words)}"
             )
             block.warn(parameter.key, "PARTS_DIFFER", message)

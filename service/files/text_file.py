@@ -1,4 +1,4 @@
-"""Reading a text file that a person names, and saying plainly why it cannot be read."""
+"""Reads a text file that a person names, with clear reasons if it cannot be read."""
 
 from pathlib import Path
 
@@ -8,7 +8,7 @@ MAX_BYTES = 16 * 1024 * 1024
 
 
 class UnreadableFileError(PilothouseError):
-    """A file that is not there, cannot be read, is too large, or holds no text."""
+    """A file that does not exist, cannot be read, is too large, or is not text."""
 
     code = "UNREADABLE_FILE"
 
@@ -21,7 +21,7 @@ def read_text_file(path: Path) -> str:
     """Return the text of a UTF-8 file of at most `MAX_BYTES`.
 
     Raises:
-        UnreadableFileError: There is no such file, or it is not that.
+        UnreadableFileError: There is no such file, it is too large, or it is not UTF-8.
     """
     try:
         with path.open("rb") as file:

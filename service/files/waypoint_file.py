@@ -1,6 +1,6 @@
 """Waypoint files: a CSV without a header, `x,y,yaw[,...]` in each line.
 
-Source: smart_polaris section 7, whose recordings come with three conventions for the heading.
+Source: smart_polaris, `waypoint_logger` and recorded tracks, which use three heading conventions.
 """
 
 from collections.abc import Iterator
@@ -18,17 +18,17 @@ from domain.paths.waypoints import MAX_COORDINATE_M, MAX_WAYPOINTS
 MAX_FINDINGS = 20
 
 _NAMES = ("x", "y", "yaw")
-_FORM = "each line is x,y,yaw in m, m and rad, parted by commas, and there is no header"
+_FORM = "each line must be x,y,yaw in m, m and rad, separated by commas, without a header"
 _TURN_RAD = 1.001 * tau
-"""More than this is no heading in radians, unless one that was counted on over several turns."""
+"""A larger value is not a heading in radians, unless headings are unwrapped over several turns."""
 _FEW_WAYS = 3
 _MISFIT_RAD = 0.3
 _GAIN = 4.0
-"""So much better must another unit fit than no heading at all: small degrees are about 0."""
+"""How much better another unit must fit than headings of 0, since small degrees are close to 0."""
 
 
 class Heading(StrEnum):
-    """What the third column is."""
+    """Unit and direction of the third column."""
 
     RAD = "rad"
     """Radians counter-clockwise from the x axis."""
@@ -39,7 +39,7 @@ class Heading(StrEnum):
 
 
 class InvalidWaypointsError(PilothouseError):
-    """A waypoint file with faults; `findings` hold the first of them, at most `MAX_FINDINGS`."""
+    """An invalid waypoint file; `findings` hold the first errors, at most `MAX_FINDINGS`."""
 
     code = "INVALID_WAYPOINTS"
 
@@ -52,35 +52,34 @@ class InvalidWaypointsError(PilothouseError):
 
 
 def read_waypoints_csv(text: str, heading: Heading = Heading.RAD) -> NDArray[np.float64]:
-    """Read waypoints; 100,000 of them need some 0.2 s.
+    """Read waypoints; 100,000 of them take some 0.2 s.
 
-    Lines end with LF or CRLF, and empty ones are at the end only. Further columns are not looked
-    at.
+    Lines end with LF or CRLF; empty lines are allowed only at the end. Further columns are ignored.
 
     Args:
         text: The CSV.
-        heading: What the third column is.
+        heading: Unit and direction of the third column.
 
     Returns:
         Shape (n, 3): x m, y m, yaw rad.
 
     Raises:
-        InvalidWaypointsError: There are fewer than 2 or more than 100,000 points, a cell is no
+        InvalidWaypointsError: There are fewer than 2 or more than 100,000 points, a cell is not a
             number or out of range, or headings that should be radians are degrees.
     """
-    # The mark of UTF-8 that spreadsheets begin with is no part of the first number.
+    # Spreadsheets write a byte order mark before the first number.
     lines = text.removeprefix("\ufeff").rstrip().split("\n")
     if lines == [""]:
-        raise InvalidWaypointsError([_finding("EMPTY_FILE", "there are no waypoints", 1)])
+        raise InvalidWaypointsError([_finding("EMPTY_FILE", "the file has no waypoints", 1)])
     if len(lines) > MAX_WAYPOINTS:
-        message = f"there are {len(lines)} lines; a path has at most {MAX_WAYPOINTS} waypoints"
+        message = f"the file has {len(lines)} lines; a path has at most {MAX_WAYPOINTS} waypoints"
         finding = _finding("TOO_MANY_POINTS", message, MAX_WAYPOINTS + 1)
-        raise InvalidWaypointsError([finding], "leave points out: one each 0.1 m is plenty")
+        raise InvalidWaypointsError([finding], "thin the points out: one every 0.1 m is enough")
     rows, findings = _numbers(lines)
     waypoints = np.array(rows, dtype=np.float64)
     findings.extend(_out_of_range(waypoints, lines))
     if not findings and len(rows) < 2:
-        message = "there is one waypoint; a path has at least 2"
+        message = "the file has one waypoint; a path needs at least 2"
         findings = [_finding("TOO_FEW_POINTS", message, 1)]
     if findings:
         findings.sort(key=lambda finding: (finding.line or 0, finding.column or 0))
@@ -93,9 +92,9 @@ def read_waypoints_csv(text: str, heading: Heading = Heading.RAD) -> NDArray[np.
 
 
 def _numbers(lines: list[str]) -> tuple[list[tuple[float, float, float]], list[Finding]]:
-    """Return the numbers of each line, zeros for one without, and what is wrong with those.
+    """Return the numbers of each line, zeros for an invalid one, and the findings.
 
-    Ends early where so much is wrong that the rest would not be told.
+    Stops early once there are enough findings.
     """
     rows: list[tuple[float, float, float]] = []
     findings: list[Finding] = []
@@ -112,38 +111,38 @@ def _numbers(lines: list[str]) -> tuple[list[tuple[float, float, float]], list[F
 
 
 def _number(cell: str) -> float:
-    # float() takes "1_0" and the digits of other scripts as well.
+    # float() also accepts "1_0" and the digits of other scripts.
     if "_" in cell or not cell.isascii():
         raise ValueError
     return float(cell)
 
 
 def _faults(number: int, line: str) -> Iterator[Finding]:
-    """Yield what is wrong with a line that does not begin with three numbers."""
+    """Yield the findings of a line that does not begin with three numbers."""
     cells = _columns(line)
     if not line.strip():
-        yield _finding("EMPTY_LINE", "the line is empty; only at the end may some be", number)
+        yield _finding("EMPTY_LINE", "empty line; empty lines are allowed only at the end", number)
     elif number == 1 and all(map(_is_text, cells)):
-        message = f"{_shown(line)} looks like a header; leave it out"
+        message = f"{_shown(line)} looks like a header; remove it"
         yield _finding("HEADER", message, number)
     elif len(cells) < len(_NAMES):
-        message = f"there are {len(cells)} columns; x, y and yaw are needed, parted by commas"
+        message = f"{len(cells)} columns; x, y and yaw are required, separated by commas"
         yield _finding("TOO_FEW_COLUMNS", message, number)
     else:
         for name, cell, column in zip(_NAMES, cells, _starts(cells), strict=False):
             if _is_text(cell):
-                what = f"{_shown(cell)} is not a number" if cell.strip() else "there is no number"
+                what = f"{_shown(cell)} is not a number" if cell.strip() else "missing number"
                 yield _finding("NOT_A_NUMBER", f"{name}: {what}", number, column)
 
 
 def _out_of_range(waypoints: NDArray[np.float64], lines: list[str]) -> Iterator[Finding]:
-    """Yield what numbers are not finite or too large, at most `MAX_FINDINGS`."""
+    """Yield the numbers that are not finite or out of range, at most `MAX_FINDINGS`."""
     limits = np.array([MAX_COORDINATE_M, MAX_COORDINATE_M, np.inf])
     wrong = np.argwhere(~(np.isfinite(waypoints) & (np.abs(waypoints) <= limits)))
     for row, k in wrong[:MAX_FINDINGS].tolist():
         cells = _columns(lines[row])
         if np.isfinite(waypoints[row, k]):
-            code, what = "TOO_FAR", f"is further out than {MAX_COORDINATE_M:g} m"
+            code, what = "TOO_FAR", f"is not within +-{MAX_COORDINATE_M:,.0f} m"
         else:
             code, what = "NOT_FINITE", "is not finite"
         message = f"{_NAMES[k]}: {_shown(cells[k])} {what}"
@@ -153,8 +152,8 @@ def _out_of_range(waypoints: NDArray[np.float64], lines: list[str]) -> Iterator[
 def _check_radians(waypoints: NDArray[np.float64], lines: list[str]) -> None:
     """Check that headings are radians.
 
-    Where they stay within a turn they are taken for degrees only if they say as degrees what they
-    do not say as radians: nobody is refused for headings that are all 0, or noise.
+    Headings within one turn count as degrees only if they fit the path as degrees and not as
+    radians: headings that are all 0, or noise, are not rejected.
 
     Raises:
         InvalidWaypointsError: They are degrees.
@@ -167,10 +166,10 @@ def _check_radians(waypoints: NDArray[np.float64], lines: list[str]) -> None:
         return
     row = int(beyond.argmax())
     cell, column = _columns(lines[row])[2], _starts(_columns(lines[row]))[2]
-    why = "is more than a turn" if beyond.any() else "does not fit the way between the points"
+    why = "is more than a turn" if beyond.any() else "does not fit the direction of the path"
     message = f"yaw: {_shown(cell)} {why} in radians; these look like {_UNITS[unit]}"
     other = Heading.COMPASS if unit is Heading.DEG else Heading.DEG
-    hint = f"say so with ?heading={unit} ({_UNITS[unit]}) or ?heading={other} ({_UNITS[other]})"
+    hint = f"set ?heading={unit} ({_UNITS[unit]}) or ?heading={other} ({_UNITS[other]})"
     raise InvalidWaypointsError([_finding("NOT_RADIANS", message, row + 1, column)], hint)
 
 
@@ -181,7 +180,7 @@ _UNITS = {
 
 
 def _better_unit(ways: Ways, yaws: NDArray[np.float64], *, within_a_turn: bool) -> Heading | None:
-    """Return the unit that headings are in if that is not radians."""
+    """Return the unit of the headings; None: radians."""
     if not ways.count:
         return None if within_a_turn else Heading.DEG
     own = ways.misfit(yaws)
@@ -195,7 +194,7 @@ def _better_unit(ways: Ways, yaws: NDArray[np.float64], *, within_a_turn: bool) 
 
 
 def _yaws(degrees: NDArray[np.float64], unit: Heading) -> NDArray[np.float64]:
-    """Return headings in rad, from -pi to below pi; shape (n,)."""
+    """Return headings in rad, wrapped to [-pi, pi); shape (n,)."""
     radians = np.radians(degrees)
     return wrapped(pi / 2 - radians if unit is Heading.COMPASS else radians)
 
@@ -205,7 +204,7 @@ def _columns(line: str) -> list[str]:
 
 
 def _starts(cells: list[str]) -> list[int]:
-    """Return in which column of the line each cell begins, from 1."""
+    """Return the column of the line in which each cell begins, from 1."""
     starts, at = [], 1
     for cell in cells:
         starts.append(at + len(cell) - len(cell.lstrip()))

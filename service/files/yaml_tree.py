@@ -1,8 +1,8 @@
-"""YAML as a tree that remembers where everything stands.
+"""YAML as a tree with line and column of every node.
 
-Read event by event: the parser of libyaml is in C and fast, and its composer recurses, so that some
-ten thousand opened brackets end the process. Nothing is ever constructed from a tag, and there are
-no aliases, so a small file cannot become a large one.
+Read event by event: the libyaml parser is in C and fast, but its composer recurses, so that some
+ten thousand open brackets crash the process. Tags never construct objects, and aliases are not
+supported, so that a small file cannot expand to a large one.
 """
 
 import re
@@ -15,13 +15,13 @@ import yaml
 from domain.findings import Finding
 
 MAX_DEPTH = 64
-"""Of maps and lists in each other."""
+"""Largest depth of nested maps and lists."""
 
 MAX_EVENTS = 2_000_000
-"""Keys, values, and begins and ends of maps and lists; four times a model of 10,000 nodes."""
+"""Keys, values, and starts and ends of maps and lists; four times a model of 10,000 nodes."""
 
 MAX_TAG_DIRECTIVES = 100
-"""libyaml compares each with all others, and a megabyte of them takes minutes."""
+"""libyaml compares each with all others; a megabyte of them takes minutes."""
 
 STRING_TAG = "tag:yaml.org,2002:str"
 _QUOTES = ("'", '"')
@@ -30,7 +30,7 @@ _LINE_BREAK = re.compile("\r\n|[\n\r\x85\u2028\u2029]")
 
 @dataclass(slots=True)
 class Scalar:
-    """A text, not yet taken as a number or anything else; lines and columns count from 1."""
+    """An uninterpreted scalar; lines and columns count from 1."""
 
     line: int
     column: int
@@ -41,7 +41,7 @@ class Scalar:
 
 @dataclass(slots=True)
 class Sequence:
-    """A list; an item is None where what stands there was already complained of."""
+    """A list; an item is None if a finding has been reported for it."""
 
     line: int
     column: int
@@ -50,7 +50,7 @@ class Sequence:
 
 @dataclass(slots=True)
 class Mapping:
-    """A map in the order of the text, each key once; a value as in `Sequence`."""
+    """A mapping in the order of the text, with unique keys; values as in `Sequence`."""
 
     line: int
     column: int
@@ -62,12 +62,12 @@ Node: TypeAlias = Scalar | Sequence | Mapping
 
 @dataclass(slots=True)
 class YamlTree:
-    """The documents of a text, and what is wrong with it as YAML."""
+    """The documents of a text, and the YAML errors."""
 
     documents: list[Node | None] = field(default_factory=list)
     findings: list[Finding] = field(default_factory=list)
     is_complete: bool = False
-    """False: the reading ended at a fault, and what is missing says nothing."""
+    """False: reading stopped at an error, so that missing keys mean nothing."""
 
 
 def finding_at(
@@ -77,12 +77,20 @@ def finding_at(
     part: str | None = None,
     severity: Literal["error", "warning"] = "error",
 ) -> Finding:
-    """Return a finding about what stands at `place`."""
+    """Return a finding with line and column of `place`.
+
+    Args:
+        place: What the finding is about.
+        code: Stable, UPPER_SNAKE.
+        message: The finding in words.
+        part: Name of the part concerned, if any.
+        severity: Whether the file cannot be used, or only looks wrong.
+    """
     return Finding(severity, code, message, part, (), place.line, place.column)
 
 
 def in_order(text: str, findings: Iterable[Finding]) -> list[Finding]:
-    """Sort findings by place; what libyaml places after the last line is moved to its end."""
+    """Sort findings by place; places that libyaml reports after the last line move to its end."""
     lines = _LINE_BREAK.split(text)
     last, end = len(lines), len(lines[-1]) + 1
     inside = (replace(f, line=last, column=end) if (f.line or 0) > last else f for f in findings)
@@ -90,7 +98,7 @@ def in_order(text: str, findings: Iterable[Finding]) -> list[Finding]:
 
 
 def read_tree(text: str) -> YamlTree:
-    """Read YAML; after a fault of syntax the rest of the text is not looked at."""
+    """Read YAML; reading stops at a syntax error."""
     if text.count("%TAG") > MAX_TAG_DIRECTIVES:
         message = f"more than {MAX_TAG_DIRECTIVES} %TAG directives"
         return YamlTree(findings=[Finding("error", "TOO_LARGE", message, line=1, column=1)])
@@ -120,7 +128,7 @@ def _syntax_error(error: yaml.MarkedYAMLError) -> Finding:
     message = ": ".join(words for words in (error.context, error.problem) if words)
     mark = error.problem_mark or error.context_mark
     line, column = (mark.line + 1, mark.column + 1) if mark else (1, 1)
-    # Since PyYAML 6.0.4 the parser has a bound of its own, and may look so far ahead of its events.
+    # Since PyYAML 6.0.4 the parser has its own limit, and may reach it ahead of its events.
     code = "TOO_DEEP" if error.problem == _PARSERS_BOUND else "YAML_SYNTAX"
     return Finding("error", code, message, line=line, column=column)
 
@@ -130,29 +138,30 @@ _PARSERS_BOUND = "exceeded maximum nesting depth"
 
 @dataclass(slots=True)
 class _Open:
-    """A map or list whose end has not come yet."""
+    """A mapping or list that is still open."""
 
     node: Sequence | Mapping
     key: Scalar | None = None
-    """The key whose value comes next; None: it is one that is left out."""
+    """The key whose value comes next; None: it is invalid and left out."""
     expects_value: bool = False
     lines: dict[str, int] = field(default_factory=dict)
-    """In which line each key of a map stands."""
+    """Line of each key of a mapping."""
 
 
 class _Builder:
-    """Puts the tree together from the events of the parser."""
+    """Builds the tree from the events of the parser."""
 
     def __init__(self) -> None:
         self.tree = YamlTree()
         self._open: list[_Open] = []
 
     def build(self, next_event: Callable[[], Any]) -> None:
-        """Take in all events; the tree is complete unless there is too much of it.
+        """Process all events; the tree is complete unless it is too large.
 
         Raises:
             yaml.YAMLError: The text is not YAML.
         """
+        event: Any = None
         for _ in range(MAX_EVENTS):
             event = next_event()
             kind = type(event)
@@ -166,12 +175,12 @@ class _Builder:
                 self.tree.is_complete = True
                 return
             elif kind is yaml.AliasEvent:
-                message = f"*{event.anchor}: aliases are not supported; write the value again"
+                message = f"*{event.anchor}: aliases are not supported; repeat the value"
                 self._complain(event, "ALIAS", message)
                 self._add(None)
             elif kind is yaml.MappingStartEvent or kind is yaml.SequenceStartEvent:
                 if len(self._open) == MAX_DEPTH:
-                    message = f"more than {MAX_DEPTH} maps and lists in each other"
+                    message = f"more than {MAX_DEPTH} levels of nested maps and lists"
                     self._complain(event, "TOO_DEEP", message)
                     return
                 begin = Mapping if kind is yaml.MappingStartEvent else Sequence
@@ -179,7 +188,7 @@ class _Builder:
         self._complain(event, "TOO_LARGE", f"more than {MAX_EVENTS:,} keys, values and ends")
 
     def _add(self, node: Node | None) -> None:
-        """Put a finished node where it belongs."""
+        """Add a finished node to its parent."""
         if not self._open:
             self.tree.documents.append(node)
             return
@@ -195,18 +204,18 @@ class _Builder:
                 top.node.entries.append((top.key, node))
 
     def _checked_key(self, top: _Open, key: Node | None) -> Scalar | None:
-        """Return a key that can be used; of two equal ones the first."""
+        """Return a valid key; None, with a finding, for an invalid or duplicate one."""
         if not isinstance(key, Scalar) or not key.text:
             if key is not None:
-                message = "a key must be a word, not empty and not a map or list"
+                message = "a key must be a non-empty scalar, not a map or list"
                 self.tree.findings.append(finding_at(key, "INVALID_KEY", message))
             return None
         if key.text == "<<" and not key.is_quoted:
-            message = "merge keys are not supported; write the values again"
+            message = "merge keys are not supported; repeat the values"
             self.tree.findings.append(finding_at(key, "MERGE_KEY", message))
             return None
         if key.text in top.lines:
-            message = f"{key.text!r} is already in line {top.lines[key.text]}"
+            message = f"duplicate key {key.text!r}; first in line {top.lines[key.text]}"
             self.tree.findings.append(finding_at(key, "DUPLICATE_KEY", message))
             return None
         top.lines[key.text] = key.line

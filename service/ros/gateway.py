@@ -1,7 +1,7 @@
-"""Pilothouse as a part of a ROS 2 graph: what `RosInterface` offers, offered there.
+"""Offers the services and topics of `RosInterface` in a ROS 2 graph.
 
-Each system is a ROS node of its own name, so that the tools for lifecycle nodes find it; all else
-has the node `pilothouse`.
+Each system appears as a ROS node of its name, so that tools for lifecycle nodes find it; everything
+else belongs to the node `pilothouse`.
 """
 
 import asyncio
@@ -27,12 +27,12 @@ from service.ros.interface.interface import RosInterface
 log = logging.getLogger(__name__)
 
 CALLER = Actor("ros")
-"""Who asks or measures, as it is recorded; ROS does not tell who it is."""
+"""Recorded as the caller or sender, since ROS does not identify it."""
 
 _ROS_NAME = re.compile(r"(/[A-Za-z_][A-Za-z0-9_]*)+")
 _LONGEST = 225
-"""Of a name. ROS allows 247, and gives each node services of its own whose names have up to 22
-more characters than that of the node."""
+"""Most characters of a name. ROS allows 247, and gives each node services whose names are up to 22
+characters longer than that of the node."""
 
 
 class RosGateway:
@@ -44,27 +44,28 @@ class RosGateway:
         """Prepare.
 
         Args:
-            interface: What is offered.
-            graph: Where.
-            mapped_topics: Full names of topics that the robot file maps to signals, which are heard
-                there, and so not here.
+            interface: The services and topics.
+            graph: The ROS 2 graph.
+            mapped_topics: Full names of topics that the robot file maps to signals; the backend
+                subscribes to them, and so the gateway does not.
         """
         self._interface = interface
         self._graph = graph
         self._mapped_topics = mapped_topics
         self._nodes: dict[str, RosNode] = {}
         self._refusing: set[str] = set()
-        """Topics whose last message was refused."""
+        """Topics whose last message was rejected."""
         self._missing_types: set[str] = set()
         self._odd_names: set[str] = set()
 
     async def offer(self) -> None:
-        """Appear in the graph, with all services and topics that can be offered there.
+        """Create the nodes, services and topics.
 
-        The event loop gets its turns in between, since a hundred parts take a second.
+        Other tasks of the event loop run in between, since a hundred parts take a second.
 
-        Where a type is not installed, a standard one takes its place (`interface.fallback_types`).
-        What has none, and what has a name that ROS does not allow, is left out and logged.
+        If a type is not installed, a standard type takes its place (`interface.fallback_types`).
+        Services and topics without one, and those whose name ROS does not allow, are left out; the
+        log names them.
         """
         for service in self._interface.services.values():
             if not service.of_a_node and self._is_allowed(service.name):
@@ -77,13 +78,17 @@ class RosGateway:
         for heard in self._interface.heard.values():
             if heard.name not in self._mapped_topics and self._graph.has_type(heard.type):
                 self._hear(heard)
-        for what, names in (("name", self._odd_names), ("type", self._missing_types)):
+        problems = (
+            ("these names are not allowed", self._odd_names),
+            ("these types are not installed", self._missing_types),
+        )
+        for problem, names in problems:
             if names:
                 listed = ", ".join(sorted(names))
-                log.warning("not offered in ROS 2, which has no such %s: %s", what, listed)
+                log.warning("not offered in ROS 2, since %s: %s", problem, listed)
 
     async def run(self) -> None:
-        """Publish what happens, until cancelled."""
+        """Publish messages about events and states, until cancelled."""
         await self._interface.run()
 
     def _serve(self, service: OfferedService) -> None:
@@ -113,15 +118,15 @@ class RosGateway:
         self._node(OWN_NODE).subscribe(heard.name, heard.type, Qos.SENSOR, fields_of, take)
 
     def _take(self, heard: SubscribedTopic, message: Fields) -> None:
-        """Hand in a message; a refused one must not end the others, nor fill the log with its like.
+        """Submit a message; a rejected one must neither end the subscription nor flood the log.
 
-        So the next one is logged once another was taken.
+        Of several rejected messages in a row only the first is logged.
         """
         try:
             heard.take(message, CALLER)
         except PilothouseError as error:
             if heard.name not in self._refusing:
-                log.warning("refused a message on %s: %s", heard.name, error)
+                log.warning("rejected a message on %s: %s", heard.name, error)
             self._refusing.add(heard.name)
         else:
             self._refusing.discard(heard.name)

@@ -1,1 +1,1 @@
-"""The simulated robot, live and in virtual time; the path to a real robot imports none of it."""
+"""The simulated robot, live and in virtual time; code for a real robot imports none of it."""

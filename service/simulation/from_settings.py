@@ -18,20 +18,20 @@ def make_simulated_robot(
     """Return a simulated robot.
 
     Args:
-        model: Says which nodes there are.
-        robot: What nodes and vehicle are like.
-        start: The present.
-        mock: Whether the mock signals are published as well.
+        model: Defines the nodes.
+        robot: Settings of nodes and vehicle.
+        start: Start time of the simulation.
+        mock: Whether mock signals are published as well.
 
     Raises:
-        UnknownPartError: There are settings of a node that the model does not have.
+        UnknownPartError: The settings name a node that the model does not have.
     """
     nodes = {PartName(name): node_settings(block) for name, block in robot.nodes.items()}
     return SimulatedRobot(model, start, nodes, vehicle_settings(robot.vehicle), mock=mock)
 
 
 def node_settings(block: NodeBlock) -> NodeSettings:
-    """Return what a simulated node is like; what the block leaves out is as usual."""
+    """Return the settings of a simulated node, with defaults for what the block leaves out."""
     usual = NodeSettings()
     return NodeSettings(
         configure=_duration(block.configure_s, usual.configure),
@@ -45,7 +45,7 @@ def node_settings(block: NodeBlock) -> NodeSettings:
 
 
 def vehicle_settings(block: VehicleBlock) -> VehicleSettings:
-    """Return what the simulated vehicle is like."""
+    """Return the settings of the simulated vehicle."""
     pose, plant, noise = block.pose, block.plant, block.plant.noise
     return VehicleSettings(
         Pose(pose.x_m, pose.y_m, pose.yaw_rad),

@@ -1,4 +1,4 @@
-"""The mock signals while they run: what can be done to them, and what readings do to them."""
+"""The running mock signals: their controls, and how external readings change them."""
 
 from collections.abc import Callable, Sequence
 
@@ -13,36 +13,36 @@ from service.readings import UNNAMED, Submit
 
 
 class MockHandle:
-    """What can be done to mock signals that somebody else runs."""
+    """Controls mock signals that another object runs."""
 
     source = MOCK_SOURCE
-    """The source that its readings name."""
+    """The source of its readings."""
 
     def __init__(self, mock: MockSignals, clock: Clock, touch: Callable[[], None]) -> None:
         """Prepare.
 
         Args:
             mock: The signals.
-            clock: The present.
-            touch: Called when there is something to publish earlier than was said before.
+            clock: Of the service.
+            touch: Called when a reading is due earlier than before.
         """
         self._mock = mock
         self._clock = clock
         self._touch = touch
 
     def due(self) -> tuple[Readings, ...]:
-        """Return what is due by now and not delivered yet; the caller delivers it.
+        """Return the readings that are due and not delivered yet; the caller delivers them.
 
-        For one who is about to hand in a newer value, which must not be followed by an older one.
+        Needed before a newer value is submitted, so that no older one follows it.
         """
         return self._mock.advance(self._clock.now())
 
     def holds(self, signal: str) -> bool:
-        """Tell whether the mock has this signal; it has no declared ones beyond the five."""
+        """Tell whether the mock has this signal; it has only the five standard ones."""
         return self._mock.holds(signal)
 
     def hold(self, signal: str, value: SignalValue) -> None:
-        """Hold a value from now on; it must be one that the signal can have.
+        """Publish this value from now on; it must be valid for the signal.
 
         Raises:
             UnknownSignalError: The mock has no such signal.
@@ -51,7 +51,7 @@ class MockHandle:
         self._touch()
 
     def set_publishing(self, signal: str, publishing: bool) -> None:
-        """Stop publishing a signal, to see it go stale, or take it up again.
+        """Stop publishing a signal, so that it becomes stale, or resume.
 
         Raises:
             UnknownSignalError: The mock has no such signal.
@@ -60,16 +60,16 @@ class MockHandle:
         self._touch()
 
     def view(self) -> tuple[MockSignal, ...]:
-        """Return every signal of the mock."""
+        """Return all mock signals."""
         return self._mock.view()
 
     def readings(self, submit: Submit) -> "MockedReadings":
-        """Return where readings from outside are handed in, so that the mock goes on with them."""
+        """Return an input for external readings whose values the mock then continues to publish."""
         return MockedReadings(submit, self)
 
 
 class MockSource(MockHandle):
-    """Mock signals on their own, as beside the nodes of a real robot; a `SignalSource`."""
+    """A `SignalSource` with mock signals, for use with the nodes of a real robot."""
 
     def __init__(self, mock: MockSignals, clock: Clock) -> None:
         self._pacer = Pacer(mock, clock)
@@ -81,10 +81,10 @@ class MockSource(MockHandle):
 
 
 class MockedReadings:
-    """Readings from outside where the mock runs: the mock goes on with their values.
+    """The `ReadingInput` while the mock runs: the mock continues with the values of readings.
 
-    A `ReadingInput`. The mock stands in for a sender without a name: such readings are the mock's
-    own. A named source of `estop` is kept apart from the mock's, so that each is released alone.
+    Readings without a source count as those of the mock. A named source of `estop` is separate from
+    the mock, so that each must be released by itself.
     """
 
     def __init__(self, submit: Submit, mock: MockHandle) -> None:
@@ -94,16 +94,21 @@ class MockedReadings:
     def submit(
         self, items: Sequence[Reading], source: str | None = None, actor: Actor = NOBODY
     ) -> Outputs:
-        """Hand in readings, and let the mock hold their values.
+        """Submit readings, and let the mock continue with their values.
+
+        Args:
+            items: Accepted all or none.
+            source: Name of the sensor or device; None: the sender does not name one.
+            actor: The sender.
 
         Raises:
-            PilothouseError: One of them is refused; none was taken, and the mock goes on as before.
+            PilothouseError: One is rejected; none was accepted, and the mock did not change.
         """
         mock = self.mock
         for readings in mock.due():
             self._submit(readings)
-        # Any of them: an e-stop that came together with a signal of another kind has to be released
-        # by the next reading without a name too.
+        # Any of them: an e-stop that came together with another signal must also be released by the
+        # next reading without a source.
         stands_in = source is None and any(mock.holds(item.signal) for item in items)
         own = mock.source if stands_in else source or UNNAMED
         outputs = self._submit(Readings(tuple(items), own, actor))

@@ -1,4 +1,4 @@
-"""The simulated robot in real time: the backend that needs no robot."""
+"""The simulated robot in real time: a backend without a real robot."""
 
 from domain.commands import Drive, NodeCommand
 from domain.inputs import BackendStatus
@@ -16,7 +16,7 @@ from service.simulation.mock_source import MockHandle
 class SimulatedBackend:
     """Runs a `SimulatedRobot` on a clock: nodes, vehicle and, if it has them, mock signals.
 
-    As one adapter, since what several of them say at the same instant has one order.
+    One adapter for all, since messages of the same instant have one order.
     """
 
     def __init__(self, robot: SimulatedRobot, clock: Clock) -> None:
@@ -24,24 +24,24 @@ class SimulatedBackend:
         self._clock = clock
         self._pacer = Pacer(robot, clock)
         self.mock = None if robot.mock is None else MockHandle(robot.mock, clock, self._pacer.touch)
-        """What can be done to the mock signals; None: there are none."""
+        """Controls the mock signals; None: there are none."""
 
     async def run(self, deliver: Deliver) -> None:
-        """Deliver every node and the vehicle, then what changes, until cancelled."""
+        """Deliver the state of every node and of the vehicle, then changes, until cancelled."""
         deliver(BackendStatus(available=True))
         await self._pacer.run(deliver)
 
     def readings(self, submit: Submit) -> ReadingInput:
-        """Return where readings from outside are handed in."""
+        """Return the input for external readings."""
         return DirectReadings(submit) if self.mock is None else self.mock.readings(submit)
 
     def send(self, command: NodeCommand | Drive, /) -> None:
-        """Ask a node for something, or tell the vehicle how to drive."""
+        """Send a command to a node or to the vehicle."""
         self.robot.handle(command, self._clock.now())
         self._pacer.touch()
 
     def set_fault(self, node: PartName, fault: Fault | None) -> None:
-        """Let something be wrong with a node from now on; None: all is well again.
+        """Inject a fault into a node; None: end it.
 
         Raises:
             UnknownPartError: There is no such node.
@@ -50,18 +50,18 @@ class SimulatedBackend:
         self._pacer.touch()
 
     def set_parameters(self, node: PartName, values: Parameters) -> None:
-        """Change parameters of a node from outside, all or none.
+        """Change parameters of a node as another program would, all or none.
 
         Raises:
             UnknownPartError: There is no such node.
             UnknownParameterError: It has no such parameter.
-            InvalidValueError: A value is not of the parameter's type.
-            RefusedError: The node does not run.
+            InvalidValueError: A value does not have the type of its parameter.
+            RefusedError: The node is not running.
         """
         self.robot.nodes.set_parameters(node, values, self._clock.now())
         self._pacer.touch()
 
     def set_vehicle_reporting(self, reporting: bool) -> None:
-        """Let the vehicle stop telling where it is, or tell it again."""
+        """Stop or resume the odometry of the vehicle."""
         self.robot.vehicle.set_reporting(reporting, self._clock.now())
         self._pacer.touch()

@@ -1,4 +1,4 @@
-"""The service in virtual time: what runs live, advanced as fast as it can be computed."""
+"""The service in virtual time: the live code, run as fast as it can be computed."""
 
 import asyncio
 from datetime import datetime
@@ -14,14 +14,14 @@ from service.supervisor import Supervisor
 
 
 class VirtualClock:
-    """A `Clock` for what is never waited for: whoever moves it does what is due meanwhile."""
+    """A `Clock` that is set; the caller that sets it also processes what is due until then."""
 
     def __init__(self, start: Instant, wall: datetime) -> None:
-        """Stand at `start`.
+        """Start at `start`.
 
         Args:
-            start: The present.
-            wall: What a calendar says at `start`.
+            start: First time of the clock.
+            wall: The wall time at `start`.
         """
         self._now = start
         self._offset: Duration = since_epoch(wall) - start
@@ -31,7 +31,7 @@ class VirtualClock:
         return self._now
 
     def set(self, now: Instant) -> None:
-        """Let it be `now`, which is not before the present."""
+        """Set the time; it never goes back."""
         self._now = max(now, self._now)
 
     def wall_time(self, instant: Instant) -> datetime:
@@ -39,7 +39,7 @@ class VirtualClock:
         return to_datetime(instant + self._offset)
 
     def from_wall(self, moment: datetime) -> Instant:
-        """Return when `moment` is on this clock.
+        """Convert `moment` to this clock.
 
         Raises:
             InvalidValueError: `moment` has no offset from UTC.
@@ -47,16 +47,16 @@ class VirtualClock:
         return since_epoch(moment) - self._offset
 
     async def sleep_until(self, deadline: Instant) -> None:
-        """Wait for ever, unless `deadline` has passed: within virtual time nothing waits."""
+        """Wait forever, unless `deadline` has passed: nothing waits in virtual time."""
         if deadline > self._now:
             await asyncio.get_running_loop().create_future()
         await asyncio.sleep(0)
 
 
 class VirtualService:
-    """Supervisor and simulated robot on a clock that moves only here; no task runs.
+    """Supervisor and simulated robot on a clock that only this object sets; no asyncio task runs.
 
-    At one instant, what is due on board comes first, then nodes, signals and vehicle, as live.
+    At one instant, deadlines on board come first, then nodes, signals and vehicle, as live.
     """
 
     def __init__(
@@ -74,11 +74,11 @@ class VirtualService:
         self.supervisor = Supervisor(
             loaded, onboard, clock, self.backend, self.backend.readings, robot.what, events
         )
-        # Who asks to wait for the end of a change is answered at once.
+        # A request that waits for the end of a change is answered at once.
         self.supervisor.change_ends.stop()
 
     def advance_to(self, end: Instant) -> None:
-        """Let time pass until `end`, and happen what is due up to then, that included."""
+        """Advance the time to `end`, and process everything that is due up to and including it."""
         while (due := self._due()) <= end:
             self.clock.set(due)
             for message in self.robot.advance(self.clock.now()):

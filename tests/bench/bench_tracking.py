@@ -1,6 +1,6 @@
 """How well both trackers follow the recorded loop, with the vehicle as it is simulated.
 
-The plants, the bounds and what others reach on them: smart_polaris section 12.
+The plants and the bounds are those of docs/tracking.md.
 """
 
 import time

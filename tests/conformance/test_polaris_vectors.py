@@ -1,8 +1,8 @@
 """The vectors of smart_polaris on state and signals (groups 01 to 08), played on the state manager.
 
 Two kinds are played with another expectation than that of the original code: where the vector calls
-it unsafe (`should_differ`), its safer alternative holds; where SEMANTICS overrules it, `OVERRULED`
-says why.
+it unsafe (`should_differ`), its safer alternative holds; where docs/conformance.md overrules it,
+`OVERRULED` says why.
 """
 
 from collections.abc import Mapping

@@ -1,4 +1,4 @@
-"""Every relative link in README, docs and examples leads somewhere."""
+"""Every relative link in the pages of the root, docs and examples leads somewhere."""
 
 import re
 from collections.abc import Iterator
@@ -10,7 +10,7 @@ from tests.support.shared import PROJECT
 
 # The template of a decision names files that are not there.
 PAGES = [
-    PROJECT / "README.md",
+    *sorted(PROJECT.glob("*.md")),
     *(page for page in sorted((PROJECT / "docs").rglob("*.md")) if page.name != "template.md"),
     *sorted((PROJECT / "examples").rglob("*.md")),
 ]

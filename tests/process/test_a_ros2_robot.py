@@ -90,7 +90,7 @@ def test_the_mock_of_a_real_robot_makes_its_signals_good(tmp_path: Path) -> None
 
             RosGateway.run = end
             """,
-            "the task 'gateway' has ended",
+            "background task 'gateway' ended",
         ),
     ],
 )
@@ -139,4 +139,4 @@ def test_a_type_that_is_not_installed_is_told_in_one_line_before_anything_runs(
     )
 
     assert (done.returncode, done.stdout, done.stderr.count("\n")) == (1, "", 1), done.stderr
-    assert "my_msgs/msg/Heat is not there: install its package (my_msgs)" in done.stderr
+    assert "my_msgs/msg/Heat is not installed: install its package (my_msgs)" in done.stderr

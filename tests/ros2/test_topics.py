@@ -199,7 +199,9 @@ async def test_a_command_to_drive_is_heard_as_a_twist(
 
 async def test_what_is_not_installed_is_told_at_the_start(link: "RosLink") -> None:
     robot = vehicle(link, command={"topic": "/cmd", "type": "ackermann_msgs/msg/AckermannDrive"})
-    with pytest.raises(UnknownTypeError, match=r"ackermann_msgs/msg/AckermannDrive is not there"):
+    with pytest.raises(
+        UnknownTypeError, match=r"ackermann_msgs/msg/AckermannDrive is not installed"
+    ):
         robot.start(lambda _: None)
 
 

@@ -32,7 +32,7 @@ PLANTS: Mapping[str, Plant] = {
     "gazebo-like": Plant(2.0, 2.0, 0.5, 0.15),
     "car-like": Plant(1.0, 1.0, 0.11, 0.2),
 }
-"""Source: smart_polaris section 12."""
+"""The plants of docs/tracking.md."""
 
 CAPTURED_M = 0.1
 """Nearer than this a vehicle is on its path."""

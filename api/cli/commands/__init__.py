@@ -1,4 +1,4 @@
-"""The commands of `pilothouse`: each with its options, its help and what it does.
+"""The commands of `pilothouse`: options, help and implementation of each.
 
 What a command works with is imported when it runs, so that `--help` is quick.
 """

@@ -1,4 +1,4 @@
-"""`pilothouse mode` and `pilothouse state`: ask for a change, and follow it to its end."""
+"""`pilothouse mode` and `pilothouse state`: request a change, and follow it to its end."""
 
 import argparse
 import math
@@ -17,10 +17,10 @@ _MAX_WAIT_S = 3600.0
 _POLL_S = 0.1
 
 _ABOUT_MODE = "change the mode of a system or node"
-_ABOUT_STATE = "take a system or node through a lifecycle transition"
+_ABOUT_STATE = "request a lifecycle transition of a system or node"
 _CODES = """\
-exit code: 0 succeeded; 1 refused or failed;
-           2 unknown: not ended in time, or no answer
+exit code: 0 succeeded; 1 rejected or failed;
+           2 unknown: timed out, or no answer
 """
 
 # --- the command line ----------------------------------------------------------------------------
@@ -47,9 +47,9 @@ def _add_change_options(parser: argparse.ArgumentParser) -> None:
         default=60.0,
         type=_wait_s,
         metavar="S",
-        help="seconds to wait for the end; %(default)g",
+        help="seconds to wait for the end; default: %(default)g",
     )
-    parser.add_argument("--dry-run", action="store_true", help="say the steps, change nothing")
+    parser.add_argument("--dry-run", action="store_true", help="show the steps, change nothing")
 
 
 def _wait_s(text: str) -> float:

@@ -1,4 +1,4 @@
-"""`pilothouse check`: everything that is wrong with a model, in a form that editors jump from."""
+"""`pilothouse check`: errors and warnings of a model, with places that editors can jump to."""
 
 import argparse
 from collections.abc import Sequence
@@ -15,9 +15,9 @@ VALID, INVALID = 0, 1
 
 _STANDARD_INPUT = Path("/dev/stdin")
 _TEXT = """\
-Check a model file: all that is wrong, and what is odd, with line and column.
+Check a model file: report all errors and warnings, with line and column.
 
-exit code: 0 valid, perhaps with warnings; 1 invalid
+exit code: 0 valid, possibly with warnings; 1 invalid
 """
 
 

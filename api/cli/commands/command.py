@@ -1,4 +1,4 @@
-"""What a command is, and the options that several of them have."""
+"""The type of a command, and options that several commands share."""
 
 import argparse
 import os
@@ -23,16 +23,16 @@ class Command:
 
     name: str
     about: str
-    """A few words, for the list of commands."""
+    """Short description, for the list of commands."""
     text: str
-    """What `--help` says."""
+    """Text of `--help`."""
     add_options: Callable[[argparse.ArgumentParser], None]
     run: Callable[[argparse.Namespace], int]
-    """Does it, and returns the exit code."""
+    """Runs the command and returns the exit code."""
 
 
 def default_url() -> str:
-    """Return where the service runs if nobody says so."""
+    """Return the default URL of the service."""
     return os.environ.get("PILOTHOUSE_URL") or DEFAULT_URL
 
 
@@ -41,13 +41,13 @@ def add_url(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--url",
         default=default_url(),
-        help=f"where the service runs; default: PILOTHOUSE_URL, else {DEFAULT_URL}; its token is"
-        " that of PILOTHOUSE_TOKEN, or in the file of PILOTHOUSE_TOKEN_FILE",
+        help=f"URL of the service; default: PILOTHOUSE_URL, else {DEFAULT_URL}; the token is read"
+        " from PILOTHOUSE_TOKEN, or from the file named by PILOTHOUSE_TOKEN_FILE",
     )
 
 
 def with_service(url: str, run: Callable[["ServiceClient"], Outcome]) -> int:
-    """Run something with a client, and say why if it is refused or nobody answers.
+    """Run something with a client; report a rejection, or a service that does not answer.
 
     Args:
         url: Where the service runs.

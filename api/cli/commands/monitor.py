@@ -5,37 +5,37 @@ import argparse
 from api.cli.commands.command import DEFAULT_URL, Command, answered, default_url
 
 _TEXT = """\
-Watch a robot in this terminal until Ctrl-C: how it is and why, its systems and
-nodes with their targets, its signals and its task. It only looks.
+Watch a robot in this terminal until Ctrl-C: its state with reasons, systems
+and nodes with their targets, signals and task. Nothing is changed.
 
-Each part has a line: the target, then the state and the mode that it is in;
-(*) marks what is inferred, not reported. What needs attention is marked:
-  ! deviates from its target       > is under a running change
+Each part has a line: the target, then the actual state and mode; (*) marks
+inferred values. Lines that need attention are marked:
+  ! deviates from its target       > a change is running
   x a node is not reachable
-On a screen that is too short, marked lines come first, and the rest is counted.
-Contact that is lost is told, and comes back by itself.
+On a short screen, marked lines come first, and the others are counted.
+If the connection is lost, the monitor says so and reconnects.
 
   pilothouse monitor                          the service on this machine
-  pilothouse monitor http://robot.local:8000  another one
-  ssh -t robot pilothouse monitor             over ssh; -t gives it a terminal
-  pilothouse monitor > robot.log              a picture for each change
-  pilothouse monitor --once                   one picture, and the end
+  pilothouse monitor http://robot.local:8000  another service
+  ssh -t robot pilothouse monitor             over ssh; -t allocates a terminal
+  pilothouse monitor > robot.log              one snapshot per change
+  pilothouse monitor --once                   one snapshot, then exit
   pilothouse monitor --once --format json | jq .system_state.state
 
-Where the output is no terminal, it is plain text, a new picture whenever a
-state, mode, target, hold or the status of the task changes. --format json
-writes one JSON object per such change, on a terminal too:
+If the output is not a terminal, it is plain text, with a new snapshot whenever
+a state, mode, target, hold or the task status changes. --format json writes
+one JSON object per such change, also to a terminal:
 {at, system_state, parts, signals, task, vehicle, emergency_stop, holds}.
 
 environment:
-  PILOTHOUSE_URL         where the service runs, if no URL is given
-  PILOTHOUSE_TOKEN       token to show; or the name of a file that holds it in
-  PILOTHOUSE_TOKEN_FILE
+  PILOTHOUSE_URL         URL of the service, if none is given
+  PILOTHOUSE_TOKEN       token
+  PILOTHOUSE_TOKEN_FILE  file with the token
   NO_COLOR               no colours
-  COLUMNS                width where there is no terminal; default: 80
+  COLUMNS                width without a terminal; default: 80
 
-exit code: 0 ended by Ctrl-C, or --once has a picture, also of a robot in ERROR;
-           1 refused, as without the right token; 2 no answer
+exit code: 0 ended by Ctrl-C, or --once has a snapshot, also of a robot in
+           ERROR; 1 rejected, as without a valid token; 2 no answer
 """
 
 
@@ -45,11 +45,11 @@ def _add_options(parser: argparse.ArgumentParser) -> None:
         nargs="?",
         default=default_url(),
         metavar="URL",
-        help="where the service runs; default: PILOTHOUSE_URL, else " + DEFAULT_URL,
+        help="URL of the service; default: PILOTHOUSE_URL, else " + DEFAULT_URL,
     )
-    parser.add_argument("--once", action="store_true", help="show one picture, and end")
+    parser.add_argument("--once", action="store_true", help="show one snapshot, then exit")
     parser.add_argument(
-        "--format", default="text", choices=("text", "json"), help="json: as in the interface"
+        "--format", default="text", choices=("text", "json"), help="json: as in the HTTP interface"
     )
 
 

@@ -7,46 +7,48 @@ from api.cli.commands.command import Command
 
 _TEXT = """\
 Run the service until Ctrl-C or SIGTERM; then the vehicle is stopped, and nodes
-are left as they are.
+keep their states.
 
-It listens on this machine only. Another --host makes it reachable for others:
-give it a token by PILOTHOUSE_TOKEN, or by PILOTHOUSE_TOKEN_FILE the name of a
-file that holds it; or say --anonymous if everybody may use it. A page asks
-by the name in its address, so a name that is not this machine's own must be
-told with --allowed-host.
+By default it listens on this machine only. To make it reachable with --host,
+set a token with PILOTHOUSE_TOKEN, or a file with the token with
+PILOTHOUSE_TOKEN_FILE; or use --anonymous to allow everybody. Browsers send the
+host name of the URL: allow a name other than localhost or an address of this
+machine with --allowed-host.
 
-With --backend ros2 the nodes are those of ROS 2 in the domain that
-ROS_DOMAIN_ID names. Source the setup.bash of its distribution first. Who is in
-that domain needs no token.
+With --backend ros2, the nodes are the ROS 2 nodes of the domain ROS_DOMAIN_ID.
+Source setup.bash of the ROS 2 distribution first. ROS 2 participants in that
+domain need no token.
 """
 
 
 def _add_options(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
-        "model", nargs="?", type=Path, metavar="MODEL", help="model file; default: the example"
+        "model", nargs="?", type=Path, metavar="MODEL", help="model file; default: an example"
     )
     parser.add_argument("--robot", type=Path, metavar="FILE", help="robot file: settings")
     parser.add_argument(
         "--backend",
         choices=("simulated", "ros2"),
-        help="through what nodes are reached; default: as the robot file says, or simulated",
-    )
-    parser.add_argument("--host", default="127.0.0.1", help="address to listen on; %(default)s")
-    parser.add_argument(
-        "--port", default=8000, type=_port, help="%(default)s; 0 takes a free one and prints it"
+        help="how nodes are reached; default: as in the robot file, else simulated",
     )
     parser.add_argument(
-        "--anonymous", action="store_true", help="let everybody in who reaches another --host"
+        "--host", default="127.0.0.1", help="address to listen on; default: %(default)s"
     )
     parser.add_argument(
-        "--mock-signals", action="store_true", help="publish held values for the five signals"
+        "--port", default=8000, type=_port, help="default: %(default)s; 0: any free port, printed"
+    )
+    parser.add_argument(
+        "--anonymous", action="store_true", help="allow everybody who can reach --host"
+    )
+    parser.add_argument(
+        "--mock-signals", action="store_true", help="publish mock values of the five signals"
     )
     parser.add_argument(
         "--allowed-host",
         action="append",
         default=[],
         metavar="NAME",
-        help="name in the address by which this service may be asked; repeat for more",
+        help="further host name under which the service is reached; can be repeated",
     )
     parser.add_argument(
         "--log-level", default="info", choices=("debug", "info", "warning", "error")
@@ -56,7 +58,7 @@ def _add_options(parser: argparse.ArgumentParser) -> None:
 def _port(text: str) -> int:
     number = int(text)
     if not 0 <= number <= 65_535:
-        raise argparse.ArgumentTypeError(f"{number} is no port: 0 to 65535")
+        raise argparse.ArgumentTypeError(f"invalid port {number}; expected 0 to 65535")
     return number
 
 

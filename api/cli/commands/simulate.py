@@ -1,4 +1,4 @@
-"""`pilothouse simulate`: let a scenario happen in virtual time."""
+"""`pilothouse simulate`: run a scenario in virtual time."""
 
 import argparse
 from pathlib import Path
@@ -6,12 +6,12 @@ from pathlib import Path
 from api.cli.commands.command import Command
 
 _TEXT = """\
-Let a scenario happen in virtual time, by the code that supervises a real
-robot, and compare what is seen with what the scenario expects. No service is
-needed, and nothing real is changed.
+Run a scenario in virtual time, with the code that supervises a real robot, and
+compare the results with what the scenario expects. It needs no service and
+changes nothing real.
 
-A scenario is YAML or JSON: the body of POST /simulations. Besides, it may name
-model_file, robot_file and task: {file: track.csv}, beside the scenario.
+A scenario is YAML or JSON: the body of POST /simulations. In addition it can
+name model_file, robot_file and task: {file: track.csv}, relative to its path.
 
   title: The battery runs low on the way
   until_s: 9
@@ -23,12 +23,12 @@ model_file, robot_file and task: {file: track.csv}, beside the scenario.
     - {t_s: 4, expect: {system_state: {state: ERROR, errors: [BATTERY_LOW]}}}
     - {t_s: 9, expect: {vehicle: {speed_mps: 0}, events: {task.paused: 1}}}
 
-What is expected are members of a sample as far as they matter, last_task (also
-when it has ended), and events, counted by kind. A number may be {above: 1},
-{below: 1}, {at_least: 1, at_most: 2}; a state with its mode is active.FAST.
-A step that is refused fails the scenario, unless it says refused: true.
+expect lists the relevant members of a sample, last_task (also after it has
+ended) and the number of events by kind. A number can be {above: 1}, {below: 1}
+or {at_least: 1, at_most: 2}; a state with its mode is active.FAST.
+A rejected step fails the scenario, unless it has refused: true.
 
-exit code: 0 all is as expected; 1 something is not, or a step was refused;
+exit code: 0 as expected; 1 not as expected, or a step was rejected;
            2 invalid file
 """
 
@@ -38,13 +38,13 @@ def _add_options(parser: argparse.ArgumentParser) -> None:
         "scenario", metavar="SCENARIO", help="scenario file; - reads standard input"
     )
     parser.add_argument(
-        "--format", default="text", choices=("text", "json"), help="json: all that happened"
+        "--format", default="text", choices=("text", "json"), help="json: the complete result"
     )
     parser.add_argument(
-        "--robot", type=Path, metavar="FILE", help="robot file instead of that of the scenario"
+        "--robot", type=Path, metavar="FILE", help="replaces the robot file of the scenario"
     )
     parser.add_argument(
-        "--model", type=Path, metavar="FILE", help="model file instead of that of the scenario"
+        "--model", type=Path, metavar="FILE", help="replaces the model file of the scenario"
     )
 
 
@@ -55,4 +55,4 @@ def _run(options: argparse.Namespace) -> int:
     return simulate(options.scenario, options.format, EXAMPLE, options.model, options.robot)
 
 
-COMMAND = Command("simulate", "let a scenario happen in virtual time", _TEXT, _add_options, _run)
+COMMAND = Command("simulate", "run a scenario in virtual time", _TEXT, _add_options, _run)

@@ -1,4 +1,4 @@
-"""`pilothouse task`: drive along the waypoints of a file, and follow how far the vehicle is."""
+"""`pilothouse task`: submit the waypoints of a file as a task, and follow its progress."""
 
 import argparse
 import sys
@@ -18,14 +18,14 @@ if TYPE_CHECKING:
     from api.client.service_client import ServiceClient
 
 _TEXT = """\
-Drive along the waypoints of a CSV, in place of the current task, and follow
-that to its end. A line is x,y,yaw in m, m and rad; --heading says if yaw is
-something else.
+Submit the waypoints of a CSV file as a task, which replaces the current one,
+and follow it to its end. Each line is x,y,yaw in m, m and rad; --heading sets
+another unit of yaw.
 
-While something holds the vehicle, as an error does, the task waits. Ctrl-C
-ends the following only: the task goes on, and --cancel ends it.
+While there are holds, such as during an error, the task waits. After Ctrl-C
+the task continues; --cancel cancels it.
 
-exit code: 0 succeeded, or as asked; 1 refused, canceled or aborted;
+exit code: 0 succeeded, or done; 1 rejected, canceled or aborted;
            2 unknown: no answer
 """
 
@@ -46,7 +46,7 @@ Say = Callable[[str], None]
 def _add_options(parser: argparse.ArgumentParser) -> None:
     what = parser.add_mutually_exclusive_group(required=True)
     what.add_argument("file", nargs="?", metavar="FILE", help="CSV; - reads standard input")
-    what.add_argument("--cancel", action="store_true", help="end the current task, and stand")
+    what.add_argument("--cancel", action="store_true", help="cancel the current task, and stop")
     parser.add_argument("--controller", metavar="NAME", help="pure_pursuit (default) or stanley")
     parser.add_argument(
         "--speed", type=float, metavar="MPS", help="cruise speed in m/s; default: 2.8"
@@ -54,20 +54,18 @@ def _add_options(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--heading",
         choices=("rad", "deg", "compass"),
-        help="what the third column is: rad (default) or deg, counter-clockwise from east;"
+        help="unit of the third column: rad (default) or deg, counter-clockwise from east;"
         " compass: degrees clockwise from north",
     )
     parser.add_argument(
-        "--start-index", type=int, metavar="N", help="waypoint to begin with; default: 0"
+        "--start-index", type=int, metavar="N", help="waypoint to start with; default: 0"
     )
-    parser.add_argument(
-        "--preview", action="store_true", help="say what there is to know, start nothing"
-    )
+    parser.add_argument("--preview", action="store_true", help="show the preview, submit nothing")
     parser.add_argument(
         "--wait",
         action=argparse.BooleanOptionalAction,
         default=True,
-        help="follow the task to its end (default), or only start it",
+        help="follow the task to its end (default), or only submit it",
     )
     add_url(parser)
 
@@ -87,14 +85,14 @@ def _run(options: argparse.Namespace) -> int:
     return with_service(options.url, lambda client: run_task(client, asked, print))
 
 
-COMMAND = Command("task", "drive along waypoints, or cancel that", _TEXT, _add_options, _run)
+COMMAND = Command("task", "submit or cancel a waypoint task", _TEXT, _add_options, _run)
 
 # --- what it does --------------------------------------------------------------------------------
 
 
 @dataclass(frozen=True, slots=True)
 class TaskOptions:
-    """What is asked; None is left to the service."""
+    """Options of a task; None: the default of the service."""
 
     file: str
     """Path of a CSV; `-` is the standard input."""
@@ -141,8 +139,8 @@ def run_task(
         ServiceProblemError: It was refused, and not for the waypoints.
         NoAnswerError: Nobody answered; whether the task was started is not known.
     """
-    complaints = complaints or sys.stderr
-    text = _text_of(asked.file, complaints)
+    err: TextIO = complaints or sys.stderr
+    text = _text_of(asked.file, err)
     if text is None:
         return Outcome.FAILED
     try:
@@ -156,13 +154,13 @@ def run_task(
         if not error.problem.get("findings"):
             raise ServiceProblemError(_in_options(error.problem)) from error
         for line in fault_lines(asked.file, text, error.problem):
-            print(line, file=complaints)
+            print(line, file=err)
         return Outcome.FAILED
     if not asked.wait:
         say(f"task {task['id']} is started: {_state(task)}")
         return Outcome.SUCCEEDED
     try:
-        with TerminalLine(complaints) as progress:
+        with TerminalLine(err) as progress:
             return _follow(client, task, say, progress, pause)
     except KeyboardInterrupt:
         say(f"task {task['id']} goes on; to cancel it: {_cancel_command(client)}")

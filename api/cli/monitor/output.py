@@ -41,7 +41,7 @@ class ChangeLog:
             console: Where to write.
             complaints: Where to say that there is no contact; None: the standard error.
         """
-        self._form = form
+        self._form: Form = form
         self._console = console
         self._complaints = complaints or sys.stderr
         self._told: object = None

@@ -18,13 +18,16 @@ class Row(Protocol):
     @property
     def name(self) -> str:
         """Return what it is about."""
+        ...
 
     @property
     def mark(self) -> str:
         """Return what needs attention."""
+        ...
 
     def alone(self) -> Self:
         """Return the row as it is shown without those around it."""
+        ...
 
 
 RowType = TypeVar("RowType", bound=Row)

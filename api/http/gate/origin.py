@@ -1,4 +1,4 @@
-"""What a page of another site can make a browser send to this service."""
+"""Protection against requests that pages of other sites make a browser send to this service."""
 
 import re
 from collections.abc import Iterable
@@ -18,21 +18,21 @@ _SAFE_METHODS = frozenset({"GET", "HEAD", "OPTIONS"})
 
 
 class OriginGate:
-    """Refuse what a page of another site can make a browser send to this service.
+    """Reject requests that pages of other sites make a browser send to this service.
 
-    * A name in `Host` that is not ours: a foreign name that was made to resolve to our address (DNS
-      rebinding), by which a foreign page would be of the same origin.
+    * A `Host` that is not allowed: a foreign name may resolve to our address (DNS rebinding), which
+      would make a foreign page same-origin.
     * A write, or a WebSocket, with a foreign `Origin`.
-    * A write from a page with a body of a type that browsers send without asking first (a form).
+    * A write from a page with a body of a type that browsers send without a preflight (a form).
     """
 
     def __init__(self, app: ASGIApp, allowed_hosts: Iterable[str], refusals: Refusals) -> None:
         """Guard `app`.
 
         Args:
-            app: What is behind the gate.
-            allowed_hosts: Names and addresses in `Host`, without port, beside those of loopback.
-            refusals: Counts who was refused.
+            app: The application behind the gate.
+            allowed_hosts: Names and addresses allowed in `Host`, without port, besides loopback.
+            refusals: Counts rejected requests.
         """
         self._app = app
         self._refusals = refusals
@@ -49,9 +49,9 @@ class OriginGate:
         await self._app(scope, receive, send)
 
     def _is_ours(self, host: str, scope: Scope) -> bool:
-        """Tell whether a name is one of ours, or the very address that the request came to.
+        """Tell whether a host is allowed, or is the address that the request came to.
 
-        An address cannot be made to resolve to another one, so it opens no way to a foreign page.
+        An address does not resolve to another one, so it gives no access to a foreign page.
         """
         address, _ = scope.get("server") or ("", None)
         return bool(host) and (host in self._hosts or host == _bare(address))
@@ -62,11 +62,11 @@ class OriginGate:
         hosts = headers.getlist("host")
         if len(hosts) != 1 or not self._is_ours(_bare(hosts[0]), scope):
             named = hosts[0] if hosts else ""
-            hint = "a further name is allowed with `pilothouse serve --allowed-host NAME`"
+            hint = "allow it with `pilothouse serve --allowed-host NAME`"
             return make_problem(
                 HTTPStatus.FORBIDDEN,
                 "HOST_NOT_ALLOWED",
-                f"this service is not asked by the name {named!r}",
+                f"Host {named!r} is not allowed",
                 path,
                 more={"hint": hint},
             )
@@ -74,22 +74,22 @@ class OriginGate:
         if origin is None or (scope["type"] == "http" and scope["method"] in _SAFE_METHODS):
             return None
         if not is_same_origin(origin, hosts[0]):
-            detail = f"a page of {origin!r} may not do this"
+            detail = f"Origin {origin!r} is not allowed"
             return make_problem(HTTPStatus.FORBIDDEN, "FOREIGN_ORIGIN", detail, path)
         if scope["type"] == "http" and _has_body(headers) and not _is_typed(headers):
-            detail = "a page sends JSON, YAML or CSV, and says so"
+            detail = "a page must send JSON, YAML or CSV, with its Content-Type"
             return make_problem(HTTPStatus.UNSUPPORTED_MEDIA_TYPE, "UNSUPPORTED_TYPE", detail, path)
         return None
 
 
 def is_same_origin(origin: str, host: str) -> bool:
-    """Tell whether a page of `origin` comes from the service that was asked as `host`.
+    """Tell whether a page of `origin` comes from the service at `host`.
 
-    The scheme is that of the page: behind a proxy that speaks TLS, ours is another one.
+    Schemes are not compared: behind a proxy with TLS, ours differs from that of the page.
 
     Args:
-        origin: As in the header, `https://robot.example` or `null`.
-        host: As in the header, `robot.example:8000`.
+        origin: Value of the header, such as `https://robot.example` or `null`.
+        host: Value of the header, such as `robot.example:8000`.
     """
     try:
         page = urlsplit(origin)
@@ -107,7 +107,7 @@ _HOST = re.compile(r"(\[[0-9a-f:.]+\]|[^\s:/?#@\[\]\\]+)(?::[0-9]*)?")
 
 
 def _bare(host: str) -> str:
-    """Return a host without its port, in one of its forms; empty if it is none."""
+    """Return a host without its port, normalized; empty if it is invalid."""
     if host.count(":") > 1 and not host.startswith("["):
         host = f"[{host}]"
     match = _HOST.fullmatch(host.strip().lower())

@@ -1,7 +1,7 @@
-"""What all messages at the edge have in common, and the values that several of them hold.
+"""Base classes of all messages of the interface, and values that several of them share.
 
-`...Json` is what a client reads, made from a view of the core by `of`; `...Body` is what a client
-sends. Field names carry their unit, times end in `_at`.
+`...Json` is what a client receives, made from a view of the core by `of`; `...Body` is what a
+client sends. Field names contain their unit; times end in `_at`.
 """
 
 from datetime import datetime
@@ -21,17 +21,17 @@ Timestamp = Annotated[
 """RFC 3339, UTC, with milliseconds."""
 
 MAX_MODEL_BYTES = 16 * 1024 * 1024
-"""Of a model in a body, whatever the limits of the service are: as of a model file."""
+"""Largest model in a body, in bytes, whatever the limits of the service; as for model files."""
 
 
 class Json(BaseModel):
-    """Something that a client reads."""
+    """A message that a client receives."""
 
     model_config = ConfigDict(extra="forbid", frozen=True)
 
 
 class Body(BaseModel):
-    """Something that a client sends; unknown fields, and values of another type, are refused."""
+    """A message that a client sends; unknown fields and values of the wrong type are rejected."""
 
     model_config = ConfigDict(extra="forbid", frozen=True, strict=True, allow_inf_nan=False)
 
@@ -47,12 +47,12 @@ def timestamp(clock: Clock, at: Instant) -> str:
 
 
 def timestamp_or_none(clock: Clock, at: Instant | None) -> str | None:
-    """Return an instant of `clock` as RFC 3339; None for none."""
+    """Return an instant of `clock` as RFC 3339; None stays None."""
     return None if at is None else rfc3339(clock.wall_time(at))
 
 
 class StateAndModeJson(Json):
-    """A lifecycle state and, where there is one, the mode in it."""
+    """A lifecycle state and, if any, a mode."""
 
     state: LifecycleState
     mode: str | None
@@ -64,12 +64,12 @@ class StateAndModeJson(Json):
 
 
 class BlockerJson(Json):
-    """One reason why something cannot be done, or why the robot is in ERROR."""
+    """One reason why a request is blocked, or why the robot is in ERROR."""
 
     code: str
     message: str
     path: tuple[str, ...] = Field(
-        description="From the asked part down to where the reason lies; for an error, the signal"
+        description="Parts from the requested one down to the cause; for an error, the signal"
     )
     value: Fact
     threshold: Fact
@@ -91,13 +91,13 @@ class BlockerJson(Json):
 
 
 class FindingJson(Json):
-    """One thing wrong, or at least odd, in a model."""
+    """One error or warning in a model."""
 
     severity: Literal["error", "warning"]
     code: str
     message: str
-    line: int | None = Field(description="From 1")
-    column: int | None = Field(description="From 1")
+    line: int | None = Field(description="Line, from 1")
+    column: int | None = Field(description="Column, from 1")
     part: str | None
 
     @classmethod

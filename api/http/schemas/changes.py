@@ -13,7 +13,7 @@ from domain.snapshot import ChangeStatus, ChangeView, StepStatus, StepView
 from service.clock import Clock
 
 RequestJson = dict[str, str | dict[str, ParameterJson]]
-"""What was asked: `{"mode": ...}`, `{"transition": ...}` or `{"parameters": {...}}`."""
+"""The request: `{"mode": ...}`, `{"transition": ...}` or `{"parameters": {...}}`."""
 
 
 class StepJson(Json):
@@ -83,7 +83,7 @@ class PlanJson(Json):
 
 
 def shown_request(request: ChangeRequest) -> RequestJson:
-    """Return what a request asks as a client reads it."""
+    """Return a request as clients see it."""
     if isinstance(request, ParametersRequest):
         return {"parameters": {name: shown(value) for name, value in request.values.items()}}
     return {key: str(value) for key, value in describe_request(request).items()}

@@ -21,11 +21,11 @@ from domain.timebase import Instant, to_seconds
 from service.clock import Clock
 
 MAX_SOURCE = 64
-"""Characters of the name of who measured."""
+"""Largest length of the name of a source, in characters."""
 
 
 class PendingJson(Json):
-    """An error that will come if the signal stays bad."""
+    """An error that will be raised if the signal stays bad."""
 
     error: str
     since_at: Timestamp
@@ -33,20 +33,20 @@ class PendingJson(Json):
 
 
 class AgedPendingJson(PendingJson):
-    """An error that will come if the signal stays bad, and for how long it has been."""
+    """An error that will be raised if the signal stays bad, and how long it has been bad."""
 
     for_s: float
 
 
 class StreamedSignalJson(Json):
-    """One signal as it is in frames: without ages, which a client computes from the times."""
+    """One signal as in frames: without ages, which clients compute from the times."""
 
     signal: str
     value: SignalValue | None = Field(description="null: never seen")
     unit: str
     source: str | None
     received_at: Timestamp | None
-    stamp_at: Timestamp | None = Field(description="When the sender took it, by its own clock")
+    stamp_at: Timestamp | None = Field(description="Time of measurement, by the sender's clock")
     skewed: bool = Field(description="The sender's clock differs from ours by more than 1 s")
     stale: bool
     error: str | None
@@ -72,7 +72,7 @@ class StreamedSignalJson(Json):
 
 
 class SignalJson(StreamedSignalJson):
-    """One signal: the value held, and what is judged of it."""
+    """One signal: the value held, and its evaluation."""
 
     age_s: float | None
     pending: AgedPendingJson | None
@@ -111,7 +111,7 @@ class SignalsJson(Json):
 
 
 class SystemStateJson(Json):
-    """State of the robot with its reasons; error code and state are of one moment."""
+    """State of the robot with its reasons; error code and state always match."""
 
     seq: int = Field(description="Number of the newest frame")
     at: Timestamp
@@ -120,7 +120,7 @@ class SystemStateJson(Json):
     errors: tuple[str, ...]
     reasons: list[BlockerJson]
     task_status: TaskStatus
-    simulated: tuple[str, ...] = Field(description="What of the robot is not real")
+    simulated: tuple[str, ...] = Field(description="Parts of the robot that are simulated")
 
     @classmethod
     def of(
@@ -131,7 +131,15 @@ class SystemStateJson(Json):
         simulated: Sequence[str],
         clock: Clock,
     ) -> "SystemStateJson":
-        """Show `view` as it was at `at`, when frame number `seq` was the newest."""
+        """Show `view`.
+
+        Args:
+            view: State of the robot.
+            seq: Number of the newest frame at `at`.
+            at: Time of the view.
+            simulated: Parts of the robot that are simulated.
+            clock: Converts times.
+        """
         return cls(
             seq=seq,
             at=timestamp(clock, at),
@@ -186,15 +194,15 @@ class ReadingBody(Body):
     stamp: str | None = Field(
         default=None,
         max_length=64,
-        description="When the sender took it: RFC 3339 with an offset, as in `...+01:00` or `...Z`",
+        description="Time of measurement: RFC 3339 with an offset, such as `...+01:00` or `...Z`",
     )
     source: str | None = Field(
         default=None,
         min_length=1,
         max_length=MAX_SOURCE,
         description=(
-            "Who measured; several sources of `estop` cannot release each other. A sender without"
-            " a name is `api`, or the mock where the mock runs"
+            "Who measured; one source of `estop` cannot release another. Default: `api`, or `mock`"
+            " while the mock runs"
         ),
     )
 
@@ -202,7 +210,7 @@ class ReadingBody(Body):
         """Return the reading that was sent.
 
         Raises:
-            InvalidValueError: The stamp is no time with an offset.
+            InvalidValueError: The stamp is not a time with an offset.
         """
         stamp = None if self.stamp is None else read_stamp(self.stamp, clock)
         return Reading(signal, self.value, stamp)
@@ -212,12 +220,12 @@ def read_stamp(text: str, clock: Clock) -> Instant:
     """Return a time in RFC 3339 as an instant of `clock`.
 
     Raises:
-        InvalidValueError: It is none, or has no offset.
+        InvalidValueError: It is not a time, or has no offset.
     """
     try:
         return clock.from_wall(datetime.fromisoformat(text))
     except ValueError as error:
-        message = f"{text!r} is no time such as 2026-05-04T12:00:00.250Z"
+        message = f"invalid time {text!r}; expected a time such as 2026-05-04T12:00:00.250Z"
         raise InvalidValueError(message, "/stamp") from error
     except InvalidValueError as error:
         raise InvalidValueError(error.message, "/stamp") from error
@@ -231,7 +239,7 @@ class EmergencyStopBody(Body):
 
 
 class MockBody(Body):
-    """Let the mock hold another value, or stop and resume its publishing of one signal."""
+    """Set the value of a mock signal, or stop or resume publishing it."""
 
     value: SentSignalValue | None = None
     publishing: bool | None = None

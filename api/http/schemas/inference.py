@@ -1,4 +1,4 @@
-"""Posted models and facts, and what follows from them."""
+"""Posted models and facts, and the inferred states."""
 
 from typing import Any
 
@@ -12,14 +12,14 @@ from domain.parts.system_model import NodeModel, SystemModel
 
 
 def _or_label(schema: dict[str, Any]) -> None:
-    """Describe an object that may be sent as a label."""
+    """Describe an object that can also be sent as a label."""
     described = dict(schema)
     schema.clear()
     schema["anyOf"] = [{"type": "string", "examples": ["active.FAST"]}, described]
 
 
 class Labelled(Body):
-    """A state and mode, with more, that may be sent as a label: `active.FAST`."""
+    """An object with state and mode that can also be sent as a label: `active.FAST`."""
 
     model_config = ConfigDict(json_schema_extra=_or_label)
 
@@ -30,36 +30,36 @@ class Labelled(Body):
 
 
 class TargetBody(Labelled):
-    """A lifecycle state and, where there is one, the mode in it."""
+    """A lifecycle state and, if any, a mode."""
 
     state: str
     mode: str | None = None
 
 
 class ReportedNodeBody(Labelled):
-    """What a node is taken to have reported."""
+    """Facts that a node is assumed to have reported."""
 
     state: str | None = Field(
-        default=None, description="Label of a lifecycle state; left out: it never reported"
+        default=None, description="Label of a lifecycle state; omitted: never reported"
     )
-    mode: str | None = Field(default=None, description="Outranks the parameters")
+    mode: str | None = Field(default=None, description="Reported mode; overrides the parameters")
     parameters: dict[str, SentParameter] = Field(
-        default_factory=dict, description="1 is an integer and 1.0 a double, as in ROS 2"
+        default_factory=dict, description="As in ROS 2, 1 is an integer and 1.0 a double"
     )
 
 
 class InferenceBody(Body):
-    """Targets and facts, and the model that they are about."""
+    """Targets and facts, and their model."""
 
     model: str | None = Field(
-        default=None, max_length=MAX_MODEL_BYTES, description="YAML; left out: the loaded one"
+        default=None, max_length=MAX_MODEL_BYTES, description="YAML; omitted: the loaded model"
     )
     targets: dict[str, TargetBody | None] = Field(default_factory=dict)
     nodes: dict[str, ReportedNodeBody | None] = Field(default_factory=dict)
 
 
 class DeviationJson(Json):
-    """A part that is not where it should be."""
+    """A part that deviates from its target."""
 
     part: str
     target: StateAndModeJson
@@ -67,14 +67,14 @@ class DeviationJson(Json):
 
 
 class InferenceJson(Json):
-    """What follows, for all parts of the model."""
+    """Inferred states of all parts of the model, and deviations."""
 
     parts: dict[str, ActualJson]
     deviations: list[DeviationJson]
 
 
 class ModelCheckJson(Json):
-    """What is wrong with a model, and what is odd about it."""
+    """Errors and warnings about a model."""
 
     valid: bool
     findings: list[FindingJson]
@@ -87,7 +87,7 @@ class ModelCheckJson(Json):
 
 
 class RuleJson(Json):
-    """What to do when a part of a system is in a given state while it has a given target."""
+    """The target that replaces `if_target` of a system while a part is in a given state."""
 
     name: str
     if_target: str
@@ -100,7 +100,7 @@ class SystemModelJson(Json):
 
     parts: tuple[str, ...]
     modes: dict[str, dict[str, StateAndModeJson]] = Field(
-        description="What each mode wants of its parts"
+        description="State and mode that each mode requires of its parts"
     )
     rules: list[RuleJson]
 
@@ -137,7 +137,7 @@ class NodeModelJson(Json):
 
 
 class ModelJson(Json):
-    """The model of the robot, with what is odd about it."""
+    """The model of the robot, with warnings."""
 
     systems: dict[str, SystemModelJson]
     nodes: dict[str, NodeModelJson]

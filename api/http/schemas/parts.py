@@ -1,4 +1,4 @@
-"""Systems and nodes as clients see them, and what clients ask of them."""
+"""Systems and nodes as clients see them, and requests to them."""
 
 from typing import Annotated, Literal, TypeAlias, cast
 
@@ -33,11 +33,11 @@ ParameterType: TypeAlias = Literal[
 ParameterJson: TypeAlias = (
     bool | int | float | str | list[bool] | list[int] | list[float] | list[str]
 )
-"""A value of a parameter as a client reads it; 1 is an integer and 1.0 a double, as in ROS 2."""
+"""A value of a parameter in JSON; as in ROS 2, 1 is an integer and 1.0 a double."""
 
 
 class ActualJson(Json):
-    """What a part is in, and how that is known."""
+    """Actual state and mode of a part, and how they are known."""
 
     state: LifecycleState
     mode: str | None
@@ -60,7 +60,7 @@ class ActualJson(Json):
 
 
 class EffectiveTargetJson(Json):
-    """What is pursued now, and why it may differ from what was asked."""
+    """The target in force, and why it may differ from the requested one."""
 
     state: LifecycleState
     mode: str | None
@@ -77,14 +77,14 @@ class PartJson(Json):
 
     name: str
     kind: Literal["system", "node"]
-    parts: tuple[str, ...] = Field(description="Of a system; a node has none")
-    target: StateAndModeJson | None = Field(description="What the operator asked for")
-    effective_target: EffectiveTargetJson | None = Field(description="What is pursued now")
+    parts: tuple[str, ...] = Field(description="Parts of a system; empty for a node")
+    target: StateAndModeJson | None = Field(description="Target that was requested")
+    effective_target: EffectiveTargetJson | None = Field(description="Target in force")
     actual: ActualJson
     converged: bool
     deviation_since_at: Timestamp | None
-    reachable: bool = Field(description="Of a system: all its nodes are")
-    change: str | None = Field(description="Id of the running change that this part is under")
+    reachable: bool = Field(description="For a system: whether all its nodes are reachable")
+    change: str | None = Field(description="Id of the change that drives this part")
 
     @classmethod
     def of(cls, view: PartView, clock: Clock) -> "PartJson":
@@ -119,7 +119,7 @@ class StateJson(Json):
         description="What the operator asked for, as a label", examples=["active.FAST"]
     )
     available_transitions: list[Transition] = Field(
-        description="Those that would be accepted now and lead somewhere else"
+        description="Transitions that would be accepted now and change something"
     )
 
     @classmethod
@@ -134,7 +134,7 @@ class StateJson(Json):
 
 
 class StatesJson(Json):
-    """The states that a part can rest in."""
+    """The primary states of a part."""
 
     items: list[LifecycleState]
 
@@ -159,7 +159,7 @@ class ModeJson(Json):
 
 
 class EnterableModeJson(Json):
-    """One mode of a part, and what stands against entering it now."""
+    """One mode of a part, and what blocks it now."""
 
     mode: str
     can_enter: bool
@@ -183,9 +183,9 @@ class ParameterRowJson(Json):
 
     name: str
     value: ParameterJson | None = Field(description="null: never reported")
-    type: ParameterType | None = Field(description="As in ROS 2; null: not known")
+    type: ParameterType | None = Field(description="Type as in ROS 2; null: unknown")
     wanted: ParameterJson | None = Field(
-        description="What the target mode wants; null where it wants nothing"
+        description="Value that the target mode requires; null: it requires none"
     )
 
     @classmethod
@@ -213,7 +213,7 @@ class ModeBody(Body):
 
 
 class TransitionBody(Body):
-    """Bring a part through a lifecycle transition."""
+    """Request a lifecycle transition of a part."""
 
     transition: Literal["configure", "activate", "deactivate", "cleanup", "shutdown"]
 
@@ -225,10 +225,10 @@ ParametersBody: TypeAlias = Annotated[
 
 
 def shown(value: ParameterValue) -> ParameterJson:
-    """Return a value of a parameter as JSON has it."""
+    """Return a value of a parameter as JSON."""
     return list(value) if isinstance(value, tuple) else value  # type: ignore[return-value]
 
 
 def type_of(value: ParameterValue | None) -> ParameterType | None:
-    """Return the type of a value as ROS 2 calls it; None: an empty array could be of any."""
+    """Return the ROS 2 type of a value; None: unknown, as for an empty array."""
     return None if value is None or value == () else cast("ParameterType", value_type(value))

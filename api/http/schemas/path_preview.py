@@ -1,4 +1,4 @@
-"""A path before it is driven, as clients see it."""
+"""The preview of a path as clients see it."""
 
 from pydantic import Field
 
@@ -18,41 +18,41 @@ class SpacingJson(Json):
 
 
 class StartJson(Json):
-    """How far the vehicle is from where the path begins."""
+    """Distance and heading error of the vehicle at the start of the path."""
 
     distance_m: float
-    heading_error_rad: float = Field(description="0: the vehicle looks along the path")
+    heading_error_rad: float = Field(description="Heading of the vehicle minus heading of the path")
 
 
 class PathWarningJson(Json):
-    """Something about the path that a person should look at."""
+    """A property of the path that a person should check."""
 
     code: str
     message: str
-    index: int | None = Field(description="The waypoint that it is about")
+    index: int | None = Field(description="Index of the waypoint concerned")
 
 
 class PathPreviewJson(Json):
-    """A path against the vehicle that would drive it."""
+    """Properties of a path for the vehicle that would drive it."""
 
     waypoint_count: int
     length_m: float
     spacing: SpacingJson
-    min_radius_m: float | None = Field(description="Of the tightest bend; null: it is straight")
+    min_radius_m: float | None = Field(description="Radius of the tightest bend; null: straight")
     vehicle_min_radius_m: float
     steerable: bool = Field(description="Whether the vehicle can steer the tightest bend")
-    start: StartJson | None = Field(description="null: it is not known where the vehicle is")
-    duration_s: float = Field(description="Estimate, from rest to rest")
+    start: StartJson | None = Field(description="null: the pose of the vehicle is unknown")
+    duration_s: float = Field(description="Estimated driving time, standstill to standstill")
     warnings: list[PathWarningJson]
-    items: list[PointJson] = Field(description=f"To draw it: at most {MAX_DRAWN} of its waypoints")
+    items: list[PointJson] = Field(description=f"At most {MAX_DRAWN} waypoints, to draw the path")
 
     @classmethod
     def of(cls, view: PathPreview, drawn: list[list[float]]) -> "PathPreviewJson":
         """Show `view`.
 
         Args:
-            view: What is known of the path.
-            drawn: Waypoints to draw it by: x and y in m.
+            view: Properties of the path.
+            drawn: Waypoints to draw: x and y in m.
         """
         spacing, start = view.spacing, view.start
         return cls(

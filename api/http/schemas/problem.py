@@ -1,4 +1,4 @@
-"""Problem documents: how every refusal and every failure is answered (RFC 9457)."""
+"""Problem documents: the answer to every rejection and failure (RFC 9457)."""
 
 from pydantic import Field
 
@@ -6,25 +6,25 @@ from api.http.schemas.base import BlockerJson, FindingJson, Json
 
 
 class BodyFault(Json):
-    """One thing wrong in a body."""
+    """One error in a body."""
 
-    pointer: str = Field(description="RFC 6901; empty: the body as a whole, or the query")
+    pointer: str = Field(description="JSON pointer (RFC 6901); empty: the whole body, or the query")
     code: str
     message: str
 
 
 class Problem(Json):
-    """What was refused or went wrong, and why (RFC 9457)."""
+    """What was rejected or failed, and why (RFC 9457)."""
 
     type: str
     title: str
     status: int
     detail: str
     instance: str
-    code: str = Field(description="Stable")
+    code: str = Field(description="Stable identifier of the kind of problem")
     hint: str | None = None
     blockers: list[BlockerJson] | None = None
-    available: list[str] | None = Field(default=None, description="What could be asked for instead")
+    available: list[str] | None = Field(default=None, description="Values that would be accepted")
     findings: list[FindingJson] | None = None
     errors: list[BodyFault] | None = None
 

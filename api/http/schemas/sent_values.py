@@ -1,4 +1,4 @@
-"""Values that a client may send as more than one type, each read with one clear message."""
+"""Values that clients can send as more than one type, with one clear message per error."""
 
 import math
 from typing import Annotated, Any
@@ -10,20 +10,20 @@ from domain.inputs import SignalValue
 from domain.parameters import ParameterValue
 
 MAX_TEXT = 4_096
-"""Characters of a text in a value."""
+"""Largest length of a string value, in characters."""
 
 MAX_ITEMS = 1_024
-"""Of a list in a value."""
+"""Largest number of items of a list value."""
 
 _SCALARS = (bool, int, float, str)
 _INT64 = range(-(2**63), 2**63)
 
 
 def read_signal_value(value: object) -> SignalValue:
-    """Return a boolean, a finite number as a float, or a text.
+    """Return a boolean, a finite number as a float, or a string.
 
     Raises:
-        PydanticCustomError: It is none of these; 1 is no boolean and "1" no number.
+        PydanticCustomError: It is none of these; 1 is not a boolean, and "1" is not a number.
     """
     if isinstance(value, bool):
         return value
@@ -37,32 +37,32 @@ def read_signal_value(value: object) -> SignalValue:
         if math.isfinite(number):
             return number
     raise PydanticCustomError(
-        "invalid_value", "a value of a signal is a boolean, a finite number or a short text"
+        "invalid_value", "a signal value must be a boolean, a finite number or a short string"
     )
 
 
 def read_parameter_value(value: object) -> ParameterValue:
     """Return a value of a ROS 2 parameter; a list becomes a tuple.
 
-    A list of integers and doubles is one of doubles, since who writes `[0.5, 1]` means that.
+    A list of integers and doubles becomes a list of doubles, as `[0.5, 1]` is meant.
 
     Raises:
-        PydanticCustomError: No value of a parameter, or one that is too long.
+        PydanticCustomError: It is not a parameter value, or is too long.
     """
     if isinstance(value, list) and len(value) > MAX_ITEMS:
-        message = f"a parameter is a list of at most {MAX_ITEMS} items"
-        raise PydanticCustomError("invalid_parameter", message)
+        message = "a parameter list must have at most {limit} items"
+        raise PydanticCustomError("invalid_parameter", message, {"limit": MAX_ITEMS})
     items: list[Any] = value if isinstance(value, list) else [value]
     kinds = {type(item) for item in items}
     if kinds == {int, float}:
         items, kinds = [float(item) for item in items], {float}
     if kinds == {str} and max(map(len, items)) > MAX_TEXT:
-        message = f"a text of a parameter has at most {MAX_TEXT} characters"
-        raise PydanticCustomError("invalid_parameter", message)
+        message = "a parameter string must have at most {limit} characters"
+        raise PydanticCustomError("invalid_parameter", message, {"limit": MAX_TEXT})
     if len(kinds) > 1 or not all(_is_scalar(item) for item in items):
         raise PydanticCustomError(
             "invalid_parameter",
-            "a parameter is a boolean, an integer of 64 bits, a finite number, a text,"
+            "a parameter must be a boolean, a 64-bit integer, a finite number, a string,"
             " or a list of one of these",
         )
     found: ParameterValue = tuple(items) if isinstance(value, list) else items[0]
@@ -78,7 +78,7 @@ def _is_scalar(value: object) -> bool:
 
 
 def split_label(value: object) -> object:
-    """Return `active.FAST` as an object with state and mode; anything else as it is."""
+    """Return `active.FAST` as an object with state and mode; other values unchanged."""
     if not isinstance(value, str):
         return value
     state, _, mode = value.partition(".")
@@ -117,4 +117,4 @@ SentParameter = Annotated[
         }
     ),
 ]
-"""Validates to a `ParameterValue`; 1 is an integer and 1.0 a double, as in ROS 2."""
+"""Validates to a `ParameterValue`; as in ROS 2, 1 is an integer and 1.0 a double."""

@@ -1,4 +1,4 @@
-"""Scenarios for the simulation, and what comes of them."""
+"""Scenarios for the simulation, and their results."""
 
 from typing import Annotated, Any, Literal, Self, TypeAlias
 
@@ -14,22 +14,22 @@ MAX_UNTIL_S = 86_400.0
 MAX_SAMPLES = 20_000
 MAX_STEPS = 10_000
 MAX_READINGS = 5_000_000
-"""Of all steps with all their repetitions."""
+"""Largest number of readings of all steps, including repetitions."""
 
 Time = Annotated[float, Field(ge=0, le=MAX_UNTIL_S, allow_inf_nan=False)]
 
 RECOVER = "recover"
 MAX_DEPTH = 32
-"""Of what is compared or sent on as it is."""
+"""Largest nesting of values that are compared or forwarded unchanged."""
 
 FaultName: TypeAlias = Literal["slow", "refuse", "fail", "error", "silent", "die", "recover"]
 
 
 def _checked_depth(value: Any) -> Any:  # noqa: ANN401
-    """Return a value.
+    """Return a value unchanged.
 
     Raises:
-        ValueError: It holds more than `MAX_DEPTH` objects and lists in each other.
+        ValueError: Objects and lists are nested deeper than `MAX_DEPTH`.
     """
     level = [value]
     for _ in range(MAX_DEPTH + 1):
@@ -38,7 +38,7 @@ def _checked_depth(value: Any) -> Any:  # noqa: ANN401
             return value
         inners = (item.values() if isinstance(item, dict) else item for item in nested)
         level = [inner for items in inners for inner in items]
-    raise ValueError(f"more than {MAX_DEPTH} objects and lists in each other")
+    raise ValueError(f"more than {MAX_DEPTH} levels of nested objects and lists")
 
 
 class TimedStep(Body):
@@ -48,30 +48,30 @@ class TimedStep(Body):
 
 
 class ActingStep(TimedStep):
-    """Something that somebody does, and that may be refused."""
+    """An action, which may be rejected."""
 
     refused: bool = Field(
-        default=False, description="It is expected to be refused; anything else is a difference"
+        default=False, description="Expect a rejection; anything else is a difference"
     )
 
 
 class ReadingStep(ActingStep):
-    """Readings that arrive together, once or over and over."""
+    """Readings that arrive together, once or repeatedly."""
 
     reading: dict[str, SentSignalValue] = Field(min_length=1)
     repeat_hz: Annotated[float, Field(gt=0, le=1_000)] | None = None
     until_s: Time | None = Field(
-        default=None, description="The last repetition is not after this; else the end"
+        default=None, description="Time of the last repetition; default: the end"
     )
     stamp_offset_s: float | None = Field(
-        default=None, ge=-1e9, le=1e9, description="Stamp minus present; left out: no stamp"
+        default=None, ge=-1e9, le=1e9, description="Stamp minus current time; omitted: no stamp"
     )
     source: str = Field(default="api", min_length=1, max_length=MAX_SOURCE)
 
     @model_validator(mode="after")
     def _is_judged_once(self) -> Self:
         if self.refused and self.repeat_hz is not None:
-            raise ValueError("a reading that is expected to be refused is not repeated")
+            raise ValueError("a reading that is expected to be rejected cannot be repeated")
         return self
 
     def count(self, until_s: float) -> int:
@@ -84,13 +84,13 @@ class ReadingStep(ActingStep):
 
 
 class TaskStep(ActingStep):
-    """A task is served, or with null the current one canceled."""
+    """A task is submitted or, with null, the current one is canceled."""
 
     task: TaskBody | None
 
 
 class AskedChange(Body):
-    """What is asked of a part: a mode, or a transition."""
+    """A requested change of a part: a mode or a transition."""
 
     part: str
     mode: str | None = None
@@ -99,18 +99,18 @@ class AskedChange(Body):
     @model_validator(mode="after")
     def _is_one(self) -> Self:
         if (self.mode is None) is (self.transition is None):
-            raise ValueError("a change names either a mode or a transition")
+            raise ValueError("a change must have either a mode or a transition")
         return self
 
 
 class ChangeStep(ActingStep):
-    """A change of mode or state is asked for."""
+    """A change of mode or state is requested."""
 
     change: AskedChange
 
 
 class NodeStep(ActingStep):
-    """Something is wrong with a simulated node, or somebody else sets its parameters."""
+    """A simulated node gets a fault, or its parameters are set from outside."""
 
     node: str
     fault: FaultName | None = None
@@ -119,17 +119,17 @@ class NodeStep(ActingStep):
     @model_validator(mode="after")
     def _is_one(self) -> Self:
         if (self.fault is None) is (self.parameters is None):
-            raise ValueError("a step of a node names either a fault or parameters")
+            raise ValueError("a node step must have either a fault or parameters")
         return self
 
     @property
     def set_fault(self) -> str | None:
-        """Return what is wrong from now on; None: all is well again."""
+        """Return the fault to set; None: remove it."""
         return None if self.fault == RECOVER else self.fault
 
 
 class VehicleStep(ActingStep):
-    """The simulated vehicle stops telling where it is, or tells it again."""
+    """The simulated vehicle stops or resumes reporting its pose."""
 
     vehicle: Literal["silent", "recover"]
 
@@ -149,14 +149,14 @@ class RequestStep(ActingStep):
 
 
 class ExpectStep(TimedStep):
-    """What has to be seen at this time, after the steps before it."""
+    """The expected state at this time, after the preceding steps."""
 
     expect: Annotated[dict[str, Any], AfterValidator(_checked_depth)] = Field(
         min_length=1,
         description=(
-            "Members of a sample, as far as they matter; `last_task`: the current task, or the one"
-            " that ended last; `events`: how many of a kind there were. A number may be given by"
-            " `above`, `below`, `at_least` and `at_most`, and a state with its mode as a label"
+            "Relevant members of a sample; `last_task`: the current task, or the one that ended"
+            " last; `events`: number of events by kind. A number can be given by `above`, `below`,"
+            " `at_least` and `at_most`, and a state with its mode as a label"
         ),
         examples=[{"system_state": {"state": "ERROR"}, "events": {"task.started": 1}}],
     )
@@ -164,7 +164,7 @@ class ExpectStep(TimedStep):
     @model_validator(mode="after")
     def _counts_events(self) -> Self:
         if not isinstance(self.expect.get("events", {}), dict):
-            raise ValueError("events: an object is needed, with a number for each kind of event")
+            raise ValueError("events must be an object with a number for each kind of event")
         return self
 
 
@@ -190,35 +190,35 @@ Step = Annotated[
     Discriminator(
         _kind_of,
         custom_error_type="unknown_step",
-        custom_error_message=f"a step has t_s and one of {', '.join(_KINDS)}",
+        custom_error_message=f"a step must have t_s and one of {', '.join(_KINDS)}",
     ),
 ]
 
 
 def place_in_body(location: tuple[int | str, ...]) -> tuple[int | str, ...]:
-    """Return the keys that lead to a fault of a scenario.
+    """Return the keys that lead to an error in a scenario.
 
     Args:
-        location: As pydantic tells it: to a step it adds what kind of step it took it for.
+        location: Location from pydantic, which adds the kind of a step.
     """
     is_in_step = location[:1] == ("steps",) and len(location) > 2
     return (*location[:2], *location[3:]) if is_in_step else location
 
 
 class SimulationBody(Body):
-    """A scenario: a robot, and what happens to it when."""
+    """A scenario: a robot and timed steps."""
 
     model_config = ConfigDict(validate_by_name=True, validate_by_alias=True)
 
     title: str = Field(default="", max_length=1_000)
     model: str | None = Field(
-        default=None, max_length=MAX_MODEL_BYTES, description="SMH as YAML; null: the loaded one"
+        default=None, max_length=MAX_MODEL_BYTES, description="SMH as YAML; null: the loaded model"
     )
     robot: dict[str, Any] | None = Field(
-        default=None, description="Keys of a robot file; null: what is usual"
+        default=None, description="Keys of a robot file; null: the defaults"
     )
     begin: Literal["live"] | None = Field(
-        default=None, alias="from", description="`live`: begin with a copy of the live robot"
+        default=None, alias="from", description="`live`: start with a copy of the live robot"
     )
     until_s: Time
     sample_period_s: Annotated[float, Field(gt=0, le=MAX_UNTIL_S, allow_inf_nan=False)] = 1.0
@@ -228,7 +228,7 @@ class SimulationBody(Body):
     def _fits(self) -> Self:
         if self.begin is not None and (self.model is not None or self.robot is not None):
             raise ValueError("a copy of the live robot has its own model and settings")
-        # No integer: the shortest of periods make it infinite.
+        # Not an integer: for very short periods it is infinite.
         periods = self.until_s / self.sample_period_s
         if periods >= MAX_SAMPLES:
             message = f"{periods + 1:.0f} samples; at most {MAX_SAMPLES}: sample less often"
@@ -244,7 +244,7 @@ class SimulationBody(Body):
 
 
 class RefusalJson(Json):
-    """A step that was refused."""
+    """A step that was rejected."""
 
     step: int = Field(description="Its index in `steps`")
     t_s: float
@@ -252,7 +252,7 @@ class RefusalJson(Json):
 
 
 class DifferenceJson(Json):
-    """A member that was seen otherwise than expected."""
+    """A member that differs from its expected value."""
 
     path: str = Field(examples=["task.status"])
     expected: Any
@@ -260,11 +260,11 @@ class DifferenceJson(Json):
 
 
 class ExpectationJson(Json):
-    """What became of one `expect` step, or of a step that was expected to be refused."""
+    """The result of one `expect` step, or of a step that was expected to be rejected."""
 
     step: int = Field(description="Its index in `steps`")
     t_s: float
-    differences: list[DifferenceJson] = Field(description="Empty: all is as expected")
+    differences: list[DifferenceJson] = Field(description="Empty: everything is as expected")
 
 
 class SampleJson(Json):
@@ -281,7 +281,7 @@ class SampleJson(Json):
 
 
 class SimulationJson(Json):
-    """What came of a scenario."""
+    """The result of a scenario."""
 
     samples: list[SampleJson]
     events: list[dict[str, Any]]

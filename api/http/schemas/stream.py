@@ -1,4 +1,4 @@
-"""What goes over the stream, apart from what it shares with requests."""
+"""Messages of the stream, except those that it shares with HTTP."""
 
 from typing import Any, Literal
 
@@ -16,7 +16,7 @@ from api.http.schemas.parts import PartJson
 from api.http.schemas.problem import Problem
 from api.http.schemas.tasks import HoldJson, TaskJson, VehicleJson
 
-# No member with a value of its own is ever left out.
+# Members with a default are never omitted.
 _WHOLE = ConfigDict(json_schema_serialization_defaults_required=True)
 
 
@@ -26,25 +26,25 @@ class HelloJson(Json):
     model_config = _WHOLE
 
     type: Literal["hello"] = "hello"
-    epoch: str = Field(description="Of the event ids; another one after each restart")
+    epoch: str = Field(description="Epoch of the event ids; changes with each restart")
     started_at: Timestamp = Field(
-        description="When this run of the service began; tasks and holds of earlier runs are gone"
+        description="Start of this run of the service; tasks and holds of earlier runs are gone"
     )
-    topics: list[str] = Field(description="What this client gets")
+    topics: list[str] = Field(description="Topics that this client is subscribed to")
     period_s: float = Field(description="Time between two `state` frames")
-    version: str = Field(description="Of Pilothouse")
+    version: str = Field(description="Version of Pilothouse")
 
 
 def _left_out(schema: dict[str, Any]) -> None:
-    """Describe a member that may be left out, which is not the same as null."""
+    """Describe a member that can be omitted, which differs from null."""
     del schema["default"]
 
 
 class StateFrame(Json):
-    """The robot at one moment; `system_state` is always there, the rest where it has changed.
+    """The robot at one moment; always with `system_state`, the rest if it has changed.
 
-    It describes frames for clients. They are not made from it: what several clients are sent is
-    joined from members that are encoded once.
+    It only describes frames for clients: the frames themselves are joined from members that are
+    encoded once for all clients.
     """
 
     type: Literal["state"]
@@ -84,7 +84,7 @@ class StateFrame(Json):
 
 
 class EventJson(Json):
-    """Something that was decided or that became known."""
+    """A decision, or a fact that became known."""
 
     model_config = _WHOLE
 
@@ -93,22 +93,23 @@ class EventJson(Json):
     id: int = Field(description="Rises by one per event within an epoch")
     at: Timestamp
     kind: str = Field(description="What happened", examples=["change.succeeded"])
-    cause: int | None = Field(description="The event that led to this one; null: from outside")
-    actor: str = Field(description="Who asked for it; empty: nobody")
-    data: dict[str, Any] = Field(description="What there is to tell of it; another for each kind")
-    words: str = Field(description="What happened, as one sentence for an operator")
-    notable: bool = Field(description="false: detail that a short list leaves out")
+    cause: int | None = Field(description="Id of the event that led to this one; null: outside")
+    actor: str = Field(description="Who requested it; empty: nobody")
+    data: dict[str, Any] = Field(description="Details; the members depend on `kind`")
+    words: str = Field(description="What happened, in one sentence for an operator")
+    notable: bool = Field(description="false: detail that a short list omits")
 
 
-class GapJson(Json):
-    """Events that the client asked for and that are not kept any more."""
+class GapJson(Json, serialize_by_alias=True):
+    """Events that the client requested and that are no longer kept."""
 
-    model_config = ConfigDict(**_WHOLE, serialize_by_alias=True, validate_by_name=True)
+    model_config = _WHOLE
 
     type: Literal["gap"] = "gap"
-    first: int = Field(alias="from", description="Id of the first of them")
+    first: int = Field(serialization_alias="from", description="Id of the first of them")
     last: int | None = Field(
-        alias="to", description="null: the service was restarted since, and nobody knows"
+        serialization_alias="to",
+        description="Id of the last of them; null: unknown, the service was restarted",
     )
     epoch: str = Field(description="Epoch that the ids belong to")
 
@@ -119,12 +120,12 @@ class EventsJson(Json):
     epoch: str
     oldest: int = Field(description="Id of the oldest event that is kept")
     newest: int = Field(description="Id of the newest event; 0 before the first")
-    gaps: list[GapJson] = Field(description="What was asked for and is not kept any more")
+    gaps: list[GapJson] = Field(description="Requested events that are no longer kept")
     items: list[EventJson]
 
 
 class ReadingMessage(ReadingBody):
-    """A reading that a client sends; it is decided on arrival, and answered only if it is bad."""
+    """A reading from a client; it takes effect on arrival, and is answered only if rejected."""
 
     type: Literal["reading"]
     signal: str = Field(min_length=1, max_length=256)
@@ -137,13 +138,13 @@ class ResyncMessage(Body):
 
 
 class AuthMessage(Body):
-    """Who the client is; its first message where the service was started with a token."""
+    """Authentication; the first message of a client if the service was started with a token."""
 
     type: Literal["auth"]
     token: str = Field(min_length=1, description="The value of `PILOTHOUSE_TOKEN`")
 
 
 class ProblemFrame(Problem):
-    """What was wrong with a message or with the address (RFC 9457, but for `type`)."""
+    """What was wrong with a message or with the URL (RFC 9457, except for `type`)."""
 
     type: Literal["problem"]

@@ -15,7 +15,7 @@ DEFAULT_SPEED_MPS = 2.8
 MAX_HOLD_REASON = 500
 
 DIGITS = 6
-"""Of m, rad and m/s as they are shown: micrometres, without the noise of the last bits."""
+"""Decimals of m, rad and m/s in JSON: micrometres, without the noise of the last bits."""
 
 Controller = Annotated[
     str, Field(max_length=64, description=f"A path tracker: {', '.join(TRACKERS)}")
@@ -24,38 +24,38 @@ Number = Annotated[float, Field(allow_inf_nan=False)]
 
 
 class WaypointBody(Body):
-    """One waypoint of the rear axle."""
+    """One waypoint for the centre of the rear axle."""
 
     x_m: float
     y_m: float
-    yaw_rad: float = Field(description="Counter-clockwise from the x axis")
+    yaw_rad: float = Field(description="Heading, counter-clockwise from the x axis")
 
 
 class TaskBody(Body):
     """A path to follow."""
 
     waypoints: list[WaypointBody]
-    start_index: int = Field(default=0, ge=0, description="The waypoint to begin with")
+    start_index: int = Field(default=0, ge=0, description="Index of the first waypoint to drive to")
     controller: Controller = DEFAULT_CONTROLLER
     speed_mps: Number = Field(
         default=DEFAULT_SPEED_MPS,
-        description="Cruise speed; slower in curves and towards the end",
+        description="Cruise speed; lower in bends and towards the end",
     )
 
 
 class TaskJson(Json):
-    """A task: what is driven, how far it is, and why it is held or how it ended."""
+    """A task: its path, its progress, and why it is held or how it ended."""
 
     id: str
     status: TaskPhase
     controller: str
     speed_mps: float
     waypoint_count: int
-    length_m: float = Field(description="Along the path, from `start_index` to its end")
+    length_m: float = Field(description="Length of the path from `start_index` to its end")
     start_index: int
     target_index: int = Field(description="First waypoint that is not yet passed")
     progress: float = Field(description="Covered share of `length_m`, 0 to 1")
-    distance_m: float = Field(description="Covered along the path, from `start_index`")
+    distance_m: float = Field(description="Distance covered along the path, from `start_index`")
     cross_track_error_m: float | None = Field(
         description="Positive: left of the path; null: the task never ran"
     )
@@ -88,7 +88,7 @@ class TasksJson(Json):
     """Tasks, the newest first."""
 
     items: list[TaskJson]
-    controllers: list[str] = Field(description="The path trackers that a task may name")
+    controllers: list[str] = Field(description="Available path trackers")
 
 
 class WaypointJson(Json):
@@ -102,13 +102,13 @@ class WaypointJson(Json):
 class WaypointsJson(Json):
     """Waypoints of a task."""
 
-    waypoint_count: int = Field(description="Of the task")
-    indices: list[int] = Field(description="Which of them these are")
+    waypoint_count: int = Field(description="Number of waypoints of the task")
+    indices: list[int] = Field(description="Indices of `items` in the task")
     items: list[WaypointJson]
 
 
 class PoseJson(Json):
-    """Place and heading of the rear axle."""
+    """Position and heading of the centre of the rear axle."""
 
     x_m: float
     y_m: float
@@ -125,7 +125,7 @@ class PoseJson(Json):
 
 
 class PointJson(Json):
-    """A place on the ground."""
+    """A position on the ground."""
 
     x_m: float
     y_m: float
@@ -137,7 +137,7 @@ class PointJson(Json):
 
 
 class DriveCommandJson(Json):
-    """What the vehicle was told last."""
+    """The last command to the vehicle."""
 
     speed_mps: float
     steering_angle_rad: float
@@ -152,7 +152,7 @@ class DriveCommandJson(Json):
 
 
 class VehicleLimitsJson(Json):
-    """What the vehicle can do."""
+    """Limits of the vehicle."""
 
     wheelbase_m: float
     max_steering_angle_rad: float
@@ -169,13 +169,15 @@ class VehicleLimitsJson(Json):
 
 
 class VehicleJson(Json):
-    """Where the vehicle is, and what it is told."""
+    """Pose and motion of the vehicle, and its command."""
 
     pose: PoseJson | None = Field(description="null: never reported")
     speed_mps: float | None
-    steering_angle_rad: float | None = Field(description="Of the front wheels, left positive")
+    steering_angle_rad: float | None = Field(description="Front wheel angle, left positive")
     command: DriveCommandJson
-    lookahead: PointJson | None = Field(description="What is steered to; null: nothing is driven")
+    lookahead: PointJson | None = Field(
+        description="Point that the tracker steers to; null: no task is driving"
+    )
     at: Timestamp | None = Field(description="When the pose was reported")
     limits: VehicleLimitsJson
 
@@ -201,7 +203,7 @@ class HoldBody(Body):
 
 
 class HoldJson(Json):
-    """One reason why no task may run, and whose it is."""
+    """One hold: while it is set, no task runs."""
 
     owner: str
     reason: str
@@ -220,7 +222,7 @@ class HoldJson(Json):
 
 
 class HoldsJson(Json):
-    """All holds, the oldest first; a task runs only without any."""
+    """All holds, the oldest first; a task runs only while there are none."""
 
     items: list[HoldJson]
 

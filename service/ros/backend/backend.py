@@ -16,15 +16,15 @@ from service.ros.graph.graph import RosGraph
 
 _ROOM = 10_000
 _ROOM_PER_NODE = 200
-"""For messages that were not delivered yet; a busy event loop finds no more, since the graph holds
-back about a hundred of each topic.
+"""Capacity for undelivered messages. A busy event loop does not need more, since the graph queues
+about a hundred messages of each topic itself.
 """
 
 
 class Ros2Backend:
-    """Reaches a robot through ROS 2: its nodes, its vehicle and its signals, as one adapter.
+    """One adapter for the nodes, the vehicle and the signals of a robot in ROS 2.
 
-    What is heard is delivered by `run` alone: readings of `estop` first, reports of nodes last.
+    Only `run` delivers messages: readings of `estop` first, reports of nodes last.
     """
 
     def __init__(
@@ -34,13 +34,13 @@ class Ros2Backend:
         graph: RosGraph,
         clock: Clock,
     ) -> None:
-        """Prepare; nothing is heard or sent before `run`.
+        """Prepare; nothing is received or sent before `run`.
 
         Args:
-            model: Says which nodes there are.
-            robot: Says which topics signals and vehicle have.
-            graph: Where all that is; `run` closes it at its end.
-            clock: The present.
+            model: Defines the nodes.
+            robot: Defines the topics of signals and vehicle.
+            graph: The ROS 2 graph; `run` closes it at its end.
+            clock: Of the service.
         """
         self._graph = graph
         self._nodes = RosNodes(model.nodes, graph, clock)
@@ -51,7 +51,7 @@ class Ros2Backend:
         self._delivery = Delivery(room)
 
     async def run(self, deliver: Deliver) -> None:
-        """Deliver what nodes, signals and vehicle say, until cancelled; then leave the graph.
+        """Deliver the messages of nodes, signals and vehicle until cancelled; then leave the graph.
 
         Raises:
             UnknownTypeError: A type of message or service is not installed.
@@ -72,7 +72,7 @@ class Ros2Backend:
             await self._graph.close()
 
     def send(self, command: NodeCommand | Drive, /) -> None:
-        """Ask a node for something, or tell the vehicle how to drive."""
+        """Send a command to a node or to the vehicle."""
         if isinstance(command, Drive):
             self._vehicle.send(command)
         else:

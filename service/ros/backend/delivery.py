@@ -1,4 +1,4 @@
-"""What was heard in ROS on its way to the core: the emergency stop first, reports of nodes last."""
+"""Queues messages from ROS for the core: the emergency stop first, reports of nodes last."""
 
 import asyncio
 from enum import IntEnum
@@ -8,38 +8,38 @@ from domain.inputs import Readings, VehicleReport
 from service.ports import BackendMessage, Deliver
 
 _AT_ONCE = 5
-"""So many are delivered before others get their turn."""
+"""Messages delivered before other tasks of the event loop run."""
 
 
 class _Urgency(IntEnum):
-    """What goes first; within each, messages keep their order."""
+    """Order of delivery; messages of the same urgency keep their order."""
 
     ESTOP = 0
     SENSORS = 1
-    """All other readings, and the vehicle."""
+    """All other readings, and reports of the vehicle."""
     NODES = 2
 
 
 class Delivery:
-    """Delivers what was heard a few at a time, so that thousands of reports delay nobody.
+    """Delivers a few messages at a time, so that thousands of reports block nothing else.
 
-    A reading of `estop` waits at most for what is being delivered when it is heard.
+    A reading of `estop` waits at most for the message that is being delivered when it arrives.
     """
 
     def __init__(self, room: int) -> None:
-        """Make an empty one.
+        """Make empty queues.
 
         Args:
-            room: So many messages of each urgency may wait.
+            room: Capacity for messages of each urgency.
         """
         self._lanes = {urgency: asyncio.Queue[BackendMessage](room) for urgency in _Urgency}
         self._woken = asyncio.Event()
 
     def put(self, message: BackendMessage) -> None:
-        """Take a message and return at once; on the event loop's thread.
+        """Queue a message and return at once; on the event loop's thread.
 
         Raises:
-            asyncio.QueueFull: There is no room for it.
+            asyncio.QueueFull: The queue is full.
         """
         self._lanes[_urgency(message)].put_nowait(message)
         self._woken.set()

@@ -18,7 +18,7 @@ ANSWER_WITHIN_S = 60.0
 
 @dataclass(frozen=True, slots=True)
 class Askers:
-    """Our own nodes that have the clients, by what they ask for."""
+    """Our own ROS nodes that have the service clients, by what they query."""
 
     states: RosNode
     transitions: RosNode
@@ -26,10 +26,10 @@ class Askers:
 
 
 class NodeServices:
-    """What a node can be asked; it need not be there yet.
+    """The services of a node, which need not be running yet.
 
-    Each question raises TimeoutError if there is no answer in time. Nothing is known then of
-    whether the node took it.
+    Each call raises TimeoutError if there is no response in time. Whether the node processed the
+    request is not known then.
     """
 
     def __init__(self, name: PartName, ours: Askers) -> None:
@@ -37,7 +37,7 @@ class NodeServices:
 
         Args:
             name: Of the node that has the services.
-            ours: Those that ask.
+            ours: The nodes that have the clients.
 
         Raises:
             UnknownTypeError: A type is not installed.
@@ -64,12 +64,12 @@ class NodeServices:
 
     @property
     def processes(self) -> int:
-        """Tell how many processes with the node the graph knows, the dead ones included."""
+        """Return how many processes of the node the graph knows, including dead ones."""
         return self._get_state.servers()
 
     @property
     def has_parameters(self) -> bool:
-        """Tell whether the graph knows that the node can be asked for parameters."""
+        """Tell whether the graph knows a parameter service of the node."""
         return self._get_parameters.is_ready()
 
     @property
@@ -79,7 +79,7 @@ class NodeServices:
         return self.has_lifecycle and self.has_parameters and all(c.is_ready() for c in others)
 
     async def state(self) -> LifecycleState:
-        """Return what the node is in."""
+        """Return the lifecycle state of the node."""
         response = await self._get_state.call({}, LOOK_WITHIN_S)
         return read_state(response.current_state)
 
@@ -89,11 +89,12 @@ class NodeServices:
         return tuple(item.transition.label for item in response.available_transitions)
 
     async def change_state(self, transition: Transition, start: LifecycleState | None) -> bool:
-        """Ask for a transition; return whether it was done, once that is known.
+        """Request a transition; return whether it succeeded, once that is known.
 
         Args:
-            transition: Found by its label in the node, or else by its number.
-            start: What the node is in, as far as that is known: it decides which number it is.
+            transition: The node finds it by its label, or else by its number.
+            start: State of the node, None if unknown; needed for the number, since each start
+                state has its own transition of the same label.
         """
         asked = {"id": _number(transition, start), "label": str(transition)}
         response = await self._change_state.call({"transition": asked}, ANSWER_WITHIN_S)
@@ -104,7 +105,7 @@ class NodeServices:
         asked = list(names)
         values = await self._values(asked)
         if len(values) != len(asked):
-            # One of them is not declared, and then nothing is said of the others either.
+            # If one of them is not declared, the response holds none of the others either.
             found = [(name, await self._values([name])) for name in asked]
             return _known((name, values[0]) for name, values in found if values)
         return _known(zip(asked, values, strict=True))
@@ -114,14 +115,14 @@ class NodeServices:
         return list(response.values)
 
     async def set_parameters(self, values: Parameters, known: Parameters) -> str:
-        """Ask to set parameters, all or none; return why that was refused, empty: it was done.
+        """Set parameters, all or none; return why the node rejected them, empty on success.
 
         Args:
-            values: What to set.
-            known: What is set, which says of what type an empty array is.
+            values: The new values.
+            known: The current values, which determine the type of an empty array.
 
         Raises:
-            InvalidValueError: A value is beyond what ROS can carry; nothing was asked.
+            InvalidValueError: A value is outside the range of ROS; nothing was sent.
         """
         parameters = [
             {"name": name, "value": write_value(value, known.get(name))}
@@ -129,13 +130,13 @@ class NodeServices:
         ]
         response = await self._set_parameters.call({"parameters": parameters}, ANSWER_WITHIN_S)
         result = response.result
-        return "" if result.successful else result.reason or "the node does not take the values"
+        return "" if result.successful else result.reason or "the node rejected the values"
 
 
 def read_state(message: Message) -> LifecycleState:
-    """Return the state that a `lifecycle_msgs/msg/State` names; one of no number of ours: unknown.
+    """Return the state of a `lifecycle_msgs/msg/State`; UNKNOWN for an id that is not standard.
 
-    By its number, since the labels are free.
+    By its id, since labels are not standardized.
     """
     return _STATES.get(message.id, LifecycleState.UNKNOWN)
 
@@ -149,7 +150,7 @@ def _number(transition: Transition, start: LifecycleState | None) -> int:
 
 
 def read_parameters(messages: Iterable[Message]) -> dict[str, ParameterValue]:
-    """Return what a sequence of `rcl_interfaces/msg/Parameter` says."""
+    """Return the parameters in a sequence of `rcl_interfaces/msg/Parameter`."""
     return _known((message.name, message.value) for message in messages)
 
 
@@ -159,7 +160,7 @@ def _known(items: Iterable[tuple[str, Message]]) -> dict[str, ParameterValue]:
 
 
 def _read_value(message: Message) -> ParameterValue | None:
-    """Return a value; None: it is not set, or is an array of bytes, which no mode can set."""
+    """Return a value; None: it is not set, or is a byte array, which no mode can set."""
     name = next((name for name, number in _NUMBERS.items() if number == message.type), None)
     if name is None:
         return None
@@ -172,7 +173,7 @@ def _read_value(message: Message) -> ParameterValue | None:
 
 
 def begins(command: NodeCommand, start: LifecycleState, goal: LifecycleState) -> bool:
-    """Tell whether going from `start` to `goal` is how a command begins to be carried out."""
+    """Tell whether a transition from `start` to `goal` is the first step of a command."""
     if not isinstance(command, AskTransition):
         return False
     rule = rule_for(start, command.transition)
@@ -180,7 +181,7 @@ def begins(command: NodeCommand, start: LifecycleState, goal: LifecycleState) ->
 
 
 def holds_all(known: Parameters | None, values: Parameters) -> bool:
-    """Tell whether all of some values are known to be set."""
+    """Tell whether all `values` are known to be set."""
     if known is None:
         return False
     return all(name in known and same_value(known[name], v) for name, v in values.items())
@@ -190,8 +191,8 @@ def write_value(value: ParameterValue, known: ParameterValue | None = None) -> F
     """Return a value as the fields of a `rcl_interfaces/msg/ParameterValue`.
 
     Args:
-        value: What to write.
-        known: What the parameter holds; an empty array is of the same type, or else of strings.
+        value: The value.
+        known: The current value of the parameter; an empty array gets its type, or else strings.
     """
     name = value_type(value)
     if name == "array":

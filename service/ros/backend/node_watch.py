@@ -1,7 +1,7 @@
-"""One node of the robot: what it reported last, and what it is asked.
+"""One node of the robot: its last known state, and the requests to it.
 
-ROS 2 latches neither states nor parameters, and what is published can get lost. So a node is asked
-for everything when it appears, and again whenever something does not fit what is known of it.
+ROS 2 latches neither states nor parameters, and published messages can get lost. So all facts of a
+node are queried when it appears, and again whenever a message contradicts what is known of it.
 """
 
 from collections.abc import Callable, Coroutine
@@ -21,16 +21,16 @@ from service.ros.backend.node_services import NodeServices, begins, holds_all
 from service.ros.backend.retries import Seen, call_with_retries
 
 LOOK_PERIOD: Duration = seconds(1.0)
-"""How often each node is asked how it is."""
+"""Period of the queries of each node."""
 MOST_COMMANDS = 16
-"""At most this many commands to one node wait for an answer; further ones are refused."""
+"""At most this many commands to one node wait for an answer; further ones are rejected."""
 _MISSES = 2
-"""After this many missed answers in a row a node is unreachable."""
+"""After this many queries in a row without an answer a node is unreachable."""
 _BEATS_FOR: Duration = seconds(4.5)
-"""A node with a heartbeat is not polled for this long after it said something."""
+"""A node with a heartbeat is not polled for this long after its last message."""
 _STATE_FOLLOWS: Duration = seconds(0.2)
 _PARAMETERS_FOLLOW: Duration = seconds(0.5)
-"""A report may follow an answer within this time; then the node is asked for it."""
+"""Time for a report to follow an answer; without one, the node is queried."""
 _TRIES = 3
 
 NodeMessage: TypeAlias = NodeReport | NodeAnswer
@@ -38,11 +38,11 @@ Work: TypeAlias = Callable[[], Coroutine[Any, Any, None]]
 
 
 class NodeWatch:
-    """What is known of one node, and the commands to it.
+    """The known state of one node, and the commands to it.
 
-    One class, since each half needs the other: an answer that is missed, a report that does not fit
-    and a command whose effect is not seen all lead to the same question, and share its timing.
-    All methods return at once. The first report says that the node is unreachable.
+    One class, since each half needs the other: a missed answer, a contradicting report and a
+    command without visible effect all lead to the same query, and share its timing.
+    All methods return at once. The first report is that the node is unreachable.
     """
 
     def __init__(
@@ -53,17 +53,18 @@ class NodeWatch:
         deliver: Callable[[NodeMessage], None],
         start: Callable[[Work], bool],
     ) -> None:
-        """Prepare; nothing is asked before `look`.
+        """Prepare; nothing is queried before `look`.
 
         Args:
             node: Its name, and the parameters of its modes.
-            services: What it can be asked.
-            clock: The present.
-            deliver: Is handed what the node says.
-            start: Runs something as a task; False: not any more, or not yet.
+            services: The services of the node.
+            clock: Of the service.
+            deliver: Gets the reports and answers of the node.
+            start: Runs a coroutine function as a task; False: not possible before the start or
+                after the end.
         """
         self._name = node.name
-        # As a dictionary, since that keeps an order.
+        # A dictionary and not a set, since it keeps the order.
         self._names = {name: None for mode in node.modes.values() for name in mode}
         self._services = services
         self._clock = clock
@@ -73,30 +74,30 @@ class NodeWatch:
         self._has_lifecycle = True
         self._state: LifecycleState | None = None
         self._parameters: dict[str, ParameterValue] | None = None
-        """None: the node could not be asked for them yet."""
+        """None: they could not be queried yet."""
         self._heard = 0
-        """Counts the reports of its state."""
+        """Number of reports of its state."""
         self._heard_at: Instant = 0
         self._news: dict[str, ParameterValue] = {}
-        """Parameters that the node reported since it was last asked for them."""
+        """Parameters that the node reported since they were last queried."""
         self._processes = 0
-        """How many processes of the node the graph knew when it was asked last."""
+        """Number of processes of the node in the graph at the last query."""
         self._known_since: Instant | None = None
-        """Since when the graph knows one of its services."""
+        """Time since which the graph knows one of its services."""
         self._beats = False
         self._misses = 0
         self._looking = False
         self._wants_all = False
-        """Whether it is to be asked for everything, and not only how it is."""
+        """Whether the next query is for all facts, and not only for the state."""
         self._commands: dict[int, AskTransition | AskParameters] = {}
         """Commands without an answer, or whose effect was not reported yet, by request."""
         self._newest: int | None = None
-        """Number of the command that came last: an older one must not be sent again after it."""
+        """Request of the latest command: an older one must not be repeated after it."""
         self._taken: set[int] = set()
-        """Requests of transitions that the node reported as begun."""
+        """Requests of transitions that the node reported as started."""
         self._deliver(NodeReport(self._name, reachable=False))
 
-    # --- what is heard ---------------------------------------------------------------------------
+    # --- messages of the node --------------------------------------------------------------------
 
     def take_transition(self, start: LifecycleState, goal: LifecycleState) -> None:
         """Take a report that the node went from one state to another."""
@@ -107,10 +108,10 @@ class NodeWatch:
                 self._taken.add(request)
                 self._answer(command, True)
         if not self._is_there:
-            # It will say everything when it has answered.
+            # Its answer to the pending query will report everything.
             return
         if start is not self._state:
-            # Something got lost, or comes late, or it is another process: the node itself knows.
+            # A message was lost or is late, or the process is another one: query the node.
             self._ask_all()
         else:
             self._state = goal
@@ -126,10 +127,10 @@ class NodeWatch:
             self._deliver(NodeReport(self._name, parameters=MappingProxyType(dict(values))))
 
     def take_heartbeat(self, beats: bool) -> None:
-        """Take the news whether a process of the node is alive."""
+        """Take whether any process of the node is alive."""
         self._beats = beats
         if beats:
-            # One that was started anew is heard before the old one is missed.
+            # A restarted process appears before the loss of the old one is noticed.
             self._ask_all()
         else:
             self._lose()
@@ -138,10 +139,10 @@ class NodeWatch:
         self._misses = 0
         self._heard_at = self._clock.now()
 
-    # --- whether it is there ---------------------------------------------------------------------
+    # --- whether it is reachable -----------------------------------------------------------------
 
     def look(self) -> None:
-        """Ask the node how it is, or look for it; to be called every `LOOK_PERIOD`."""
+        """Query the node, or look for it; to be called every `LOOK_PERIOD`."""
         if self._is_there:
             if not self._has_lifecycle and self._services.has_lifecycle:
                 self._has_lifecycle = self._wants_all = True
@@ -157,15 +158,15 @@ class NodeWatch:
         self._look_soon()
 
     def _look_soon(self) -> None:
-        """Ask the node, unless that is going on or there is none to be asked."""
+        """Start a query, unless one is running or the node cannot be queried."""
         if not self._looking and (self._is_there or self._can_be_asked()):
             self._looking = self._start(self._look)
 
     def _can_be_asked(self) -> bool:
-        """Tell whether the graph knows enough of the node.
+        """Tell whether the graph knows enough services of the node.
 
-        Its services are found one after the other, and a plain node has not all of them: so the
-        others are waited for, but not for long.
+        They are discovered one after the other, and a plain node does not have all of them; so the
+        missing ones are waited for, for one `LOOK_PERIOD`.
         """
         now = self._clock.now()
         if not (self._services.has_lifecycle or self._services.has_parameters):
@@ -189,26 +190,26 @@ class NodeWatch:
             self._looking = False
 
     async def _is_as_known(self) -> bool:
-        """Ask for what shows whether a report was missed.
+        """Query the facts that show whether a report was missed.
 
         Raises:
             TimeoutError: The node does not answer.
         """
         heard = self._heard
         if self._has_lifecycle:
-            # If something was heard meanwhile, the answer may be older than that.
+            # The answer may be older than a report that came meanwhile.
             is_same = await self._ask_state() is self._state or heard != self._heard
             return is_same and not self._was_restarted()
         values = await self._ask_parameters()
         return values is None or holds_all(self._parameters, values)
 
     def _was_restarted(self) -> bool:
-        """Tell whether the node was restarted; it may be in the same state as before."""
+        """Tell whether the node was restarted, since it may be in the same state as before."""
         known, self._processes = self._processes, self._services.processes
         return self._processes > known
 
     async def _learn(self) -> None:
-        """Ask for everything, and deliver it in one report, unless it was overtaken meanwhile.
+        """Query everything and deliver it in one report, unless a newer report came meanwhile.
 
         Raises:
             TimeoutError: The node does not answer.
@@ -245,9 +246,9 @@ class NodeWatch:
         return state
 
     async def _ask_parameters(self) -> dict[str, ParameterValue] | None:
-        """Return the parameters that matter, as far as they are set; None: it has no such service.
+        """Return the parameters of its modes that are set; None: it has no parameter service.
 
-        What is heard meanwhile is newer.
+        Reports that come meanwhile are newer, and replace what was queried.
         """
         if not self._services.has_parameters:
             return None
@@ -257,9 +258,9 @@ class NodeWatch:
         return values | self._news
 
     def _miss(self) -> None:
-        """Count an answer that did not come."""
+        """Count a query without an answer."""
         if self._beats and self._is_in_transition():
-            # Its process lives, and its thread is busy with a callback.
+            # The process is alive, and its thread is busy with a callback.
             return
         self._misses += 1
         if self._misses >= _MISSES:
@@ -277,10 +278,10 @@ class NodeWatch:
             self._is_there, self._misses = False, 0
             self._deliver(NodeReport(self._name, reachable=False))
 
-    # --- what it is told -------------------------------------------------------------------------
+    # --- commands to it --------------------------------------------------------------------------
 
     def send(self, command: NodeCommand) -> None:
-        """Send a command; a node that is silent does not answer it."""
+        """Send a command; if the node does not respond, there is no answer."""
         if isinstance(command, AskFacts):
             self._ask_all()
             return
@@ -303,7 +304,7 @@ class NodeWatch:
         if isinstance(command, AskTransition) and not self._has_lifecycle:
             return "the node has no lifecycle"
         if len(self._commands) >= MOST_COMMANDS:
-            return f"{MOST_COMMANDS} commands wait for an answer already"
+            return f"{MOST_COMMANDS} commands already wait for an answer"
         return ""
 
     def _answer(
@@ -312,10 +313,10 @@ class NodeWatch:
         self._deliver(NodeAnswer(command.request, self._name, accepted, reason))
 
     async def _change_state(self, ask: AskTransition) -> None:
-        """Ask for a transition, and see to it that its end is reported.
+        """Request a transition, and make sure that its end is reported.
 
-        The node answers when its callback is done. That it took the transition is known earlier, if
-        it is heard to begin: it is answered then, see `take_transition`.
+        The node responds when its callback has ended. If it reports the start of the transition
+        earlier, the command is answered then, see `take_transition`.
         """
         heard = self._heard
         try:
@@ -340,9 +341,9 @@ class NodeWatch:
             self._ask_all()
 
     async def _see_transition(self, ask: AskTransition, start: LifecycleState | None) -> Seen:
-        """Tell what became of a transition; to activate is never asked twice.
+        """Find out what became of a transition; activate is never requested twice.
 
-        An e-stop may have come meanwhile, of which nothing is known here.
+        An e-stop may have been pressed meanwhile, which is not known here.
         """
         if ask.request in self._taken:
             return Seen.UNCLEAR
@@ -363,13 +364,13 @@ class NodeWatch:
         try:
             offered = await self._services.available_transitions()
         except TimeoutError:
-            return f"the node refused {ask.transition}"
+            return f"the node rejected {ask.transition}"
         if ask.transition in offered:
             return f"the node tried to {ask.transition} and went back"
-        return f"the node refused {ask.transition}; it offers {', '.join(offered) or 'nothing'}"
+        return f"the node rejected {ask.transition}; it offers {', '.join(offered) or 'nothing'}"
 
     async def _set_parameters(self, ask: AskParameters) -> None:
-        """Ask to set parameters, and see to it that they are reported."""
+        """Set parameters, and make sure that they are reported."""
         try:
             reason = await call_with_retries(
                 partial(self._services.set_parameters, ask.values, self._parameters or {}),

@@ -1,7 +1,7 @@
-"""All nodes of the robot: one watch each, and one beat for all of them.
+"""All nodes of the robot: one watch each, and one common polling cycle.
 
-Asking fifty nodes how they are costs hardly anything when it is done in one burst, and a third of a
-core when it is spread evenly: so all are asked at the same time.
+Polling fifty nodes costs almost nothing in one burst, and a third of a core if it is spread evenly;
+so all are polled at the same time.
 """
 
 import asyncio
@@ -20,7 +20,7 @@ from service.ros.backend.node_watch import LOOK_PERIOD, NodeMessage, NodeWatch, 
 from service.ros.graph.graph import Lane, Message, Qos, RosGraph, RosNode
 
 _OURS = "pilothouse_"
-"""Prefix of the names of our own nodes, which ask and listen."""
+"""Prefix of the names of our own nodes, which have the clients and subscriptions."""
 HEARTBEAT_LEASE_S = 0.5
 """Liveliness lease of the heartbeat topic of a node, s: its death is noticed after this time."""
 
@@ -28,11 +28,11 @@ HEARTBEAT_LEASE_S = 0.5
 class RosNodes:
     """The nodes of a model as nodes of ROS 2, with a lifecycle or with parameters only.
 
-    A node that dies is reported within 3 s: it is asked how it is once a second, and missed when
-    two answers in a row do not come within 0.8 s. With a heartbeat, a publisher of
+    A dead node is reported within 3 s: it is polled once a second, and is unreachable when two
+    queries in a row time out after 0.8 s. A node with a heartbeat (a publisher of
     `std_msgs/msg/Empty` on `/{node}/heartbeat` with automatic liveliness and a lease of 0.5 s or
-    less, it is reported within 1 s. Without one, a node whose callback keeps its only thread for
-    longer than 2 s is unreachable for as long, since it cannot be told from a dead one.
+    less) is reported within 1 s. Without a heartbeat, a node whose callback blocks its only thread
+    for longer than 2 s is unreachable meanwhile, since it looks like a dead one.
     """
 
     def __init__(self, nodes: Mapping[PartName, NodeModel], graph: RosGraph, clock: Clock) -> None:
@@ -44,10 +44,10 @@ class RosNodes:
         self._deliver: Callable[[NodeMessage], None]
 
     async def start(self, deliver: Callable[[NodeMessage], None]) -> None:
-        """Listen to the nodes; each is delivered as unreachable until it has answered.
+        """Subscribe to the nodes; each is reported as unreachable until it answers.
 
         Args:
-            deliver: Is handed what nodes say, on the event loop's thread; it must not raise.
+            deliver: Gets reports and answers on the event loop's thread; it must not raise.
 
         Raises:
             UnknownTypeError: A type of message or service is not installed.
@@ -73,7 +73,7 @@ class RosNodes:
             listening.watch_liveliness(
                 f"/{name}/heartbeat", "std_msgs/msg/Empty", HEARTBEAT_LEASE_S, watch.take_heartbeat
             )
-            # Clients of fifty nodes take most of a second, and the rest of the service runs on.
+            # Making clients for fifty nodes takes almost a second; other tasks must keep running.
             await asyncio.sleep(0)
         ours.parameters.subscribe(
             "/parameter_events",
@@ -84,7 +84,7 @@ class RosNodes:
         )
 
     async def run(self) -> None:
-        """Look for the nodes and after them, until cancelled; once, after `start`."""
+        """Discover and poll the nodes, until cancelled; called once, after `start`."""
         async with asyncio.TaskGroup() as group:
             self._group = group
             try:
@@ -93,10 +93,10 @@ class RosNodes:
                 self._group = None
 
     def send(self, command: NodeCommand) -> None:
-        """Ask a node for something; at once, whatever else it is asked."""
+        """Send a command to a node at once, whatever other requests are pending."""
         watch = self._watches.get(command.node)
         if self._group is None:
-            # Nobody listens: before the start, or at the end.
+            # Before the start or after the end nothing takes the answer.
             return
         if watch is None:
             self._deliver(NodeAnswer(command.request, command.node, False, "there is no such node"))
@@ -136,7 +136,7 @@ def _take_transition(watch: NodeWatch, states: tuple[LifecycleState, LifecycleSt
 def _pick_parameters(
     nodes: frozenset[PartName], message: Message
 ) -> tuple[PartName, dict[str, ParameterValue]] | None:
-    """Return which of the nodes set what; None: it is somebody else, or nothing that matters."""
+    """Return the node and the parameters it set; None: another node, or no parameters."""
     name = part_name(message.node)
     if name not in nodes:
         return None

@@ -1,7 +1,8 @@
-"""Repeats requests that were lost, once the node shows that it never took them.
+"""Repeats requests that were lost, once it is clear that the node never received them.
 
-DDS connects the ends of a service one after the other. A node that has just appeared may be found
-before it can hear us, or its response may not find its way back, and neither side is told.
+DDS connects the ends of a service one after the other. A node that has just appeared may be
+discovered before it can receive our requests, or its response may get lost, and neither side is
+notified.
 """
 
 import asyncio
@@ -15,21 +16,21 @@ from service.clock import Clock
 MAX_CALLS = 3
 """A request is sent at most this often."""
 PATIENCE: Duration = seconds(0.6)
-"""After this long without an answer, the node is asked what became of the request."""
+"""After this time without a response, the node is queried for the effect of the request."""
 WINDOW: Duration = seconds(1.5)
-"""No request is repeated later than this: the sender may have given up by then. The core waits 2 s
-for parameters, and longer for transitions."""
+"""No request is repeated later than this, since the sender may have given up by then. The core
+waits 2 s for parameters, and longer for transitions."""
 
 ResultT = TypeVar("ResultT")
 
 
 class Seen(Enum):
-    """What became of a request that the node has not answered."""
+    """What became of a request without a response."""
 
     DONE = "done"
     LOST = "lost"
     UNCLEAR = "unclear"
-    """The node is working on it, does not respond, or must not be asked again."""
+    """The node is still processing it, does not respond, or must not get it again."""
 
 
 async def call_with_retries(
@@ -38,16 +39,16 @@ async def call_with_retries(
     done: ResultT,
     clock: Clock,
 ) -> ResultT:
-    """Send a request that does no harm if it arrives twice, and return the answer.
+    """Send an idempotent request, repeat it if it was lost, and return the response.
 
     Args:
-        ask: Sends the request and returns the answer.
+        ask: Sends the request and returns the response.
         see: Finds out what became of it; TimeoutError: the node does not respond.
-        done: The answer if the request turns out to be done.
-        clock: The present.
+        done: Returned if the request turns out to have been carried out.
+        clock: Of the service.
 
     Raises:
-        TimeoutError: As of `ask`.
+        TimeoutError: Raised by `ask`.
     """
     calls, ends_at = {asyncio.create_task(ask())}, clock.now() + WINDOW
     try:
@@ -78,7 +79,7 @@ async def _look(see: Callable[[], Awaitable[Seen]]) -> Seen:
 async def _first_of(
     calls: set[asyncio.Task[ResultT]], clock: Clock
 ) -> asyncio.Task[ResultT] | None:
-    """Return a call that was answered; None: no answer came within `PATIENCE`."""
+    """Return the first call with a response; None: there was none within `PATIENCE`."""
     timer = asyncio.ensure_future(clock.sleep_until(clock.now() + PATIENCE))
     try:
         await asyncio.wait({*calls, timer}, return_when=asyncio.FIRST_COMPLETED)

@@ -1,4 +1,4 @@
-"""Signals of the robot from ROS topics, as its robot file says."""
+"""Signals of the robot from ROS topics, as configured in the robot file."""
 
 import logging
 import math
@@ -23,22 +23,22 @@ log = logging.getLogger(__name__)
 NODE = "pilothouse_signals"
 
 _PERIOD: Duration = seconds(0.02)
-"""Readings of a topic that comes more often than this are left out."""
+"""Least period of readings; a topic that is faster is thinned out."""
 _BURST: Duration = seconds(0.2)
-"""After a pause, readings for this much time may come at once."""
+"""After a pause, readings for this duration may come at once."""
 _QUIET: Duration = seconds(60)
 """Faults of a topic are logged no more often than this."""
 _COVARIANCE_UNKNOWN = 0
 _EAST, _NORTH = 0, 4
-"""Places of the variances in the 3 by 3 matrix."""
+"""Indices of the variances in the 3 by 3 matrix."""
 
 
 class SignalTopics:
     """Reads each signal that has a topic in the robot file.
 
-    A publisher has to repeat its value more often than the signal goes stale. What the signal
-    cannot be, and what says that nothing was measured, as of a receiver without a fix, is no
-    reading: the signal goes stale if no other follows.
+    A publisher must repeat its value before the signal becomes stale. Invalid values, and messages
+    without a measurement (a receiver without a fix), are ignored: the signal becomes stale if no
+    valid one follows.
     """
 
     def __init__(self, robot: RobotSettings, graph: RosGraph, clock: Clock) -> None:
@@ -50,7 +50,7 @@ class SignalTopics:
         self._clock = clock
 
     def start(self, deliver: Callable[[Readings], None]) -> None:
-        """Deliver what is published, for as long as the graph is open.
+        """Subscribe, and deliver readings while the graph is open.
 
         Raises:
             UnknownTypeError: The type of a topic is not installed.
@@ -75,15 +75,15 @@ class SignalTopics:
 
 @dataclass(frozen=True, slots=True)
 class _Sample:
-    """What matters of one message."""
+    """The reading in one message."""
 
     value: SignalValue
     stamp_ns: int | None
-    """Since 1970-01-01 UTC; None: the sender does not say."""
+    """Since 1970-01-01 UTC; None: the message has no time stamp."""
 
 
 class _Source:
-    """Takes a signal out of the messages of one topic; `pick` is all on the thread of ROS."""
+    """Reads a signal from the messages of one topic; `pick` runs on the thread of ROS."""
 
     def __init__(self, spec: SignalSpec, topic: SignalTopicBlock, clock: Clock) -> None:
         self.spec = spec
@@ -92,15 +92,15 @@ class _Source:
         self._clock = clock
         self._last: SignalValue | None = None
         self._spent_until: Instant = clock.now() - _BURST
-        """Until when the allowed readings are used up; in the past: some are left."""
+        """Until then no further readings are allowed; in the past: some are."""
         self._quiet_until: Instant = 0
 
     def pick(self, message: Message) -> _Sample | None:
-        """Return the reading of a message; None: there is none, or there were enough."""
+        """Return the reading in a message; None: there is none, or they come too fast."""
         try:
             value = self._value(message)
         except (AttributeError, IndexError, TypeError) as error:
-            self._complain(f"there is no such field: {error}")
+            self._complain(f"no such field: {error}")
             return None
         except InvalidValueError as error:
             self._complain(error.message)
@@ -110,10 +110,10 @@ class _Source:
         return _Sample(value, _stamp_ns(message))
 
     def _value(self, message: Message) -> SignalValue | None:
-        """Return what the signal is; None: it was not measured.
+        """Return the value of the signal; None: it was not measured.
 
         Raises:
-            InvalidValueError: The signal cannot be so.
+            InvalidValueError: The value is not valid for the signal.
         """
         value = _accuracy_mm(message) if self._path is None else _found(message, self._path)
         if self.spec.kind is SignalKind.BOOLEAN and isinstance(value, bool):
@@ -125,7 +125,7 @@ class _Source:
         return self.spec.checked(value)
 
     def _is_wanted(self, value: SignalValue) -> bool:
-        """Tell whether a reading is handed on; one that is another word than before always is."""
+        """Tell whether a reading is passed on; a change of a non-numeric value always is."""
         changed = self.spec.kind is not SignalKind.NUMBER and value != self._last
         now = self._clock.now()
         spent_until = max(self._spent_until, now - _BURST)
@@ -141,22 +141,22 @@ class _Source:
         if now >= self._quiet_until:
             self._quiet_until = now + _QUIET
             where = f"{self.topic.topic} ({self.topic.type})"
-            log.warning("%s is not taken as %s: %s", where, self.spec.name, words)
+            log.warning("%s is not accepted as %s: %s", where, self.spec.name, words)
 
 
 def _found(message: Message, path: tuple[str | int, ...]) -> Any:  # noqa: ANN401  # a field of ROS
-    """Return a field of a message as Python has it."""
+    """Return a field of a message as a plain Python value."""
     found = message
     for step in path:
         found = found[step] if isinstance(step, int) else getattr(found, step)
     if isinstance(found, np.generic):
         return found.item()
-    # A field of type `byte`.
+    # ROS returns a field of type `byte` as bytes of length 1.
     return found[0] if isinstance(found, bytes) and len(found) == 1 else found
 
 
 def _accuracy_mm(fix: Message) -> float:
-    """Return the standard deviation of the position on the ground; NaN: it is not known.
+    """Return the standard deviation of the horizontal position, mm; NaN: unknown.
 
     Source: sensor_msgs, `NavSatFix.msg`.
     """
@@ -172,7 +172,7 @@ def _is_number(value: object) -> bool:
 
 
 def _stamp_ns(message: Message) -> int | None:
-    """Return when the sender says that it measured; a stamp of 0 says nothing."""
+    """Return the time stamp of a message; None: it has none, or it is 0."""
     stamp = getattr(getattr(message, "header", None), "stamp", None)
     if stamp is None:
         return None

@@ -1,4 +1,4 @@
-"""The vehicle: its odometry from one ROS topic, and what it is told on another."""
+"""The vehicle: odometry from one ROS topic, drive commands on another."""
 
 import logging
 import math
@@ -20,22 +20,22 @@ NODE = "pilothouse_vehicle"
 ODOMETRY = "nav_msgs/msg/Odometry"
 
 _PERIOD: Duration = seconds(0.04)
-"""Odometry that comes more often than this is left out."""
+"""Least period of odometry; a topic that is faster is thinned out."""
 _EARLY: Duration = seconds(0.02)
-"""A message may come this much early after one that was late, so that jitter drops none."""
+"""A message may come this much early after a late one, so that jitter drops none."""
 _QUIET: Duration = seconds(60)
 """Faults of the odometry are logged no more often than this."""
 _ROLLS_MPS = 0.1
-"""Below this speed the steering angle cannot be told from how quickly the vehicle turns."""
+"""Below this speed the steering angle cannot be computed from the yaw rate."""
 _AT_REST = DriveCommand(0.0, 0.0)
 
 
 class RosVehicle:
-    """Tells how the vehicle moves, and tells it how to drive.
+    """Reports the motion of the vehicle, and publishes drive commands.
 
-    Half a second after the last command that was to move it, it is told once to stand still, and
-    nothing further, so that somebody else can drive it. If this process dies nobody tells it so:
-    the vehicle needs a time limit of its own for its commands.
+    0.5 s after the last command with a speed, speed 0 is commanded once, and then nothing, so that
+    another program can drive. If this process dies, no speed 0 is published: the vehicle needs its
+    own timeout for commands.
     """
 
     def __init__(
@@ -52,7 +52,7 @@ class RosVehicle:
         self._alarm = Alarm(lambda: self._void_at, self._stop, clock)
 
     def start(self, deliver: Callable[[VehicleReport], None]) -> None:
-        """Deliver how the vehicle moves, at 25 Hz at most, for as long as the graph is open.
+        """Subscribe, and deliver the motion of the vehicle at 25 Hz at most until the graph closes.
 
         Raises:
             UnknownTypeError: The type of a topic is not installed.
@@ -71,7 +71,7 @@ class RosVehicle:
             node.subscribe(odometry.topic, ODOMETRY, Qos.SENSOR, self._odometry.pick, take)
 
     async def run(self) -> None:
-        """Let the vehicle stand still when nothing new is commanded, until cancelled."""
+        """Command speed 0 when the last command expires, until cancelled."""
         try:
             await self._alarm.run()
         finally:
@@ -79,7 +79,7 @@ class RosVehicle:
                 self._stop()
 
     def send(self, drive: Drive) -> None:
-        """Tell the vehicle how to drive; what it cannot do is cut, what is no number is a stop."""
+        """Publish a drive command, clipped to the limits; a value that is not finite is a stop."""
         command = self._possible(drive.command)
         self._tell(command)
         moves = command.speed_mps != 0.0
@@ -101,7 +101,7 @@ class RosVehicle:
         self._publisher.publish(body(command, self._limits.wheelbase_m, stamp))
 
     def _possible(self, command: DriveCommand) -> DriveCommand:
-        """Return what the vehicle can do of a command."""
+        """Return a command clipped to the limits of the vehicle."""
         speed, steering = command.speed_mps, command.steering_angle_rad
         if not (math.isfinite(speed) and math.isfinite(steering)):
             return replace(self._told, speed_mps=0.0)
@@ -120,7 +120,7 @@ class RosVehicle:
 
 @dataclass(frozen=True, slots=True)
 class _Motion:
-    """What matters of one message."""
+    """The motion in one message."""
 
     pose: Pose
     speed_mps: float
@@ -128,7 +128,7 @@ class _Motion:
 
 
 class _Odometry:
-    """Takes how the vehicle moves out of messages; all on the thread of ROS."""
+    """Reads the motion of the vehicle from messages; runs on the thread of ROS."""
 
     def __init__(self, clock: Clock, topic: str) -> None:
         self._clock = clock
@@ -137,19 +137,19 @@ class _Odometry:
         self._quiet_until: Instant = 0
 
     def pick(self, message: Message) -> _Motion | None:
-        """Return how the vehicle moves; None: that is not said, or it was said just before."""
+        """Return the motion in a message; None: it is invalid, or messages come too fast."""
         place, turn = message.pose.pose.position, message.pose.pose.orientation
         speed, yaw_rate = message.twist.twist.linear.x, message.twist.twist.angular.z
         now = self._clock.now()
         numbers = (place.x, place.y, speed, yaw_rate)
         length = math.hypot(turn.x, turn.y, turn.z, turn.w)
-        # Of length 0 it is what a sender leaves that does not fill it in.
+        # Length 0: the sender did not fill in the quaternion.
         if not all(map(math.isfinite, numbers)) or not 0.9 < length < 1.1:
             if now >= self._quiet_until:
                 self._quiet_until = now + _QUIET
                 log.warning(
-                    "%s does not say how the vehicle moves: x, y, speed and yaw rate are %s, and "
-                    "its quaternion has the length %s",
+                    "invalid odometry on %s: x, y, speed and yaw rate are %s, and the quaternion "
+                    "has the length %s",
                     self._topic,
                     numbers,
                     length,

@@ -1,7 +1,7 @@
 """Converts between ROS messages and plain values as in JSON.
 
-No ROS is known here: a message class itself tells which fields it has and of which types. What is
-given is checked in full, since ROS does not: with a wrong type in a field it ends the process.
+Imports no ROS: a message class itself lists its fields and their types. Values are checked in full,
+since ROS does not do so: a wrong type in a field aborts the process.
 """
 
 import importlib
@@ -23,7 +23,7 @@ _ARRAY = re.compile(r"(?P<element>.+)\[(?P<length>\d+)\]")
 _STRING = re.compile(r"w?string(?:<(?P<most>\d+)>)?")
 _INTEGER = re.compile(r"(?P<unsigned>u?)int(?P<bits>8|16|32|64)")
 Check: TypeAlias = Callable[[object, str], Any]
-"""Takes a value and the path to it, and returns what a field holds."""
+"""Takes a value and the path to it, and returns the value for the field."""
 _LARGEST = {"float": float(np.finfo(np.float32).max), "double": math.inf}
 
 
@@ -34,7 +34,7 @@ def find_type(type_name: str) -> Any:  # noqa: ANN401  # a class of ROS, which h
         type_name: As `std_msgs/msg/Bool` or `lifecycle_msgs/srv/GetState`.
 
     Raises:
-        UnknownTypeError: There is none of that name on this machine.
+        UnknownTypeError: The type is not installed on this machine.
     """
     match = _TYPE_NAME.fullmatch(type_name)
     if match is None:
@@ -47,11 +47,11 @@ def find_type(type_name: str) -> Any:  # noqa: ANN401  # a class of ROS, which h
 
 
 def require_field(type_name: str, path: Sequence[str | int]) -> None:
-    """See that messages of a type have a field; how long a list is, only a message tells.
+    """Check that messages of a type have a field; the length of a list is not checked.
 
     Args:
         type_name: As `sensor_msgs/msg/BatteryState`.
-        path: Names of fields, and places in lists.
+        path: Names of fields, and indices of lists.
 
     Raises:
         UnknownTypeError: There is no such type.
@@ -72,17 +72,17 @@ def require_field(type_name: str, path: Sequence[str | int]) -> None:
 
 
 def fill(message: Message, fields: Fields) -> None:
-    """Set the fields of a message; those that are left out keep their values.
+    """Set the fields of a message; fields that are left out keep their values.
 
-    A nested message is replaced as a whole: what is left out of it has the value that ROS gives it.
+    A nested message is replaced as a whole: fields that are left out of it get their ROS default.
 
     Args:
         message: Of any type.
-        fields: By name; a `byte` is a number, and a number without a fraction will do for a float.
+        fields: By name; a `byte` is a number, and an integer is accepted for a float.
 
     Raises:
-        InvalidValueError: A field is unknown, or its value is not of its type; the message is as it
-            was. The error's pointer leads to the value, as `/status/0/level`.
+        InvalidValueError: A field is unknown, or its value has a wrong type; the message is
+            unchanged. The error's pointer leads to the value, as `/status/0/level`.
     """
     for name, value in _values(message, fields, "").items():
         setattr(message, name, value)
@@ -122,7 +122,7 @@ def _values(message: Message, fields: object, path: str) -> dict[str, Any]:
 
 @cache
 def _checked(kind: str) -> Check:
-    """Return what checks values of a type; made once of each, since messages come often."""
+    """Return the check for values of a type; cached, since messages come often."""
     if match := _SEQUENCE.fullmatch(kind):
         most = None if match["most"] is None else int(match["most"])
         return partial(_sequence, _checked(match["element"]), most)
@@ -169,7 +169,7 @@ def _nested(kind: Callable[[], Message], value: object, path: str) -> Message:
 
 
 def _unknown(kind: str, _value: object, path: str) -> Any:  # noqa: ANN401  # it never returns
-    raise InvalidValueError(f"{path} is of type {kind}, for which JSON has nothing", path)
+    raise InvalidValueError(f"{path} has the type {kind}, which JSON cannot hold", path)
 
 
 def _octet(value: object, path: str) -> bytes:
@@ -191,7 +191,7 @@ def _text(most: int | None, value: object, path: str) -> str:
 
 
 def _can_be_sent(text: str) -> bool:
-    # A null character would end it on its way; half of a surrogate pair has no encoding.
+    # A null character would end the string in ROS; a lone surrogate cannot be encoded.
     try:
         text.encode()
     except UnicodeEncodeError:

@@ -1,7 +1,7 @@
-"""The way from the threads of ROS to the event loop, and back for a response; knows no ROS.
+"""Passes messages from the threads of ROS to the event loop, and responses back; imports no ROS.
 
-All that is heard goes through one `Crossing`. What waits there for a busy event loop is bounded: a
-topic keeps its newest messages, and a service its first requests.
+Everything that is received goes through one `Crossing`. While the event loop is busy, queues are
+bounded: a topic keeps its newest messages, a service its first requests.
 """
 
 import asyncio
@@ -15,11 +15,11 @@ from service.ros.graph.conversion import fields_of, fill
 from service.ros.graph.graph import Fields, Message
 
 MAX_UNANSWERED = 32
-"""At most this many requests to one service of ours wait; more get an empty response."""
+"""Most unanswered requests to one of our services; further ones get an empty response."""
 
 _CANCEL_S = 0.5
 _AT_ONCE = 20
-"""At most this many messages of a topic are taken in one pass of the event loop."""
+"""Most messages of a topic that are processed in one pass of the event loop."""
 
 _log = logging.getLogger(__name__)
 
@@ -27,43 +27,43 @@ PickedT = TypeVar("PickedT")
 
 
 class Crossing:
-    """The event loop as other threads see it, and the tasks that they begin there."""
+    """Access to the event loop from other threads, and the tasks that they start there."""
 
     def __init__(self) -> None:
         self.closed = False
-        """Whether nothing crosses any more."""
+        """Whether the crossing is closed: nothing is passed on any more."""
         self._loop: asyncio.AbstractEventLoop | None = None
         self._tasks: set[asyncio.Task[None]] = set()
 
     def open(self) -> None:
-        """Lead to the event loop that runs now."""
+        """Connect to the running event loop."""
         self._loop = asyncio.get_running_loop()
 
     def post(self, callback: Callable[..., object], *arguments: object) -> None:
-        """Have something called on the event loop's thread; from any thread.
+        """Call a function on the event loop's thread; may be used from any thread.
 
-        It is called only while the crossing is not closed.
+        The function is not called once the crossing is closed.
         """
         if self.closed or self._loop is None:
             return
         try:
             self._loop.call_soon_threadsafe(self._call, callback, *arguments)
         except RuntimeError:
-            # The loop has been closed: there is nobody any more who could be told.
+            # The loop is closed: nothing is left that could process the call.
             return
 
     def call_next(self, callback: Callable[..., object], *arguments: object) -> None:
-        """Have something called in the next pass of the loop; from its own thread, as `post`."""
+        """Call a function in the next pass of the loop, as `post`; only from the loop's thread."""
         asyncio.get_running_loop().call_soon(self._call, callback, *arguments)
 
     def own(self, work: Coroutine[object, object, None], name: str) -> None:
-        """Run something as a task until it ends or the crossing is closed."""
+        """Run a coroutine as a task until it ends or the crossing is closed."""
         task = asyncio.create_task(work, name=name)
         self._tasks.add(task)
         task.add_done_callback(self._tasks.discard)
 
     async def close(self) -> None:
-        """Let nothing cross any more, and cancel what runs."""
+        """Pass nothing on any more, and cancel the running tasks."""
         self.closed = True
         for task in self._tasks:
             task.cancel()
@@ -76,7 +76,7 @@ class Crossing:
 
 
 class Inbox(Generic[PickedT]):
-    """What is heard of one topic, on its way to the event loop."""
+    """The queue of one topic's messages for the event loop."""
 
     def __init__(
         self,
@@ -86,14 +86,14 @@ class Inbox(Generic[PickedT]):
         take: Callable[[PickedT], None],
         depth: int,
     ) -> None:
-        """Make an empty one.
+        """Make an empty queue.
 
         Args:
-            crossing: Leads to the event loop.
-            topic: Names it in the log.
-            pick: Takes out of a message what matters, on the thread that hears it; None: nothing.
-            take: Is handed that, on the event loop's thread.
-            depth: How many wait; when one more comes, the oldest is dropped.
+            crossing: Passes messages to the event loop.
+            topic: For the log.
+            pick: Extracts what is needed from a message, on the receiving thread; None: nothing.
+            take: Called with that on the event loop's thread.
+            depth: Capacity; when it is exceeded, the oldest message is dropped.
         """
         self._crossing = crossing
         self._topic = topic
@@ -105,14 +105,14 @@ class Inbox(Generic[PickedT]):
         self._lock = threading.Lock()
 
     def hear(self, message: Message) -> None:
-        """Hand a message over; from the thread that hears it."""
+        """Queue a message; called on the receiving thread."""
         try:
             picked = self._pick(message)
         except Exception:
-            # The edge to whoever listens: a message must not cost the thread, and with it all
-            # others. Told once, since what is wrong with one is wrong with the next.
+            # The edge to the subscriber: its fault must not end the thread, and with it all other
+            # subscriptions. Logged once, since further messages are likely to fail in the same way.
             if not self._complained:
-                _log.exception("%s: messages are dropped, the first for this:", self._topic)
+                _log.exception("%s: messages are dropped; the first one because of:", self._topic)
             self._complained = True
             return
         if picked is not None:
@@ -132,21 +132,20 @@ class Inbox(Generic[PickedT]):
             has_more = bool(self._waiting)
             dropped, self._dropped = self._dropped, 0
         if dropped:
-            _log.warning(
-                "%s: %d messages were dropped, the event loop was busy", self._topic, dropped
-            )
+            _log.warning("%s: dropped %d messages, the event loop was busy", self._topic, dropped)
         for item in items:
-            # One call each, so that what is raised over one does not cost the others.
+            # One call each, so that an exception over one message does not lose the others.
             self._crossing.call_next(self._take, item)
         if has_more:
             self._crossing.call_next(self._hand_out)
 
 
 class Server:
-    """A service of ours whose responses take their time.
+    """A ROS service whose responses may take long.
 
-    rclpy sends what a callback returns as soon as it returns, and polls without a pause whatever
-    it awaits. So the callback returns the request, and what should send that keeps it instead.
+    rclpy sends the return value of a callback as soon as it returns, and busy-waits if the callback
+    awaits anything. So the callback returns the request, and `send_response` is replaced: it starts
+    the work, and the response is sent when that has ended.
     """
 
     def __init__(
@@ -157,14 +156,14 @@ class Server:
         answer: Callable[[Fields], Awaitable[Fields]],
         do: Callable[..., None],
     ) -> None:
-        """Make one that has no service yet.
+        """Prepare; `attach` connects it to the service.
 
         Args:
-            crossing: Leads to the event loop.
+            crossing: Passes requests to the event loop.
             name: Full name of the service.
             response: Makes an empty response.
-            answer: As of `RosNode.serve`.
-            do: Calls a function with arguments on the thread that hears the requests.
+            answer: As for `RosNode.serve`.
+            do: Calls a function with arguments on the thread that receives the requests.
         """
         self._crossing = crossing
         self._name = name
@@ -183,8 +182,8 @@ class Server:
         self._attached.set()
 
     def accept(self, request: Message, _response: Message) -> Message:
-        """Return the request, so that it comes to where the response should be sent."""
-        # The thread that hears it may be faster than the call that made the service.
+        """Return the request, so that rclpy passes it to `_keep` in place of a response."""
+        # The receiving thread may be faster than the call that makes the service.
         self._attached.wait(timeout=1.0)
         return request
 
@@ -193,7 +192,7 @@ class Server:
             self._crossing.post(self._begin, request, header)
             return
         if not self._complained:
-            _log.warning("%s: %d requests wait; more are refused", self._name, MAX_UNANSWERED)
+            _log.warning("%s: %d requests wait; more are rejected", self._name, MAX_UNANSWERED)
         self._complained = True
         self._respond(self._response(), header)
 
@@ -205,8 +204,8 @@ class Server:
         try:
             fill(response, await self._answer(fields_of(request)))
         except Exception:
-            # The edge to whoever answers: a fault in one answer must not cost the service.
-            _log.exception("%s: a request gets an empty response, for this:", self._name)
+            # The edge to the handler: a fault in one response must not end the service.
+            _log.exception("%s: a request gets an empty response because of:", self._name)
         self._do(self._finish, response, header)
 
     def _finish(self, response: Message, header: object) -> None:
@@ -218,5 +217,5 @@ class Server:
         try:
             self._send(response, header)
         except RuntimeError as error:
-            # The errors of rclpy are such: whoever asked is gone.
-            _log.info("%s: a response could not be sent: %s", self._name, error)
+            # rclpy raises RuntimeError if the client is gone.
+            _log.info("%s: could not send a response: %s", self._name, error)

@@ -1,7 +1,7 @@
-"""What we need of a ROS 2 graph, and nothing about who provides it.
+"""The port to a ROS 2 graph.
 
-`link.py` provides it with rclpy; the tests have one in memory. All is called on the event loop's
-thread, and all that comes back comes there.
+`link.py` implements it with rclpy; the tests have one in memory. All methods and callbacks are
+called on the event loop's thread, unless stated otherwise.
 """
 
 from collections.abc import Awaitable, Callable, Mapping, Sequence
@@ -11,10 +11,10 @@ from typing import Any, Protocol, TypeAlias, TypeVar
 PickedT = TypeVar("PickedT")
 
 Fields: TypeAlias = Mapping[str, Any]
-"""A message as JSON has it: names to numbers, strings, lists and further mappings. What is left out
-has the value that ROS gives it; a `byte` is a number."""
+"""A message as in JSON: names to numbers, strings, lists and further mappings. Fields that are left
+out have their ROS default; a `byte` is a number."""
 Message: TypeAlias = Any
-"""A message as ROS has it: one attribute per field."""
+"""A ROS message: one attribute per field."""
 
 
 class UnknownTypeError(Exception):
@@ -23,8 +23,8 @@ class UnknownTypeError(Exception):
     def __init__(self, type_name: str) -> None:
         package = type_name.partition("/")[0]
         super().__init__(
-            f"the ROS 2 type {type_name} is not there: install its package ({package}) into the ROS"
-            " distribution, or source the workspace that has it, before Pilothouse is started"
+            f"the ROS 2 type {type_name} is not installed: install its package ({package}) into the"
+            " ROS distribution, or source the workspace that has it, before you start Pilothouse"
         )
         self.type_name = type_name
 
@@ -38,30 +38,30 @@ class UnknownFieldError(Exception):
 
 
 class GraphFailedError(Exception):
-    """What carries messages between us and ROS 2 broke; nothing of it is heard any more."""
+    """The connection to ROS 2 failed; no more messages are received."""
 
 
 class Qos(Enum):
-    """How messages of a topic are carried; both ends must agree."""
+    """Quality of service of a topic; both ends must be compatible."""
 
     EVENTS = "events"
-    """Reliable, the last 100, nothing for late comers: what lifecycle nodes use."""
+    """Reliable, volatile, depth 100: as lifecycle nodes use it."""
     PARAMETER_EVENTS = "parameter_events"
-    """As rclpy and rclcpp publish them."""
+    """As rclpy and rclcpp publish parameter events."""
     SENSOR = "sensor"
-    """The last 5, and lost ones stay lost; a subscription like this hears every publisher."""
+    """Best effort, volatile, depth 5; such a subscription is compatible with every publisher."""
     COMMANDS = "commands"
-    """Reliable, only the last one, nothing for late comers: an older command to drive is void."""
+    """Reliable, volatile, depth 1: an older drive command is void."""
     LATCHED = "latched"
-    """Reliable, and the last one is kept for late comers."""
+    """Reliable, transient local, depth 1: a late subscriber gets the last message."""
 
 
 class Lane(Enum):
-    """Which nodes share a thread: the callbacks of a lane run one after the other.
+    """Nodes of ours that share a thread: the callbacks of a lane run one after the other.
 
-    With rclpy each message costs as much as the lane has things to wait for. So the many services
-    of nodes are divided by what is asked of all of them at the same time, and what comes often is
-    kept apart from them.
+    With rclpy the cost of each message grows with the number of entities in its lane. So the
+    services of nodes are divided by what is queried of all nodes at the same time, and frequent
+    topics are separate from them.
     """
 
     STATES = "states"
@@ -73,49 +73,52 @@ class Lane(Enum):
 
 
 class Client(Protocol):
-    """One service of somebody else."""
+    """A client of a service."""
 
     def is_ready(self) -> bool:
-        """Tell whether the graph knows a server; one that died is known for some 20 s more."""
+        """Tell whether the graph knows a server; a dead one remains known for about 20 s."""
         ...
 
     def servers(self) -> int:
-        """Tell how many servers the graph knows, the dead ones included."""
+        """Return how many servers the graph knows, including dead ones."""
         ...
 
     async def call(self, request: Fields, within_s: float) -> Message:
-        """Ask, and return the response.
+        """Send a request, and return the response.
+
+        Args:
+            request: Its fields.
+            within_s: Timeout, s.
 
         Raises:
-            TimeoutError: There was none in time; nothing is known of what became of the request.
+            TimeoutError: There was no response in time; the fate of the request is unknown.
         """
         ...
 
 
 class Publisher(Protocol):
-    """One topic of ours."""
+    """A publisher of a topic."""
 
     def publish(self, message: Fields) -> None:
-        """Send a message, and return at once.
+        """Publish a message, and return at once.
 
-        One that the type cannot hold is logged and not sent. The message must not be changed
-        afterwards.
+        An invalid message is logged and not sent. The message must not be changed afterwards.
         """
         ...
 
 
 class RosNode(Protocol):
-    """One node of ours, as others see it in the graph."""
+    """One of our own nodes in the graph."""
 
     def client(self, service: str, type_name: str) -> Client:
-        """Return a client; there need be no server yet.
+        """Return a client; the server need not exist yet.
 
         Args:
             service: Full name, as `/drive_base/get_state`.
             type_name: As `lifecycle_msgs/srv/GetState`.
 
         Raises:
-            UnknownTypeError: There is no such type on this machine. The other methods as well.
+            UnknownTypeError: The type is not installed; the other methods raise it as well.
         """
         ...
 
@@ -131,58 +134,58 @@ class RosNode(Protocol):
         pick: Callable[[Message], PickedT | None],
         take: Callable[[PickedT], None],
     ) -> None:
-        """Hear a topic for as long as the graph is open.
+        """Subscribe to a topic while the graph is open.
 
         Args:
             topic: Full name.
             type_name: As `std_msgs/msg/Bool`.
-            qos: What is asked of its publishers.
-            pick: Takes out of a message what matters, on another thread; None: nothing does. What
-                it raises is logged, and the message is dropped.
-            take: Is handed that, on the event loop's thread.
+            qos: Requested quality of service.
+            pick: Extracts what is needed from a message, on another thread; None: nothing. If it
+                raises, that is logged, and the message is dropped.
+            take: Called with that on the event loop's thread.
         """
         ...
 
     def watch_liveliness(
         self, topic: str, type_name: str, lease_s: float, take: Callable[[bool], None]
     ) -> None:
-        """Hear which publishers of a topic live.
+        """Watch whether a topic has live publishers.
 
-        Only publishers with automatic liveliness and a lease as short or shorter are noticed; none
-        has to publish anything.
+        Only publishers with automatic liveliness and a lease of at most `lease_s` are noticed; they
+        need not publish anything.
 
         Args:
             topic: Full name.
             type_name: As `std_msgs/msg/Empty`.
-            lease_s: How long after its process died a publisher is missed, in seconds.
-            take: Is handed True whenever one comes or goes and there is one then, and False once
-                there is none any more.
+            lease_s: Liveliness lease, s: the death of a publisher is noticed after this time.
+            take: Called when the number of live publishers changes: True if there is one, else
+                False.
         """
         ...
 
     def serve(
         self, service: str, type_name: str, answer: Callable[[Fields], Awaitable[Fields]]
     ) -> None:
-        """Offer a service for as long as the graph is open.
+        """Offer a service while the graph is open.
 
         Args:
             service: Full name.
             type_name: As `lifecycle_msgs/srv/ChangeState`.
-            answer: Returns the response to a request, and may take its time: others are served
-                meanwhile. What it raises is logged, and the request gets an empty response.
+            answer: Returns the response to a request. It may take long; other requests are
+                processed meanwhile. If it raises, that is logged, and the response is empty.
         """
         ...
 
 
 class RosGraph(Protocol):
-    """The ROS 2 graph that we are part of."""
+    """The ROS 2 graph."""
 
     def node(self, name: str, lane: Lane) -> RosNode:
-        """Return a new node of ours.
+        """Create a node.
 
         Args:
             name: Full name without the leading slash, as `actuation` or `left/arm`.
-            lane: Which nodes it shares a thread with.
+            lane: Determines its thread.
         """
         ...
 
@@ -191,11 +194,11 @@ class RosGraph(Protocol):
         ...
 
     def require_field(self, type_name: str, path: Sequence[str | int]) -> None:
-        """See that messages of a type have a field.
+        """Check that messages of a type have a field.
 
         Args:
             type_name: As `sensor_msgs/msg/BatteryState`.
-            path: Names of fields, and places in lists.
+            path: Names of fields, and indices of lists.
 
         Raises:
             UnknownTypeError: There is no such type.
@@ -204,13 +207,15 @@ class RosGraph(Protocol):
         ...
 
     async def wait_failed(self) -> None:
-        """Wait until the graph fails; whoever runs us awaits this, so that it is not silent.
+        """Wait until the graph fails; the owner awaits this, so that a failure is not silent.
+
+        Never returns; it is cancelled at the end.
 
         Raises:
-            GraphFailedError: It has. This never returns, and is cancelled if all goes well.
+            GraphFailedError: The graph failed.
         """
         ...
 
     async def close(self) -> None:
-        """Leave the graph; nothing is heard afterwards, and nothing can be sent."""
+        """Leave the graph; afterwards nothing is received or sent."""
         ...

@@ -1,9 +1,9 @@
 """The ROS 2 graph through rclpy; the only module that imports it.
 
-Each lane has an executor of rclpy that spins in a thread of its own. From there to the event loop
-leads one way, a `Crossing`. From the loop to ROS requests and commands are sent directly, which
-rclpy allows; responses by the lane, since the middleware may wait there for a client that is just
-coming or going; and everything else that is published by a `Sender`.
+Each lane has an rclpy executor that spins in a thread of its own. Received messages reach the event
+loop through a `Crossing`. In the other direction, requests and drive commands are sent directly
+from the loop, which rclpy allows. Responses are sent by the lane, since the middleware may block
+while a client is joining or leaving; all other messages are published by a `Sender`.
 """
 
 import asyncio
@@ -28,7 +28,7 @@ from rclpy.qos import (
 )
 from rclpy.signals import SignalHandlerOptions
 from rclpy.type_support import check_for_type_support
-from rosidl_generator_py.import_type_support_impl import (  # type: ignore[import-not-found]  # as rclpy
+from rosidl_generator_py.import_type_support_impl import (
     UnsupportedTypeSupport,
 )
 
@@ -52,39 +52,39 @@ _PROFILES = {
     Qos.COMMANDS: QoSProfile(depth=1),
     Qos.LATCHED: QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL),
 }
-# By default 10 requests may come at once, and those beyond are lost without a word.
+# By default only 10 requests may come at once; further ones are lost silently.
 _SERVING = QoSProfile(depth=2 * MAX_UNANSWERED)
-# Each event that is listened to makes every wait of a lane longer.
+# Each event handler slows down every wait of a lane.
 _NO_EVENTS = SubscriptionEventCallbacks(use_default_callbacks=False)
 _NO_PUBLISHER_EVENTS = PublisherEventCallbacks(use_default_callbacks=False)
 _LIVELINESS_DEPTH = 8
 _DOMAINS = range(233)
 _JOIN_S = 1.0
 _REQUESTS_AT_ONCE = 2
-"""In one pass of the event loop; one takes 0.1 to 0.5 ms."""
+"""Per pass of the event loop; one request takes 0.1 to 0.5 ms."""
 
 _log = logging.getLogger(__name__)
 
 
 class RosLink:
-    """Our place in the ROS 2 graph; a `RosGraph`.
+    """A `RosGraph` through rclpy.
 
-    The domain and how others are found is as in every ROS program: by the environment.
+    Domain and discovery are configured by the environment, as in every ROS program.
     """
 
     def __init__(self) -> None:
-        """Join the graph; an event loop is needed only for the first node.
+        """Join the graph; an event loop is not needed before the first node.
 
         Raises:
-            RuntimeError: The middleware does not start, or ROS_DOMAIN_ID is no domain.
+            RuntimeError: The middleware does not start, or ROS_DOMAIN_ID is invalid.
         """
         _check_domain()
         self.context = rclpy.Context()
-        # No arguments, since those of the command line are not for ROS; no handlers of signals,
-        # since SIGTERM and SIGINT are ours.
+        # No arguments, since those of the command line are not for ROS; no signal handlers, since
+        # `pilothouse serve` handles SIGTERM and SIGINT.
         rclpy.init(args=[], context=self.context, signal_handler_options=SignalHandlerOptions.NO)
         self.crossing = Crossing()
-        """Leads to the event loop; once it is closed, nothing is sent any more either."""
+        """Passes messages to the event loop; once it is closed, nothing is sent any more either."""
         self.sender = Sender()
         self.turnstile = Turnstile(_REQUESTS_AT_ONCE)
         self._spinners: dict[Lane, _Spinner] = {}
@@ -93,7 +93,7 @@ class RosLink:
         self._reason = ""
 
     def node(self, name: str, lane: Lane) -> "_Node":
-        """Return a new node of ours; the event loop that runs now is the one that hears of it."""
+        """Create a node; its messages go to the event loop that is running now."""
         self.crossing.open()
         if lane not in self._spinners:
             self._spinners[lane] = _Spinner(self, lane)
@@ -120,20 +120,20 @@ class RosLink:
         return True
 
     def require_field(self, type_name: str, path: Sequence[str | int]) -> None:
-        """See that messages of a type have a field."""
+        """Check that messages of a type have a field."""
         require_field(type_name, path)
 
     async def wait_failed(self) -> None:
-        """Wait until a lane breaks down.
+        """Wait until a lane fails.
 
         Raises:
-            GraphFailedError: One has; what it raised is in the log.
+            GraphFailedError: A lane failed; the log holds its exception.
         """
         await self._failed.wait()
         raise GraphFailedError(self._reason)
 
     async def close(self) -> None:
-        """Leave the graph within 2 s; once is enough, and more does no harm."""
+        """Leave the graph within 2 s; further calls do nothing."""
         if self.crossing.closed:
             return
         await self.crossing.close()
@@ -146,8 +146,8 @@ class RosLink:
         until = time.monotonic() + _JOIN_S
         ended = [thread.join(until - time.monotonic()) for thread in threads]
         if not all(ended):
-            # What a thread may still use cannot be destroyed; the process ends soon anyway.
-            _log.error("ROS 2 is left as it is: a thread of it did not end within %g s", _JOIN_S)
+            # Objects that a thread may still use cannot be destroyed; the process ends soon anyway.
+            _log.error("ROS 2 was not shut down: a thread did not end within %g s", _JOIN_S)
             return
         for node in self._nodes:
             node.destroy_node()
@@ -157,7 +157,7 @@ class RosLink:
         self.context.destroy()
 
     def fail(self, reason: str) -> None:
-        """Let it be known that a lane broke down."""
+        """Report that a lane failed."""
         self._reason = reason
         self._failed.set()
 
@@ -175,18 +175,18 @@ class _Spinner:
         self._thread.start()
 
     def do(self, work: Callable[..., object], *arguments: object) -> None:
-        """Have something done by this thread; it must not raise."""
+        """Call a function on this thread; it must not raise."""
         if not self._stopping:
             self.executor.create_task(work, *arguments)
 
     def stop(self) -> None:
-        """Let the thread end after what it is doing."""
-        # Alone, a flag would be seen only with the next message.
+        """Let the thread end after its current callback."""
+        # Without this the thread would see the flag only with the next message.
         self.do(_nothing)
         self._stopping = True
 
     def join(self, within_s: float) -> bool:
-        """Wait for the end of the thread, and tell whether it came."""
+        """Wait for the thread, and return whether it ended in time."""
         self._thread.join(max(within_s, 0.0))
         return not self._thread.is_alive()
 
@@ -195,16 +195,16 @@ class _Spinner:
             while not self._stopping:
                 self.executor.spin_once()
         except Exception as error:
-            # The edge of this thread: whatever rclpy raises, whoever runs us has to know. One of
-            # them says that something else in this process shut ROS down.
+            # The edge of this thread: the owner must be notified of whatever rclpy raises, for
+            # example if something else in this process shut ROS down.
             if not self._stopping:
-                reason = f"the ROS 2 thread of the lane {self._lane.value} broke down: {error!r}"
+                reason = f"the ROS 2 thread of the lane {self._lane.value} failed: {error!r}"
                 _log.critical(reason, exc_info=True)
                 self._link.crossing.post(self._link.fail, reason)
 
 
 class _Node:
-    """One node of ours; a `RosNode`."""
+    """A `RosNode` of rclpy."""
 
     def __init__(self, link: RosLink, spinner: _Spinner, node: Any) -> None:  # noqa: ANN401
         self._link = link
@@ -233,7 +233,7 @@ class _Node:
         pick: Callable[[Message], PickedT | None],
         take: Callable[[PickedT], None],
     ) -> None:
-        """Hear a topic for as long as the link is open."""
+        """Subscribe to a topic while the link is open."""
         kind = _find_type(type_name)
         profile = _PROFILES[qos]
         inbox = Inbox(self._link.crossing, topic, pick, take, profile.depth)
@@ -242,7 +242,7 @@ class _Node:
     def watch_liveliness(
         self, topic: str, type_name: str, lease_s: float, take: Callable[[bool], None]
     ) -> None:
-        """Hear which publishers of a topic live."""
+        """Watch whether a topic has live publishers."""
         kind = _find_type(type_name)
         living = 0
 
@@ -255,7 +255,7 @@ class _Node:
 
         def warn(_status: object) -> None:
             wanted = f"automatic liveliness with a lease of {lease_s:g} s or less"
-            _log.warning("%s: a publisher is not noticed, since it has no %s", topic, wanted)
+            _log.warning("%s: ignored a publisher that does not have %s", topic, wanted)
 
         inbox = Inbox(self._link.crossing, topic, change, take, _LIVELINESS_DEPTH)
         profile = QoSProfile(
@@ -272,14 +272,14 @@ class _Node:
     def serve(
         self, service: str, type_name: str, answer: Callable[[Fields], Awaitable[Fields]]
     ) -> None:
-        """Offer a service for as long as the link is open."""
+        """Offer a service while the link is open."""
         kind = _find_type(type_name)
         server = Server(self._link.crossing, service, kind.Response, answer, self._spinner.do)
         server.attach(self._node.create_service(kind, service, server.accept, qos_profile=_SERVING))
 
 
 class _Client:
-    """A client of a service; a `Client`."""
+    """A `Client` of rclpy."""
 
     def __init__(self, link: RosLink, node: Any, kind: Any, client: Any) -> None:  # noqa: ANN401
         self._crossing = link.crossing
@@ -293,17 +293,17 @@ class _Client:
         return not self._crossing.closed and bool(self._client.service_is_ready())
 
     def servers(self) -> int:
-        """Tell how many servers the graph knows."""
+        """Return how many servers the graph knows."""
         if self._crossing.closed:
             return 0
         return int(self._node.count_services(self._client.service_name))
 
     async def call(self, request: Fields, within_s: float) -> Message:
-        """Ask, and return the response.
+        """Send a request, and return the response.
 
         Raises:
             TimeoutError: There was none in time, or the link is closed.
-            InvalidValueError: The service's request has no such fields.
+            InvalidValueError: The fields do not fit the request type of the service.
         """
         message = self._kind.Request()
         fill(message, request)
@@ -312,7 +312,7 @@ class _Client:
             raise TimeoutError("the link to ROS 2 is closed")
         response: asyncio.Future[Message] = asyncio.get_running_loop().create_future()
         asked = self._client.call_async(message)
-        # Awaiting what rclpy returns would poll it without a pause.
+        # Awaiting the future of rclpy would busy-wait.
         asked.add_done_callback(lambda done: self._crossing.post(_settle, response, done.result()))
         try:
             async with asyncio.timeout(within_s):
@@ -322,7 +322,7 @@ class _Client:
 
 
 class _Publisher:
-    """A publisher of a topic; a `Publisher`."""
+    """A `Publisher` of rclpy."""
 
     def __init__(
         self,
@@ -335,11 +335,11 @@ class _Publisher:
         """Prepare.
 
         Args:
-            crossing: Whether we are still in the graph.
+            crossing: Nothing is sent once it is closed.
             kind: Type of the messages.
-            publisher: That of rclpy.
-            topic: Names it in the log.
-            sender: Sends; None: whoever publishes does, at once.
+            publisher: Of rclpy.
+            topic: For the log.
+            sender: Thread that sends the messages; None: `publish` sends them itself.
         """
         self._crossing = crossing
         self._kind = kind
@@ -348,7 +348,7 @@ class _Publisher:
         self._sender = sender
 
     def publish(self, message: Fields) -> None:
-        """Send a message."""
+        """Publish a message."""
         if self._sender is None:
             send_or_tell(self._topic, self._send, message)
         else:
@@ -362,10 +362,10 @@ class _Publisher:
 
 
 def _check_domain() -> None:
-    """Refuse a domain that ROS takes for another one, or over which it ends the process."""
+    """Reject a domain that ROS would misread, or that would abort the process."""
     text = os.environ.get("ROS_DOMAIN_ID", "")
     try:
-        # By the rules of C, as rcl reads it.
+        # By the rules of C, as in rcl.
         domain = int(text or "0", base=0)
     except ValueError:
         domain = -1
@@ -380,7 +380,7 @@ def _find_type(type_name: str) -> Any:  # noqa: ANN401  # a class of ROS
     try:
         check_for_type_support(kind)
     except (AttributeError, NoTypeSupportImportedException, UnsupportedTypeSupport) as error:
-        # It is not of ROS 2, or its shared libraries are missing, or of another Python.
+        # Not a ROS 2 type, or its shared libraries are missing or built for another Python.
         raise UnknownTypeError(type_name) from error
     return kind
 

@@ -1,7 +1,7 @@
-"""Sending without delaying the tick of the event loop; knows no ROS.
+"""Sends messages without delaying the tick of the event loop; imports no ROS.
 
-To fill a message of fifty parts takes too long, and so do fifty requests in a row: messages are
-published by a thread of its own, and requests go out a few at a time.
+Filling a message with fifty parts takes too long, and so do fifty requests in a row. So messages
+are published by a separate thread, and requests are sent a few at a time.
 """
 
 import asyncio
@@ -16,7 +16,7 @@ from domain.errors import InvalidValueError
 from service.ros.graph.graph import Fields
 
 MAX_WAITING = 1_000
-"""At most this many messages wait to be sent; further ones are dropped."""
+"""Capacity for messages that wait to be sent; further ones are dropped."""
 
 _log = logging.getLogger(__name__)
 
@@ -24,20 +24,20 @@ Send: TypeAlias = Callable[[Fields], None]
 
 
 class Turnstile:
-    """Lets a few through in each pass of the event loop; the others follow in the next ones."""
+    """Lets a few callers through in each pass of the event loop; the others wait for the next."""
 
     def __init__(self, at_once: int) -> None:
-        """Begin.
+        """Prepare.
 
         Args:
-            at_once: How many pass together.
+            at_once: Callers per pass of the event loop.
         """
         self._at_once = at_once
         self._passed = 0
         self._waiting: deque[asyncio.Future[None]] = deque()
 
     async def wait_for_turn(self) -> None:
-        """Return when it is the caller's turn, in the order in which they came."""
+        """Return when it is the caller's turn; callers keep their order."""
         if self._passed == self._at_once:
             turn: asyncio.Future[None] = asyncio.get_running_loop().create_future()
             self._waiting.append(turn)
@@ -54,7 +54,7 @@ class Turnstile:
         self._passed = 0
         while self._waiting and self._passed < self._at_once:
             turn = self._waiting.popleft()
-            # Somebody who went while waiting leaves the turn to the next.
+            # A caller that was cancelled while waiting leaves its turn to the next.
             if not turn.done():
                 turn.set_result(None)
                 self._count()
@@ -64,7 +64,7 @@ class Sender:
     """Sends messages in the order in which they were handed in."""
 
     def __init__(self) -> None:
-        """Begin; the thread ends with `stop`."""
+        """Start the thread; `stop` ends it."""
         self._waiting: queue.Queue[tuple[str, Send, Fields] | None] = queue.Queue(MAX_WAITING)
         self._stopping = False
         self._dropped = 0
@@ -72,33 +72,33 @@ class Sender:
         self._thread.start()
 
     def send(self, topic: str, send: Send, message: Fields) -> None:
-        """Have a message sent, and return at once; from one thread.
+        """Queue a message, and return at once; always call this from the same thread.
 
         Args:
-            topic: Names it in the log.
-            send: Is called with the message; it raises nothing but that a message is invalid.
+            topic: For the log.
+            send: Called with the message; may raise only InvalidValueError.
             message: Must not be changed any more.
         """
         try:
             self._waiting.put_nowait((topic, send, message))
         except queue.Full:
             if not self._dropped:
-                _log.warning("%s: messages are dropped, %d wait already", topic, MAX_WAITING)
+                _log.warning("%s: messages are dropped, %d already wait", topic, MAX_WAITING)
             self._dropped += 1
         else:
             self._dropped = 0
 
     def stop(self) -> None:
-        """Let the thread end; what waits is not sent any more."""
+        """Let the thread end; queued messages are not sent any more."""
         self._stopping = True
         try:
             self._waiting.put_nowait(None)
         except queue.Full:
-            # It is awake, and sees that it has to stop.
+            # The thread is awake, and sees the flag.
             return
 
     def join(self, within_s: float) -> bool:
-        """Wait for the end of the thread, and tell whether it came."""
+        """Wait for the thread, and return whether it ended in time."""
         self._thread.join(max(within_s, 0.0))
         return not self._thread.is_alive()
 
@@ -109,7 +109,7 @@ class Sender:
 
 
 def send_or_tell(topic: str, send: Send, message: Fields) -> None:
-    """Send a message; one that its type cannot hold must not end the others."""
+    """Send a message; an invalid one is logged and must not end the thread."""
     try:
         send(message)
     except InvalidValueError as error:

@@ -1,7 +1,7 @@
-"""The robot as `diagnostic_msgs/msg/DiagnosticArray`, for the tools that show diagnostics.
+"""The robot as `diagnostic_msgs/msg/DiagnosticArray`, for diagnostics tools.
 
-A name says what it is about: `pilothouse: drive_base` a part, `pilothouse: signal estop` a signal,
-`pilothouse: system state` the robot.
+Names of statuses: `pilothouse: drive_base` for a part, `pilothouse: signal estop` for a signal,
+`pilothouse: system state` for the robot.
 """
 
 from collections.abc import Callable, Mapping, Sequence
@@ -18,11 +18,11 @@ from service.ros.interface.message_fields import header
 ViewT = TypeVar("ViewT")
 
 MAX_STATUSES = 500
-"""In one message; what is wrong comes before what is not."""
+"""Most statuses in one message; those with problems come first."""
 
 
 class Level(IntEnum):
-    """As `diagnostic_msgs/msg/DiagnosticStatus` numbers them."""
+    """The levels of `diagnostic_msgs/msg/DiagnosticStatus`."""
 
     OK = 0
     WARN = 1
@@ -31,7 +31,7 @@ class Level(IntEnum):
 
 
 def diagnostic_array(frame: Frame, clock: Clock) -> Fields:
-    """Return everything that a complete frame says, as a `diagnostic_msgs/msg/DiagnosticArray`."""
+    """Return a complete frame as a `diagnostic_msgs/msg/DiagnosticArray`."""
     signals = tuple(frame.signals.values())
     parts = tuple(frame.parts.values())
     room = MAX_STATUSES - 1
@@ -53,10 +53,10 @@ def status(level: Level, what: str, message: str, values: Mapping[str, object]) 
     """Return a `diagnostic_msgs/msg/DiagnosticStatus`.
 
     Args:
-        level: How bad it is.
-        what: What it is about, without `pilothouse: `.
+        level: Severity.
+        what: Its name, without `pilothouse: `.
         message: One sentence.
-        values: Facts by name; None is left out.
+        values: Facts by name; those that are None are left out.
     """
     return {
         "level": int(level),
@@ -72,21 +72,21 @@ def status(level: Level, what: str, message: str, values: Mapping[str, object]) 
 
 
 def _sendable(text: str) -> str:
-    """Replace what a string of ROS cannot hold; reasons and sources are what somebody wrote."""
+    """Replace characters that a ROS string cannot hold: clients write reasons and sources."""
     return text.encode(errors="replace").decode().replace("\0", "?")
 
 
 def _most_urgent(
     views: Sequence[ViewT], level: Callable[[ViewT], Level], room: int
 ) -> Sequence[ViewT]:
-    """Return as many as there is room for: those that are not OK before the others."""
+    """Return at most `room` views, those that are not OK first."""
     if len(views) <= room:
         return views
     return sorted(views, key=lambda view: level(view) is Level.OK)[:room]
 
 
 def _reasons(view: SystemStateView) -> dict[str, str]:
-    """Return why errors are on, by signal."""
+    """Return the reasons of the active errors, by signal."""
     found: dict[str, list[str]] = {}
     for reason in view.reasons:
         found.setdefault(reason.path[-1], []).append(reason.message)
@@ -120,7 +120,7 @@ def _signal_status(view: SignalView, reasons: str) -> Fields:
     level = _signal_level(view)
     message = reasons
     if not message:
-        message = "OK" if view.pending_error is None else f"{view.pending_error} is coming"
+        message = "OK" if view.pending_error is None else f"{view.pending_error} is pending"
     values = {
         "value": str(view.value).lower() if isinstance(view.value, bool) else view.value,
         "unit": view.unit or None,
@@ -154,10 +154,10 @@ def _part_message(view: PartView) -> str:
     actual = view.actual.state_and_mode.label
     why = f": {view.actual.reason}" if view.actual.reason else ""
     if not view.reachable:
-        what = "is unreachable" if view.kind == "node" else "has nodes that are unreachable"
+        what = "is unreachable" if view.kind == "node" else "has unreachable nodes"
         return f"{what}{why}"
     if view.change is not None:
         return f"changing to {view.target.label}" if view.target else "changing"
     if not view.converged and view.target is not None:
-        return f"should be {view.target.label}, is {actual}{why}"
+        return f"target {view.target.label}, actual {actual}{why}"
     return f"{actual}{why}"

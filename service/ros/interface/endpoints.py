@@ -1,7 +1,7 @@
-"""Services and topics of the interface, and who listens to the topics.
+"""Services and topics of the interface, and the listeners of the topics.
 
-Messages are mappings, as in JSON, and have all fields of their type. Types are the native ones:
-those of `system_modes_msgs` and `gem_state_msgs` where ROS itself has none.
+Messages are mappings, as in JSON, with all fields of their type. Where ROS has no type, those of
+`system_modes_msgs` and `gem_state_msgs` are used.
 """
 
 from collections.abc import Awaitable, Callable, Mapping
@@ -14,12 +14,12 @@ from domain.actor import Actor
 Fields: TypeAlias = Mapping[str, Any]
 
 OWN_NODE = "pilothouse"
-"""Name of the ROS node that has what belongs to no system."""
+"""Name of the ROS node for services and topics that belong to no system."""
 
 
 @dataclass(frozen=True, slots=True)
 class OfferedService:
-    """One service."""
+    """A service that Pilothouse offers."""
 
     name: str
     """Full name, as `/actuation/change_state`."""
@@ -28,10 +28,10 @@ class OfferedService:
     node: str
     """Name of the ROS node that has it, without the leading slash: the system, or `OWN_NODE`."""
     of_a_node: bool
-    """Whether a lifecycle node has it itself: then it is not offered in ROS 2 again."""
+    """Whether a lifecycle node offers it itself: then the gateway does not offer it in ROS 2."""
     call: Callable[[Fields, Actor], Awaitable[Fields]]
-    """Takes a request and who asks (as `rosbridge:127.0.0.1`), returns the response. A request is a
-    success only once its end was verified, and so it may take its time.
+    """Takes a request and the caller, returns the response. That may take long, since success is
+    reported only once it was verified.
 
     Raises:
         InvalidValueError: A field is unknown or has a wrong type.
@@ -40,54 +40,54 @@ class OfferedService:
 
 @dataclass(frozen=True, slots=True)
 class OfferedTopic:
-    """One topic that is published."""
+    """A topic that Pilothouse publishes."""
 
     name: str
     """Full name, as `/actuation/mode_event`."""
     type: str
     """As `system_modes_msgs/msg/ModeEvent`."""
     node: str
-    """As of `OfferedService`."""
+    """As in `OfferedService`."""
     of_a_node: bool
-    """As of `OfferedService`."""
+    """As in `OfferedService`."""
     latched: bool
-    """Whether a late subscriber gets the last message."""
+    """Whether a late subscriber gets the last message (transient local)."""
 
 
 @dataclass(frozen=True, slots=True)
 class SubscribedTopic:
-    """One topic that others may publish to."""
+    """A topic that Pilothouse subscribes to."""
 
     name: str
     """Full name, as `/battery_level`."""
     type: str
     """As `gem_state_msgs/msg/BatteryLevelStamped`."""
     take: Callable[[Fields, Actor], None]
-    """Is handed a message and who sent it.
+    """Takes a message and its sender.
 
     Raises:
-        PilothouseError: It is refused; nothing was changed.
+        PilothouseError: The message is rejected; nothing was changed.
     """
 
 
 class Listeners:
-    """The listeners of topics; one that was added twice gets each message twice."""
+    """The listeners of topics; a listener that was added twice gets each message twice."""
 
     def __init__(self) -> None:
         self._takes: dict[str, dict[object, Callable[[Fields], None]]] = {}
 
     def add(self, topic: str, take: Callable[[Fields], None]) -> Callable[[], None]:
-        """Add a listener, and return what removes it; it may be called more than once."""
+        """Add a listener; return a function that removes it and may be called repeatedly."""
         token = object()
         self._takes.setdefault(topic, {})[token] = take
         return partial(self._remove, topic, token)
 
     def hears(self, topic: str) -> bool:
-        """Tell whether anybody listens to a topic."""
+        """Tell whether a topic has a listener."""
         return topic in self._takes
 
     def send(self, topic: str, message: Fields) -> None:
-        """Hand a message to all who listen to its topic."""
+        """Pass a message to all listeners of its topic."""
         for take in tuple(self._takes.get(topic, {}).values()):
             take(message)
 

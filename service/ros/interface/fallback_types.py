@@ -1,8 +1,8 @@
-"""Standard types in place of message types that exist only where somebody built them.
+"""Standard types in place of message types that are rarely installed.
 
-`system_modes_msgs` and `gem_state_msgs` come with no distribution of ROS 2. Where one is not
-installed, its services and topics are offered all the same, in types that every installation has. A
-mode is then written as a state with a label of its own, as in `active.FAST`.
+`system_modes_msgs` and `gem_state_msgs` are in no ROS 2 distribution. If one is not installed, its
+services and topics are offered with types that every installation has. A mode is then represented
+as a state with a label such as `active.FAST`.
 """
 
 from collections.abc import Callable, Mapping
@@ -22,22 +22,22 @@ Convert: TypeAlias = Callable[[Fields], Fields]
 
 @dataclass(frozen=True, slots=True)
 class ServiceFallback:
-    """The type that carries a service, and what becomes of its requests and responses."""
+    """The fallback type of a service, and the conversions of its requests and responses."""
 
     type: str
     request: Convert
-    """From the type that carries it."""
+    """From the fallback type."""
     response: Convert
-    """Into the type that carries it."""
+    """Into the fallback type."""
 
 
 @dataclass(frozen=True, slots=True)
 class TopicFallback:
-    """The type that carries a topic, and what becomes of its messages."""
+    """The fallback type of a topic, and the conversion of its messages."""
 
     type: str
     message: Convert
-    """Into the type that carries it."""
+    """Into the fallback type."""
 
 
 _ACTIVE = f"{LifecycleState.ACTIVE}."
@@ -47,7 +47,7 @@ _ERRORS = {
     STALE_DATA_BIT: STALE_DATA,
     DECLARED_BIT: "DECLARED",
 }
-"""By bit; the message has no room for the names of declared errors, which share one."""
+"""By bit; declared errors share one bit, since the message has no field for their names."""
 
 
 def _no_fields(_: Fields) -> Fields:
@@ -59,7 +59,7 @@ def _as_it_is(fields: Fields) -> Fields:
 
 
 def _state(mode: str) -> Fields:
-    """Return a mode as a state; none, and one that is not known, is the unknown state."""
+    """Return a mode as a state; no mode and an unknown mode become the unknown state."""
     if not mode or mode == UNKNOWN_MODE:
         return {"id": LifecycleState.UNKNOWN.id, "label": mode}
     label = StateAndMode(LifecycleState.ACTIVE, ModeName(mode)).label
@@ -67,7 +67,7 @@ def _state(mode: str) -> Fields:
 
 
 def _asked_mode(fields: Fields) -> Fields:
-    """Read the label `FAST` or `active.FAST`; the number says nothing about a mode."""
+    """Read the label `FAST` or `active.FAST`; the id is ignored, since it cannot name a mode."""
     return {"mode_name": str(fields["transition"]["label"]).removeprefix(_ACTIVE)}
 
 

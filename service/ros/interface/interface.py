@@ -1,4 +1,4 @@
-"""Everything that Pilothouse offers to ROS, made of the supervisor; needs no ROS itself."""
+"""All services and topics that Pilothouse offers to ROS; needs no ROS itself."""
 
 import asyncio
 import logging
@@ -25,12 +25,12 @@ log = logging.getLogger(__name__)
 
 _AT_ONCE = 10
 _TURN = seconds(0.001)
-"""For so long events are turned into messages before others get their turn: a change of a thousand
-nodes makes events faster than some few in each turn."""
+"""Time for converting events in one pass of the event loop, since a change of a thousand nodes
+produces events faster than a fixed small number per pass can handle."""
 
 
 class RosInterface:
-    """Services and topics of all parts and of the robot, and the topics that it hears."""
+    """Services and topics of all parts and of the robot, and the subscribed topics."""
 
     def __init__(self, supervisor: Supervisor) -> None:
         self._supervisor = supervisor
@@ -52,12 +52,12 @@ class RosInterface:
         """By full name."""
 
     def listen(self, topic: str, take: Callable[[Fields], None]) -> Callable[[], None]:
-        """Hand each message of a topic to `take`, and return what ends that.
+        """Pass each message of a topic to `take`; return a function that ends this.
 
         Args:
             topic: Full name of one of `topics`.
-            take: Returns at once and raises nothing. Of a latched topic it is handed the last
-                message before this returns, if there was one.
+            take: Must return at once and not raise. For a latched topic it gets the last message,
+                if there is one, before this function returns.
         """
         last = self._part_topics.last(topic) if self.topics[topic].latched else None
         if last is not None:
@@ -65,10 +65,10 @@ class RosInterface:
         return self._listeners.add(topic, take)
 
     async def run(self) -> None:
-        """Make messages of what happens, until cancelled; only of what somebody listens to.
+        """Publish messages about events and states to the listeners, until cancelled.
 
-        Runs once at a time, and may be run again later: what happened meanwhile is not told, but
-        what was asked is known.
+        Must not run twice at the same time. It may be run again later: events in between are not
+        published, but the latched requests are up to date.
         """
         events, frames = self._supervisor.events, self._supervisor.frames
         reader = EventReader(events)
@@ -90,7 +90,7 @@ class RosInterface:
             while reader.is_behind and clock.now() < ends_at:
                 for event in reader.take(_AT_ONCE):
                     if isinstance(event, Gap):
-                        log.warning("events %d to %s were missed", event.first, event.last)
+                        log.warning("missed events %d to %s", event.first, event.last)
                         missed = True
                     else:
                         self._part_topics.take(event)

@@ -8,7 +8,7 @@ from domain.errors import InvalidValueError
 
 
 class Kind(Enum):
-    """What a field holds; the value is how that is called in a sentence."""
+    """The type of a field; the value describes it in error messages."""
 
     BOOLEAN = "true or false"
     UINT8 = "a whole number from 0 to 255"
@@ -42,12 +42,12 @@ _RANGES: Mapping[Kind, range] = {
 
 
 def checked(shape: Shape, fields: object, pointer: str = "") -> dict[str, Any]:
-    """Return a message with all its fields; one that was left out has the default of ROS.
+    """Return a message with all its fields; those left out get the ROS default.
 
     Args:
-        shape: What it has to look like.
-        fields: The message as it came.
-        pointer: Where in a larger message this is.
+        shape: The fields of the type.
+        fields: The message as received.
+        pointer: Its place in a larger message.
 
     Raises:
         InvalidValueError: A field is unknown or has a wrong type; `pointer` names it, as in
@@ -57,7 +57,7 @@ def checked(shape: Shape, fields: object, pointer: str = "") -> dict[str, Any]:
         raise InvalidValueError(f"{pointer or 'a message'} must have fields by name", pointer)
     for name in fields:
         if name not in shape:
-            known = f"known: {', '.join(shape)}" if shape else "there are none here"
+            known = f"known: {', '.join(shape)}" if shape else "no fields are expected"
             message = f"there is no field {name!r:.100}; {known}"
             raise InvalidValueError(message, _below(pointer, f"{name:.100}"))
     return {
@@ -77,10 +77,10 @@ def _checked_field(kind: "Kind | Shape", value: object, is_given: bool, pointer:
 
 
 def _shown(value: object) -> str:
-    """Return a wrong value as a sentence names it.
+    """Return a wrong value for an error message.
 
-    Of one that holds others only what it is: to write it all out may take as long as some ticks,
-    and has no end if it is nested deeply.
+    Nested values are only named by their type: writing them out may take as long as several ticks,
+    and may exceed the recursion limit.
     """
     if isinstance(value, Mapping):
         return "fields"
@@ -88,7 +88,7 @@ def _shown(value: object) -> str:
 
 
 def _fits(kind: Kind, value: object) -> bool:
-    """Tell whether a value is of a kind; a boolean is not a number, and a number not a boolean."""
+    """Tell whether a value is of a kind; booleans and numbers are different kinds."""
     if kind is Kind.TEXT:
         return isinstance(value, str)
     if kind is Kind.BOOLEAN or isinstance(value, bool):

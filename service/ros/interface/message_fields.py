@@ -1,4 +1,4 @@
-"""Messages of ROS as mappings: times, lifecycle states and transitions, and modes."""
+"""ROS messages as mappings: times, lifecycle states and transitions, and modes."""
 
 from domain.lifecycle import TRANSITIONS, LifecycleState, Transition, rule_for
 from domain.state_and_mode import ModeName
@@ -8,12 +8,12 @@ from service.ros.interface.endpoints import Fields
 
 
 def nanoseconds(clock: Clock, at: Instant) -> int:
-    """Return an instant in nanoseconds since 1970; one that is before counts as then."""
+    """Return an instant in nanoseconds since 1970; an earlier one is 0."""
     return max(0, since_epoch(clock.wall_time(at)))
 
 
 def header(clock: Clock, at: Instant) -> Fields:
-    """Return a `std_msgs/msg/Header` without a frame."""
+    """Return a `std_msgs/msg/Header` with an empty `frame_id`."""
     sec, nanosec = divmod(nanoseconds(clock, at), NANOSECONDS_PER_SECOND)
     return {"stamp": {"sec": sec, "nanosec": nanosec}, "frame_id": ""}
 
@@ -27,9 +27,9 @@ def transition(value: Transition | None, start: LifecycleState) -> Fields:
     """Return a `lifecycle_msgs/msg/Transition`.
 
     Args:
-        value: None: a change of state that no transition of the table stands for.
-        start: Tells the three numbers of shutdown apart. From where the table has no such
-            transition, since others lead there first, it has its first number.
+        value: None: a change of state that is no transition of the standard lifecycle.
+        start: Selects one of the three ids of shutdown. If there is no such transition from here,
+            since others come first, the first id of the transition is used.
     """
     if value is None:
         return {"id": 0, "label": ""}

@@ -1,9 +1,10 @@
-"""What is told of parts: where they are, and what is asked of them.
+"""The topics of parts: their actual states and modes, and their targets.
 
-Two topics tell where a part is (`transition_event`, `mode_event`), and two what it should be
-(`transition_request_info`, `mode_request_info`), as the mode manager of D4.8 has them. A target is
-told once, on the topic of what it names: a mode, which means active in that mode, or else a state.
-So of the last message of both, the one with the later timestamp holds.
+Two topics publish the actual state and mode of a part (`transition_event`, `mode_event`), and two
+its target (`transition_request_info`, `mode_request_info`), as the mode manager of the micro-ROS
+deliverable D4.8 does. A target is published on one topic only: if it has a mode, which means active
+in that mode, on that for modes, else on that for transitions. So of the last messages on both
+topics, the one with the later timestamp is in force.
 """
 
 from collections.abc import Iterator
@@ -36,13 +37,13 @@ _LATCHED = frozenset({TRANSITION_REQUEST, MODE_REQUEST})
 
 @dataclass(frozen=True, slots=True)
 class _Request:
-    """What was asked of a part, from where."""
+    """A request for a part."""
 
     at: Instant
     start: StateAndMode
     goal: StateAndMode
     transition: Transition | None = None
-    """None: a mode was asked, or what was asked is a consequence for this part."""
+    """None: a mode was requested, or the target follows from a request for another part."""
 
 
 class PartTopics:
@@ -52,14 +53,14 @@ class PartTopics:
         self._supervisor = supervisor
         self._listeners = listeners
         self._requests: dict[str, _Request] = {}
-        """The last one of each topic that tells requests; a message is made when it is wanted."""
+        """The last request on each topic; its message is made when it is needed."""
         self._targets: dict[PartName, StateAndMode] = {}
-        """As they were told last."""
+        """The targets as published last."""
         self._actuals: dict[PartName, StateAndMode] = {}
-        """Where parts were by the event that was taken last; a request moves systems at once."""
+        """Actual states as of the last event taken; the core may be ahead of them."""
 
     def offered(self) -> Iterator[OfferedTopic]:
-        """Yield all topics; a node in a ROS graph tells its transitions itself."""
+        """Yield all topics; a node in a ROS graph publishes its transitions itself."""
         model = self._supervisor.model
         for part in model.parts:
             is_node = part in model.nodes
@@ -73,7 +74,7 @@ class PartTopics:
                 )
 
     def take(self, event: RecordedEvent) -> None:
-        """Tell what an event means for parts, if it means something."""
+        """Publish what an event means for parts, if anything."""
         match event.event:
             case PartActualChanged(part, actual, was):
                 self._tell_step(part, was, actual, event.at)
@@ -81,15 +82,15 @@ class PartTopics:
                 self._tell_request(event.event, event.at)
 
     def recall(self, events: EventLog) -> None:
-        """Learn from a log what was asked before, for those who come late, and where parts are.
+        """Restore the latched requests for late subscribers, and the actual states.
 
-        From where it was asked is not known any more; nor is when, of what was asked before the
-        oldest event.
+        The start states of the requests are not known any more, nor are the times of requests
+        before the oldest event.
         """
         self._targets.clear()
         self._actuals.clear()
         for event in events.newest_first():
-            # A newer request, of this part or of one above it, is known already.
+            # Otherwise a newer request, for this part or one above it, is known already.
             request = event.event
             if isinstance(request, ChangeRequested) and request.part not in self._targets:
                 self._tell_request(request, event.at)
@@ -99,9 +100,9 @@ class PartTopics:
         self._actuals = {part: view.actual.state_and_mode for part, view in parts.items()}
 
     def catch_up(self) -> None:
-        """Tell where parts are and should be by now, as far as that was not told yet.
+        """Publish the actual states and targets that were not published yet.
 
-        For who missed events and has taken those that followed: of several steps it tells one.
+        Called after events were missed; of several steps of a part only one is published.
         """
         now = self._supervisor.clock.now()
         for part, view in self._supervisor.core.parts().items():
@@ -110,7 +111,7 @@ class PartTopics:
         self._tell_targets(now)
 
     def last(self, topic: str) -> Fields | None:
-        """Return the last message of a latched topic; None: there was none yet."""
+        """Return the last message of a latched topic; None: there is none yet."""
         request = self._requests.get(topic)
         return None if request is None else self._message(topic, request)
 
@@ -130,7 +131,7 @@ class PartTopics:
             self._send_request(topic)
 
     def _tell_targets(self, at: Instant) -> None:
-        """Tell the targets that were not told, as asked for at that time."""
+        """Publish the targets that were not published yet, with that time of request."""
         for part, view in self._supervisor.core.parts().items():
             told = self._targets.get(part)
             if view.target is not None and not (told and view.target.agrees_with(told)):
@@ -141,7 +142,7 @@ class PartTopics:
             self._listeners.send(topic, self._message(topic, self._requests[topic]))
 
     def _note_request(self, request: ChangeRequested, at: Instant) -> list[str]:
-        """Keep what is asked of a part and of all parts below it, and return on which topics."""
+        """Store the request for a part and all parts below it, and return the topics concerned."""
         asked = request.part
         goal = _goal(request)
         if goal is None:
@@ -170,7 +171,7 @@ class PartTopics:
         waiting = [asked]
         while waiting:
             system = systems.get(waiting.pop())
-            # Those that only some modes name are asked too, when such a mode is.
+            # Including parts that only some modes of the system name.
             for part in system.named_parts if system else ():
                 if part not in seen:
                     seen.add(part)
@@ -190,14 +191,14 @@ def _topic(part: PartName, kind: str) -> str:
 
 
 def _goal(request: ChangeRequested) -> StateAndMode | None:
-    """Return what a request asks of its part; None: neither a state nor a mode."""
+    """Return the requested target; None: the request is for parameters."""
     if request.mode is not None:
         return StateAndMode(LifecycleState.ACTIVE, ModeName(request.mode))
     return None if request.transition is None else StateAndMode(request.transition.goal)
 
 
 def _step(was: LifecycleState, now: LifecycleState) -> Transition | None:
-    """Return the transition that leads from one state to another, at once or as a first step."""
+    """Return the transition from one state to another, or to an intermediate state."""
     for transition in Transition:
         rule = rule_for(was, transition)
         if rule is not None and now in (rule.via, rule.success):

@@ -1,4 +1,4 @@
-"""The topics on which smart_polaris receives its five signals, each with a type of its own."""
+"""The topics on which smart_polaris receives its five signals; each has its own type."""
 
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
@@ -16,7 +16,7 @@ from service.ros.interface.message_check import HEADER, Kind, Shape, checked
 from service.supervisor import Supervisor
 
 _STRENGTHS = ("NOT_CONNECTED", "CONNECTED", "LOW_SIGNAL")
-"""As SignalStrengthStamped.msg numbers them."""
+"""In the order of the constants in SignalStrengthStamped.msg of smart_polaris."""
 
 
 def _as_it_is(value: SignalValue) -> SignalValue:
@@ -32,7 +32,7 @@ def _strength(number: int) -> SignalValue:
 
 @dataclass(frozen=True, slots=True)
 class _Input:
-    """One topic, and which of its fields is the value of which signal."""
+    """A topic, and the field that holds the value of a signal."""
 
     signal: str
     type: str
@@ -67,11 +67,11 @@ def reading_topics(supervisor: Supervisor) -> Iterable[SubscribedTopic]:
 
 
 def _take(supervisor: Supervisor, given: _Input, fields: Fields, sender: Actor) -> None:
-    """Hand in a reading.
+    """Submit a reading.
 
     Raises:
-        PilothouseError: It is refused. So is one without its value, although ROS has a default:
-            an empty message would release an e-stop.
+        PilothouseError: It is rejected. A message without the value is rejected although ROS has a
+            default for it: an empty message would release an e-stop.
     """
     message = checked(given.shape, fields)
     if given.field not in fields:
@@ -82,7 +82,7 @@ def _take(supervisor: Supervisor, given: _Input, fields: Fields, sender: Actor) 
 
 
 def _stamp(clock: Clock, stamp: Mapping[str, int]) -> Instant | None:
-    """Return when a message was sent, on our clock; None: zero, which senders leave in it."""
+    """Return the time stamp of a message on our clock; None: it is 0, so it was not set."""
     if not stamp["sec"] and not stamp["nanosec"]:
         return None
     since = timedelta(seconds=stamp["sec"], microseconds=stamp["nanosec"] // 1_000)

@@ -1,4 +1,4 @@
-"""What is told of the robot at 20 Hz, as smart_polaris tells it, and its diagnostics."""
+"""The topics of the robot: its state at 20 Hz, as in smart_polaris, and its diagnostics."""
 
 from domain.snapshot import SystemState, TaskStatus
 from domain.timebase import Instant, seconds
@@ -18,12 +18,12 @@ _TYPES = {
     DIAGNOSTICS: "diagnostic_msgs/msg/DiagnosticArray",
 }
 
-# As SystemStateStamped.msg and TaskPlannerStatus.msg of smart_polaris number them.
+# The constants of SystemStateStamped.msg and TaskPlannerStatus.msg of smart_polaris.
 _STATES = {state: number for number, state in enumerate(SystemState)}
 _TASK_STATUSES = {status: number for number, status in enumerate(TaskStatus)}
 
 _DIAGNOSTICS_PERIOD = seconds(1.0) - PERIOD // 2
-"""One second in whole ticks, which come a little early or late."""
+"""1 s, less half a tick, since ticks may come a little early."""
 
 
 class RobotTopics:
@@ -33,7 +33,7 @@ class RobotTopics:
         self._clock = supervisor.clock
         self._listeners = listeners
         self._told: int | None = None
-        """Number of the frame that was told last."""
+        """Number of the last published frame."""
         self._diagnosed_at: Instant | None = None
         self._diagnosed: tuple[SystemState, tuple[str, ...]] | None = None
 
@@ -45,7 +45,7 @@ class RobotTopics:
         )
 
     def take(self, frames: FrameFeed) -> None:
-        """Tell what the newest frame says, once."""
+        """Publish the newest frame, once."""
         frame = frames.newest
         if frame is None or frame.seq == self._told:
             return
@@ -70,7 +70,7 @@ class RobotTopics:
                 self._listeners.send(DIAGNOSTICS, diagnostic_array(complete, self._clock))
 
     def _is_diagnosis_due(self, frame: Frame) -> bool:
-        """Tell whether a second has passed, or the state of the robot is another one."""
+        """Tell whether a second has passed, or the state or the errors have changed."""
         if self._diagnosed_at is None or _what_matters(frame) != self._diagnosed:
             return True
         return frame.at - self._diagnosed_at >= _DIAGNOSTICS_PERIOD

@@ -1,4 +1,4 @@
-"""All services: of each part those of a lifecycle node and of a mode manager, and of the robot."""
+"""All services: those of a lifecycle node and a mode manager for each part, and of the robot."""
 
 import logging
 from functools import partial
@@ -23,23 +23,24 @@ from service.supervisor import Supervisor
 log = logging.getLogger(__name__)
 
 MAX_WAIT_S = 60.0
-"""For the end of a change. One that runs on is no success, and goes on."""
+"""Longest wait for the end of a change, s; after it the response is no success, and the change
+goes on."""
 
 
 async def carry_out(supervisor: Supervisor, request: ModeRequest | TransitionRequest) -> bool:
-    """Begin a change, wait for its end, and tell whether every node is where it should be.
+    """Start a change, wait for its end, and tell whether it succeeded.
 
-    The answer has no room for a reason, and so the reason is logged.
+    The reason of a failure is logged, since the response has no field for it.
     """
     wanted = request.mode if isinstance(request, ModeRequest) else str(request.transition)
-    what = f"{wanted!r:.100} of {request.part}, asked by {request.actor.label}"
+    what = f"{wanted!r:.100} of {request.part}, requested by {request.actor.label}"
     try:
         change = supervisor.submit(request).change
         if change is None:
             raise RuntimeError(f"{request} was taken and is no change")
         view = await supervisor.change_ends.wait(change, MAX_WAIT_S)
     except PilothouseError as error:
-        log.info("refused %s: %.500s", what, error)
+        log.info("rejected %s: %.500s", what, error)
         return False
     if view.status is not ChangeStatus.SUCCEEDED:
         log.info("%s: change %s %s: %.500s", what, view.id, view.status, view.reason or "")
@@ -61,7 +62,7 @@ class LifecycleServices:
         self._part = part
 
     def offered(self) -> tuple[OfferedService, ...]:
-        """Return the services; a node in a ROS graph has them itself."""
+        """Return the services; a node in a ROS graph offers them itself."""
         is_node = self._part in self._supervisor.model.nodes
         calls = {
             "get_state": ("GetState", self.get_state),
@@ -85,17 +86,17 @@ class LifecycleServices:
         )
 
     async def get_state(self, request: Fields, caller: Actor) -> Fields:
-        """Answer with the state; `unknown` (0) where it is not known, or undecidable."""
+        """Return the state; `unknown` (0) if it is unknown or undecidable."""
         checked(EMPTY, request)
         return {"current_state": state(self._state)}
 
     async def get_available_states(self, request: Fields, caller: Actor) -> Fields:
-        """Answer with all states that there are."""
+        """Return all lifecycle states."""
         checked(EMPTY, request)
         return {"available_states": [state(value) for value in LifecycleState]}
 
     async def get_available_transitions(self, request: Fields, caller: Actor) -> Fields:
-        """Answer with what may be asked now, those included that others lead to."""
+        """Return the transitions that may be requested now, also those that need others first."""
         checked(EMPTY, request)
         found = self._supervisor.core.available_transitions(self._part)
         return {
@@ -103,7 +104,7 @@ class LifecycleServices:
         }
 
     async def get_transition_graph(self, request: Fields, caller: Actor) -> Fields:
-        """Answer with what may be asked from each state where a part can rest."""
+        """Return the transitions that may be requested from each primary state."""
         checked(EMPTY, request)
         return {
             "available_transitions": [
@@ -116,14 +117,15 @@ class LifecycleServices:
         }
 
     async def change_state(self, request: Fields, caller: Actor) -> Fields:
-        """Ask for a transition: by its label, and by its number where there is no label."""
+        """Request a transition by its label, or by its id if the label is empty."""
         asked = checked(CHANGE_STATE, request)["transition"]
         wanted = _transition_of(asked["label"], asked["id"])
         if wanted is None:
             what = (
-                f"{asked['label']!r:.100} [{asked['id']}] of {self._part}, asked by {caller.label}"
+                f"{asked['label']!r:.100} [{asked['id']}] of {self._part}, "
+                f"requested by {caller.label}"
             )
-            log.info("refused %s: there is no such transition", what)
+            log.info("rejected %s: there is no such transition", what)
             return {"success": False}
         done = await carry_out(self._supervisor, TransitionRequest(self._part, wanted, caller))
         return {"success": done}
@@ -134,18 +136,19 @@ class LifecycleServices:
 
 
 def _transition_of(label: str, number: int) -> Transition | None:
-    """Return a transition as rcl finds it: a label that is given decides alone."""
+    """Find a transition as rcl does: by the label, or by the id if the label is empty."""
     return _BY_LABEL.get(label) if label else _BY_ID.get(number)
 
 
 UNKNOWN_MODE = "unknown"
-"""What `get_mode` answers for a part of which even the state is not known."""
+"""Response of `get_mode` for a part whose state is unknown."""
 
 
 class ModeServices:
-    """The services of the mode manager of D4.8 for one part: `system_modes_msgs/srv/...`.
+    """The services of the mode manager for one part: `system_modes_msgs/srv/...`.
 
-    A node itself has none of them, and so they are always offered.
+    They are those of the micro-ROS deliverable D4.8. Nodes do not offer them themselves, and so
+    they are always offered here.
     """
 
     def __init__(self, supervisor: Supervisor, part: PartName) -> None:
@@ -171,9 +174,9 @@ class ModeServices:
         )
 
     async def get_mode(self, request: Fields, caller: Actor) -> Fields:
-        """Answer with the mode; empty where the part is in none, as while it is inactive.
+        """Return the mode; empty if the part has none, for example while it is inactive.
 
-        `unknown` says that nobody knows, as in system_modes.
+        `unknown` if the state is unknown, as in system_modes.
         """
         checked(EMPTY, request)
         actual = self._supervisor.core.part(self._part).actual
@@ -182,12 +185,12 @@ class ModeServices:
         return {"current_mode": actual.mode or ""}
 
     async def get_available_modes(self, request: Fields, caller: Actor) -> Fields:
-        """Answer with all modes of the part, in the order of the model file."""
+        """Return all modes of the part, in the order of the model file."""
         checked(EMPTY, request)
         return {"available_modes": list(self._supervisor.model.modes_of(self._part))}
 
     async def change_mode(self, request: Fields, caller: Actor) -> Fields:
-        """Ask for a mode; one that the part is in already is a success."""
+        """Request a mode; if the part is in it already, that is a success."""
         mode = checked(CHANGE_MODE, request)["mode_name"]
         done = await carry_out(self._supervisor, ModeRequest(self._part, mode, caller))
         return {"success": done}

@@ -8,7 +8,7 @@ import sys
 import time
 
 import rclpy
-from std_msgs.msg import Bool  # type: ignore[import-not-found]  # of ROS, as rclpy
+from std_msgs.msg import Bool
 
 
 def main() -> None:

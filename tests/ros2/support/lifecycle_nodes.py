@@ -17,7 +17,7 @@ from rclpy.lifecycle import LifecycleNode
 from rclpy.node import Node
 from rclpy.qos import LivelinessPolicy, QoSProfile
 from rclpy.signals import SignalHandlerOptions
-from std_msgs.msg import Empty  # type: ignore[import-not-found]  # of ROS, as rclpy
+from std_msgs.msg import Empty
 
 HEARTBEAT = QoSProfile(
     depth=1,

@@ -13,7 +13,7 @@ import time
 from typing import Any
 
 import rclpy
-from lifecycle_msgs.srv import (  # type: ignore[import-not-found]  # of ROS, as rclpy
+from lifecycle_msgs.srv import (
     ChangeState,
     GetAvailableTransitions,
     GetState,

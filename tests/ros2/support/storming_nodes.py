@@ -15,7 +15,7 @@ from typing import Any
 
 import rclpy
 from lifecycle_nodes import made  # type: ignore[import-not-found]  # beside this file
-from rcl_interfaces.msg import ParameterEvent  # type: ignore[import-not-found]  # of ROS, as rclpy
+from rcl_interfaces.msg import ParameterEvent
 from rclpy.executors import SingleThreadedExecutor
 from rclpy.parameter import Parameter
 from rclpy.qos import qos_profile_parameter_events

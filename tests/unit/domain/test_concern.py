@@ -41,4 +41,4 @@ def test_concerns_that_never_settle_are_an_error_that_names_them() -> None:
         settle([Concern(), Restless(10_000), Shy(10_000)], 0, max_rounds=50)
 
     assert caught.value.moving == ("Restless", "Shy")
-    assert str(caught.value) == "not settled after 50 rounds; still moving: Restless, Shy"
+    assert str(caught.value) == "not settled after 50 rounds; still changing: Restless, Shy"

@@ -137,7 +137,7 @@ def test_a_blocked_change_tells_all_that_stands_against_it() -> None:
 def test_an_outdated_reading_tells_how_far_it_is_behind() -> None:
     error = OutdatedReadingError("temperature", 0.25)
     assert error.message == "a newer reading of temperature is held; this one is 0.250 s older"
-    assert error.hint == "leave out the stamp, or set the sender's clock"
+    assert error.hint == "omit the stamp, or correct the sender's clock"
 
 
 def test_an_invalid_value_points_at_its_place() -> None:
@@ -154,19 +154,19 @@ def test_a_path_that_begins_too_far_away_names_the_waypoint_to_begin_at() -> Non
     assert error.message == "the path begins 81.3 m from the vehicle; at most 5 m"
     assert error.pointer == "waypoints"
     assert error.nearest == (12, 0.349)
-    assert error.hint == "waypoint 12 is 0.3 m away: begin there with start_index"
+    assert error.hint == "waypoint 12 is 0.3 m away: start there with start_index"
 
 
 def test_where_no_waypoint_is_near_the_vehicle_has_to_come_closer() -> None:
     error = FarStartError(81.26, 5.0)
     assert error.nearest is None
-    assert error.hint == "drive closer, or begin at another waypoint with start_index"
+    assert error.hint == "drive closer, or start at another waypoint with start_index"
 
 
 def test_a_reserved_hold_tells_its_owner_and_what_to_do_instead() -> None:
     error = ReservedHoldError("vehicle")
-    assert error.message == "the hold 'vehicle' is set and cleared by Pilothouse alone"
-    assert error.hint == "it ends with its cause; use a name of your own, such as operator"
+    assert error.message == "only Pilothouse sets and releases the hold 'vehicle'"
+    assert error.hint == "it is released with its cause; use another name, such as operator"
 
 
 def test_too_many_holds_tell_how_many_there_are() -> None:

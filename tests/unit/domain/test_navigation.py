@@ -292,7 +292,7 @@ def test_a_command_that_is_no_number_is_never_sent(steering_rad: float) -> None:
     drive.send()
 
     assert [type(message) for message in drive.said] == [GoalResult]
-    assert result_of(drive).reason == "test commands a number that is not finite"
+    assert result_of(drive).reason == "test commands a steering angle that is not finite"
 
 
 @pytest.mark.parametrize(
@@ -332,7 +332,7 @@ def test_an_end_that_is_passed_with_a_part_left_out_is_no_success(drive: Drive20
     drive.step(20.5)
 
     assert not result_of(drive).succeeded
-    assert result_of(drive).reason == "the end is passed, and 9.5 m were left out"
+    assert result_of(drive).reason == "the end is passed, but 9.5 m were skipped"
 
 
 def test_what_an_earlier_goal_of_the_task_left_out_counts(drive: Drive20Hz) -> None:
@@ -342,7 +342,7 @@ def test_what_an_earlier_goal_of_the_task_left_out_counts(drive: Drive20Hz) -> N
     drive.act()
     drive.step(20.5)
 
-    assert result_of(drive).reason == "the end is passed, and 1.5 m were left out"
+    assert result_of(drive).reason == "the end is passed, but 1.5 m were skipped"
 
 
 def test_a_stretch_within_three_metres_was_not_left_out_however_fast_it_went(

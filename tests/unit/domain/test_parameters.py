@@ -44,7 +44,7 @@ def test_what_no_parameter_can_hold_is_refused(value: object) -> None:
     with pytest.raises(InvalidValueError) as refused:
         value_type(cast("ParameterValue", value))
 
-    assert refused.value.message == f"{value!r} is no value of a parameter"
+    assert refused.value.message == f"{value!r} is not a parameter value"
 
 
 class Change(NamedTuple):

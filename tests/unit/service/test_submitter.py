@@ -63,7 +63,7 @@ def test_a_report_that_is_refused_is_logged(caplog: pytest.LogCaptureFixture) ->
     given = Given()
     given.submitter.deliver(NodeReport(PartName("nobody"), reachable=True))
 
-    assert "refused NodeReport" in caplog.text
+    assert "rejected NodeReport" in caplog.text
     assert given.onboard.core.part(BASE).reachable is False
 
 

@@ -114,7 +114,7 @@ async def test_a_fault_in_a_job_arrives_with_its_traceback_and_the_next_job_is_d
 async def test_a_job_that_takes_too_long_is_ended_and_the_next_one_is_done() -> None:
     worker = Worker(deadline_s=1.0)
     try:
-        with pytest.raises(TooComplexError, match="not done within 1 s"):
+        with pytest.raises(TooComplexError, match="took longer than 1 s"):
             await worker.call(wait_for_ever)
 
         assert await worker.call(abs, -1) == 1

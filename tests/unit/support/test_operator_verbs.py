@@ -23,7 +23,7 @@ ACKNOWLEDGED = SupervisionSettings(
         for signal in default_signals()
     )
 )
-"""No signal becomes stale, and every error waits to be acknowledged."""
+"""No signal becomes stale, and every error waits for acknowledgement."""
 OFTEN = {"audit.write", "node.answered", "signal.read", "task.progress", "vehicle.reported"}
 STORY: list[Callable[[Verbs], Any]] = [
     lambda operator: operator.read(**GOOD),

@@ -51,7 +51,7 @@ def test_each_command_explains_itself_in_80_columns(
 @pytest.mark.parametrize(
     ("arguments", "words"),
     [
-        (["serve", "--port", "65536"], "65536 is no port"),
+        (["serve", "--port", "65536"], "invalid port 65536"),
         (["serve", "--port", "http"], "invalid"),
         (["mode", "actuation"], "MODE"),
         (["mode", "actuation", "FAST", "--wait", "nan"], "not within 0 to 3600"),

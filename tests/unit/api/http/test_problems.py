@@ -72,7 +72,7 @@ def test_a_problem_tells_what_where_and_what_helps() -> None:
 
     assert document(error) == {
         "type": "urn:pilothouse:problem:unknown-part",
-        "title": "A system or node that the model does not have",
+        "title": "An unknown part: the model has no system or node of this name",
         "status": 404,
         "detail": "there is no node 'x'",
         "instance": "/nodes/x",

@@ -175,7 +175,7 @@ def test_a_plain_node_does_not_keep_its_system_from_being_configured() -> None:
         (
             _node(S.FINALIZED),
             "FINALIZED",
-            "drive_base is finalized: it must be started anew",
+            "drive_base is finalized: its process must be restarted",
             "finalized",
         ),
         (
@@ -227,7 +227,7 @@ def test_a_finalized_node_refuses_that_its_system_is_configured() -> None:
 
 @pytest.mark.parametrize("base", [_node(S.ACTIVE, reachable=False), _node(None, reachable=None)])
 def test_an_absent_node_is_shown_but_refuses_nothing(base: NodeFacts) -> None:
-    """SEMANTICS 3: taken, recorded, and failed at the deadline."""
+    """docs/explanation/semantics.md: accepted, recorded, and failed at the deadline."""
     admission = _admission(base)
     assert len(admission.blockers(PERFORMANCE, ())) == 1
     admission.admit(PERFORMANCE, ())
@@ -303,7 +303,7 @@ def test_the_way_to_a_node_that_only_one_mode_names_is_told() -> None:
 def test_under_estop_nothing_is_activated(
     base: LifecycleState | None, request_: ChangeRequest, *, refused: bool
 ) -> None:
-    """SEMANTICS 3, health and changes."""
+    """docs/explanation/semantics.md, health and changes."""
     admission = _admission(base)
     if not refused:
         admission.admit(request_, ESTOP)

@@ -81,7 +81,7 @@ def _targets(
 def test_the_target_of_a_part_sets_the_targets_of_all_parts_below(
     request_: ChangeRequest, targets: dict[str, str]
 ) -> None:
-    """SEMANTICS 3: a system's target sets its parts' targets."""
+    """docs/explanation/semantics.md: a system's target sets its parts' targets."""
     assert _targets(request_) == targets
 
 

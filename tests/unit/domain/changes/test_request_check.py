@@ -218,4 +218,4 @@ def test_a_part_that_there_is_not_is_told_with_those_that_there_are(
 def test_a_request_without_a_parameter_is_refused() -> None:
     with pytest.raises(InvalidValueError) as refused:
         _check(ParametersRequest(BASE, {}))
-    assert refused.value.message == "no parameter is named"
+    assert refused.value.message == "no parameters are given"

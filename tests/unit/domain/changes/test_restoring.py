@@ -397,7 +397,8 @@ def test_a_node_that_falls_whenever_it_is_activated_is_given_up_after_three_time
     ]
     last = next(e for e in told[3].events if e.kind == "node.not_restored")
     assert last.data["reason"] == (
-        "it was restored 3 times within 60 s, and is left as it is until it is asked for"
+        "it was restored 3 times within 60 s; "
+        "it is not restored again until a change of it is requested"
     )
 
 

@@ -131,7 +131,7 @@ def test_a_report_without_parameters_ends_no_set() -> None:
 
 def test_parameters_that_are_not_there_when_asked_at_the_deadline_are_named() -> None:
     verdict = _judge_set({"max_speed": 0.2}, asked=True)
-    assert verdict == Verdict(StepStatus.TIMED_OUT, "not taken over: max_speed, controller")
+    assert verdict == Verdict(StepStatus.TIMED_OUT, "not applied: max_speed, controller")
 
 
 def test_parameters_that_are_there_when_asked_at_the_deadline_are_set() -> None:
@@ -143,5 +143,5 @@ def test_a_mode_that_was_not_taken_over_is_told() -> None:
     report = NodeReport(BASE, mode=ModeName("SLOW"))
     facts = NodeFacts(S.ACTIVE, ModeName("SLOW"), parameters={"max_speed": 0.2})
     verdict = judge_report(_step(action, asked=True), report, facts)
-    words = "not taken over: max_speed, mode SLOW"
+    words = "not applied: max_speed, mode SLOW"
     assert verdict == Verdict(StepStatus.TIMED_OUT, words)

@@ -297,7 +297,7 @@ def test_an_error_kept_after_its_cause_is_told_as_that_until_it_is_acknowledged(
     monitor.receive(Reading("temperature", 60.0), "pad", START)
     monitor.receive(Reading("temperature", 20.0), "pad", START + seconds(1))
     (reason,) = monitor.reasons()
-    assert "waits to be acknowledged" in reason.message
+    assert "waits for acknowledgement" in reason.message
     assert (reason.value, reason.threshold) == (None, None)
     assert monitor.errors == {"TEMPERATURE_HIGH"}
     assert monitor.present == set()
@@ -347,5 +347,5 @@ def test_staleness_that_has_just_ended_stays_on_for_a_moment_and_says_so() -> No
     (reason,) = monitor.reasons()
 
     assert reason.code == STALE_DATA
-    assert "stays on for at least 0.2 s" in reason.message
+    assert "stays active for at least 0.2 s" in reason.message
     assert monitor.wake_at() == START + seconds(2.2) + 1

@@ -131,11 +131,11 @@ def test_a_silent_signal_is_told_apart_from_one_never_heard(is_seen: bool, words
     [
         (
             Recovery.AUTOMATIC,
-            "battery no longer causes BATTERY_LOW, which stays on for at least 0.2 s",
+            "battery no longer causes BATTERY_LOW, which stays active for at least 0.2 s",
         ),
         (
             Recovery.ACKNOWLEDGE,
-            "battery no longer causes BATTERY_LOW, which waits to be acknowledged",
+            "battery no longer causes BATTERY_LOW, which waits for acknowledgement",
         ),
     ],
 )

@@ -177,7 +177,7 @@ def low(threshold: SignalValue = 20.0, clear: float | None = None, for_: int = 0
 
 
 RELAY = SignalSpec("relay", SignalKind.BOOLEAN)
-KIND = "threshold of {} numbers are compared above or below, everything else is compared equal"
+KIND = "threshold of {} must be compared above or below for numbers, and equal for everything else"
 UNFIT = [
     (VOLTAGE, low(threshold=-1.0), "voltage/threshold"),
     (VOLTAGE, low(threshold=math.nan), "voltage/threshold"),
@@ -220,7 +220,7 @@ def test_a_condition_that_does_not_fit_its_signal_is_refused(
         (
             RELAY,
             Condition("ODD", Comparison.EQUAL, threshold=True, clear_threshold=0.5),
-            "clear_threshold of relay is only for numbers",
+            "clear_threshold of relay is for numbers only",
         ),
         (VOLTAGE, Condition("ODD", Comparison.EQUAL, 20.0), KIND.format("voltage")),
         (RELAY, Condition("ODD", Comparison.ABOVE, threshold=True), KIND.format("relay")),
@@ -255,7 +255,7 @@ def test_two_conditions_are_told_apart_by_their_keys() -> None:
     with pytest.raises(InvalidValueError) as refusal:
         declare(low(), Condition("HIGH", Comparison.ABOVE, 30.0))
 
-    assert refusal.value.message == "key of voltage tells its conditions apart, and must differ"
+    assert refusal.value.message == "key of voltage must differ between conditions"
     assert refusal.value.pointer == "voltage/key"
 
 
@@ -264,19 +264,19 @@ def test_two_conditions_are_told_apart_by_their_keys() -> None:
     [
         (
             lambda: SignalSpec("gear", SignalKind.ENUMERATION),
-            "gear: an enumeration has members, and nothing else has",
+            "gear: an enumeration needs members; other kinds have none",
         ),
         (
             lambda: SignalSpec("gear", SignalKind.ENUMERATION, members=("D", "D")),
-            "gear: a member is named twice",
+            "gear: duplicate member",
         ),
         (
             lambda: SignalSpec("gear", SignalKind.NUMBER, members=("D",)),
-            "gear: an enumeration has members, and nothing else has",
+            "gear: an enumeration needs members; other kinds have none",
         ),
         (
             lambda: SignalSpec("gear", SignalKind.NUMBER, is_stop=True),
-            "gear: a stop is a boolean",
+            "gear: a stop must be boolean",
         ),
     ],
 )

@@ -95,7 +95,7 @@ def test_reasons_name_the_stop_first_and_what_is_merely_kept_on_last(robot: Robo
     assert robot.words == [
         "e-stop is pressed (source pad)",
         "temperature 60 °C is above 55 °C",
-        "battery no longer causes BATTERY_LOW, which stays on for at least 0.2 s",
+        "battery no longer causes BATTERY_LOW, which stays active for at least 0.2 s",
     ]
 
 
@@ -180,7 +180,7 @@ def test_a_stop_that_has_to_be_acknowledged_outlasts_its_release() -> None:
     robot = Robot(with_recovery("estop"))
     robot.engage(1)
     robot.engage(2, engaged=False)
-    assert robot.words == ["e-stop no longer causes ESTOP, which waits to be acknowledged"]
+    assert robot.words == ["e-stop no longer causes ESTOP, which waits for acknowledgement"]
     assert robot.health.wake_at() is None
 
     assert robot.acknowledge(9, "ESTOP").cleared == ("ESTOP",)

@@ -240,7 +240,7 @@ def _system(asked_for: str, drive_base: str, manipulator: str) -> ModeInference:
 def test_what_a_system_is_in(
     asked_for: str, drive_base: str, manipulator: str, inferred: str
 ) -> None:
-    """SEMANTICS 2 and system_modes, `mode_inference.cpp`."""
+    """docs/explanation/inference.md; system_modes, `mode_inference.cpp`."""
     inference = _system(asked_for, drive_base, manipulator)
     assert _label(inference) == inferred
     assert inference.actual(ACTUATION).inferred
@@ -251,8 +251,8 @@ def test_what_a_system_is_in(
     asked for   | drive_base  | manipulator | reason
     -           | inactive    | -           | manipulator has never reported a state
     active.__DEFAULT__ | -    | inactive    | drive_base has never reported a state
-    configuring | inactive    | inactive    | configuring is no state that a system can be asked for
-    -           | active.FAST | inactive    | nothing was asked for, \
+    configuring | inactive    | inactive    | configuring cannot be the target of a system
+    -           | active.FAST | inactive    | there is no target, \
 and drive_base is active while manipulator is inactive
 """)
 def test_what_cannot_be_decided_says_why(
@@ -567,7 +567,7 @@ def _with_a_plain_base(arm: str, target: str | None) -> ModeInference:
 def test_a_plain_node_does_not_keep_its_system_from_being_at_rest(
     asked_for: str, manipulator: str, inferred: str
 ) -> None:
-    """SEMANTICS 2: it counts as active; system_modes issue #90."""
+    """docs/explanation/inference.md: it counts as active; system_modes issue #90."""
     target = None if asked_for == "-" else asked_for
     assert _label(_with_a_plain_base(manipulator, target)) == inferred
 

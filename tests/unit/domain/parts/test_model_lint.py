@@ -176,8 +176,8 @@ def test_systems_that_can_want_different_things_of_a_shared_part_are_told_once()
     )
 
     assert brief(findings) == [("CONFLICTING_SYSTEMS", ("work", "modes", "REST", "n"))]
-    assert "drive in __DEFAULT__ wants active.__DEFAULT__" in findings[0].message
-    assert "work in REST wants inactive" in findings[0].message
+    assert "drive in __DEFAULT__ requires active.__DEFAULT__" in findings[0].message
+    assert "work in REST requires inactive" in findings[0].message
 
 
 def test_systems_that_always_want_the_same_of_a_shared_part_are_fine() -> None:
@@ -199,15 +199,14 @@ def test_what_is_told_of_modes_says_what_follows_from_it() -> None:
     (differs,) = told(node(default={"a": 0.5}, X={"a": 1}))
     (never,) = told(node(default={"a": 0.5}, X={"a": float("nan")}))
 
-    assert alike.message == (
-        "n: X is the same as __DEFAULT__; inference cannot tell which of the two it is in"
-    )
+    assert alike.message == "n: X is the same as __DEFAULT__; inference cannot tell the two apart"
     assert differs.message == (
-        "n in X: a is integer here and double in __DEFAULT__; a node accepts one of them at most"
+        "n in X: a is integer here and double in __DEFAULT__; "
+        "a node accepts only one of these types"
     )
     assert never.message == (
-        "n in X: a is not a number, which is never found equal; "
-        "the mode is never recognised by its parameters"
+        "n in X: a holds NaN, which never equals anything; "
+        "the mode is never inferred from its parameters"
     )
 
 
@@ -224,7 +223,7 @@ def test_what_is_told_of_a_rule_that_undoes_a_request_names_both_sides() -> None
 
     assert undone.message == (
         "rule odd of s gives up active.FAST when n is active.FAST, "
-        "which is what active.FAST wants of it"
+        "which active.FAST itself requires"
     )
 
 
@@ -265,7 +264,7 @@ def test_a_way_into_a_circle_is_no_part_of_it() -> None:
 
     (circle,) = findings
     assert circle.message == (
-        "rules of s lead in a circle: active.LOW > active.__DEFAULT__ > active.LOW"
+        "rules of s form a cycle: active.LOW > active.__DEFAULT__ > active.LOW"
     )
 
 

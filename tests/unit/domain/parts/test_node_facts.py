@@ -55,7 +55,7 @@ def test_a_node_that_cannot_be_reached_is_unknown_whatever_it_said_before() -> N
 def test_a_plain_node_is_active_while_it_is_reachable(
     *, reachable: bool, state: LifecycleState
 ) -> None:
-    """SEMANTICS 2; a plain node of system_modes has no `change_state`."""
+    """docs/explanation/inference.md; a plain node of system_modes has no `change_state`."""
     facts = _facts(NodeReport(ARM, reachable=reachable, has_lifecycle=False))
     assert facts.known_state is state
 

@@ -45,7 +45,7 @@ BEND = path_of(arc(20, pi))
         (np.array([[0, 0, 0], [nan, 0, 0]]), "x_m must be finite"),
         (np.array([[0, 0, nan], [1, 0, 0]]), "yaw_rad must be finite"),
         (np.array([[0, 0, 0], [1e200, 0, 0]]), r"within \+-1,000,000 m"),
-        (np.ones((9, 3)), "same place"),
+        (np.ones((9, 3)), "same position"),
     ],
 )
 def test_waypoints_that_are_no_path_are_refused(waypoints: NDArray[np.float64], said: str) -> None:

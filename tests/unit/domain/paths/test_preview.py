@@ -167,7 +167,7 @@ def test_a_straight_lasts_as_long_as_speeding_up_driving_and_braking() -> None:
 
 
 def test_a_lap_of_the_gem_is_estimated_near_its_optimum() -> None:
-    # smart_polaris section 12: v <= 7 m/s, 2 m/s2 lateral, 1 m/s2 along: 126.2 s at best.
+    # The fastest lap with v <= 7 m/s, 2 m/s2 lateral and 1 m/s2 along takes 126.2 s.
     text = (shared_folder("tracks") / "gem_e2_loop.csv").read_text(encoding="utf-8")
     waypoints = np.array([[float(c) for c in row.split(",")[:3]] for row in text.split()])
 
@@ -210,12 +210,12 @@ def test_warnings_say_how_much_in_words() -> None:
     words = [warning.message for warning in found.warnings]
 
     assert words[0].startswith("a bend of ")
-    assert words[0].endswith(" m radius; the vehicle needs 2.5 m, and will leave the path there")
+    assert words[0].endswith(" m radius; the vehicle needs 2.5 m and will leave the path there")
     assert words[1:] == [
-        "8.0 m from one waypoint to the next: straight in between",
-        "11 waypoints stand where the one before them does",
-        "it begins 9.0 m from the vehicle",
-        "the vehicle looks away from where the path leads",
+        "8.0 m between two waypoints; the path is straight in between",
+        "11 waypoints are at the position of the one before",
+        "the path begins 9.0 m from the vehicle",
+        "the vehicle faces away from the direction of the path",
     ]
 
 

@@ -277,7 +277,7 @@ def test_wrong_parameters_from_outside_change_nothing() -> None:
 def test_parameters_of_a_dead_node_cannot_be_changed_from_outside() -> None:
     robot = robot_with(Fault.DIE)
 
-    with pytest.raises(RefusedError, match="drive_base does not run"):
+    with pytest.raises(RefusedError, match="drive_base is not running"):
         robot.nodes.set_parameters(BASE, {"max_speed": 0.3}, robot.now)
 
 
@@ -330,7 +330,7 @@ def test_a_node_that_refuses_says_so_and_stays_as_it_is() -> None:
     asked = [robot.ask(BASE, T.CONFIGURE), robot.ask_parameters(BASE, {})]
 
     assert [m for _, m in robot.pass_time(10.0)] == [
-        NodeAnswer(request, BASE, False, "the node refuses") for request in asked
+        NodeAnswer(request, BASE, False, "the node rejects it") for request in asked
     ]
 
 

@@ -17,7 +17,7 @@ from tests.support.scripted_robot import ScriptedRobot
 def test_a_robot_that_does_not_know_where_it_is_is_held() -> None:
     robot = ScriptedRobot(pose=False)
 
-    assert robot.core.driving.holds["vehicle"].reason == "the vehicle never told where it is"
+    assert robot.core.driving.holds["vehicle"].reason == "the vehicle never reported a pose"
 
 
 def test_the_first_pose_lets_go() -> None:
@@ -195,7 +195,7 @@ def test_how_a_robot_is_at_the_start_holds_it_from_then_on_and_is_nobodys_doing(
     robot = Supervision(SmhModel({}, {}), SupervisionSettings(), seconds(7))
 
     assert robot.driving.holds["vehicle"] == HoldView(
-        "vehicle", "the vehicle never told where it is", "", seconds(7)
+        "vehicle", "the vehicle never reported a pose", "", seconds(7)
     )
     error = robot.driving.holds["error"]
     assert (error.by, error.since) == ("", seconds(7))

@@ -351,7 +351,7 @@ def test_what_is_left_of_a_path_that_stands_still_is_nothing_to_drive(robot: Scr
     with pytest.raises(InvalidValueError) as refused:
         robot.submit_task(path, start_index=1)
 
-    assert refused.value.message == "nothing of the path is left from there"
+    assert refused.value.message == "no path is left after this waypoint"
     assert refused.value.pointer == "start_index"
 
 
@@ -372,7 +372,7 @@ def test_a_refused_start_names_the_nearest_waypoint_with_a_path_behind_it(
     robot.report(x_m=19.9)
     with pytest.raises(FarStartError) as refused:
         robot.submit_task(straight())
-    assert refused.value.hint == "waypoint 19 is 0.9 m away: begin there with start_index"
+    assert refused.value.hint == "waypoint 19 is 0.9 m away: start there with start_index"
     robot.report(x_m=40.0)
     with pytest.raises(FarStartError) as refused:
         robot.submit_task(straight())

@@ -104,5 +104,5 @@ def test_a_start_task_may_name_each_tracker_that_there_is(controller: str) -> No
 
 
 def test_who_names_a_tracker_that_there_is_not_is_told_which_there_are() -> None:
-    with pytest.raises(ValidationError, match="'autopilot'; there are pure_pursuit, stanley"):
+    with pytest.raises(ValidationError, match="'autopilot'; known: pure_pursuit, stanley"):
         StartTaskBlock.model_validate({"file": "x.csv", "controller": "autopilot"})

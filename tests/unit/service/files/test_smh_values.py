@@ -43,13 +43,13 @@ def test_a_want_is_a_state_and_perhaps_a_mode(text: str, label: str) -> None:
 @pytest.mark.parametrize(
     ("value", "words"),
     [
-        ("ACTIVE", "'ACTIVE'; is active meant?"),
-        ("ACTIVE.FAST", "'ACTIVE'; is active meant?"),
-        ("actve", "'actve'; is active meant?"),
-        ("banana", "'banana'; states are"),
+        ("ACTIVE", "'ACTIVE'; did you mean active?"),
+        ("ACTIVE.FAST", "'ACTIVE'; did you mean active?"),
+        ("actve", "'actve'; did you mean active?"),
+        ("banana", "'banana'; known: active"),
         ("active.A.B", "'active.A'"),
-        (True, "True; states are"),
-        (0.2, "0.2; states are"),
+        (True, "True; known: active"),
+        (0.2, "0.2; known: active"),
         (("active",), "('active',)"),
     ],
 )

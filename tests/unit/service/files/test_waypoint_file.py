@@ -188,7 +188,7 @@ def test_degrees_given_as_radians_are_refused_with_the_way_to_say_so() -> None:
     error = refused(csv(places, np.degrees(yaws)))
 
     assert [(fault.code, fault.line) for fault in error.findings] == [("NOT_RADIANS", 7)]
-    assert (error.hint or "").startswith("say so with ?heading=deg ")
+    assert (error.hint or "").startswith("set ?heading=deg ")
 
 
 def test_headings_of_a_compass_given_as_radians_are_refused_with_the_way_to_say_so() -> None:
@@ -196,7 +196,7 @@ def test_headings_of_a_compass_given_as_radians_are_refused_with_the_way_to_say_
     error = refused(csv(places, compass(yaws)))
 
     assert [(fault.code, fault.line) for fault in error.findings] == [("NOT_RADIANS", 1)]
-    assert (error.hint or "").startswith("say so with ?heading=compass ")
+    assert (error.hint or "").startswith("set ?heading=compass ")
 
 
 @pytest.mark.parametrize("convert", [np.degrees, compass], ids=["degrees", "compass"])
@@ -399,5 +399,5 @@ def test_a_shared_recording_with_a_compass_fits_its_way_once_that_is_said() -> N
     error = refused(path.read_bytes().decode())
     waypoints = read_waypoints_csv(path.read_bytes().decode(), Heading.COMPASS)
 
-    assert (error.hint or "").startswith("say so with ?heading=compass ")
+    assert (error.hint or "").startswith("set ?heading=compass ")
     assert outcome(csv(waypoints[:, :2], waypoints[:, 2])) == 1279

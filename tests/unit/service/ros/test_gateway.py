@@ -140,8 +140,9 @@ def test_what_has_no_type_at_all_is_left_out_and_said_once(
     (record,) = caplog.records
     assert record.levelno == logging.WARNING
     assert record.getMessage() == (
-        "not offered in ROS 2, which has no such type: gem_state_msgs/msg/SystemStateStamped, "
-        "gem_state_msgs/msg/TaskPlannerStatus, std_srvs/srv/Empty"
+        "not offered in ROS 2, since these types are not installed: "
+        "gem_state_msgs/msg/SystemStateStamped, gem_state_msgs/msg/TaskPlannerStatus, "
+        "std_srvs/srv/Empty"
     )
 
 
@@ -159,7 +160,7 @@ def test_a_part_with_a_name_that_ros_does_not_allow_is_left_out_and_said_once(
     assert set(graph.nodes) == {"pilothouse"}
     (record,) = caplog.records
     assert record.getMessage() == (
-        "not offered in ROS 2, which has no such name: /2nd, /drive-base"
+        "not offered in ROS 2, since these names are not allowed: /2nd, /drive-base"
     )
 
 
@@ -221,7 +222,7 @@ async def test_a_reading_is_heard_and_a_refused_one_is_logged(
     view = native.robot.supervisor.core.signal("battery_level")
     assert (view.value, view.source) == (0.25, "ros")
     (record,) = caplog.records
-    assert "refused a message on /battery_level" in record.getMessage()
+    assert "rejected a message on /battery_level" in record.getMessage()
 
 
 async def test_a_sender_whose_messages_are_all_refused_does_not_fill_the_log(
@@ -231,7 +232,7 @@ async def test_a_sender_whose_messages_are_all_refused_does_not_fill_the_log(
         native.graph.publish("/battery_level", {"battery_level": level})
 
     assert [record.getMessage().split(":")[0] for record in caplog.records] == [
-        "refused a message on /battery_level"
+        "rejected a message on /battery_level"
     ] * 2
 
 

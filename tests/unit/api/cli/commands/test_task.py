@@ -225,7 +225,7 @@ def test_a_refused_file_is_told_line_by_line_with_a_hint_in_options(
 ) -> None:
     track.write_text("0,0,0\n1,0,x\n")
     findings = [{"code": "NOT_A_NUMBER", "message": "yaw: 'x'", "line": 2, "column": 5}]
-    service.preview = problem(422, findings=findings, hint="say so with ?heading=deg")
+    service.preview = problem(422, findings=findings, hint="set ?heading=deg")
 
     driven = Driven(service, track)
 
@@ -234,7 +234,7 @@ def test_a_refused_file_is_told_line_by_line_with_a_hint_in_options(
         f"{track}:2:5: NOT_A_NUMBER yaw: 'x'",
         "    1,0,x",
         "refused: nothing is started",
-        "  hint: say so with --heading deg",
+        "  hint: set --heading deg",
     ]
     assert service.paths == ["POST /tasks/preview"]
 

@@ -125,7 +125,7 @@ async def test_a_vehicle_that_does_not_tell_where_it_is_is_a_warning(
     http: httpx.AsyncClient, live: tuple[Supervisor, SimulatedBackend], clock: ManualClock
 ) -> None:
     supervisor, backend = live
-    assert (await warnings(http))["NO_POSE"] == "the vehicle never told where it is"
+    assert (await warnings(http))["NO_POSE"] == "the vehicle never reported a pose"
     async with running(supervisor):
         assert "NO_POSE" not in await warnings(http)
         backend.set_vehicle_reporting(False)

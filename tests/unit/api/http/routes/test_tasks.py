@@ -155,7 +155,7 @@ async def test_a_path_that_begins_far_away_is_refused_with_a_hint(robot: HttpRob
 async def test_a_path_that_passes_by_can_be_begun_where_it_is_nearest(robot: HttpRobot) -> None:
     passing = "".join(f"{x},1,0\n" for x in range(-20, 21))
     refused = (await post(robot, passing)).json()
-    assert refused["hint"] == "waypoint 20 is 1.0 m away: begin there with start_index"
+    assert refused["hint"] == "waypoint 20 is 1.0 m away: start there with start_index"
     assert refused["errors"][0]["pointer"] == "/waypoints"
     answer = await post(robot, passing, start_index=int(refused["available"][0]))
 

@@ -527,7 +527,7 @@ async def test_a_transition_that_is_not_to_be_had_is_refused_with_what_is(
     robot.ask(1, T.CONFIGURE)
     await robot.advance(0.1)
 
-    reason = "the node refused configure; it offers cleanup, activate, shutdown"
+    reason = "the node rejected configure; it offers cleanup, activate, shutdown"
     assert robot.answers() == [NodeAnswer(1, BASE, False, reason)]
 
 
@@ -538,7 +538,7 @@ async def test_a_node_that_refuses_and_says_nothing_more_refuses(robot: HeardNod
     robot.ask(1, T.CONFIGURE)
     await robot.advance(1.0)
 
-    assert robot.answers() == [NodeAnswer(1, BASE, False, "the node refused configure")]
+    assert robot.answers() == [NodeAnswer(1, BASE, False, "the node rejected configure")]
 
 
 async def test_a_node_that_died_gives_no_answer_and_then_is_not_asked_any_more(
@@ -571,7 +571,7 @@ async def test_a_node_that_does_not_answer_is_not_told_more_and_more(robot: Hear
     for request in range(MOST_COMMANDS + 1):
         robot.ask(request, T.CONFIGURE)
 
-    reason = f"{MOST_COMMANDS} commands wait for an answer already"
+    reason = f"{MOST_COMMANDS} commands already wait for an answer"
     assert robot.answers() == [NodeAnswer(MOST_COMMANDS, BASE, False, reason)]
 
 

@@ -216,9 +216,9 @@ def test_what_was_not_measured_is_no_reading_and_nothing_to_complain_of(
         ("temperature", TEMPERATURE, {"temperature": True}, "must be a number, not True"),
         ("signal_strength", STRENGTH, {"data": 3}, "must be one of CONNECTED"),
         ("signal_strength", STRENGTH, {"data": True}, "must be one of CONNECTED"),
-        ("battery_level", BATTERY, {"charge": 1.0}, "there is no such field: .*'percentage'"),
-        ("wind", WIND, {"layers": [{"speed": 1.0}]}, "there is no such field: list index out"),
-        ("wind", WIND, {"layers": 3}, "there is no such field: 'int'"),
+        ("battery_level", BATTERY, {"charge": 1.0}, "no such field: .*'percentage'"),
+        ("wind", WIND, {"layers": [{"speed": 1.0}]}, "no such field: list index out"),
+        ("wind", WIND, {"layers": 3}, "no such field: 'int'"),
         ("wind", {**WIND, "field": "layers"}, {"layers": [{"speed": 1.0}]}, "must be a number"),
     ],
 )
@@ -234,7 +234,7 @@ def test_what_a_signal_cannot_be_is_no_reading_and_is_told(
 
     assert robot.heard == []
     (complaint,) = complaints(caplog)
-    assert complaint.startswith(f"{topic['topic']} ({topic['type']}) is not taken as {signal}: ")
+    assert complaint.startswith(f"{topic['topic']} ({topic['type']}) is not accepted as {signal}: ")
     assert re.search(words, complaint)
 
 

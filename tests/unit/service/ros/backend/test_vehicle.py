@@ -201,7 +201,7 @@ def test_odometry_that_is_no_number_is_told_to_nobody_but_the_log(
 
     assert [state.pose for state in robot.heard] == [Pose(1.0, 0.0, 0.0)]
     (complaint,) = complaints(caplog)
-    assert complaint.startswith("/odom does not say how the vehicle moves")
+    assert complaint.startswith("invalid odometry on /odom")
 
 
 async def test_odometry_is_complained_of_once_a_minute(caplog: pytest.LogCaptureFixture) -> None:

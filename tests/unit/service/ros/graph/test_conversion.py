@@ -172,7 +172,7 @@ def test_what_is_left_out_of_a_nested_message_has_its_default() -> None:
         ({"name": "a\0b"}, "/name", "a text"),
         ({"name": "\ud800"}, "/name", "a text"),
         ({"short": "abcd"}, "/short", "at most 3 characters"),
-        ({"letter": "a"}, "/letter", "JSON has nothing"),
+        ({"letter": "a"}, "/letter", "JSON cannot hold"),
         ({"names": "abc"}, "/names", "a list"),
         ({"names": ["a", 1]}, "/names/1", "a text"),
         ({"shorts": ["a", "b", "c"]}, "/shorts", "a list of at most 2"),
@@ -255,7 +255,9 @@ def test_a_type_is_found_by_its_name() -> None:
     ],
 )
 def test_a_type_that_is_not_there_is_named(name: str) -> None:
-    with pytest.raises(UnknownTypeError, match=f"the ROS 2 type {name} is not there") as missing:
+    with pytest.raises(
+        UnknownTypeError, match=f"the ROS 2 type {name} is not installed"
+    ) as missing:
         find_type(name)
 
     assert missing.value.type_name == name

@@ -132,7 +132,7 @@ async def test_while_the_loop_is_busy_the_newest_are_kept(
     await until(lambda: len(taken) == 2)
 
     assert taken == [3, 4]
-    assert "/count: 3 messages were dropped, the event loop was busy" in caplog.text
+    assert "/count: dropped 3 messages, the event loop was busy" in caplog.text
 
 
 async def test_a_busy_loop_is_woken_once_for_all_messages(
@@ -177,7 +177,7 @@ async def test_a_message_that_cannot_be_read_is_told_once(
 
     assert taken == [1.0]
     assert [record.getMessage() for record in caplog.records] == [
-        "/count: messages are dropped, the first for this:"
+        "/count: messages are dropped; the first one because of:"
     ]
 
 
@@ -307,7 +307,7 @@ async def test_an_answer_to_nobody_is_no_fault(
     service = served(crossing, echo)
     service.client_is_gone = True
     await elsewhere(service.hear, "go", 1)
-    await until(lambda: "could not be sent: there is no such client" in caplog.text)
+    await until(lambda: "could not send a response: there is no such client" in caplog.text)
 
     service.client_is_gone = False
     await elsewhere(service.hear, "again", 2)

@@ -95,7 +95,7 @@ def test_a_signal_is_as_bad_as_what_is_judged_of_it(signal: SignalView, level: L
 def test_a_signal_that_waits_names_the_error_that_is_coming() -> None:
     signal = replace(BATTERY, pending_error="BATTERY_LOW")
 
-    assert told(diagnosed([], [signal])[1])[2] == "BATTERY_LOW is coming"
+    assert told(diagnosed([], [signal])[1])[2] == "BATTERY_LOW is pending"
 
 
 def test_a_signal_shows_its_value_unit_and_source() -> None:
@@ -125,14 +125,14 @@ UNDECIDABLE = Actual(LifecycleState.UNKNOWN, undecidable=True, reason="lidar is 
         (
             replace(ARM, actual=INACTIVE, converged=False),
             Level.WARN,
-            "should be active.STRONG, is inactive",
+            "target active.STRONG, actual inactive",
         ),
         (replace(ARM, target=None, actual=UNDECIDABLE), Level.WARN, "unknown: lidar is unknown"),
         (replace(ARM, reachable=False), Level.ERROR, "is unreachable"),
         (
             replace(ARM, reachable=False, kind="system"),
             Level.ERROR,
-            "has nodes that are unreachable",
+            "has unreachable nodes",
         ),
         (
             replace(ARM, actual=Actual(LifecycleState.ERROR_PROCESSING), change=ChangeId("c1")),

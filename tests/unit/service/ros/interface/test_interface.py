@@ -96,9 +96,9 @@ async def test_events_that_are_forgotten_before_they_are_read_are_a_warning_and_
             supervisor.submit(ModeRequest(BASE, ("FAST", "SLOW")[number % 2]))
         await clock.advance(0.1)
 
-    last = int(caplog.records[0].getMessage().split()[3])
+    last = int(caplog.records[0].getMessage().split()[4])
     assert [(record.levelno, record.getMessage()) for record in caplog.records] == [
-        (logging.WARNING, f"events {first} to {last} were missed")
+        (logging.WARNING, f"missed events {first} to {last}")
     ]
     assert heard[-1]["goal_mode"]["label"] == "SLOW"
 

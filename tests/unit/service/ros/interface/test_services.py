@@ -103,7 +103,7 @@ async def test_a_transition_that_does_not_exist_is_refused_and_logged(
 
     assert not await change_state(robot, "actuation", **transition)
 
-    assert "of actuation, asked by test:operator: there is no such transition" in caplog.text
+    assert "of actuation, requested by test:operator: there is no such transition" in caplog.text
     assert await state_of(robot, "actuation") == (1, "unconfigured")
 
 
@@ -253,7 +253,7 @@ async def test_a_refusal_is_no_success_and_its_reason_is_logged(
 
     assert await carry_out(robot.supervisor, ModeRequest(BASE, "FAST", OPERATOR)) is False
 
-    assert "'FAST' of drive_base, asked by test:operator" in caplog.text
+    assert "'FAST' of drive_base, requested by test:operator" in caplog.text
     assert "emergency stop is engaged" in caplog.text
 
 

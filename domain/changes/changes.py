@@ -1,0 +1,219 @@
+"""All changes of state, mode and parameters, with a verified result.
+
+What a change wants of its nodes is the work of `node_steps.py`.
+"""
+
+from collections.abc import Mapping, Sequence
+
+from domain.changes.node_steps import NodeSteps
+from domain.changes.plan import ChangeGoal
+from domain.changes.record import Change, Pursuit, Step
+from domain.changes.settings import ChangeSettings
+from domain.errors import UnknownChangeError
+from domain.events.changes import CHANGE_ENDS
+from domain.health.health import Health
+from domain.identifiers import ChangeId
+from domain.inputs import ChangeRequest, NodeAnswer, NodeReport
+from domain.outbox import Outbox
+from domain.parts.parts import Parts
+from domain.snapshot import ChangeStatus, StepStatus
+from domain.state_and_mode import PartName
+from domain.timebase import Instant
+
+KEPT_CHANGES = 1_000
+KEPT_PURSUITS = 50_000
+"""Pursuits of all changes together; bounds the memory of large changes."""
+_TOLD_ERRORS = 20
+"""Largest number of errors in the reason of one change; more would not be read."""
+
+
+class Changes:
+    """All changes, running and ended, and the nodes that they are driving."""
+
+    def __init__(
+        self,
+        parts: Parts,
+        settings: ChangeSettings,
+        outbox: Outbox,
+        health: Health,
+    ) -> None:
+        self._parts = parts
+        self._inference = parts.inference
+        self._outbox = outbox
+        self._steps = NodeSteps(parts, settings, outbox, health, self._take_end)
+        self._changes: dict[ChangeId, Change] = {}
+        self._running: dict[ChangeId, Change] = {}
+        self._count = 0
+
+    # --- what can be seen ------------------------------------------------------------------------
+
+    def get(self, change: str) -> Change:
+        """Return a change.
+
+        Raises:
+            UnknownChangeError: The id is unknown, or the change is no longer kept.
+        """
+        found = self._changes.get(ChangeId(change))
+        if found is None:
+            hint = f"the last {KEPT_CHANGES} changes are kept; see GET /changes"
+            raise UnknownChangeError("change", change, (), hint)
+        return found
+
+    def all(self) -> tuple[Change, ...]:
+        """Return the changes that are kept, the newest first."""
+        return tuple(reversed(self._changes.values()))
+
+    def wake_at(self) -> Instant | None:
+        """Return the next deadline; None: there is none."""
+        return self._steps.wake_at()
+
+    def step_in_flight(self, node: PartName) -> Step | None:
+        """Return the step that a node is executing."""
+        return self._steps.in_flight(node)
+
+    # --- inputs ----------------------------------------------------------------------------------
+
+    def begin(
+        self, part: PartName, request: ChangeRequest, goal: ChangeGoal, now: Instant
+    ) -> ChangeId:
+        """Begin an admitted change; it may already have ended when this returns.
+
+        Args:
+            part: The requested part.
+            request: What was requested.
+            goal: Its targets and node goals, from the admission.
+            now: The current time.
+        """
+        self._count += 1
+        identity = ChangeId(f"c{self._count}")
+        cause = self._outbox.record_input()
+        change = Change(identity, part, request, dict(goal.targets), now, cause)
+        nodes = {*goal.nodes, *self._inference.model.nodes_below(part)}
+        self._supersede(nodes, change, now)
+        self._changes[identity] = self._running[identity] = change
+        self._parts.put_under(identity, {part, *goal.targets, *goal.nodes})
+        self._parts.ask(goal.targets)
+        for node, node_goal in goal.nodes.items():
+            change.pursuits[node] = Pursuit(identity, node, node_goal)
+            change.open.add(node)
+            self._steps.add(change.pursuits[node])
+        for node in goal.nodes:
+            self._steps.start(node, now)
+        self._conclude(change, now)
+        self._forget_old()
+        return identity
+
+    def cancel(self, change: ChangeId, now: Instant) -> None:
+        """Start no further step of a change; without effect if all its nodes have ended.
+
+        A superseded change has ended, but may still be driving nodes that no other change took.
+
+        Raises:
+            UnknownChangeError: The id is unknown.
+        """
+        found = self.get(change)
+        if found.open:
+            self._outbox.record_input()
+        for node in sorted(found.open):
+            self._drop(found.pursuits[node], StepStatus.CANCELED, now)
+        if found.status is ChangeStatus.RUNNING:
+            self._end(found, ChangeStatus.CANCELED, "canceled on request", now)
+
+    def report(self, report: NodeReport, now: Instant) -> None:
+        """Judge the step in flight by a report that the parts have processed, and continue."""
+        self._steps.report(report, now)
+
+    def answer(self, answer: NodeAnswer, now: Instant) -> None:
+        """Fail the step in flight if the node rejected it."""
+        self._steps.answer(answer, now)
+
+    def pass_time(self, now: Instant) -> None:
+        """Handle all deadlines up to `now`."""
+        self._steps.pass_time(now)
+
+    # --- inside ----------------------------------------------------------------------------------
+
+    def _supersede(self, nodes: set[PartName], newer: Change, now: Instant) -> None:
+        """Drop pursuits of `nodes`; a change that loses a node ends, but its other nodes go on."""
+        for node in sorted(nodes & self._steps.nodes):
+            self._drop(self._steps.pursuit_of(node), StepStatus.SUPERSEDED, now)
+        reason = f"superseded by change {newer.id} of {newer.part}"
+        for change in list(self._running.values()):
+            if nodes & change.pursuits.keys():
+                self._end(change, ChangeStatus.SUPERSEDED, reason, now)
+
+    def _drop(self, pursuit: Pursuit, status: StepStatus, now: Instant) -> None:
+        self._steps.drop(pursuit, status, now)
+        change = self._changes[pursuit.change]
+        change.open.discard(pursuit.node)
+        self._let_go(change, {pursuit.node})
+
+    def _take_end(self, pursuit: Pursuit, now: Instant) -> None:
+        """Note that a node has ended its part of a change, and end the change with the last."""
+        change = self._changes[pursuit.change]
+        change.open.discard(pursuit.node)
+        self._conclude(change, now)
+        self._let_go(change, {pursuit.node})
+
+    def _conclude(self, change: Change, now: Instant) -> None:
+        """End a running change after its last node has ended; success is verified."""
+        if change.open or change.status is not ChangeStatus.RUNNING:
+            return
+        for outcome, status in _UNHAPPY_ENDS.items():
+            errors = change.errors_of(outcome)
+            if errors:
+                self._end(change, status, _joined(errors), now)
+                return
+        missed = self._missed_target(change)
+        status = ChangeStatus.FAILED if missed else ChangeStatus.SUCCEEDED
+        self._end(change, status, missed, now)
+
+    def _missed_target(self, change: Change) -> str | None:
+        """Return how the requested part deviates from its target although all steps succeeded."""
+        target = change.targets.get(change.part)
+        if target is None or self._inference.converged(change.part):
+            return None
+        actual = self._inference.actual(change.part)
+        words = f"{change.part} is {actual.state_and_mode.label}, not {target.label}"
+        others = [
+            f"{node} is {self._inference.actual(node).state_and_mode.label}"
+            for node in self._inference.model.nodes_below(change.part)
+            if node != change.part and self._inference.actual(node).state is not target.state
+        ]
+        return _joined([actual.reason or words, *others])
+
+    def _end(self, change: Change, status: ChangeStatus, reason: str | None, now: Instant) -> None:
+        change.status, change.reason, change.ended_at = status, reason, now
+        del self._running[change.id]
+        self._let_go(change, {change.part, *change.targets, *change.pursuits})
+        self._outbox.emit(CHANGE_ENDS[status](change.id, change.part, reason))
+
+    def _let_go(self, change: Change, parts: set[PartName]) -> None:
+        """Release the parts of an ended change, except nodes that it is still driving."""
+        if change.status is ChangeStatus.RUNNING:
+            return
+        self._parts.let_go(change.id, parts - change.open)
+
+    def _forget_old(self) -> None:
+        """Keep the newest changes, and all that are still running or driving a node."""
+        excess = len(self._changes) - KEPT_CHANGES
+        kept = sum(len(change.pursuits) for change in self._changes.values())
+        for identity, change in list(self._changes.items())[:-1]:
+            if excess <= 0 and kept <= KEPT_PURSUITS:
+                return
+            if change.status is not ChangeStatus.RUNNING and not change.open:
+                del self._changes[identity]
+                excess -= 1
+                kept -= len(change.pursuits)
+
+
+def _joined(reasons: Sequence[str]) -> str:
+    more = len(reasons) - _TOLD_ERRORS
+    told = [*reasons[:_TOLD_ERRORS], *([f"and {more} more"] if more > 0 else [])]
+    return "; ".join(told)
+
+
+_UNHAPPY_ENDS: Mapping[StepStatus, ChangeStatus] = {
+    StepStatus.FAILED: ChangeStatus.FAILED,
+    StepStatus.TIMED_OUT: ChangeStatus.TIMED_OUT,
+}

@@ -1,0 +1,251 @@
+"""The nodes that changes are driving, one step at a time each.
+
+A step is done when the node reports its goal; an answer only says that it was accepted. Nodes run
+in parallel, each with at most one step in flight. A step in flight is never recalled: the next step
+of its node waits until it ends or times out.
+"""
+
+from collections.abc import Callable, Set
+
+from domain.changes.plan import SetParameters, next_steps, presumed_steps
+from domain.changes.record import Pursuit, Step
+from domain.changes.settings import ChangeSettings
+from domain.changes.step_judgement import judge_report
+from domain.commands import AskFacts, AskParameters, AskTransition
+from domain.deadlines import Deadlines
+from domain.events.changes import StepEnded, StepStarted
+from domain.health.health import Health
+from domain.inputs import NodeAnswer, NodeReport
+from domain.lifecycle import LifecycleState, Transition
+from domain.outbox import Outbox
+from domain.parts.parts import Parts
+from domain.snapshot import StepStatus
+from domain.state_and_mode import PartName
+from domain.timebase import Duration, Instant, to_seconds
+
+_MAX_STEPS = 16
+"""Steps of one node in one change; more are needed only if something else moves the node."""
+
+
+class NodeSteps:
+    """Pursuits of nodes: plans, starts and judges their steps, with deadlines."""
+
+    def __init__(
+        self,
+        parts: Parts,
+        settings: ChangeSettings,
+        outbox: Outbox,
+        health: Health,
+        ended: Callable[[Pursuit, Instant], None],
+    ) -> None:
+        """Begin without a pursuit.
+
+        Args:
+            parts: Facts of the nodes.
+            settings: Deadlines of the steps.
+            outbox: Where commands and events go.
+            health: Whether ESTOP is on.
+            ended: Is handed each pursuit that reached its goal or failed, at once.
+        """
+        self._parts = parts
+        self._facts = parts.facts
+        self._settings = settings
+        self._outbox = outbox
+        self._health = health
+        self._ended = ended
+        self._pursuits: dict[PartName, Pursuit] = {}
+        self._in_flight: dict[PartName, Step] = {}
+        self._deadlines: Deadlines[PartName] = Deadlines()
+
+    # --- what can be seen ------------------------------------------------------------------------
+
+    @property
+    def nodes(self) -> Set[PartName]:
+        """Return the nodes that are on their way."""
+        return self._pursuits.keys()
+
+    def pursuit_of(self, node: PartName) -> Pursuit:
+        """Return the pursuit of a node that is on its way."""
+        return self._pursuits[node]
+
+    def in_flight(self, node: PartName) -> Step | None:
+        """Return the step that a node is executing."""
+        return self._in_flight.get(node)
+
+    def wake_at(self) -> Instant | None:
+        """Return the next deadline; None: there is none."""
+        return self._deadlines.next()
+
+    # --- pursuits --------------------------------------------------------------------------------
+
+    def add(self, pursuit: Pursuit) -> None:
+        """Take over a node, whose earlier pursuit was dropped; `start` lets it move."""
+        self._pursuits[pursuit.node] = pursuit
+
+    def start(self, node: PartName, now: Instant) -> None:
+        """Plan the steps of an added pursuit, and start the first unless one is in flight."""
+        self._foresee(self._pursuits[node])
+        self._advance(node, now)
+
+    def drop(self, pursuit: Pursuit, status: StepStatus, now: Instant) -> None:
+        """Start no further step of a node; one in flight ends by itself.
+
+        Args:
+            pursuit: Of the node.
+            status: Of the steps that are not started: superseded or canceled.
+            now: The current time.
+        """
+        pursuit.outcome = status
+        pursuit.drop_pending(status, now)
+        del self._pursuits[pursuit.node]
+        if pursuit.node not in self._in_flight:
+            self._deadlines.clear(pursuit.node)
+
+    # --- what happens ----------------------------------------------------------------------------
+
+    def report(self, report: NodeReport, now: Instant) -> None:
+        """Judge the step in flight by a report that the inference has processed, and continue."""
+        step = self._in_flight.get(report.node)
+        if step is not None:
+            verdict = judge_report(step, report, self._facts[report.node])
+            if verdict is not None:
+                self._end_step(step, verdict.status, verdict.error, now)
+        self._advance(report.node, now)
+
+    def answer(self, answer: NodeAnswer, now: Instant) -> None:
+        """Fail the step in flight if the node rejected it."""
+        step = self._in_flight.get(answer.node)
+        if step is not None and step.request == answer.request and not answer.accepted:
+            reason = f"rejected: {answer.reason}" if answer.reason else "rejected"
+            self._end_step(step, StepStatus.FAILED, reason, now)
+            self._advance(answer.node, now)
+
+    def pass_time(self, now: Instant) -> None:
+        """Handle all deadlines up to `now`."""
+        while (node := self._deadlines.pop_due(now)) is not None:
+            if node in self._in_flight:
+                self._step_is_late(self._in_flight[node], now)
+            elif node in self._pursuits:
+                self._waited_long_enough(self._pursuits[node], now)
+
+    # --- one node --------------------------------------------------------------------------------
+
+    def _advance(self, node: PartName, now: Instant) -> None:
+        """Start the next step of a node, unless one is in flight."""
+        pursuit = self._pursuits.get(node)
+        if pursuit is None or node in self._in_flight:
+            return
+        facts = self._facts[node]
+        state = facts.known_state
+        passing = pursuit.goal.state is not None and not state.is_primary
+        if state is LifecycleState.UNKNOWN or passing:
+            self._wait(pursuit, now)
+            return
+        actions = next_steps(facts, pursuit.goal)
+        if actions is None:
+            why = "has no lifecycle" if not facts.has_lifecycle else f"is {state}"
+            self._finish(pursuit, StepStatus.FAILED, f"{node} {why}: no path to the goal", now)
+            return
+        pursuit.plan(actions)
+        step = pursuit.next_step()
+        if step is None:
+            self._finish(pursuit, StepStatus.SUCCEEDED, None, now)
+        elif len(pursuit.steps) > _MAX_STEPS:
+            self._finish(
+                pursuit, StepStatus.FAILED, f"{node} keeps leaving the requested state", now
+            )
+        elif step.action is Transition.ACTIVATE and self._health.is_stopped:
+            why = f"{node} is not activated while ESTOP is active"
+            self._finish(pursuit, StepStatus.FAILED, why, now)
+        else:
+            self._begin_step(pursuit, step, now)
+
+    def _foresee(self, pursuit: Pursuit) -> None:
+        """Plan the steps ahead; each step is planned again from the facts before it starts."""
+        facts = self._facts[pursuit.node]
+        unknown = facts.known_state is LifecycleState.UNKNOWN
+        steps = presumed_steps(pursuit.goal) if unknown else next_steps(facts, pursuit.goal)
+        pursuit.plan(steps or ())
+
+    def _begin_step(self, pursuit: Pursuit, step: Step, now: Instant) -> None:
+        node, action = step.node, step.action
+        step.status, step.started_at = StepStatus.RUNNING, now
+        step.start_state = self._facts[node].known_state
+        step.request = self._outbox.next_request()
+        pursuit.waiting = False
+        self._in_flight[node] = step
+        step.event = self._outbox.emit(StepStarted(step.change, node, step.action_name))
+        self._parts.expect_report(node, step.event)
+        if isinstance(action, SetParameters):
+            self._outbox.command(AskParameters(step.request, node, action.values))
+        else:
+            self._outbox.command(AskTransition(step.request, node, action))
+        self._deadlines.set(node, now + self._allowed(step))
+
+    def _allowed(self, step: Step) -> Duration:
+        if isinstance(step.action, SetParameters):
+            return self._settings.parameters_deadline
+        return self._settings.transition_deadline
+
+    def _end_step(self, step: Step, status: StepStatus, error: str | None, now: Instant) -> None:
+        """Record the end of a step; unless it succeeded, its pursuit ends as well."""
+        step.end(status, now, error)
+        del self._in_flight[step.node]
+        self._parts.expect_nothing(step.node)
+        self._deadlines.clear(step.node)
+        self._outbox.emit(StepEnded(step.change, step.node, step.action_name, status, error))
+        pursuit = self._pursuits.get(step.node)
+        if pursuit is None or pursuit.change != step.change or status is StepStatus.SUCCEEDED:
+            return
+        self._finish(pursuit, status, f"{step.node}: {step.action_name}: {error}", now)
+
+    def _step_is_late(self, step: Step, now: Instant) -> None:
+        """Query the actual state before a step is declared timed out."""
+        facts = self._facts[step.node]
+        after = f"within {to_seconds(self._allowed(step)):g} s"
+        if facts.reachable is False:
+            self._end_step(step, StepStatus.FAILED, f"the node {facts.why_unknown}", now)
+        elif step.facts_asked:
+            error = f"not done {after}, and the node did not answer a query of its state"
+            self._end_step(step, StepStatus.TIMED_OUT, error, now)
+        else:
+            step.facts_asked = True
+            self._ask_facts(step.node, now)
+            return
+        self._advance(step.node, now)
+
+    def _ask_facts(self, node: PartName, now: Instant) -> None:
+        self._outbox.command(AskFacts(self._outbox.next_request(), node))
+        self._deadlines.set(node, now + self._settings.facts_deadline)
+
+    def _wait(self, pursuit: Pursuit, now: Instant) -> None:
+        """Wait, as long as a transition may take, for a node to report or to reach a rest state."""
+        if not pursuit.waiting:
+            pursuit.waiting, pursuit.facts_asked = True, False
+            self._deadlines.set(pursuit.node, now + self._settings.transition_deadline)
+
+    def _waited_long_enough(self, pursuit: Pursuit, now: Instant) -> None:
+        facts, node = self._facts[pursuit.node], pursuit.node
+        state = facts.known_state
+        if state is LifecycleState.UNKNOWN:
+            self._finish(pursuit, StepStatus.FAILED, f"{node} {facts.why_unknown}", now)
+        elif pursuit.facts_asked:
+            why = f"{node} is still {state}; no step was started"
+            self._finish(pursuit, StepStatus.FAILED, why, now)
+        else:
+            pursuit.facts_asked = True
+            self._ask_facts(node, now)
+
+    def _finish(
+        self, pursuit: Pursuit, outcome: StepStatus, error: str | None, now: Instant
+    ) -> None:
+        """End the pursuit of one node."""
+        pursuit.outcome, pursuit.error = outcome, error
+        if outcome is not StepStatus.SUCCEEDED:
+            step = pursuit.next_step()
+            if step is not None and not any(s.status is outcome for s in pursuit.steps):
+                step.end(outcome, now, error)
+            pursuit.drop_pending(StepStatus.CANCELED, now)
+        del self._pursuits[pursuit.node]
+        self._deadlines.clear(pursuit.node)
+        self._ended(pursuit, now)
