@@ -13,7 +13,9 @@ _HERE = Path(__file__).parent
 
 # Derandomized, so that a run fails for what was changed and never by luck; `make soak` looks for
 # new examples. No deadline, since a busy machine is not a fault of the code under test.
-settings.register_profile("default", deadline=None, derandomize=True, print_blob=True)
+settings.register_profile(
+    "default", max_examples=50, deadline=None, derandomize=True, print_blob=True
+)
 settings.register_profile("soak", deadline=None, max_examples=5_000, print_blob=True)
 settings.load_profile("soak" if os.environ.get("PILOTHOUSE_SOAK") == "1" else "default")
 
