@@ -41,7 +41,7 @@ help: ## list the targets
 run: $(INSTALLED) ## start the example robot; prints the address of its page
 	@$(BIN)/pilothouse serve $(ARGS)
 
-test: lint types imports pytest ## everything that has to pass: lint, types, imports, tests
+test: lint types imports pytest ## all checks: lint, types, import contracts, tests
 
 lint: $(INSTALLED_DEV) ## ruff: lint and format
 	@$(BIN)/ruff check .
@@ -55,13 +55,13 @@ pyright: $(INSTALLED_DEV) ## pyright, standard: a second opinion about types
 	@$(call INSTALL,$(VENV),'basedpyright>=1.40')
 	@$(BIN)/basedpyright --pythonpath $(BIN)/python
 
-imports: $(INSTALLED_DEV) ## who may import whom
+imports: $(INSTALLED_DEV) ## import contracts
 	@$(BIN)/lint-imports --no-cache --no-logo
 
 pytest: $(INSTALLED_DEV) ## the tests; one of them with ARGS=tests/unit/test_structure.py
 	@$(BIN)/pytest -rs $(or $(ARGS),$(PARALLEL))
 
-test-image: $(INSTALLED_DEV) ## build the image and talk to it in a container; needs root
+test-image: $(INSTALLED_DEV) ## build the image and test it in a container; needs root
 	@$(BIN)/hadolint docker/Dockerfile docker/Dockerfile.dev
 	@bash docker/build_here.sh
 	@$(BIN)/pytest -rs -m image tests/image $(ARGS)
@@ -82,29 +82,29 @@ hooks: ## let git run the fast checks before each commit
 pre-commit: lint imports ## the fast checks: lint, imports, structure of the repository
 	@$(BIN)/pytest -q --no-header -p no:cacheprovider tests/unit/test_structure.py
 
-format: $(INSTALLED_DEV) ## let ruff format and fix what it can
+format: $(INSTALLED_DEV) ## format with ruff, and apply its fixes
 	@$(BIN)/ruff check --fix .
 	@$(BIN)/ruff format .
 
-docs: $(INSTALLED_DEV) ## renew what follows from the code: OpenAPI, AsyncAPI, pages of docs/reference
+docs: $(INSTALLED_DEV) ## regenerate OpenAPI, AsyncAPI and the pages of docs/reference from the code
 	@$(BIN)/python -m tests.support.document_examples
 	@$(BIN)/python -m docs.generate
 
-bench: $(INSTALLED_DEV) ## measure, beside what others do, and write docs/benchmarks.md
+bench: $(INSTALLED_DEV) ## run the benchmarks, with other software for comparison, and write docs/benchmarks.md
 	@$(if $(ARGS),,rm -f build/bench/*.json)
 	@$(BIN)/pytest -s -m bench --timeout=0 $(or $(ARGS),tests/bench); code=$$?; \
 	  $(BIN)/python -m tests.support.bench_document && exit $$code
 
-bench-ros2: $(INSTALLED_ROS2) ## measure fifty real ROS 2 nodes, and write docs/benchmarks.md
+bench-ros2: $(INSTALLED_ROS2) ## run the benchmarks with fifty real ROS 2 nodes, and write docs/benchmarks.md
 	@$(NOT_OF_ROS) $(ROS2)/bin/pytest -s -p no:cacheprovider -m bench --timeout=0 \
 	  tests/bench/bench_ros2.py tests/bench/bench_ros2_estop.py $(ARGS); \
 	  code=$$?; $(ROS2)/bin/python -m tests.support.bench_document && exit $$code
 
-coverage: $(INSTALLED_DEV) ## branches of the core that its tests reach, each module by its own test file
+coverage: $(INSTALLED_DEV) ## branch coverage of the core, each module by its own test file
 	@$(BIN)/pytest -q tests/unit/domain --cov --cov-context=test --cov-report=
 	@$(BIN)/python -m tests.support.module_coverage
 
-mutation: $(INSTALLED_DEV) ## change the core in some 7,600 ways, and count what its tests notice
+mutation: $(INSTALLED_DEV) ## mutation tests of the core: about 7,600 mutants
 	@rm -rf mutants
 	@$(BIN)/mutmut run
 	@$(BIN)/python -m tests.support.mutation_score
@@ -122,7 +122,7 @@ lowest: $(INSTALLED_DEV) ## the tests, with the oldest dependencies that pyproje
 	  --requirement $(LOWEST)/requirements.txt --editable .
 	@$(LOWEST)/bin/pytest -rs -p no:cacheprovider $(or $(ARGS),$(PARALLEL))
 
-lock: $(INSTALLED_DEV) ## renew requirements.lock
+lock: $(INSTALLED_DEV) ## update requirements.lock
 	@$(PIP_INSTALL) uv
 	@{ echo "# For installs that are the same everywhere, as in the image; made by \`make lock\`."; \
 	   echo "# Use: pip install --require-hashes -r requirements.lock && pip install --no-deps ."; \

@@ -1,4 +1,4 @@
-"""`pilothouse simulate`: run a scenario in virtual time, and compare it with what it expects."""
+"""`pilothouse simulate`: runs a scenario in virtual time, and checks its expectations."""
 
 import json
 import sys
@@ -26,14 +26,14 @@ def simulate(
     model: Path | None = None,
     robot: Path | None = None,
 ) -> int:
-    """Let a scenario happen and print what came of it; return the exit code.
+    """Run a scenario and print the results; return the exit code.
 
     Args:
         name: Path of the scenario; `-` is the standard input.
         form: `text` for people, `json` for programs.
-        loaded_model: File of the model for who names none.
-        model: File with another model than that of the scenario.
-        robot: File with other settings than those of the scenario.
+        loaded_model: File of the default model.
+        model: Model file that replaces the model of the scenario.
+        robot: Robot file that replaces the settings of the scenario.
     """
     try:
         scenario = load_scenario(name, read_text_file(loaded_model), model, robot)
@@ -57,7 +57,7 @@ def simulate(
 
 
 def failures(scenario: Scenario, simulation: Simulation) -> list[str]:
-    """Return what did not go as told, each with its line in the file; empty: all is as expected."""
+    """Return lines on unmet expectations and unexpected rejections; empty if there are none."""
     found: list[ExpectationJson | RefusalJson] = [
         *simulation.failed_expectations(),
         *simulation.unexpected_refusals(),
@@ -70,12 +70,12 @@ def failures(scenario: Scenario, simulation: Simulation) -> list[str]:
 
 
 def report(scenario: Scenario, simulation: Simulation, took_s: float) -> Iterator[str]:
-    """Yield what came of a scenario, line by line.
+    """Yield the results of a scenario, line by line.
 
     Args:
-        scenario: What was to happen.
-        simulation: What happened.
-        took_s: How long that took, in s.
+        scenario: The scenario.
+        simulation: Its simulation, after the run.
+        took_s: Duration of the run, s.
     """
     if scenario.body.title:
         yield scenario.body.title
@@ -89,7 +89,7 @@ def report(scenario: Scenario, simulation: Simulation, took_s: float) -> Iterato
 
 
 def _run(simulation: Simulation, until_s: float) -> None:
-    """Run with a line that tells how far it is, where somebody looks at a terminal."""
+    """Run with a progress line if the standard error is a terminal."""
     with TerminalLine(sys.stderr) as line:
 
         def show(at_s: float) -> None:
@@ -100,17 +100,17 @@ def _run(simulation: Simulation, until_s: float) -> None:
 
 
 def _failure(scenario: Scenario, item: ExpectationJson | RefusalJson) -> Iterator[str]:
-    """Yield a line for what went wrong, and those that say how."""
+    """Yield the lines on one failure."""
     if isinstance(item, RefusalJson):
         place = f"{scenario.file}:{scenario.line_of(item.step)}"
-        yield f"{place}: refused at {item.t_s:g} s: {item.problem.detail}"
+        yield f"{place}: rejected at {item.t_s:g} s: {item.problem.detail}"
         if item.problem.hint:
             yield f"    hint: {item.problem.hint}"
         return
     for difference in item.differences:
         if difference.path == "refused":
             place = f"{scenario.file}:{scenario.line_of(item.step)}"
-            yield f"{place}: not refused at {item.t_s:g} s, though that was expected"
+            yield f"{place}: not rejected at {item.t_s:g} s, although that was expected"
         else:
             yield from _difference(scenario, item, difference)
 
@@ -119,9 +119,9 @@ def _difference(
     scenario: Scenario, item: ExpectationJson, difference: DifferenceJson
 ) -> Iterator[str]:
     line = scenario.line_of(item.step, difference.path)
-    yield f"{scenario.file}:{line}: otherwise than expected at {item.t_s:g} s: {difference.path}"
+    yield f"{scenario.file}:{line}: not as expected at {item.t_s:g} s: {difference.path}"
     yield f"    expected {_shown(difference.expected)}"
-    yield f"    seen     {_shown(difference.seen)}"
+    yield f"    actual   {_shown(difference.seen)}"
 
 
 _LONGEST = 300
@@ -137,6 +137,6 @@ def _verdict(simulation: Simulation) -> str:
     failed = len(simulation.expectations) - held
     refused = len(simulation.unexpected_refusals())
     if not simulation.expectations and not refused:
-        return "nothing was expected"
-    counts = [(held, "as expected"), (failed, "otherwise than expected"), (refused, "refused")]
+        return "no expectations"
+    counts = [(held, "as expected"), (failed, "not as expected"), (refused, "rejected")]
     return ", ".join(f"{count} {what}" for count, what in counts if count)

@@ -1,4 +1,4 @@
-"""One line of a terminal that is written over and over, and erased at the end."""
+"""A line of a terminal that is overwritten repeatedly, and erased at the end."""
 
 import shutil
 import time
@@ -9,9 +9,9 @@ _ERASE = "\r\x1b[2K"
 
 
 class TerminalLine:
-    """A line that tells how far something is; where there is no terminal, nothing is written.
+    """A progress line; without a terminal, nothing is written.
 
-    As a context it is erased at the end, however that comes.
+    As a context manager it always erases the line at the end.
     """
 
     def __init__(self, out: TextIO, period_s: float = 0.1) -> None:
@@ -40,7 +40,7 @@ class TerminalLine:
         self.erase()
 
     def show(self, text: str) -> None:
-        """Write `text`, as much of it as the line holds, in place of what is there."""
+        """Overwrite the line with `text`, cut to the width of the terminal."""
         now = time.monotonic()
         if not self.is_shown or now < self._next_at:
             return

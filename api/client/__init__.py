@@ -1,1 +1,1 @@
-"""The client of a running service, for commands and the terminal monitor."""
+"""The client library for a running service, used by commands and the terminal monitor."""

@@ -1,4 +1,4 @@
-"""Where a service is, how its stream is reached, and the token that opens it."""
+"""The address of a service, of its stream, and the token for them."""
 
 import os
 from dataclasses import dataclass, field
@@ -12,23 +12,23 @@ _LOOPBACK = frozenset({"127.0.0.1", "::1", "localhost"})
 
 @dataclass(frozen=True, slots=True)
 class Address:
-    """A service, and what it lets in by."""
+    """The address of a service, and the token for it."""
 
     url: str
     """Without a slash at the end."""
     token: str | None = field(default=None, repr=False)
-    """None: it is asked without one."""
+    """None: requests carry no token."""
 
     @classmethod
     def of(cls, url: str, token: str | None = None) -> "Address":
-        """Return the address that somebody gave.
+        """Return the address of a service.
 
         Args:
-            url: As in `http://127.0.0.1:8000`.
-            token: None: the service is asked without one.
+            url: For example `http://127.0.0.1:8000`.
+            token: None: requests carry no token.
 
         Raises:
-            NoAnswerError: `url` is no address of a web server.
+            NoAnswerError: `url` is not the address of a web server.
         """
         try:
             parts = urlsplit(url)
@@ -36,15 +36,15 @@ class Address:
         except ValueError:
             is_one = False
         if not is_one:
-            raise NoAnswerError(f"{url!r} is no address such as http://127.0.0.1:8000")
+            raise NoAnswerError(f"invalid address {url!r}; an example is http://127.0.0.1:8000")
         return cls(url.rstrip("/"), token)
 
     @classmethod
     def with_token_of_environment(cls, url: str) -> "Address":
-        """Return the address that somebody gave, with the token of this process's environment.
+        """Return the address of a service, with the token from the environment.
 
         Raises:
-            NoAnswerError: `url` is no address of a web server, or the token cannot be used.
+            NoAnswerError: `url` is not the address of a web server, or the token is invalid.
         """
         try:
             return cls.of(url, read_token(os.environ))
@@ -53,12 +53,12 @@ class Address:
 
     @property
     def headers(self) -> dict[str, str]:
-        """Return what each request and the handshake of the stream carry."""
+        """Return the headers of each request and of the handshake of the stream."""
         return {} if self.token is None else {"Authorization": f"Bearer {self.token}"}
 
     @property
     def loopback(self) -> tuple[str, int] | None:
-        """Return host and port if they are on this machine, where no proxy leads to; else None."""
+        """Return host and port if the service is on this machine; else None."""
         parts = urlsplit(self.url)
         if parts.hostname not in _LOOPBACK:
             return None
@@ -68,8 +68,8 @@ class Address:
         """Return the address of the stream.
 
         Args:
-            epoch: Of the events that are known; None: none is.
-            last_event_id: Of these, the newest.
+            epoch: Of the known events; None: none is known.
+            last_event_id: Of the newest known event.
         """
         known = {} if epoch is None else {"after": last_event_id, "epoch": epoch}
         return f"{self.url.replace('http', 'ws', 1)}/ws?{urlencode(known)}".rstrip("?")

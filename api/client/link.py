@@ -1,6 +1,6 @@
-"""The contact with a service: its stream.
+"""The connection to the stream of a service.
 
-It comes back by itself, with pauses that grow, and goes on behind the last event that it heard.
+It reconnects by itself, with increasing pauses, and continues after the last event received.
 """
 
 import asyncio
@@ -21,30 +21,30 @@ from api.client.address import Address
 from api.client.outcomes import Json, NoAnswerError, ServiceProblemError, token_hint
 
 SILENCE_S = 5.0
-"""A dead peer never closes: after such a silence the stream is given up."""
+"""A dead peer never closes the connection: after this silence, s, the client reconnects."""
 
 _ANSWER_S = 5.0
 _CLOSING_S = 1.0
 _RETRY_S = (0.5, 1.0, 2.0, 4.0)
 _MOST_BYTES = 64 * 2**20
-"""Of a frame; one with 10,000 parts has some 4 MB."""
+"""Of a frame; one with 10,000 parts has about 4 MB."""
 _ENDINGS = frozenset({1001, 1012})
 
 
 class Listener(Protocol):
-    """Learns what a service says."""
+    """Receives the frames of a service."""
 
     def take(self, message: Json, /) -> None:
-        """Take a frame of the stream, or an answer in its form."""
+        """Take a frame of the stream."""
         ...
 
     def lose(self, why: str) -> None:
-        """Take that the contact is lost, or that there is none."""
+        """Handle that the connection was lost, or cannot be made."""
         ...
 
 
 class Link:
-    """Keeps a listener supplied."""
+    """Keeps up the connection, and passes frames to a listener."""
 
     def __init__(self, address: Address, listener: Listener) -> None:
         self._address = address
@@ -55,10 +55,10 @@ class Link:
         """Whether a `state` frame came since the last pause."""
 
     async def run(self) -> NoReturn:
-        """Connect, and whenever that ends connect again.
+        """Connect, and reconnect whenever the connection ends.
 
         Raises:
-            ServiceProblemError: The service refuses us; to try again would not help.
+            ServiceProblemError: The service rejects us, and retrying would not help.
         """
         pauses = _pauses()
         while True:
@@ -72,11 +72,11 @@ class Link:
             await asyncio.sleep(next(pauses))
 
     async def serve(self) -> None:
-        """Connect once, and hand on what comes.
+        """Connect once, and pass on the frames.
 
         Raises:
-            NoAnswerError: The service did not answer, or does not any more.
-            ServiceProblemError: It refuses us.
+            NoAnswerError: The service did not answer, or the connection ended.
+            ServiceProblemError: The service rejects us.
         """
         await self._knock()
         async with self._stream() as stream:
@@ -110,7 +110,7 @@ class Link:
                 async with asyncio.timeout(SILENCE_S):
                     frame = json.loads(await stream.recv())
             except TimeoutError as error:
-                raise NoAnswerError(f"silent for {SILENCE_S:g} s") from error
+                raise NoAnswerError(f"no frame for {SILENCE_S:g} s") from error
             except websockets.ConnectionClosed as error:
                 raise NoAnswerError(_closing_words(error)) from error
             if frame["type"] == "problem":
@@ -119,7 +119,7 @@ class Link:
             self._remember(frame)
 
     def _remember(self, frame: Json) -> None:
-        """Keep up to which event everything is known: the next stream begins behind it."""
+        """Remember the last event: the next connection continues after it."""
         match frame["type"]:
             case "hello" if frame["epoch"] != self._epoch:
                 self._epoch, self._last_event_id = frame["epoch"], 0
@@ -131,7 +131,7 @@ class Link:
                 self._is_heard = True
 
     async def _knock(self) -> None:
-        """Ask over HTTP, which refuses at once and in words; the stream waits for a token first."""
+        """Check access over HTTP, which rejects at once; the stream would wait for the token."""
         url = self._address.url
         try:
             async with self._http() as http:
@@ -139,7 +139,7 @@ class Link:
         except httpx.ConnectError as error:
             raise NoAnswerError(f"no service answers at {url}: is it running?") from error
         except httpx.HTTPError as error:
-            why = str(error) or f"none within {_ANSWER_S:g} s"
+            why = str(error) or f"timed out after {_ANSWER_S:g} s"
             raise NoAnswerError(f"no answer from {url}: {why}") from error
         if response.is_error:
             raise _refusal(_problem_in(response.content, response.status_code), self._address)
@@ -157,14 +157,14 @@ class Link:
 
 
 async def _socket(address: Address) -> socket.socket | None:
-    """Return a connection to this machine, past any proxy; None lets the library make one."""
+    """Return a connection to this machine that bypasses any proxy; None: another host."""
     if address.loopback is None:
         return None
     return await asyncio.to_thread(socket.create_connection, address.loopback, _ANSWER_S)
 
 
 def _pauses() -> Iterator[float]:
-    """Yield pauses that grow, spread so that many clients do not come back in the same moment."""
+    """Yield increasing pauses, s, randomized so that many clients do not reconnect together."""
     for pause_s in chain(_RETRY_S, repeat(_RETRY_S[-1])):
         yield pause_s * random.uniform(0.8, 1.2)
 
@@ -182,12 +182,12 @@ def _object_in(content: bytes | bytearray | None) -> dict[str, Any] | None:
 
 
 def _problem_in(content: bytes | bytearray | None, status: int) -> dict[str, Any]:
-    found = _object_in(content) or {"detail": f"what answers says {status}: is it Pilothouse?"}
+    found = _object_in(content) or {"detail": f"the server answered {status}: is it Pilothouse?"}
     return {**found, "status": status}
 
 
 def _refusal(problem: Json, address: Address) -> ServiceProblemError | NoAnswerError:
-    """Return what a problem means for us: to try again does not help, or it may."""
+    """Return the error for a problem: whether retrying may help depends on it."""
     if problem["status"] == HTTPStatus.UNAUTHORIZED:
         return ServiceProblemError({**problem, "hint": token_hint(given=address.token is not None)})
     if problem["status"] == HTTPStatus.FORBIDDEN:
@@ -198,7 +198,7 @@ def _refusal(problem: Json, address: Address) -> ServiceProblemError | NoAnswerE
 def _closing_words(error: websockets.ConnectionClosed) -> str:
     frame = error.rcvd
     if frame is None:
-        return "the connection broke"
+        return "the connection was lost"
     if frame.code in _ENDINGS:
-        return "the service ends or is restarted"
+        return "the service stopped or is restarting"
     return f"the service closed the stream: {frame.reason or frame.code}"

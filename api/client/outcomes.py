@@ -1,4 +1,4 @@
-"""What can come of asking a service: how it ended, what it refused, or no answer at all."""
+"""The outcomes of a request to a service: how it ended, a problem, or no answer."""
 
 from collections.abc import Iterator, Mapping, Sequence
 from enum import IntEnum
@@ -13,38 +13,38 @@ Json = Mapping[str, Any]
 
 
 class Outcome(IntEnum):
-    """How a change ended, as exit code of the command."""
+    """How a change ended, as the exit code of the command."""
 
     SUCCEEDED = 0
     FAILED = 1
     UNKNOWN = 2
-    """Timed out, not ended yet, or nobody answered."""
+    """Timed out, not ended yet, or no answer."""
 
 
 class ServiceProblemError(Exception):
     """The service answered with a problem document (RFC 9457)."""
 
     def __init__(self, problem: Json) -> None:
-        super().__init__(problem.get("detail") or problem.get("title") or "refused")
+        super().__init__(problem.get("detail") or problem.get("title") or "rejected")
         self.problem = problem
 
 
 class NoAnswerError(Exception):
-    """The service did not answer, or something answered that is not Pilothouse."""
+    """The service did not answer, or what answered is not Pilothouse."""
 
 
 def token_hint(*, given: bool) -> str:
-    """Say what to do about a service that wants a token, or another one than was given."""
+    """Return a hint for a missing or wrong token."""
     return _OTHER_TOKEN if given else _NO_TOKEN
 
 
 def refusal_lines(problem: Json) -> Iterator[str]:
-    """Say why something was refused, what stands against it, and what helps."""
-    yield f"refused: {problem.get('detail') or problem.get('title')}"
+    """Yield why a request was rejected, its blockers and faults, and the hint."""
+    yield f"rejected: {problem.get('detail') or problem.get('title')}"
     for blocker in problem.get("blockers") or ():
         yield f"  {blocker['code']}: {blocker['message']}{_way(blocker.get('path') or ())}"
     faults = problem.get("errors") or ()
-    # A single fault is told by the detail already.
+    # The detail already holds a single fault.
     for fault in faults if len(faults) > 1 else ():
         yield f"  {fault['pointer'] or 'body'}: {fault['message']}"
     if problem.get("hint"):

@@ -1,7 +1,4 @@
-"""Requests to a running service, one at a time; for commands that ask and wait for the answer.
-
-It needs nothing but the HTTP interface, so that it works against any service within reach.
-"""
+"""Blocking requests to a running service, for commands; needs only its HTTP interface."""
 
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
@@ -19,11 +16,11 @@ class ServiceClient:
     """A running service."""
 
     def __init__(self, address: Address, transport: httpx.BaseTransport | None = None) -> None:
-        """Prepare to talk to the service; nothing is sent yet.
+        """Prepare; nothing is sent yet.
 
         Args:
-            address: Where the service runs, and the token that goes with each request.
-            transport: How requests are sent; None: over the network.
+            address: Of the service, with the token for each request.
+            transport: Sends the requests; None: over the network.
         """
         self.url = address.url
         self._has_token = address.token is not None
@@ -45,7 +42,7 @@ class ServiceClient:
 
         Raises:
             ServiceProblemError: There is no such part.
-            NoAnswerError: Nobody answered.
+            NoAnswerError: There was no answer.
         """
         path = f"/systems/{quote(part)}"
         try:
@@ -66,18 +63,19 @@ class ServiceClient:
         csv: str | None = None,
         query: Mapping[str, str | int | float] | None = None,
     ) -> Json:
-        """Send one request and return the JSON object of the answer; without content, an empty one.
+        """Send a request and return the JSON object of the answer; empty if it has no content.
 
         Args:
-            method: As in `GET`.
-            path: As in `/tasks`.
+            method: For example `GET`.
+            path: For example `/tasks`.
             body: Sent as JSON.
             csv: Sent instead of `body`.
-            query: What follows the path.
+            query: Query parameters.
 
         Raises:
-            ServiceProblemError: It was refused.
-            NoAnswerError: Nobody answered, or not in JSON; whether it was done is not known.
+            ServiceProblemError: The request was rejected.
+            NoAnswerError: There was no answer in JSON; whether the request was processed is not
+                known.
         """
         try:
             content = None if csv is None else csv.encode()
@@ -106,10 +104,10 @@ class ServiceClient:
 
 @contextmanager
 def service_at(url: str) -> Iterator[ServiceClient]:
-    """Return a client with the token of the environment, closed at the end of the context.
+    """Provide a client with the token from the environment while the context is open.
 
     Raises:
-        NoAnswerError: Nobody can be asked: the address is none, or the token cannot be used.
+        NoAnswerError: The address or the token is invalid.
     """
     client = ServiceClient(Address.with_token_of_environment(url))
     try:

@@ -1,4 +1,4 @@
-"""Who may use the service: whoever has its token, or everybody where none is set."""
+"""Access to the service: with its token, or for everybody if none is set."""
 
 import hashlib
 import hmac
@@ -10,54 +10,54 @@ from starlette.datastructures import Headers
 from domain.errors import PilothouseError
 
 MIN_GOOD_CHARACTERS = 16
-"""A shorter token can be guessed by who tries for long."""
+"""A shorter token can be guessed by brute force."""
 
 _SCHEME = "bearer"
 
 
 class UnauthorizedError(PilothouseError):
-    """A client that has not given the token of the service."""
+    """A client that has not sent the token of the service."""
 
     code = "UNAUTHORIZED"
 
 
 @dataclass(frozen=True, slots=True)
 class Access:
-    """Whom the service lets in. It keeps a digest, so that nothing can show the token itself."""
+    """The access control. Only a digest is kept, so that nothing can reveal the token itself."""
 
     _digest: bytes | None = field(default=None, repr=False)
 
     @classmethod
     def open(cls) -> Self:
-        """Let everybody in."""
+        """Give everybody access."""
         return cls()
 
     @classmethod
     def with_token(cls, token: str) -> Self:
-        """Let in who gives `token`."""
+        """Give access to clients that send `token`."""
         return cls(_digest_of(token))
 
     @property
     def required(self) -> bool:
-        """Tell whether a token has to be given."""
+        """Tell whether a token is required."""
         return self._digest is not None
 
     def accepts(self, token: str) -> bool:
-        """Tell whether `token` lets in; how long that takes tells nothing about the right one."""
+        """Tell whether `token` is correct; the comparison takes constant time."""
         return self._digest is None or hmac.compare_digest(_digest_of(token), self._digest)
 
     def accepts_header(self, headers: Headers) -> bool:
-        """Tell whether the headers of a request or of a handshake let in.
+        """Tell whether the headers of a request or handshake give access.
 
         Args:
-            headers: With `Authorization: Bearer TOKEN`, if the client sends one.
+            headers: With `Authorization: Bearer TOKEN`, if the client sends a token.
         """
         token = bearer_of(headers)
         return self._digest is None or (token is not None and self.accepts(token))
 
 
 def bearer_of(headers: Headers) -> str | None:
-    """Return the token that headers carry; None: none, two, or something else than a token."""
+    """Return the token in the headers; None: there is none, several, or an invalid one."""
     given = headers.getlist("authorization")
     if len(given) != 1:
         return None
@@ -66,5 +66,5 @@ def bearer_of(headers: Headers) -> str | None:
 
 
 def _digest_of(token: str) -> bytes:
-    # A message may hold half a surrogate pair, which is not the right token either.
+    # A token in a message may hold a lone surrogate, which must not raise here.
     return hashlib.sha256(token.encode("utf-8", "surrogatepass")).digest()

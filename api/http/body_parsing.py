@@ -1,6 +1,6 @@
-"""Bodies of requests: read up to a limit, parsed strictly, validated, and what was wrong with them.
+"""Request bodies: reading up to a limit, strict parsing, validation, and their faults.
 
-The routes and the worker process share this, so it knows no web framework.
+The routes and the worker process share this, so it uses no web framework.
 """
 
 import json
@@ -16,13 +16,13 @@ AnyBody = TypeVar("AnyBody", bound=BaseModel)
 
 
 class MalformedBodyError(PilothouseError):
-    """A body that cannot be read at all."""
+    """A body that cannot be parsed."""
 
     code = "MALFORMED"
 
 
 class BodyTooLargeError(PilothouseError):
-    """A body larger than is accepted here."""
+    """A body that is larger than the limit."""
 
     code = "TOO_LARGE"
 
@@ -31,7 +31,7 @@ class BodyTooLargeError(PilothouseError):
 
 
 class InvalidBodyError(PilothouseError):
-    """A request that can be read, and says something that cannot be; `faults` hold it all."""
+    """A request that can be parsed and is invalid; `faults` lists everything."""
 
     code = "INVALID_BODY"
 
@@ -50,18 +50,18 @@ class InvalidBodyError(PilothouseError):
 
     @classmethod
     def at(cls, pointer: str, error: PilothouseError) -> "InvalidBodyError":
-        """Return an error that was raised for a name or value in a body, with its place.
+        """Return the error for one member of a body.
 
         Args:
             pointer: The key of the member, or a JSON pointer.
-            error: What was raised.
+            error: The error that was raised for it.
         """
         fault = BodyFault(pointer=as_pointer(pointer), code=error.code, message=error.message)
         return cls([fault], error.code, error.hint)
 
 
 async def read_limited(chunks: AsyncIterable[bytes], limit: int) -> bytes:
-    """Return a whole body, counted while it comes in, since its length may not be known before.
+    """Read a body; its length is checked while reading, since it may not be known before.
 
     Raises:
         BodyTooLargeError: It is longer than `limit` bytes.
@@ -87,11 +87,11 @@ def parse_text(raw: bytes) -> str:
 
 
 def parse_json(raw: bytes) -> object:
-    """Return what a JSON text says.
+    """Parse a JSON text.
 
     Raises:
-        MalformedBodyError: It is not JSON, nested beyond reason, or holds half a surrogate pair,
-            which could not be sent on.
+        MalformedBodyError: It is not JSON, is nested too deeply, or holds a lone surrogate, which
+            cannot be encoded.
     """
     text = parse_text(raw)
     try:
@@ -102,11 +102,11 @@ def parse_json(raw: bytes) -> object:
         where = f"line {error.lineno}, column {error.colno}"
         raise MalformedBodyError(f"the body is not JSON: {error.msg} at {where}") from error
     except UnicodeEncodeError as error:
-        raise MalformedBodyError("the body holds half a surrogate pair") from error
+        raise MalformedBodyError("the body contains half a surrogate pair") from error
     except RecursionError as error:
         raise MalformedBodyError("the body is nested too deeply") from error
     except ValueError as error:
-        raise MalformedBodyError("the body holds a number with too many digits") from error
+        raise MalformedBodyError("the body contains a number with too many digits") from error
     return value
 
 
@@ -121,7 +121,7 @@ def parse_body(kind: type[AnyBody], raw: bytes) -> AnyBody:
 
 
 def check_body(kind: type[AnyBody], value: object) -> AnyBody:
-    """Return what a JSON text says as a `kind`.
+    """Validate a parsed JSON text as a `kind`.
 
     Raises:
         InvalidBodyError: It is not a `kind`.
@@ -135,11 +135,12 @@ def check_body(kind: type[AnyBody], value: object) -> AnyBody:
 def faults_of(
     errors: Iterable[Mapping[str, Any]], outside: frozenset[str] = frozenset()
 ) -> list[BodyFault]:
-    """Return what pydantic found.
+    """Convert the findings of pydantic.
 
     Args:
-        errors: As of `ValidationError.errors()`.
-        outside: First members of a place that are no member of the body, as FastAPI adds them.
+        errors: From `ValidationError.errors()`.
+        outside: First items of a location that are not in the body, such as `body` and `query` of
+            FastAPI.
     """
     faults = []
     for error in errors:
@@ -155,7 +156,7 @@ def faults_of(
 
 
 def as_pointer(name: str) -> str:
-    """Return the name of a member as a JSON pointer (RFC 6901); one that is a pointer is kept."""
+    """Return the name of a member as a JSON pointer (RFC 6901); a pointer is returned as it is."""
     return name if not name or name.startswith("/") else pointer_to(name)
 
 

@@ -1,4 +1,4 @@
-"""How a request for a change is answered: with its plan, at once, or when it has ended."""
+"""Answers to requests for a change: its plan, an immediate answer, or one at its end."""
 
 import asyncio
 from dataclasses import dataclass
@@ -28,8 +28,11 @@ _STATUS_OF_END = {
 
 CHANGE_RESPONSES: dict[int | str, dict[str, Any]] = {
     200: {"model": ChangeJson | PlanJson, "description": "With `wait`: succeeded. The plan."},
-    202: {"model": ChangeJson, "description": "The change has begun; see `Location`"},
-    409: {"model": ChangeJson, "description": "Refused (a problem), or with `wait`: not succeeded"},
+    202: {"model": ChangeJson, "description": "The change has started; see `Location`"},
+    409: {
+        "model": ChangeJson,
+        "description": "Rejected (a problem), or with `wait`: not succeeded",
+    },
     504: {"model": ChangeJson, "description": "With `wait`: timed out, the outcome is unknown"},
 }
 """For the description of routes that begin a change."""
@@ -37,7 +40,7 @@ CHANGE_RESPONSES: dict[int | str, dict[str, Any]] = {
 
 @dataclass(frozen=True, slots=True)
 class ChangeOptions:
-    """How the client wants to be answered."""
+    """The kind of answer that the client wants."""
 
     wait_s: float | None
     """None: at once."""
@@ -60,10 +63,16 @@ ChangeOptionsDep = Annotated[ChangeOptions, Depends(_options)]
 async def answer_change(
     supervisor: Supervisor, asked: ChangeRequest, options: ChangeOptions, request: Request
 ) -> Response:
-    """Begin a change, or plan it, and answer as the client wants it.
+    """Start a change, or plan it, and answer as the client wants it.
+
+    Args:
+        supervisor: Of the robot.
+        asked: The change.
+        options: The kind of answer.
+        request: Watched for a disconnection of the client.
 
     Raises:
-        PilothouseError: It is refused; nothing was changed.
+        PilothouseError: The change is rejected; nothing was changed.
     """
     clock = supervisor.clock
     if options.dry_run:
@@ -84,7 +93,7 @@ async def answer_change(
 async def _ended(
     supervisor: Supervisor, change: ChangeId, wait_s: float, request: Request
 ) -> ChangeView:
-    """Return a change when it has ended, the time is up, or nobody waits for it any more."""
+    """Return a change when it has ended, the wait times out, or the client disconnects."""
     ended = asyncio.create_task(supervisor.change_ends.wait(change, wait_s), name="change ended")
     gone = asyncio.create_task(_disconnected(request), name="client gone")
     try:

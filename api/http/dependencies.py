@@ -1,4 +1,4 @@
-"""What routes may ask for.
+"""Dependencies of routes.
 
 All are coroutines: the framework would call plain functions in a thread.
 """
@@ -35,18 +35,18 @@ async def _actor(request: Request) -> Actor:
 
 
 ActorDep = Annotated[Actor, Depends(_actor)]
-"""Who asks."""
+"""The client of the request."""
 
 
 async def _part(
-    part: Annotated[str, Path(description="Its name as in the model file; it may hold slashes")],
+    part: Annotated[str, Path(description="Name as in the model file; it may contain slashes")],
     request: Request,
     supervisor: SupervisorDep,
 ) -> PartName:
     """Return the part that the path names.
 
     Raises:
-        UnknownPartError: There is none of that name and kind, with a hint.
+        UnknownPartError: There is no part of that name and kind; the error has a hint.
     """
     kind = "system" if request.url.path.startswith("/systems/") else "node"
     known = supervisor.model.systems if kind == "system" else supervisor.model.nodes
@@ -60,16 +60,16 @@ PartDep = Annotated[PartName, Depends(_part)]
 
 
 def _hint(model: SmhModel, kind: str, part: str, path: str) -> str | None:
-    """Say where the part is, or what the longest known part at the begin of the name has."""
+    """Return a hint: the right path of the part, or the routes of the longest known prefix."""
     if part in model:
         other = "node" if kind == "system" else "system"
         if other == "system" and path.endswith("/parameters"):
-            return f"{part} is a system, which has no parameters of its own: see /systems/{part}"
+            return f"{part} is a system, and only nodes have parameters: see /systems/{part}"
         return f"{part} is a {other}: see {path.replace(f'/{kind}s/', f'/{other}s/', 1)}"
     name = part
     while "/" in name:
         name = name.rpartition("/")[0]
         if name in model:
             more = " and parameters" if name in model.nodes else ""
-            return f"{name} is there; it has state, states, mode, modes{more}"
+            return f"there is {name}, with state, states, mode, modes{more}"
     return None

@@ -1,4 +1,4 @@
-"""How much clients may ask of the service."""
+"""The limits for clients of the service."""
 
 from dataclasses import dataclass
 from typing import Self
@@ -8,19 +8,19 @@ from service.files.limits_block import KIB, MIB, LimitsBlock
 
 @dataclass(frozen=True, slots=True)
 class ServiceLimits:
-    """Largest bodies and messages in bytes, and how many may ask how often."""
+    """Limits for bodies and messages, bytes, and for the number of clients and requests."""
 
     json_bytes: int = 256 * KIB
     """Parsed on the event loop in about 3 ms at worst."""
     model_bytes: int = 8 * MIB
-    """Of what only the worker parses."""
+    """Of bodies that only the worker parses."""
     waypoints_bytes: int = 16 * MIB
     """Enough for 100,000 waypoints as JSON with all digits."""
     message_bytes: int = 64 * KIB
     """Of a message that a client sends over the WebSocket."""
     stream_clients: int = 2_500
     requests_per_s: int = 1_000
-    """Of one client address; twice as many may come at once."""
+    """Of one client address; short bursts of twice as many are allowed."""
 
     @classmethod
     def of(cls, block: LimitsBlock) -> Self:

@@ -1,4 +1,4 @@
-"""Lists that may be long, made without keeping the event loop for long."""
+"""Long lists, encoded without blocking the event loop."""
 
 import asyncio
 from collections.abc import Iterable
@@ -6,14 +6,14 @@ from collections.abc import Iterable
 from fastapi import Response
 
 _CHARACTERS_AT_ONCE = 32_768
-"""About 1 ms of work, after which others get their turn."""
+"""About 1 ms of work, after which other tasks of the event loop run."""
 
 
 async def json_list(texts: Iterable[str]) -> Response:
     """Return `{"items": [...]}`.
 
     Args:
-        texts: The JSON text of each item; made one by one as this iterates.
+        texts: The JSON text of each item; consumed one by one.
     """
     return Response(f'{{"items":[{await joined(texts)}]}}', media_type="application/json")
 
@@ -22,7 +22,7 @@ async def joined(texts: Iterable[str]) -> str:
     """Return texts with commas between them.
 
     Args:
-        texts: Made one by one as this iterates; others get their turn in between.
+        texts: Consumed one by one; other tasks of the event loop run in between.
     """
     made: list[str] = []
     characters = 0

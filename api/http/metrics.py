@@ -1,4 +1,4 @@
-"""What Prometheus reads: made from the supervisor when it is asked for, and kept up by nobody."""
+"""Prometheus metrics, read from the supervisor when they are scraped."""
 
 from collections.abc import Iterable, Iterator
 from itertools import islice
@@ -14,7 +14,7 @@ from domain.timebase import to_seconds
 from service.supervisor import Supervisor
 
 _MAX_PARTS = 1_000
-"""More would make each scrape larger than what anybody looks at."""
+"""Limits the size of a scrape."""
 
 _ENDS = tuple(str(status) for status in ChangeStatus if status != ChangeStatus.RUNNING)
 
@@ -26,11 +26,11 @@ class Metrics:
     """The metrics of one service, in a registry of their own."""
 
     def __init__(self, supervisor: Supervisor, refusals: Refusals) -> None:
-        """Begin with those of the robot and of the gate; a room of the edge registers its own."""
+        """Register the metrics of robot, service and gate; other packages add their own."""
         self.registry = CollectorRegistry(auto_describe=False)
         period = Histogram(
             "pilothouse_publish_period_seconds",
-            "Time from one tick to the next",
+            "Period of the publishing tick",
             buckets=_PERIODS_S,
             registry=self.registry,
         )
@@ -41,7 +41,7 @@ class Metrics:
 
 
 class _RobotCollector(Collector):
-    """What the robot is in."""
+    """The state of the robot."""
 
     def __init__(self, supervisor: Supervisor) -> None:
         self._supervisor = supervisor
@@ -51,20 +51,20 @@ class _RobotCollector(Collector):
         view = core.system_state()
         yield _gauge(
             "pilothouse_system_state",
-            "1 for the state that the robot is in",
+            "1 for the current system state",
             "state",
             ((str(state), float(state is view.state)) for state in SystemState),
         )
         yield _gauge(
             "pilothouse_error_active",
-            "1 for each error that is on",
+            "1 for each active error",
             "error",
             ((error, 1.0) for error in view.errors),
         )
         deviating = (name for name, part in core.parts().items() if not part.converged)
         yield _gauge(
             "pilothouse_part_deviates",
-            f"1 for each part that is not as it should be; at most {_MAX_PARTS}",
+            f"1 for each part whose actual state deviates from its target; at most {_MAX_PARTS}",
             "part",
             ((str(name), 1.0) for name in islice(deviating, _MAX_PARTS)),
         )
@@ -72,7 +72,7 @@ class _RobotCollector(Collector):
         now = self._supervisor.clock.now()
         yield _gauge(
             "pilothouse_signal_age_seconds",
-            "Time since the last reading of a signal; none for a signal never seen",
+            "Time since the last reading of a signal; absent before the first one",
             "signal",
             (
                 (name, to_seconds(now - signal.received_at))
@@ -85,7 +85,7 @@ class _RobotCollector(Collector):
         driving = self._supervisor.core.driving
         yield _gauge(
             "pilothouse_hold_active",
-            "1 for each hold that keeps the task from running",
+            "1 for each hold in force",
             "owner",
             ((owner, 1.0) for owner in driving.holds),
         )
@@ -94,19 +94,19 @@ class _RobotCollector(Collector):
             return
         yield GaugeMetricFamily(
             "pilothouse_task_progress_ratio",
-            "Covered share of the current task's path",
+            "Progress of the current task along its path, 0 to 1",
             value=task.progress,
         )
         if task.cross_track_error_m is not None:
             yield GaugeMetricFamily(
                 "pilothouse_cross_track_error_meters",
-                "Distance from the path; positive: left of it",
+                "Cross-track error; positive: left of the path",
                 value=task.cross_track_error_m,
             )
 
 
 class _ServiceCollector(Collector):
-    """How the service fares."""
+    """The state of the service."""
 
     def __init__(self, supervisor: Supervisor) -> None:
         self._supervisor = supervisor
@@ -114,17 +114,19 @@ class _ServiceCollector(Collector):
     def collect(self) -> Iterator[Metric]:
         yield CounterMetricFamily(
             "pilothouse_ticks_late",
-            "Ticks that were skipped",
+            "Skipped ticks",
             value=self._supervisor.publisher.late_ticks,
         )
-        changes = CounterMetricFamily("pilothouse_changes", "Changes that ended", labels=["status"])
+        changes = CounterMetricFamily(
+            "pilothouse_changes", "Ended changes, by final status", labels=["status"]
+        )
         for status in _ENDS:
             changes.add_metric([status], self._supervisor.change_ends.counts[status])
         yield changes
 
 
 class _GateCollector(Collector):
-    """Who was turned away."""
+    """Rejected requests."""
 
     def __init__(self, refusals: Refusals) -> None:
         self._refusals = refusals
@@ -132,8 +134,8 @@ class _GateCollector(Collector):
     def collect(self) -> Iterator[Metric]:
         refused = CounterMetricFamily(
             "pilothouse_requests_refused",
-            "Requests and handshakes turned away before a route saw them, by status: 401 without "
-            "the token, 403 by a foreign page or name, 429 too many from one address",
+            "Requests and handshakes rejected before routing, by status: 401 missing or wrong "
+            "token, 403 foreign origin or host, 429 rate limit of one address",
             labels=["status"],
         )
         for status in COUNTED:

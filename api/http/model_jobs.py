@@ -1,6 +1,6 @@
-"""Work on models and facts that a client posts: stateless, and the same code as the live inference.
+"""Jobs on posted models and facts: stateless, with the code of the live inference.
 
-The functions take and return what can be sent between processes, since the worker runs them.
+Arguments and results can be pickled, since the worker runs these functions.
 """
 
 from collections.abc import Mapping
@@ -28,24 +28,24 @@ from service.files.model_file import check_model, read_model
 
 
 def check_posted(raw: bytes) -> bytes:
-    """Return what is wrong with a posted model, as JSON.
+    """Return the findings in a posted model, as JSON.
 
     Args:
         raw: The body, SMH as YAML.
 
     Raises:
-        MalformedBodyError: It is no text.
+        MalformedBodyError: It is not text.
     """
     findings = check_model(parse_text(raw))
     return ModelCheckJson.of(findings).model_dump_json().encode()
 
 
 def infer_posted(raw: bytes, loaded: str) -> bytes:
-    """Return what follows from posted facts, as JSON.
+    """Infer states and modes from posted facts, and return them as JSON.
 
     Args:
-        raw: The body, as `InferenceBody` describes it.
-        loaded: Text of the model that is meant when the body has none.
+        raw: The body, as described by `InferenceBody`.
+        loaded: Text of the default model, for a body without a model.
 
     Raises:
         PilothouseError: The body or its model is invalid.
@@ -57,15 +57,15 @@ def infer_posted(raw: bytes, loaded: str) -> bytes:
 
 @lru_cache(maxsize=1)
 def _read(text: str) -> SmhModel:
-    """Return the loaded model, which the worker so reads only once."""
+    """Return the loaded model; cached, so that the worker reads it only once."""
     return read_model(text).model
 
 
 def infer(model: SmhModel, body: InferenceBody) -> InferenceJson:
-    """Return what follows from targets and facts.
+    """Infer states and modes from targets and facts.
 
     Raises:
-        InvalidBodyError: A part that the model does not have, or a state that there is none of.
+        InvalidBodyError: A part or a state is unknown.
     """
     faults: list[BodyFault] = []
     targets = _targets(model, body.targets, faults)
@@ -107,7 +107,7 @@ def _targets(
 def _reports(
     model: SmhModel, sent: Mapping[str, ReportedNodeBody | None], faults: list[BodyFault]
 ) -> list[NodeReport]:
-    """Return one report for each node that said anything."""
+    """Return one report for each node with facts."""
     reports = []
     for name, node in sent.items():
         part = part_name(name)

@@ -1,4 +1,4 @@
-"""Bodies as they come over HTTP: within the limits of the service, refused as early as can be."""
+"""HTTP request bodies within the limits of the service; larger ones are rejected early."""
 
 from collections.abc import Callable, Coroutine
 from typing import Any
@@ -11,17 +11,17 @@ from api.http.limits import ServiceLimits
 
 
 def limits_of(request: Request) -> ServiceLimits:
-    """Return how much may be asked of the service."""
+    """Return the limits of the service."""
     limits: ServiceLimits = request.app.state.limits
     return limits
 
 
 async def read_body(request: Request, limit: int) -> bytes:
-    """Return the whole body; nothing of it is read where its head says that it is too long.
+    """Return the body; nothing is read if its Content-Length exceeds the limit.
 
     Args:
-        request: What is asked.
-        limit: Most bytes that it may have.
+        request: The request.
+        limit: Maximum length, bytes.
 
     Raises:
         BodyTooLargeError: It is longer.
@@ -39,14 +39,14 @@ def _announced_bytes(request: Request) -> int:
 
 
 class JsonRoute(APIRoute):
-    """A route that reads its body strictly, up to a limit, before anything else is done.
+    """A route that first reads its body, up to a limit, and parses it as strict JSON.
 
-    `curl -d` calls its body a form. It is read as JSON all the same; what a page of another site
-    may send is decided before, by `api.http.gate`.
+    The Content-Type is ignored, since `curl -d` declares its body as a form. `api.http.gate` has
+    rejected requests of foreign pages before.
     """
 
     def get_route_handler(self) -> Callable[[Request], Coroutine[Any, Any, Response]]:
-        """Return the handler of the framework, given a request that is read already."""
+        """Return the framework's handler, called with a request whose body is read already."""
         handle = super().get_route_handler()
         if self.body_field is None:
             return handle

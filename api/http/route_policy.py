@@ -1,7 +1,7 @@
-"""What a route does, declared at the route itself.
+"""The policy of a route: its permission and audit class, declared at the route itself.
 
-Whether it needs the token, how often it may be asked and whether it is recorded follow from that;
-the gates read it, so that no path is named twice.
+They determine whether a request needs the token, is rate-limited, and is recorded. The gates read
+them here, so that no path is listed twice.
 """
 
 from collections.abc import Callable
@@ -15,43 +15,43 @@ Endpoint = TypeVar("Endpoint", bound=Callable[..., Any])
 
 
 class Permission(Enum):
-    """What a client must be permitted to do in order to use a route."""
+    """The permission that a client needs for a route."""
 
     READ_PUBLIC = auto()
-    """Read what is the same for every robot: the page and the documents. It needs no token."""
+    """Read what is the same for every robot: the page and the documents. Needs no token."""
     PROBE = auto()
-    """Ask on behalf of who restarts the service. It needs no token, and is never limited."""
+    """Liveness and readiness probes of a service manager. Needs no token; never limited."""
     OBSERVE = auto()
-    """Look at the robot, or calculate; nothing changes."""
+    """Read the state of the robot, or calculate; nothing changes."""
     REPORT = auto()
-    """Hand in readings. Never limited, since one may be that of a stop button."""
+    """Submit readings. Never limited, since one may be that of a stop button."""
     OPERATE = auto()
     """Change what the robot does."""
     STOP = auto()
-    """Make the robot safe. Never limited: who cannot press the stop because somebody behind the
-    same address asks too much would be worse off than with no limit."""
+    """Make the robot safe. Never limited: other clients at the same address must not be able to
+    block a stop."""
 
     @property
     def needs_token(self) -> bool:
-        """Tell whether the token of the service has to be given, where it has one."""
+        """Tell whether the token is required, if the service has one."""
         return self not in (Permission.READ_PUBLIC, Permission.PROBE)
 
     @property
     def is_limited(self) -> bool:
-        """Tell whether it counts how often a client asks."""
+        """Tell whether requests are rate-limited."""
         return self not in (Permission.PROBE, Permission.REPORT, Permission.STOP)
 
 
 class AuditClass(Enum):
-    """Whether a request is recorded as an event, with who asked and how it was answered."""
+    """Whether a request is recorded as an event, with its client and status."""
 
     NEVER = auto()
-    """It changes nothing; or what it reports may come a hundred times a second, and has events of
-    its own when it matters."""
+    """It changes nothing; or it is a reading, which may come a hundred times a second and has its
+    own events when it matters."""
     ALWAYS = auto()
     UNLESS_DRY_RUN = auto()
-    """With `?dry_run=true` it changes nothing; elsewhere the word means nothing, and hides nothing.
-    """
+    """Not recorded with `?dry_run=true`, since then it changes nothing. Other routes ignore this
+    parameter, so there it cannot hide a request."""
 
 
 _CHANGING = (Permission.OPERATE, Permission.STOP)
@@ -59,14 +59,14 @@ _CHANGING = (Permission.OPERATE, Permission.STOP)
 
 @dataclass(frozen=True, slots=True)
 class RoutePolicy:
-    """What is declared of a route."""
+    """The declared policy of a route."""
 
     permission: Permission
     audit: AuditClass
 
 
 class UndeclaredRouteError(LookupError):
-    """A route that does not say what it does."""
+    """A route without a policy."""
 
     def __init__(self, path: str) -> None:
         super().__init__(f"the route {path} declares no policy: see api.http.route_policy")
@@ -75,12 +75,11 @@ class UndeclaredRouteError(LookupError):
 def policy(
     permission: Permission, audit: AuditClass | None = None
 ) -> Callable[[Endpoint], Endpoint]:
-    """Declare what a route does; to be written right above its function.
+    """Declare the policy of a route; the innermost decorator of its function.
 
     Args:
-        permission: What a client must be permitted to do.
-        audit: Whether requests are recorded; None: those that change something always are, and
-            others never.
+        permission: Needed by the client.
+        audit: Whether requests are recorded; None: always if they change something, else never.
     """
     if audit is None:
         audit = AuditClass.ALWAYS if permission in _CHANGING else AuditClass.NEVER
@@ -94,6 +93,6 @@ def policy(
 
 
 def policy_of(endpoint: object) -> RoutePolicy | None:
-    """Return what is declared of the function of a route; None: nothing."""
+    """Return the policy of the function of a route; None: none is declared."""
     found: RoutePolicy | None = getattr(endpoint, _ATTRIBUTE, None)
     return found

@@ -1,6 +1,6 @@
 """The files of the page, read once from the package `web` and served from memory.
 
-Only what was found at the start can be asked for, so that no path leads anywhere else.
+Only files found at the start can be requested, so that no path can leave the package.
 """
 
 import hashlib

@@ -1,6 +1,6 @@
-"""Work on waypoints that a client posts: read, checked, and made into a path.
+"""Jobs on posted waypoints: parsing, checks, and conversion to a path.
 
-The functions take and return what can be sent between processes, since the worker runs them.
+Arguments and results can be pickled, since the worker runs these functions.
 """
 
 from dataclasses import dataclass
@@ -23,7 +23,7 @@ from service.files.waypoint_file import Heading, read_waypoints_csv
 
 @dataclass(frozen=True, slots=True)
 class TaskOptions:
-    """What stands in the query beside a CSV; in a JSON body it stands there itself."""
+    """Query parameters for a CSV; a JSON body holds them itself."""
 
     controller: str
     speed_mps: float
@@ -33,7 +33,7 @@ class TaskOptions:
 
 @dataclass(frozen=True, slots=True)
 class PostedTask:
-    """A task as it was posted, with its path made."""
+    """A posted task with its path."""
 
     path: Path
     start_index: int
@@ -46,7 +46,7 @@ def read_posted_task(raw: bytes, csv: TaskOptions | None) -> PostedTask:
 
     Args:
         raw: The body.
-        csv: How to drive a body that is CSV; None: it is JSON as `TaskBody` describes it.
+        csv: Options for a CSV; None: the body is JSON, as described by `TaskBody`.
 
     Raises:
         PilothouseError: The body or its waypoints are invalid.
@@ -57,7 +57,7 @@ def read_posted_task(raw: bytes, csv: TaskOptions | None) -> PostedTask:
     try:
         return task_of(parse_body(TaskBody, raw))
     except MalformedBodyError as error:
-        error.hint = "a CSV is sent with Content-Type: text/csv"
+        error.hint = "send a CSV with Content-Type: text/csv"
         raise
 
 
@@ -65,7 +65,7 @@ def task_of(body: TaskBody) -> PostedTask:
     """Return the task that a validated body describes.
 
     Raises:
-        InvalidBodyError: The waypoints are no path.
+        InvalidBodyError: The waypoints do not form a valid path.
     """
     rows = [(point.x_m, point.y_m, point.yaw_rad) for point in body.waypoints]
     try:
@@ -82,14 +82,14 @@ def preview_posted(
     vehicle: VehicleLimits,
     limits: SpeedLimits,
 ) -> bytes:
-    """Return what there is to know of a path before it is driven, as JSON.
+    """Return a preview of a task as JSON.
 
     Args:
         raw: The body.
-        csv: As of `read_posted_task`.
-        pose: Of the vehicle; None: it is not known.
-        vehicle: What it can do.
-        limits: How hard it may be accelerated.
+        csv: As for `read_posted_task`.
+        pose: Of the vehicle; None: unknown.
+        vehicle: Speed and steering limits.
+        limits: Acceleration limits.
 
     Raises:
         PilothouseError: The body or its waypoints are invalid.
@@ -110,7 +110,7 @@ def encode_waypoints(waypoints: NDArray[np.float64], max_points: int | None) -> 
 
     Args:
         waypoints: Shape (n, 3): x and y in m, yaw in rad.
-        max_points: At most so many, evenly spread, first and last among them; None: all.
+        max_points: Most waypoints, evenly spread, including the first and last; None: all.
     """
     indices = thinned(len(waypoints), max_points)
     items = [WaypointJson(x_m=x, y_m=y, yaw_rad=yaw) for x, y, yaw in waypoints[indices].tolist()]

@@ -1,4 +1,6 @@
-"""What `WS /rosbridge` speaks: rosbridge v2 in JSON, over what `service.ros.interface` offers.
+"""The protocol of `WS /rosbridge`: rosbridge v2 in JSON.
+
+It carries the services and topics of `service.ros.interface`.
 
 The protocol is ROSBRIDGE_PROTOCOL.md of RobotWebTools/rosbridge_suite; the route itself is in
 `api/rosbridge/route.py`.

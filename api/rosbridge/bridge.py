@@ -1,4 +1,4 @@
-"""What all clients of rosbridge share of the robot."""
+"""The services and topics of the robot, shared by all clients of rosbridge."""
 
 import asyncio
 from collections.abc import Callable, Mapping
@@ -17,7 +17,7 @@ from service.ros.interface.services import CANCEL_TASKS
 
 
 class Interface(Protocol):
-    """What is used of `service.ros.interface.interface.RosInterface`."""
+    """The used part of `service.ros.interface.interface.RosInterface`."""
 
     @property
     def services(self) -> Mapping[str, OfferedService]:
@@ -35,52 +35,52 @@ class Interface(Protocol):
         ...
 
     def listen(self, topic: str, take: Callable[[Fields], None]) -> Callable[[], None]:
-        """Hand each message of a topic to `take`, and return what ends that."""
+        """Pass each message of a topic to `take`; return a function that ends this."""
         ...
 
     async def run(self) -> None:
-        """Make messages of what happens, until cancelled."""
+        """Publish messages about events and states, until cancelled."""
         ...
 
 
 class Bridge:
-    """The interface of the robot, with what rosbridge adds to it."""
+    """The interface of the robot, with the services that rosbridge adds to it."""
 
     def __init__(
         self, interface: Interface, frames: FrameFeed, clock: Clock, calls_per_s: int
     ) -> None:
-        """Begin.
+        """Prepare.
 
         Args:
-            interface: What is on offer.
-            frames: Published 20 times a second: what goes by time is looked at then.
+            interface: The services and topics.
+            frames: Published 20 times a second; deadlines of clients are checked then.
             clock: Of the robot.
-            calls_per_s: Calls of services that one client address may make; twice as many may come
-                at once.
+            calls_per_s: Service calls per second that one client address may make; twice as many
+                may come at once.
         """
         self.interface = interface
         self.frames = frames
         self.clock = clock
         self.texts = PublishedTexts()
         self.turn = asyncio.Lock()
-        """Held while a message of a client is done: one in each turn of the event loop."""
+        """Held while a message is processed: one per pass of the event loop, for all clients."""
         topics: list[SubscribedTopic | OfferedTopic] = [
             *interface.heard.values(),
             *interface.topics.values(),
         ]
         self.services = RosApi(interface.services, topics, clock).services
-        """Those of the interface and those of rosapi, by full name."""
+        """The services of the interface and of rosapi, by full name."""
         self.calls_per_s = calls_per_s
         self._buckets = TokenBuckets(calls_per_s)
 
     def may_call(self, service: str, caller: Actor) -> bool:
-        """Count a call, and tell whether it may be made.
+        """Count a call, and tell whether it is within the rate limit.
 
-        As over HTTP, what makes the robot safe always may.
+        As over HTTP, calls that make the robot safe are not limited.
 
         Args:
             service: Full name.
-            caller: With the address of the client.
+            caller: The client, with its address.
         """
         return service == CANCEL_TASKS or not self._buckets.take(caller.label, self.clock.now())
 
@@ -90,7 +90,7 @@ _REQUESTS: Mapping[str, Shape] = {
     "system_modes_msgs/srv/ChangeMode": CHANGE_MODE,
     **{f"rosapi_msgs/srv/{name}": shape for name, shape in REQUESTS.items()},
 }
-"""What requests look like; those of other types are empty."""
+"""Fields of requests, by type of the service; those of other types are empty."""
 
 
 def request_of(type_name: str, args: Mapping[str, Any] | list[Any] | None) -> Fields:
@@ -98,7 +98,7 @@ def request_of(type_name: str, args: Mapping[str, Any] | list[Any] | None) -> Fi
 
     Args:
         type_name: Of the service.
-        args: As `call_service` has them; a list holds values in the order of the definition.
+        args: As in `call_service`; a list holds values in the order of the definition.
 
     Raises:
         InvalidValueError: A list has more values than the request has fields.
@@ -107,6 +107,7 @@ def request_of(type_name: str, args: Mapping[str, Any] | list[Any] | None) -> Fi
         return args or {}
     names = (*_REQUESTS.get(type_name, {}),)
     if len(args) > len(names):
-        there_are = f"takes {', '.join(names)}" if names else "takes nothing"
-        raise InvalidValueError(f"{type_name} {there_are}, and {len(args)} values came", "/args")
+        fields = f"has the fields {', '.join(names)}" if names else "has no fields"
+        message = f"a request of {type_name} {fields}, but {len(args)} values were sent"
+        raise InvalidValueError(message, "/args")
     return dict(zip(names, args, strict=False))

@@ -1,4 +1,4 @@
-"""All clients of rosbridge of one service, and what runs as long as there are any."""
+"""All rosbridge clients of one service, and the task that runs while there are any."""
 
 import asyncio
 import logging
@@ -18,20 +18,20 @@ from service.supervisor import Supervisor
 log = logging.getLogger(__name__)
 
 MAX_CLIENTS = 50
-"""Each has a writer and subscriptions of its own; the stream is for the many."""
+"""Each has its own writer and subscriptions; many clients should use `WS /ws` instead."""
 
 
 class RosbridgeClients:
-    """Owns the task that makes messages of what happens."""
+    """Owns the task that publishes messages to the clients."""
 
     def __init__(self, make_bridge: Callable[[], Bridge], lobby: StreamServer) -> None:
-        """Begin without clients.
+        """Start without clients.
 
         Args:
-            make_bridge: Makes what all clients share, in a thread, when it is wanted first: with
-                thousands of parts it takes longer than a tick may wait.
-            lobby: Knows who may come in; who has not given the token is counted there, together
-                with strangers of the stream.
+            make_bridge: Makes the bridge that all clients share. Called in a thread for the first
+                client, since with thousands of parts it takes longer than a tick may be late.
+            lobby: Decides who has access, and counts unauthenticated clients together with those of
+                the stream.
         """
         self.lobby = lobby
         self._make_bridge = make_bridge
@@ -41,28 +41,28 @@ class RosbridgeClients:
 
     @property
     def clients(self) -> int:
-        """Return how many there are."""
+        """Return the number of clients."""
         return len(self._transports)
 
     @property
     def is_full(self) -> bool:
-        """Tell whether the next client is one too many."""
+        """Tell whether the maximum number of clients is reached."""
         return self.clients >= MAX_CLIENTS
 
     async def bridge(self) -> Bridge:
-        """Return what all clients share."""
+        """Return the bridge that all clients share."""
         if self._making is None:
             making = asyncio.to_thread(self._make_bridge)
             self._making = asyncio.create_task(making, name="rosbridge begins")
-        # The next one wants it too, although this one may go.
+        # Later clients need it too, even if this one disconnects.
         return await asyncio.shield(self._making)
 
     @asynccontextmanager
     async def serve(self, transport: asyncio.WriteTransport) -> AsyncIterator[Bridge]:
-        """Make messages for a client as long as the context lasts.
+        """Count a client, and publish messages, while the context is open.
 
         Args:
-            transport: Of the client; it is cut off when no more messages can be made.
+            transport: Of the client; it is closed if publishing fails.
         """
         self._transports.add(transport)
         try:
@@ -78,7 +78,7 @@ class RosbridgeClients:
                 self._task = None
 
     def _ended(self, task: asyncio.Task[None]) -> None:
-        """Cut all clients off when the task has failed: a silent connection would deceive them."""
+        """Disconnect all clients if the task failed: a silent connection would mislead them."""
         if task.cancelled():
             return
         log.critical("rosbridge failed", exc_info=task.exception())
@@ -90,12 +90,12 @@ class RosbridgeClients:
 def make_rosbridge_clients(
     supervisor: Supervisor, calls_per_s: int, lobby: StreamServer
 ) -> RosbridgeClients:
-    """Return what takes clients to the ROS interface of a robot.
+    """Return the rosbridge clients of a robot.
 
     Args:
-        supervisor: What is served.
-        calls_per_s: Calls of services that one client address may make.
-        lobby: As of `RosbridgeClients`.
+        supervisor: Of the robot.
+        calls_per_s: Service calls per second that one client address may make.
+        lobby: As for `RosbridgeClients`.
     """
     return RosbridgeClients(partial(_make_bridge, supervisor, calls_per_s), lobby)
 

@@ -1,4 +1,4 @@
-"""What clients of rosbridge may ask: operations, one per message, and how a message is read."""
+"""The operations of rosbridge, one per message, and how messages are parsed."""
 
 from collections.abc import Mapping
 from types import MappingProxyType
@@ -14,13 +14,13 @@ _MAX_CHARACTERS = 256
 OperationId: TypeAlias = (
     Annotated[str, Field(max_length=_MAX_CHARACTERS)] | Annotated[int, Field(ge=-(2**63), lt=2**63)]
 )
-"""Chosen by the client, and returned with what belongs to the operation."""
+"""Chosen by the client, and returned with the replies to the operation."""
 Name: TypeAlias = Annotated[str, Field(min_length=1, max_length=_MAX_CHARACTERS)]
 """Of a topic or service, with or without the leading slash."""
 
 
 class Operation(BaseModel):
-    """One message; members that are not known are passed over, since clients send many."""
+    """One message; unknown members are ignored, since clients send many."""
 
     model_config = ConfigDict(extra="ignore", frozen=True, strict=True, allow_inf_nan=False)
 
@@ -28,33 +28,33 @@ class Operation(BaseModel):
 
 
 class Subscribe(Operation):
-    """Ask for the messages of a topic."""
+    """Subscribe to a topic."""
 
     topic: Name
     type: str | None = None
     throttle_rate: Annotated[float, Field(ge=0, le=3_600_000)] = 0
     """Least time between two messages, ms."""
     queue_length: Annotated[int, Field(ge=0)] = 0
-    """So many messages wait for their turn, and the oldest goes; 0: what is best for the topic."""
+    """Messages that are queued, the oldest is dropped first; 0: the default of the topic."""
     compression: str | None = None
     fragment_size: int | None = None
 
 
 class Unsubscribe(Operation):
-    """End one subscription, or without an id all of the topic."""
+    """End one subscription, or without an id all subscriptions of the topic."""
 
     topic: Name
 
 
 class Advertise(Operation):
-    """Say that messages of a topic will be published."""
+    """Announce that the client will publish to a topic."""
 
     topic: Name
     type: str | None = None
 
 
 class Unadvertise(Operation):
-    """Say that no more will be."""
+    """Announce that the client publishes no more to a topic."""
 
     topic: Name
 
@@ -73,20 +73,20 @@ class CallService(Operation):
     args: dict[str, Any] | list[Any] | None = None
     """Fields by name, or all values in the order of the type's definition."""
     timeout: float | None = None
-    """For the answer, s; None or not above 0: as long as the service takes."""
+    """Timeout of the response, s; None or not above 0: the longest that is allowed."""
 
 
 class SetLevel(Operation):
-    """Choose which status messages are sent; for the whole connection, whatever the id is."""
+    """Set the lowest level of status messages for the whole connection; the id is ignored."""
 
     level: Literal["info", "warning", "error", "none"]
 
 
 class Authenticate(Operation):
-    """Say who the client is."""
+    """Authenticate with the token."""
 
     token: str | None = None
-    """None: the message of `rosauth`, which has none."""
+    """None: the message is one of `rosauth`, which has no token."""
 
 
 OPERATIONS: Mapping[str, type[Operation]] = MappingProxyType(
@@ -102,9 +102,9 @@ OPERATIONS: Mapping[str, type[Operation]] = MappingProxyType(
     }
 )
 
-_WHOLE = "messages are read whole and as JSON"
-_NO_SERVERS = "clients cannot offer services here"
-_NO_ACTIONS = "there are no actions here"
+_WHOLE = "only whole messages in JSON are supported"
+_NO_SERVERS = "clients cannot offer services"
+_NO_ACTIONS = "actions are not supported"
 _NOT_HERE: Mapping[str, str] = MappingProxyType(
     {
         "fragment": _WHOLE,
@@ -122,21 +122,21 @@ _NOT_HERE: Mapping[str, str] = MappingProxyType(
         "action_result": _NO_ACTIONS,
     }
 )
-"""Operations of the protocol that are not done, and why."""
+"""Operations of the protocol that are not supported, and why."""
 
 
 def read_message(message: Mapping[str, Any]) -> Mapping[str, Any]:
     """Return the JSON object that a client sent.
 
     Args:
-        message: As ASGI has it, with `text` or `bytes`.
+        message: An ASGI message with `text` or `bytes`.
 
     Raises:
-        PilothouseError: It is none.
+        PilothouseError: It is not a JSON object.
     """
     text = message.get("text")
     if text is None:
-        raise InvalidValueError("binary messages (BSON, CBOR) are not read; send JSON as text")
+        raise InvalidValueError("binary messages (BSON, CBOR) are not supported; send JSON as text")
     said = parse_json(text.encode())
     if not isinstance(said, dict):
         raise InvalidValueError("a message is a JSON object with an `op`")
@@ -144,7 +144,7 @@ def read_message(message: Mapping[str, Any]) -> Mapping[str, Any]:
 
 
 def id_of(said: Mapping[str, Any]) -> str | int | None:
-    """Return the id of a message, also of one that is wrong; None: it has none that can be."""
+    """Return the id of a message, even of an invalid one; None: it has no valid id."""
     found = said.get("id")
     if isinstance(found, str) and len(found) <= _MAX_CHARACTERS:
         return found
@@ -152,22 +152,22 @@ def id_of(said: Mapping[str, Any]) -> str | int | None:
 
 
 def read_operation(said: Mapping[str, Any]) -> Operation:
-    """Return what a message asks for.
+    """Return the operation of a message.
 
     Args:
-        said: As of `read_message`.
+        said: Returned by `read_message`.
 
     Raises:
-        PilothouseError: It is no operation, one that is not done here, or its members are wrong.
+        PilothouseError: It is no operation, or an unsupported one, or its members are invalid.
     """
     op = said.get("op")
     known = ", ".join(OPERATIONS)
     if not isinstance(op, str):
-        raise InvalidValueError(f"a message has an `op`, which is one of: {known}", "/op")
+        raise InvalidValueError(f"a message needs an `op`, one of: {known}", "/op")
     kind = OPERATIONS.get(op)
     if kind is None:
         why = _NOT_HERE.get(op, "there is no such operation")
-        raise InvalidValueError(f"op {op[:40]!r}: {why}; there are: {known}", "/op")
+        raise InvalidValueError(f"op {op[:40]!r}: {why}; operations: {known}", "/op")
     return check_body(kind, said)
 
 
@@ -177,12 +177,11 @@ def full_name(name: str) -> str:
 
 
 def is_type(given: str | None, type_name: str) -> bool:
-    """Tell whether a type that a client names may be `type_name`.
+    """Tell whether a type that a client names matches `type_name`.
 
     Args:
-        given: As ROS 2 writes it (`std_msgs/msg/Bool`) or as ROS 1 (`std_msgs/Bool`); None or
-            empty: any.
-        type_name: As ROS 2 writes it.
+        given: As in ROS 2 (`std_msgs/msg/Bool`) or in ROS 1 (`std_msgs/Bool`); None or empty: any.
+        type_name: As in ROS 2.
     """
     package, _, rest = type_name.partition("/")
     return not given or given in (type_name, f"{package}/{rest.rpartition('/')[2]}")

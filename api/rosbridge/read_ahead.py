@@ -1,4 +1,4 @@
-"""What a client of rosbridge said and was not done yet, and what of it cannot wait."""
+"""Messages of a rosbridge client that wait to be processed, and those that must not wait."""
 
 import asyncio
 from collections import deque
@@ -6,14 +6,14 @@ from collections.abc import Mapping
 from typing import Any
 
 MAX_CHARACTERS = 256 * 1_024
-"""So much of one client is read ahead: as much as the network hands over at once."""
+"""Characters that are read ahead per client: as much as the network delivers at once."""
 _OVERHEAD = 100
-"""Of a message, so that small ones are bounded as well."""
+"""Characters counted per message, so that the number of small ones is bounded as well."""
 _URGENT_CHARACTERS = 1_000
 
 
 class ReadAhead:
-    """Messages in their order; reading stops while there are too many."""
+    """Queue of messages; reading stops while it is full."""
 
     def __init__(self) -> None:
         self._messages: deque[Mapping[str, Any]] = deque()
@@ -21,7 +21,7 @@ class ReadAhead:
         self._changed = asyncio.Event()
 
     async def put(self, message: Mapping[str, Any]) -> None:
-        """Add a message, once there is room for it."""
+        """Add a message, after waiting for room."""
         while self._characters > MAX_CHARACTERS:
             self._changed.clear()
             await self._changed.wait()
@@ -30,7 +30,7 @@ class ReadAhead:
         self._changed.set()
 
     async def get(self) -> Mapping[str, Any]:
-        """Return the next message, once there is one."""
+        """Wait for the next message and return it."""
         while not self._messages:
             self._changed.clear()
             await self._changed.wait()
@@ -41,7 +41,7 @@ class ReadAhead:
 
 
 def is_urgent(message: Mapping[str, Any]) -> bool:
-    """Tell, without reading all of it, whether a message may be a reading of the emergency stop."""
+    """Tell, without parsing it, whether a message may be a reading of the emergency stop."""
     text = message.get("text")
     if not isinstance(text, str) or len(text) > _URGENT_CHARACTERS:
         return False

@@ -1,4 +1,4 @@
-"""The text of what clients of rosbridge are sent."""
+"""Texts of the messages to rosbridge clients."""
 
 from collections.abc import Mapping
 from typing import Any
@@ -10,24 +10,24 @@ from service.ros.interface.endpoints import Fields
 
 
 def status_text(level: str, message: str, id_: str | int | None) -> str:
-    """Return a status: what went wrong with the operation of that id.
+    """Return a status message about an operation.
 
     Args:
         level: `error`, `warning` or `info`.
         message: A sentence.
-        id_: None: the operation had none.
+        id_: Of the operation; None: it had none.
     """
     return _json({"op": "status", "level": level, "msg": message, **_id_member(id_)})
 
 
 def response_text(service: str, values: Fields | str, result: bool, id_: str | int | None) -> str:
-    """Return the answer to a call.
+    """Return the response to a service call.
 
     Args:
         service: As the client named it.
-        values: The response, or why there is none.
-        result: Whether there is one.
-        id_: None: the call had none.
+        values: The response, or why the call failed.
+        result: Whether the call succeeded.
+        id_: Of the call; None: it had none.
     """
     return _json(
         {
@@ -46,18 +46,18 @@ def sentence(error: PilothouseError) -> str:
 
 
 class PublishedTexts:
-    """Texts of published messages; one that goes to several clients is encoded once."""
+    """Texts of published messages; a message for several clients is encoded once."""
 
     def __init__(self) -> None:
         self._newest: dict[str, tuple[Fields, str]] = {}
 
     def text(self, name: str, topic: str, message: Fields) -> str:
-        """Return a message of a topic as it is sent.
+        """Return a message of a topic as text.
 
         Args:
-            name: Of the topic, in full.
-            topic: The same, as the client named it.
-            message: The object that was handed to all who listen.
+            name: Full name of the topic.
+            topic: Name of the topic as the client wrote it.
+            message: The object that all listeners got.
         """
         known = self._newest.get(name)
         if known is None or known[0] is not message:
@@ -66,7 +66,7 @@ class PublishedTexts:
 
 
 def _json(value: Mapping[str, Any] | str) -> str:
-    """Return JSON; what is not finite is null, since no client could read the rest otherwise."""
+    """Return JSON; numbers that are not finite become null, since JSON cannot hold them."""
     return to_json(value, inf_nan_mode="null").decode()
 
 

@@ -1,7 +1,7 @@
-"""The services by which clients of rosbridge look round: `/rosapi/...`.
+"""The introspection services of rosbridge: `/rosapi/...`.
 
-Those that clients call when they connect or at a touch of convenience, as far as the answer follows
-from what is on offer.
+Only those that clients commonly call, and that can be answered from the offered services and
+topics.
 """
 
 from collections.abc import Callable, Iterable, Mapping
@@ -32,11 +32,11 @@ REQUESTS: Mapping[str, Shape] = {
     "TopicsForType": {"type": Kind.TEXT},
     "TopicType": {"topic": Kind.TEXT},
 }
-"""What requests look like, by the type of the service without its package."""
+"""Fields of requests, by the type of the service without its package."""
 
 
 class RosApi:
-    """Knows what is on offer."""
+    """Answers questions about the offered services and topics."""
 
     def __init__(
         self,
@@ -44,12 +44,12 @@ class RosApi:
         topics: Iterable[OfferedTopic | SubscribedTopic],
         clock: Clock,
     ) -> None:
-        """Begin.
+        """Prepare.
 
         Args:
-            services: By full name, without these ones.
-            topics: All of them, also those that are only heard.
-            clock: Tells what time it is.
+            services: By full name, without those of rosapi.
+            topics: All topics, published and subscribed.
+            clock: Of the robot.
         """
         own = {
             "get_time": ("GetTime", self._time),
@@ -69,12 +69,12 @@ class RosApi:
                 for name, (type_name, answer) in own.items()
             },
         }
-        """All services, these ones included, by full name."""
+        """All services, including those of rosapi, by full name."""
 
     def _time(self, request: Mapping[str, str]) -> Fields:
         now = since_epoch(self._clock.wall_time(self._clock.now()))
         sec, nanosec = divmod(now, NANOSECONDS_PER_SECOND)
-        # Clients look for the fields of ROS 2, or still for those of ROS 1.
+        # Some clients read the fields of ROS 2, others still those of ROS 1.
         return {"time": {"sec": sec, "nanosec": nanosec, "secs": sec, "nsecs": nanosec}}
 
     def _nodes(self, request: Mapping[str, str]) -> Fields:

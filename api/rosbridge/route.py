@@ -22,7 +22,7 @@ router = APIRouter()
 log = logging.getLogger(__name__)
 
 AUTH_TIMEOUT_S = 5.0
-"""For a client to say who it is."""
+"""Timeout for the token of a client, s."""
 _LAST_WORDS_S = 1.0
 
 _TRY_AGAIN_LATER = 1013
@@ -33,7 +33,7 @@ _UNAUTHORIZED = 4401
 @router.websocket("/rosbridge")
 @policy(Permission.OPERATE, AuditClass.NEVER)
 async def rosbridge(socket: WebSocket, clients: RosbridgeClientsDep) -> None:
-    """Serve one client until it goes, does not read, or the service ends."""
+    """Serve one client until it disconnects, stops reading, or the service ends."""
     await socket.accept()
     address = socket.client.host if socket.client else "unknown"
     if not await _is_let_in(socket, clients, address):
@@ -47,9 +47,9 @@ async def rosbridge(socket: WebSocket, clients: RosbridgeClientsDep) -> None:
 
 
 async def _is_let_in(socket: WebSocket, clients: RosbridgeClients, address: str) -> bool:
-    """Ask for the token, where one is needed and the handshake did not hold it.
+    """Wait for the token, if one is needed and the handshake did not carry it.
 
-    Whoever does not give it is told so, and the connection is closed.
+    A client that does not send it gets an error status, and its connection is closed.
     """
     lobby = clients.lobby
     if lobby.access.accepts_header(socket.headers):
@@ -68,7 +68,7 @@ async def _is_let_in(socket: WebSocket, clients: RosbridgeClients, address: str)
             said = read_message(message)
         _check_token(clients, said)
     except (TimeoutError, UnauthorizedError) as error:
-        reason = str(error) or f"no token came within {AUTH_TIMEOUT_S:g} s"
+        reason = str(error) or f"no token was sent within {AUTH_TIMEOUT_S:g} s"
         lobby.refusals.note(HTTPStatus.UNAUTHORIZED, address)
         await _close(
             socket, _UNAUTHORIZED, "UNAUTHORIZED", status_text("error", reason, id_of(said))
@@ -78,7 +78,7 @@ async def _is_let_in(socket: WebSocket, clients: RosbridgeClients, address: str)
 
 
 def _check_token(clients: RosbridgeClients, said: Mapping[str, Any]) -> None:
-    """Look at the first message.
+    """Check the first message.
 
     Raises:
         UnauthorizedError: It is not the right token.
@@ -88,9 +88,9 @@ def _check_token(clients: RosbridgeClients, said: Mapping[str, Any]) -> None:
     except PilothouseError:
         operation = None
     if not isinstance(operation, Authenticate) or operation.token is None:
-        raise UnauthorizedError('the first message has to be {"op": "auth", "token": "..."}')
+        raise UnauthorizedError('the first message must be {"op": "auth", "token": "..."}')
     if not clients.lobby.access.accepts(operation.token):
-        raise UnauthorizedError("this is not the token of the service")
+        raise UnauthorizedError("wrong token")
 
 
 async def _close(socket: WebSocket, code: int, reason: str, last_words: str | None = None) -> None:
@@ -100,6 +100,6 @@ async def _close(socket: WebSocket, code: int, reason: str, last_words: str | No
                 await socket.send_text(last_words)
             await socket.close(code, reason)
     except (TimeoutError, WebSocketDisconnect, RuntimeError):
-        # RuntimeError: the server itself closed the connection just now, as for a message that is
-        # too large.
-        log.debug("a client went before it was told: %s", reason)
+        # RuntimeError: the server has just closed the connection itself, for example because a
+        # message was too large.
+        log.debug("a client disconnected before it was sent: %s", reason)

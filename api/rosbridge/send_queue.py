@@ -1,4 +1,4 @@
-"""What waits to be sent to one client, and in which order it goes."""
+"""The queue of messages to one client, and their order."""
 
 from collections import deque
 from collections.abc import Callable
@@ -7,43 +7,43 @@ from api.rosbridge.subscription import Subscription
 from domain.timebase import Instant
 
 MAX_WAITING = 1_000
-"""Events and answers that may wait; a client that lets more pile up has lost its way."""
+"""Events and responses that may wait; a client with more is disconnected."""
 MAX_CHARACTERS = 4 * 1024 * 1024
-"""Of these together, beside the last one: of a large robot, a list of all services has some 100,000
-characters and more."""
+"""Of all of these except the last one. The list of all services of a large robot alone has more
+than 100,000 characters."""
 _AT_ONCE = 100
 _CHARACTERS_AT_ONCE = 65_536
 
 
 class SendQueue:
-    """Answers and events go in order and without loss, then what is due of the other topics."""
+    """Responses and events are sent in order and without loss, then messages of other topics."""
 
     def __init__(self, wake: Callable[[], None]) -> None:
-        """Begin empty.
+        """Start empty.
 
         Args:
-            wake: Is told that there may be something to take; returns at once.
+            wake: Called when there may be something to take; must return at once.
         """
         self._wake = wake
         self._waiting: deque[str] = deque()
         self._characters = 0
-        """Of what waits."""
+        """Of all waiting texts."""
         self._overflowed = False
         self._paced: dict[Subscription, None] = {}
-        """Those in which something waits: a client may have a thousand that are silent."""
+        """Only subscriptions with waiting messages, since a client may have a thousand others."""
 
     @property
     def overflowed(self) -> bool:
-        """Tell whether something was lost that must not be."""
+        """Tell whether a message was lost that must not be."""
         return self._overflowed
 
     @property
     def has_more(self) -> bool:
-        """Tell whether something is left that need not wait for its time."""
+        """Tell whether there is more to send at once."""
         return bool(self._waiting)
 
     def put(self, text: str) -> None:
-        """Append what must not be lost."""
+        """Append a text that must not be lost."""
         if len(self._waiting) >= MAX_WAITING or self._characters >= MAX_CHARACTERS:
             self._overflowed = True
         else:
@@ -52,7 +52,7 @@ class SendQueue:
         self._wake()
 
     def expect(self, subscription: Subscription) -> None:
-        """Also take what is due of a subscription in which something waits."""
+        """Remember a subscription with waiting messages; they are taken when they are due."""
         self._paced[subscription] = None
         self._wake()
 
@@ -61,7 +61,7 @@ class SendQueue:
         self._paced.pop(subscription, None)
 
     def take(self, now: Instant) -> list[str]:
-        """Take out what is to be sent next: some texts, in order."""
+        """Remove and return the texts to send next, in order."""
         taken: list[str] = []
         room = _CHARACTERS_AT_ONCE
         while self._waiting and len(taken) < _AT_ONCE and room > 0:

@@ -1,4 +1,4 @@
-"""One client of rosbridge from when it was let in until it goes."""
+"""One rosbridge client, from its authentication until it disconnects."""
 
 import asyncio
 import logging
@@ -17,14 +17,14 @@ log = logging.getLogger(__name__)
 
 
 class ServedClient:
-    """Hears what it says, and writes what it is to be told."""
+    """Reads the messages of a client, and writes those to it."""
 
     def __init__(self, bridge: Bridge, connection: Connection, address: str) -> None:
-        """Begin.
+        """Prepare.
 
         Args:
-            bridge: What all clients share.
-            connection: It is accepted.
+            bridge: Shared by all clients.
+            connection: An accepted connection.
             address: Of the client, without a port.
         """
         self._bridge = bridge
@@ -35,10 +35,10 @@ class ServedClient:
         self._wire = Wire(connection, bridge.clock)
 
     async def serve(self, receive: Callable[[], Awaitable[Mapping[str, Any]]]) -> None:
-        """Serve the client until it goes or is cut off.
+        """Serve the client until it disconnects or is disconnected.
 
         Args:
-            receive: Returns the next message, as ASGI has it.
+            receive: Returns the next ASGI message.
         """
         self._connection.listen(self._wire)
         try:
@@ -63,7 +63,7 @@ class ServedClient:
         ahead: ReadAhead,
         receive: Callable[[], Awaitable[Mapping[str, Any]]],
     ) -> None:
-        """Read ahead, so that a reading of the emergency stop waits for nothing said before it."""
+        """Read ahead, so that a reading of the emergency stop overtakes earlier messages."""
         while True:
             message = await receive()
             if is_urgent(message):
@@ -76,7 +76,7 @@ class ServedClient:
                 return
 
     async def _hear(self, session: Session, ahead: ReadAhead) -> None:
-        """Do what one message after the other asks."""
+        """Process messages one after the other."""
         while True:
             message = await ahead.get()
             if message["type"] == "websocket.disconnect":
@@ -84,16 +84,16 @@ class ServedClient:
             self._wire.heard()
             if self._connection.transport.is_closing():
                 session.leave()
-            # Of all clients one after the other: together, the largest messages of fifty would take
-            # longer than the tick may wait.
+            # One message of all clients at a time: fifty large ones in one pass of the event loop
+            # would delay the tick for too long.
             async with self._bridge.turn:
                 session.hear(message)
                 await asyncio.sleep(0)
 
     async def _write(self) -> None:
-        """Write until cancelled, or until the client has to be cut off.
+        """Write until cancelled, or until the client must be disconnected.
 
-        Nothing waits in here for the client: what it does not take stays in the queue.
+        This never waits for the client: what it does not read stays in the queue.
         """
         wire, queue = self._wire, self._queue
         with self._bridge.frames.watch(self._woken.set):
@@ -108,7 +108,7 @@ class ServedClient:
                     if queue.has_more:
                         self._woken.set()
                 if wire.is_silent() or queue.overflowed:
-                    log.info("dropped %s: it does not read", self._address)
+                    log.info("dropped client %s: it does not read", self._address)
                     wire.cut_off()
                     return
                 await asyncio.sleep(0)

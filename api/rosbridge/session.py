@@ -1,4 +1,4 @@
-"""What one client of rosbridge asked for, and what it is answered; the network is elsewhere."""
+"""The subscriptions and calls of one rosbridge client, without any network code."""
 
 import asyncio
 from collections.abc import Callable, Coroutine, Mapping
@@ -31,10 +31,10 @@ from domain.timebase import seconds
 from service.ros.interface.endpoints import OfferedService
 
 MAX_CALLS = 16
-"""Calls of one client that may be under way."""
+"""Pending calls of one client."""
 MAX_SUBSCRIPTIONS = 1_000
 MAX_CALL_S = 120.0
-"""For a service to answer; each has a shorter deadline of its own."""
+"""Timeout of a call, s; each service has a shorter deadline of its own."""
 _MAX_PUBLISHED = 1_000
 
 _LEVELS: Mapping[str, int] = MappingProxyType({"none": 0, "error": 1, "warning": 2, "info": 3})
@@ -46,13 +46,13 @@ class Session:
     """One client."""
 
     def __init__(self, bridge: Bridge, queue: SendQueue, caller: Actor, spawn: Spawn) -> None:
-        """Begin.
+        """Prepare.
 
         Args:
-            bridge: What all clients share.
-            queue: Takes what is to be sent.
-            caller: Who the client is, as events record it.
-            spawn: Lets a call run beside the others, and owns it.
+            bridge: Shared by all clients.
+            queue: Takes messages to the client.
+            caller: The client, as recorded in events.
+            spawn: Runs a call as a task, and owns it.
         """
         self._bridge = bridge
         self._queue = queue
@@ -60,20 +60,20 @@ class Session:
         self._spawn = spawn
         self._level = _LEVELS["warning"]
         self._subscriptions: dict[str, tuple[Subscription, Callable[[], None]]] = {}
-        """By the name that the client uses, with what ends them."""
+        """By the name that the client uses, with a function that ends the subscription."""
         self._wishes = 0
-        """Of all subscriptions together."""
+        """Number of `subscribe` operations in force."""
         self._published: set[str] = set()
-        """Topics that the client said it publishes to; also those that nobody hears."""
+        """Topics that the client advertised or published to, also those without a subscriber."""
         self._calls: set[asyncio.Task[None]] = set()
         self._calls_left: int | None = None
-        """After the client went; None: it is there."""
+        """Calls still allowed after the client disconnected; None: it is connected."""
 
     def hear(self, message: Mapping[str, Any]) -> None:
-        """Do what a message asks for; what is wrong with it is put into the queue.
+        """Process a message; if it is invalid, an error status is queued.
 
         Args:
-            message: As ASGI has it.
+            message: An ASGI message.
         """
         said: Mapping[str, Any] = {}
         try:
@@ -83,16 +83,16 @@ class Session:
             self._tell("error", sentence(error), id_of(said))
 
     def leave(self) -> None:
-        """Learn that the client went, although not all that it said before was heard yet.
+        """Note that the client disconnected while some of its messages are still queued.
 
-        Its readings are still taken, but only so many calls are begun as may be under way: those of
-        a flood would keep the robot busy for minutes after its sender was stopped.
+        Their readings are accepted, but at most `MAX_CALLS` calls are started: a flood of calls
+        would keep the robot busy for minutes after its sender was stopped.
         """
         if self._calls_left is None:
             self._calls_left = MAX_CALLS
 
     def end(self) -> None:
-        """Listen to nothing any more, and cancel the calls."""
+        """End all subscriptions, and cancel the calls."""
         for _, unlisten in self._subscriptions.values():
             unlisten()
         self._subscriptions.clear()
@@ -116,7 +116,7 @@ class Session:
             case SetLevel():
                 self._level = _LEVELS[operation.level]
             case Authenticate():
-                # Whoever is here was let in; a client that has a token sends it anyway.
+                # The client has access already; one that has a token sends it anyway.
                 pass
 
     def _tell(self, level: str, message: str, id_: str | int | None) -> None:
@@ -130,12 +130,12 @@ class Session:
         topic = self._bridge.interface.topics.get(name)
         if topic is None:
             if name in self._bridge.interface.heard:
-                raise InvalidValueError(f"{name} may be published to, and tells nothing", "/topic")
+                raise InvalidValueError(f"{name} can only be published to", "/topic")
             raise UnknownNameError("topic", name, (), "/rosapi/topics lists what there is")
         if not is_type(asked.type, topic.type):
             raise InvalidValueError(f"{name} is {topic.type}, not {asked.type!r:.100}", "/type")
         if self._wishes >= MAX_SUBSCRIPTIONS:
-            raise InvalidValueError(f"{MAX_SUBSCRIPTIONS} subscriptions are there already")
+            raise InvalidValueError(f"too many subscriptions: at most {MAX_SUBSCRIPTIONS}")
         if asked.compression not in (None, "", "none"):
             message = f"{name} is sent without compression {asked.compression!r:.40}"
             self._tell("warning", message, asked.id)
@@ -187,7 +187,7 @@ class Session:
         if topic is not None:
             topic.take(asked.msg, self._caller)
         elif name not in self._published:
-            # Told once: a client may publish many times a second.
+            # Reported once: a client may publish many times a second.
             self._remember_published(name)
             raise _unheard(name)
 
@@ -207,7 +207,7 @@ class Session:
         if service is None:
             self._respond(asked, f"there is no service {full_name(asked.service)}", result=False)
         elif len(self._calls) >= MAX_CALLS:
-            self._respond(asked, f"{MAX_CALLS} calls are under way already", result=False)
+            self._respond(asked, f"too many pending calls: at most {MAX_CALLS}", result=False)
         elif not self._bridge.may_call(service.name, self._caller):
             allowed = f"{self._bridge.calls_per_s} calls a second"
             self._respond(asked, f"more than {allowed} came from this address", result=False)
@@ -217,7 +217,7 @@ class Session:
             call.add_done_callback(self._calls.discard)
 
     async def _finish(self, asked: CallService, service: OfferedService) -> None:
-        """Call a service, and answer with what it says."""
+        """Call a service, and send its response."""
         limit = asked.timeout if asked.timeout is not None and asked.timeout > 0 else MAX_CALL_S
         limit = min(limit, MAX_CALL_S)
         try:
@@ -239,5 +239,5 @@ class Session:
 
 
 def _unheard(name: str) -> UnknownNameError:
-    hint = "what is published there goes nowhere; only readings of signals are heard"
-    return UnknownNameError("listener to", name, (), hint)
+    hint = "messages on it are discarded; only topics of signals have a subscriber"
+    return UnknownNameError("subscriber of", name, (), hint)

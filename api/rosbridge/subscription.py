@@ -1,4 +1,4 @@
-"""What one client gets of one topic, and how often."""
+"""The subscription of one client to one topic, and its rate."""
 
 from collections import deque
 from collections.abc import Callable
@@ -9,7 +9,7 @@ from domain.timebase import Duration, Instant
 from service.ros.interface.endpoints import Fields, OfferedTopic
 
 MAX_QUEUE = 100
-"""Messages of a topic that may wait for their turn, however many a client asks for."""
+"""Upper limit of the `queue_length` that a client requests."""
 
 _SNAPSHOTS = frozenset(
     {
@@ -18,21 +18,21 @@ _SNAPSHOTS = frozenset(
         "gem_state_msgs/msg/TaskPlannerStatus",
     }
 )
-"""Of these a newer message says all that an older one did: who is slow gets the newest."""
+"""Types whose newest message replaces older ones: a slow client gets only the newest."""
 
 
 @dataclass(frozen=True, slots=True)
 class Pace:
-    """How often a client wants messages."""
+    """The rate at which a client wants messages."""
 
     least: Duration = 0
-    """Time between two messages, at least."""
+    """Least time between two messages."""
     queue_length: int = 0
-    """So many wait for their turn, and the oldest goes; 0: what is best for the topic."""
+    """Messages that are queued, the oldest is dropped first; 0: the default of the topic."""
 
 
 class Subscription:
-    """A topic as a client named it; several wishes of the client are met by the fullest of them."""
+    """A topic as a client named it; of several `subscribe` operations the fastest is in force."""
 
     def __init__(
         self,
@@ -42,14 +42,14 @@ class Subscription:
         put: Callable[[str], None],
         expect: Callable[["Subscription"], None],
     ) -> None:
-        """Begin without a wish.
+        """Start without a `subscribe` operation.
 
         Args:
-            topic: What is subscribed to.
+            topic: The topic.
             named: Its name as the client wrote it.
-            texts: Makes the text of a message.
+            texts: Encodes messages.
             put: Takes a text that must not be lost.
-            expect: Is handed this subscription once `take` has something, now or when it is due.
+            expect: Called with this subscription when a message waits, due now or later.
         """
         self._topic = topic
         self._named = named
@@ -63,23 +63,23 @@ class Subscription:
 
     @property
     def is_wanted(self) -> bool:
-        """Tell whether there is a wish left."""
+        """Tell whether a `subscribe` operation is in force."""
         return bool(self._wishes)
 
     @property
     def has_waiting(self) -> bool:
-        """Tell whether a message waits for its turn."""
+        """Tell whether a message waits."""
         return bool(self._waiting)
 
     def want(self, wish: str | int | None, pace: Pace) -> int:
-        """Add a wish, or replace the one of that id; return how many more there are now: 1 or 0."""
+        """Add a `subscribe` operation, or replace that of the same id; return how many are new."""
         before = len(self._wishes)
         self._wishes[wish] = pace
         self._adopt()
         return len(self._wishes) - before
 
     def unwant(self, wish: str | int | None) -> int:
-        """Forget a wish, or with None all; return how many there were of it."""
+        """Remove the `subscribe` operation of an id, or all with None; return how many."""
         before = len(self._wishes)
         if wish is None:
             self._wishes.clear()
@@ -98,12 +98,12 @@ class Subscription:
             self._expect(self)
 
     def take(self, now: Instant) -> list[str]:
-        """Take out the texts of what is due."""
+        """Remove and return the texts of the messages that are due."""
         if not self._waiting or (self._due_at is not None and now < self._due_at):
             return []
         least = self._pace.least
         if least and self._due_at is not None and now - self._due_at < least:
-            # On a grid, so that a message that is a little late makes not all others later.
+            # On a grid, so that one late message does not delay all later ones.
             self._due_at += least
         else:
             self._due_at = now + least
@@ -113,7 +113,7 @@ class Subscription:
         return [self._texts.text(self._topic.name, self._named, message) for message in due]
 
     def _adopt(self) -> None:
-        """Go at the pace of the wishes together."""
+        """Combine the rates of all `subscribe` operations."""
         if not self._wishes:
             return
         least = min(pace.least for pace in self._wishes.values())

@@ -7,49 +7,49 @@ from domain.timebase import Duration, Instant, seconds
 from service.clock import Clock
 
 PATIENCE = seconds(4.5)
-"""A client to whom something waits, and that takes nothing of it for so long, does not read."""
+"""A client that reads nothing of waiting data for this long counts as not reading."""
 PING_EVERY = seconds(1.0)
 _ANSWER_WITHIN = PATIENCE - PING_EVERY
-"""Also one to whom nothing waits is noticed so long after it stopped to read."""
+"""Timeout of a ping: a client without waiting data is also detected within `PATIENCE`."""
 
 
 class Wire:
-    """Learns from the connection how it fares."""
+    """Writes to the connection, and tracks whether the client still reads."""
 
     def __init__(self, connection: Connection, clock: Clock) -> None:
-        """Begin with a client that was just let in.
+        """Start with a client that was just accepted.
 
         Args:
-            connection: It is accepted.
-            clock: Tells how long a client has been silent.
+            connection: An accepted connection.
+            clock: Of the service.
         """
         self._transport = connection.transport
         self._clock = clock
         self._ping_at = clock.now() + PING_EVERY
         self._owes_by: Instant | None = None
-        """Until when it has to show that it reads; None: it did."""
+        """Deadline for a sign that the client reads; None: none is expected."""
         self._left = 0
 
     def clogged(self) -> None:
-        """Learn that something waits; `is_free` looks at that."""
+        """Ignore that data waits; `is_free` checks this itself."""
 
     def answered(self) -> None:
-        """Learn that the client reads."""
+        """Note that the client answered a ping, and so reads."""
         self._owes_by = None
 
     def heard(self) -> None:
-        """Learn that the client said something, behind which its answer to a ping may wait.
+        """Note that the client sent a message, behind which its answer to a ping may wait.
 
-        To one that takes nothing that does not help: it may talk and not read.
+        This does not count while data waits: the client may send without reading.
         """
         if not self._left:
             self._owes_by = None
 
     def lost(self) -> None:
-        """Learn that the connection is gone; then `is_free` is false."""
+        """Ignore that the connection is closed; `is_free` is false then."""
 
     def is_free(self) -> bool:
-        """Tell whether everything written before is on its way, and more can be written."""
+        """Tell whether all earlier data was sent, and more can be written."""
         left = self._transport.get_write_buffer_size()
         if left < self._left:
             self._owes_by = None
@@ -59,7 +59,7 @@ class Wire:
         return not left and not self._transport.is_closing()
 
     def is_silent(self) -> bool:
-        """Tell whether the client does not read any more."""
+        """Tell whether the client has stopped reading."""
         return self._owes_by is not None and self._clock.now() > self._owes_by
 
     def write(self, texts: Iterable[str]) -> None:
@@ -67,14 +67,14 @@ class Wire:
         self._transport.write(b"".join(map(text_frame, texts)))
 
     def ping(self) -> None:
-        """Ask for a sign of life, if that is due; only while it `is_free`."""
+        """Send a ping if one is due; only while `is_free`."""
         if self._clock.now() >= self._ping_at:
             self._ping_at = self._clock.now() + PING_EVERY
             self._expect_reading(_ANSWER_WITHIN)
             self._transport.write(PING)
 
     def cut_off(self) -> None:
-        """End the connection at once."""
+        """Abort the connection."""
         self._transport.abort()
 
     def _expect_reading(self, within: Duration) -> None:

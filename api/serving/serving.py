@@ -1,6 +1,6 @@
-"""`pilothouse serve`: run robot and web server as equals.
+"""`pilothouse serve`: runs supervisor and web server side by side.
 
-The owner of SIGINT, SIGTERM and every task.
+Owns the handling of SIGINT and SIGTERM, and every task.
 """
 
 import asyncio
@@ -66,8 +66,8 @@ def serve(options: ServeOptions) -> int:
     prepare(app)
     greeting = "\n".join(greet(composition, options, url_of(sockets, options.host), access))
     server = web_server(app, lambda: _say_serving(greeting, manager, supervisor))
-    # What was made until now stays: it need not be looked through again by each collection, which
-    # would stop the tick for as long.
+    # Objects that exist now stay: without this each garbage collection would scan them again, and
+    # delay the tick.
     gc.collect()
     gc.freeze()
     with asyncio.Runner(loop_factory=_new_event_loop) as runner:
@@ -75,31 +75,32 @@ def serve(options: ServeOptions) -> int:
 
 
 def access_of(options: ServeOptions, token: str | None) -> Access:
-    """Return whom the service lets in.
+    """Return the access control of the service.
 
     Args:
-        options: What the command was told.
-        token: That of the environment; None: there is none.
+        options: Of the command.
+        token: Of the environment; None: there is none.
 
     Raises:
-        MisuseError: Others would reach the robot and nobody said who may, or it was said twice.
+        MisuseError: The network would have access without a token or --anonymous, or both are
+            given.
         ListenError: There is no such host.
     """
     if token is None:
         if not options.anonymous and not is_loopback(options.host):
             raise MisuseError(
                 f"--host {options.host} lets others on the network control the robot: give the "
-                f"service a token by {TOKEN_VARIABLE} or {FILE_VARIABLE}, say --anonymous if "
-                "everybody may, or leave out --host"
+                f"service a token with {TOKEN_VARIABLE} or {FILE_VARIABLE}, use --anonymous if "
+                "everybody may do so, or leave out --host"
             )
         return Access.open()
     if options.anonymous:
         raise MisuseError(
-            f"--anonymous lets everybody in, and the token of {TOKEN_VARIABLE} or {FILE_VARIABLE} "
-            "does not: leave out one of them"
+            f"--anonymous contradicts the token of {TOKEN_VARIABLE} or {FILE_VARIABLE}: leave out "
+            "one of them"
         )
     if len(token) < MIN_GOOD_CHARACTERS:
-        log.warning("the token is shorter than %d characters: guessable", MIN_GOOD_CHARACTERS)
+        log.warning("the token can be guessed: it has less than %d characters", MIN_GOOD_CHARACTERS)
     return Access.with_token(token)
 
 
@@ -109,12 +110,12 @@ async def run_service(
     sockets: Sequence[socket.socket],
     manager: ServiceManager,
 ) -> int:
-    """Run robot and web server until a signal or a failure, and return the exit code.
+    """Run supervisor and web server until a signal or a failure, and return the exit code.
 
-    A supervisor that died takes the web server with it: a page that looks alive over a robot that
-    nobody watches is the worst of ends. So does the gateway to ROS 2, if there is one. On a signal
-    the vehicle is stopped, nodes are left as they are, and clients are told that the service goes
-    (close code 1012). A second signal ends the process at once.
+    If the supervisor fails, the web server ends too: a live page for a robot that is not supervised
+    would be dangerous. The same holds for the gateway to ROS 2, if there is one. On a signal the
+    vehicle is stopped, nodes stay as they are, and WebSockets are closed with code 1012. A second
+    signal ends the process at once.
     """
     supervisor, gateway = composition.supervisor, composition.gateway
     stopping = asyncio.Event()
@@ -145,7 +146,7 @@ async def run_service(
 def greet(
     composition: Composition, options: ServeOptions, url: str, access: Access
 ) -> Iterator[str]:
-    """Say what runs, where, who may use it, and what to try first."""
+    """Yield the lines that are printed at the start: robot, address, access, first commands."""
     supervisor = composition.supervisor
     model = supervisor.model
     source = f"{options.model}" if options.model else "the built-in example"
@@ -165,17 +166,17 @@ def greet(
             yield f"        {curl} -X POST {url}/{kind}/{part}/mode -d '{body}'"
     if composition.gateway is not None:
         domain = os.environ.get("ROS_DOMAIN_ID") or "0"
-        yield f"ROS 2: domain {domain}. Nodes are real: what is asked here moves them."
+        yield f"ROS 2: domain {domain}. Nodes are real: requests here change them."
     if supervisor.simulated:
         harmless = "" if composition.gateway else " Nothing here moves a real robot."
         yield f"Simulated: {', '.join(supervisor.simulated)}.{harmless}"
     for warning in supervisor.warnings:
         yield finding_line(source, warning)
-    yield "Ctrl-C ends it; the vehicle is stopped, nodes are left as they are."
+    yield "Ctrl-C stops the service and the vehicle; nodes stay as they are."
 
 
 def _say_serving(greeting: str, manager: ServiceManager, supervisor: Supervisor) -> None:
-    """Tell people that connections are accepted, and the service manager with the next tick."""
+    """Print that connections are accepted; the next tick notifies the service manager."""
     print(greeting, flush=True)
     manager.watch(supervisor)
 
@@ -193,21 +194,21 @@ def _on_signals(stopping: asyncio.Event) -> None:
 async def _serve_until(
     stopping: asyncio.Event, server: WebServer, sockets: Sequence[socket.socket]
 ) -> None:
-    """Serve until told to stop; to end otherwise is a failure like that of any task."""
+    """Serve until `stopping` is set; ending without it is a failure, as for any task."""
     await server.serve(list(sockets))
     if not stopping.is_set():
         raise TaskFailedError("web server")
 
 
 async def _offer(gateway: RosGateway) -> None:
-    """Offer the robot to ROS 2; to end is a failure like that of any task."""
+    """Offer the robot to ROS 2; ending is a failure, as for any task."""
     await gateway.offer()
     await gateway.run()
     raise TaskFailedError("gateway")
 
 
 def _tell_failure(failure: BaseException) -> None:
-    """Log why the service ends; what somebody can do something about needs no traceback."""
+    """Log why the service ends; without a traceback if the user can fix the cause."""
     cause = failure.__cause__ or failure
     causes = [*_leaves(cause)] if isinstance(cause, BaseExceptionGroup) else [cause]
     if all(isinstance(cause, GraphFailedError | UnknownTypeError) for cause in causes):
@@ -238,7 +239,7 @@ def _log_to_stderr(level: str) -> None:
         stream=sys.stderr,
         format="%(asctime)s %(levelname)s %(name)s: %(message)s",
     )
-    # It tells of each connection at this level; what matters is told by our own modules.
+    # uvicorn logs every connection at INFO; our own modules log what matters.
     for name in ("uvicorn.error", "uvicorn.access"):
         logging.getLogger(name).setLevel("DEBUG" if level == "debug" else "WARNING")
 

@@ -1,4 +1,4 @@
-"""Uvicorn as part of our own process: our signal handling, our limits, and ends that are ends."""
+"""Uvicorn within our process: with our signal handling and our limits."""
 
 import contextlib
 import errno
@@ -21,7 +21,7 @@ _OTHER_FILES = 500
 
 
 class ListenError(Exception):
-    """The address cannot be listened on; the message says why, and what to do."""
+    """The service cannot listen on the address; the message says why, and what to do."""
 
 
 class WebServer(uvicorn.Server):
@@ -36,7 +36,7 @@ class WebServer(uvicorn.Server):
         self._on_started = on_started
 
     async def startup(self, sockets: list[socket.socket] | None = None) -> None:
-        """Begin to accept connections, and say so."""
+        """Start to accept connections, and call `on_started`."""
         await super().startup(sockets)
         self._on_started()
 
@@ -73,7 +73,7 @@ def web_server(app: FastAPI, on_started: Callable[[], None]) -> WebServer:
     """Return a server that is stopped by `should_exit`.
 
     Args:
-        app: What is served, with its limits.
+        app: The application, with its limits.
         on_started: Called once connections are accepted.
     """
     limits: ServiceLimits = app.state.limits
@@ -90,11 +90,11 @@ def web_server(app: FastAPI, on_started: Callable[[], None]) -> WebServer:
         log_config=None,
         access_log=False,
         server_header=False,
-        # A header of a client would decide what is recorded as its address.
+        # Otherwise a header of the client would decide which address is recorded for it.
         proxy_headers=False,
         timeout_graceful_shutdown=_GRACE_S,
     )
-    # Here and not when it starts, by when the robot ticks.
+    # Now and not at the start of the server, when the tick is running already.
     config.load()
     return WebServer(config, on_started)
 
@@ -107,7 +107,7 @@ def listen(host: str, port: int) -> list[socket.socket]:
         port: 0 takes a free one.
 
     Raises:
-        ListenError: There is no such host, or its port cannot be had.
+        ListenError: There is no such host, or the port is not available.
     """
     sockets: list[socket.socket] = []
     failure: OSError | None = None
@@ -145,7 +145,7 @@ def is_loopback(host: str) -> bool:
 
 
 def url_of(sockets: Sequence[socket.socket], host: str) -> str:
-    """Return the address to type into a browser."""
+    """Return the address to open in a browser."""
     port = sockets[0].getsockname()[1]
     if host in ("0.0.0.0", "::"):
         host = "127.0.0.1"
@@ -153,7 +153,7 @@ def url_of(sockets: Sequence[socket.socket], host: str) -> str:
 
 
 def _allow_open_files(count: int) -> None:
-    """Let this process have so many files and connections open, as far as it may say so itself."""
+    """Raise the limit of open files and connections, as far as this process may do so."""
     try:
         import resource
     except ImportError:  # There is none for Windows.
@@ -166,8 +166,8 @@ def _allow_open_files(count: int) -> None:
 
 def _listener(family: socket.AddressFamily, address: str, port: int) -> socket.socket:
     listener = socket.create_server((address, port), family=family, backlog=128)
-    # Small, so that a client that does not read is noticed soon: the kernel would let megabytes
-    # pile up, and what it holds is old. Connections inherit it.
+    # Small, so that a client that does not read is detected soon: the kernel would buffer megabytes
+    # of old data. Connections inherit it.
     listener.setsockopt(socket.SOL_SOCKET, socket.SO_SNDBUF, _SEND_BUFFER_BYTES)
     return listener
 

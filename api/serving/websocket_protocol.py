@@ -1,12 +1,12 @@
-"""Uvicorn's WebSocket protocol, extended where many clients get the same 20 times a second.
+"""Uvicorn's WebSocket protocol, extended for many clients that get the same frames at 20 Hz.
 
-Three things differ from `WebSocketsSansIOProtocol`, and only these:
+It differs from `WebSocketsSansIOProtocol` in three ways:
 
-* The scope holds the connection, so that prepared frames can be written to its transport, by
-  somebody who learns how it fares (`api.streaming.websocket_frames`).
+* The scope holds the connection, so that prepared frames can be written to its transport, and a
+  listener can be set (`api.streaming.websocket_frames`).
 * The answer to a ping is recognised without the parser, which takes ten times as long.
-* A connection that is ended, ends. `transport.close()` waits until everything was sent; to a client
-  that does not read, that is never, and its buffers would stay.
+* A closed connection is aborted after 1 s. `transport.close()` alone waits until everything was
+  sent; a client that does not read would keep its buffers forever.
 """
 
 import asyncio
@@ -28,22 +28,22 @@ class WebSocketProtocol(WebSocketsSansIOProtocol):
 
     _listener: Listener | None = None
     _between_frames = False
-    """Whether what comes next is surely the begin of a frame."""
+    """Whether the next data certainly starts with a frame."""
 
     def connection_made(self, transport: asyncio.BaseTransport) -> None:
-        """Take over a connection, on which whatever waits is told at once."""
+        """Take over a connection; any data that cannot be sent at once is reported."""
         super().connection_made(transport)
         cast("asyncio.WriteTransport", transport).set_write_buffer_limits(high=0)
 
     async def run_asgi(self) -> None:
-        """Let the application serve this client, then see that the connection ends."""
+        """Let the application serve this client, then make sure that the connection ends."""
         connection = Connection(self.transport, self._listen)
         self.scope.setdefault("extensions", {})[EXTENSION] = {"connection": connection}
         await super().run_asgi()
         self.loop.call_later(_LAST_WORDS_S, self.transport.abort)
 
     def pause_writing(self) -> None:
-        """Tell that the network does not take all."""
+        """Notify the listener that not all data could be sent."""
         super().pause_writing()
         if self._listener is not None:
             self._listener.clogged()
@@ -65,7 +65,7 @@ class WebSocketProtocol(WebSocketsSansIOProtocol):
         super().data_received(data)
 
     def handle_pong(self, event: Frame) -> None:
-        """Take an answer that came together with something else."""
+        """Handle an answer to a ping that came together with other data."""
         self._tell_answered()
 
     def _tell_answered(self) -> None:

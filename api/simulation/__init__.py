@@ -1,4 +1,4 @@
-"""Scenarios in virtual time: the robot's own code, fed with steps, and looked at now and then.
+"""Scenarios in virtual time: the live code, fed with steps and sampled at intervals.
 
-Read `simulation.py` first; what a scenario may say is in `api/http/schemas/simulation.py`.
+Read `simulation.py` first; `api/http/schemas/simulation.py` defines scenarios.
 """

@@ -1,4 +1,4 @@
-"""Compares what a scenario expects with what is seen, and says what differs."""
+"""Compares the expectations of a scenario with the simulated robot, and lists differences."""
 
 from collections.abc import Iterator, Mapping
 from typing import Any
@@ -7,20 +7,20 @@ from api.http.schemas.sent_values import split_label
 from api.http.schemas.simulation import DifferenceJson
 
 MISSING = "(not there)"
-"""Seen of a member that is not there."""
+"""Shown as the value of a missing member."""
 
 
 def differences(expected: object, seen: object, path: str = "") -> Iterator[DifferenceJson]:
-    """Yield each member that is seen otherwise than expected.
+    """Yield each member that differs from what is expected.
 
-    An object is compared by the members that are expected of it. A number may be given by limits:
+    Of an object, only the expected members are compared. A number may be given by limits:
     `{"above": 0.5}`, `{"at_least": 3, "at_most": 5}`, `{"below": 1}`. A state with its mode may be
     given as a label: `"active.FAST"`.
 
     Args:
-        expected: What a scenario says.
-        seen: The same as JSON has it.
-        path: Where both are, with dots.
+        expected: From the scenario.
+        seen: The actual value, as in JSON.
+        path: Place of both, with dots.
     """
     if isinstance(expected, Mapping) and _is_limits(expected):
         if not _within(expected, seen):

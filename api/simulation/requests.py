@@ -1,4 +1,4 @@
-"""Requests of a scenario: sent to the HTTP interface itself, around the robot in virtual time."""
+"""Requests of a scenario, sent to the HTTP interface of the robot in virtual time."""
 
 import asyncio
 import json
@@ -17,7 +17,7 @@ _HOST = "simulation"
 
 
 class Requests:
-    """The interface of one robot. Nothing in it waits: what takes time is answered as begun."""
+    """The HTTP interface of one robot; no request waits for the end of what it starts."""
 
     def __init__(self, supervisor: Supervisor, runner: asyncio.Runner) -> None:
         self._runner = runner
@@ -25,14 +25,14 @@ class Requests:
         self._client = httpx.AsyncClient(transport=httpx.ASGITransport(app))
 
     def send(self, asked: AskedRequest) -> Problem | None:
-        """Send a request; return why it was refused, or None."""
+        """Send a request; return why it was rejected, or None."""
         return self._runner.run(self._send(asked))
 
     async def _send(self, asked: AskedRequest) -> Problem | None:
         if asked.path.startswith("/simulations"):
-            detail = "a simulation begins no other one"
+            detail = "a simulation cannot start another one"
             return make_problem(HTTPStatus.CONFLICT, "REFUSED", detail, asked.path)
-        # Not by httpx's own encoder, which raises for what is not JSON: the interface refuses that.
+        # httpx raises for values that are not valid JSON; here the interface must reject them.
         body = None if asked.body is None else json.dumps(asked.body)
         headers = {} if body is None else {"Content-Type": "application/json"}
         try:
@@ -40,12 +40,12 @@ class Requests:
                 asked.method, f"http://{_HOST}{asked.path}", content=body, headers=headers
             )
         except httpx.InvalidURL as error:
-            status, detail = HTTPStatus.BAD_REQUEST, f"this is no path: {error}"
+            status, detail = HTTPStatus.BAD_REQUEST, f"invalid path: {error}"
             return make_problem(status, "MALFORMED", detail, asked.path)
         if not answer.is_error:
             return None
         if answer.headers.get("content-type") != MEDIA_TYPE:
-            # Such as a change that has failed already: it is answered with itself.
+            # For example a change that has failed already, which is returned itself.
             status = HTTPStatus(answer.status_code)
             return make_problem(status, "FAILED", f"answered: {answer.text:.500}", asked.path)
         return Problem.model_validate_json(answer.content)

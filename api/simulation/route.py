@@ -1,4 +1,4 @@
-"""Simulations: the same core, fed with a scenario, in virtual time."""
+"""Simulations: the live core runs a scenario in virtual time."""
 
 from typing import Annotated
 
@@ -22,7 +22,7 @@ async def _simulator(request: Request) -> Jobs:
 
 
 SimulatorDep = Annotated[Jobs, Depends(_simulator)]
-"""Runs simulations, beside the worker, so that a task that is posted meanwhile need not wait."""
+"""A separate worker for simulations, so that a task that is submitted meanwhile need not wait."""
 
 
 @router.post(
@@ -41,13 +41,13 @@ SimulatorDep = Annotated[Jobs, Depends(_simulator)]
 async def simulate(
     request: Request, supervisor: SupervisorDep, simulator: SimulatorDep
 ) -> Response:
-    """Let a scenario happen in virtual time and return what came of it; nothing live is changed.
+    """Run a scenario in virtual time and return the results; the live robot is not affected.
 
-    Supervision, planner, navigation and simulated robot are those that run live. Readings come from
-    the scenario alone, unless `robot` says `mock: true`.
+    Supervision, planner, navigation and simulated robot are the code that runs live. Only the
+    scenario provides readings, unless `robot` has `mock: true`.
     """
     raw = await read_body(request, limits_of(request).model_bytes)
-    # Looked at only when it may be asked for: a copy takes time on the loop.
+    # Only if the body may request it: a copy takes time on the event loop.
     live = _copy(request.app.state.simulated, supervisor) if b'"live"' in raw else None
     content = await simulator.call(simulate_posted, raw, supervisor.model_text, live)
     return Response(content, media_type="application/json")

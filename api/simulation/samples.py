@@ -1,4 +1,4 @@
-"""What a simulation tells: samples of the robot, and its events."""
+"""The output of a simulation: samples of the robot, and its events."""
 
 from collections import Counter
 from collections.abc import Iterator
@@ -12,11 +12,11 @@ from service.worker import TooComplexError
 
 MAX_EVENTS = 200_000
 MAX_CHARACTERS = 200_000_000
-"""Of all samples together: what a worker can hold and send."""
+"""Of all samples together: as much as a worker can hold and send."""
 
 
 class Sampler:
-    """Makes the text of samples and events; what did not change is not made again."""
+    """Encodes samples and events; unchanged views are not encoded again."""
 
     def __init__(self, supervisor: Supervisor) -> None:
         self._supervisor = supervisor
@@ -24,17 +24,17 @@ class Sampler:
         self._reader = EventReader(supervisor.events, supervisor.events.newest)
         self._left = MAX_CHARACTERS
         self.events: list[RecordedEvent] = []
-        """All that happened since the begin."""
+        """All events since the start."""
 
     def kept_sample(self, t_s: float, number: int) -> str:
-        """Return the robot as it is now, as JSON that is kept.
+        """Return a sample of the robot now as JSON, and count its length.
 
         Args:
-            t_s: Seconds since the begin.
-            number: How many samples were taken before.
+            t_s: Time since the start, s.
+            number: Number of earlier samples.
 
         Raises:
-            TooComplexError: All of them together are too long.
+            TooComplexError: All samples together are too long.
         """
         text = self.sample(t_s, number)
         self._left -= len(text)
@@ -44,9 +44,9 @@ class Sampler:
         return text
 
     def sample(self, t_s: float, number: int) -> str:
-        """Return the robot as it is now, as JSON with all that a complete frame has.
+        """Return a sample of the robot now as JSON, with the members of a complete frame.
 
-        Only `task` differs: it is the current task, or null. Arguments are as for `kept_sample`.
+        Only `task` differs: it is the current task or null. Arguments are as for `kept_sample`.
         """
         supervisor, encoder = self._supervisor, self._encoder
         core, now = supervisor.core, supervisor.clock.now()
@@ -67,21 +67,21 @@ class Sampler:
         return self._encoder.task(task)
 
     def counts(self) -> Counter[str]:
-        """Return how many events of each kind there were."""
+        """Return the number of events of each kind."""
         return Counter(event.kind for event in self.events)
 
     def collect_events(self) -> None:
-        """Take over what happened since the last call.
+        """Add the events since the last call.
 
         Raises:
-            TooComplexError: There are too many to be told.
+            TooComplexError: There are too many events.
         """
         for found in self._reader.take(_ALL):
             if isinstance(found, Gap):
-                raise TooComplexError("too many events happen in it at once")
+                raise TooComplexError("too many events occur in it at once")
             self.events.append(found)
         if len(self.events) > MAX_EVENTS:
-            raise TooComplexError(f"more than {MAX_EVENTS} events happen in it")
+            raise TooComplexError(f"more than {MAX_EVENTS} events occur in it")
 
     def event_texts(self) -> Iterator[str]:
         """Yield all events as JSON."""

@@ -1,8 +1,8 @@
-"""Scenario files: the body of `POST /simulations` as YAML or JSON, and what only files can say.
+"""Scenario files: the body of `POST /simulations` as YAML or JSON, with references to files.
 
-These are `model_file` and `robot_file`, and a task whose waypoints are in a `file`; their paths are
-beside the scenario. They become what the body has in their place. What is wrong anywhere is told
-with file, line and column.
+`model_file`, `robot_file` and the `file` with the waypoints of a task are paths relative to the
+scenario. The contents of these files replace them in the body. All findings are reported with file,
+line and column.
 """
 
 from collections.abc import Iterator, Sequence
@@ -40,9 +40,9 @@ _WORDS = {"extra_forbidden": "unknown key", "missing": "missing key"}
 
 
 class InvalidScenarioError(Exception):
-    """A scenario with faults; `findings` hold them, each with the name of its file.
+    """An invalid scenario file; `findings` are its faults, each with the name of its file.
 
-    Only the command meets it: a scenario that is posted is a body like any other.
+    Only the command raises it: a posted scenario is a body like any other.
     """
 
     def __init__(self, findings: Sequence[tuple[str, Finding]]) -> None:
@@ -53,21 +53,21 @@ class InvalidScenarioError(Exception):
 
 @dataclass(slots=True)
 class _Source:
-    """A file in YAML: where what is in it stands, and what is wrong with it."""
+    """A YAML file: its tree with places, and its findings."""
 
     name: str
     root: Node = field(default_factory=lambda: Mapping(1, 1))
     findings: list[Finding] = field(default_factory=list)
 
     def complain(self, keys: Keys, message: str, code: str = "INVALID_VALUE") -> None:
-        """Take a complaint about what stands at `keys`."""
+        """Add a finding about the value at `keys`."""
         self.findings.append(finding_at(place_of(self.root, keys), code, message))
 
     def raise_if_faulty(self) -> None:
-        """End here if there were complaints.
+        """Raise if there are findings.
 
         Raises:
-            InvalidScenarioError: There were.
+            InvalidScenarioError: There are.
         """
         if self.findings:
             raise InvalidScenarioError([(self.name, finding) for finding in self.findings])
@@ -75,7 +75,7 @@ class _Source:
 
 @dataclass(frozen=True, slots=True)
 class Scenario:
-    """A scenario that can happen, and the robot that it happens to."""
+    """A valid scenario, and its robot."""
 
     file: str
     body: SimulationBody
@@ -83,7 +83,7 @@ class Scenario:
     root: Node
 
     def line_of(self, step: int, path: str = "") -> int:
-        """Return in which line of the file a step is, or what it expects at `path`."""
+        """Return the line of a step in the file, or of what it expects at `path`."""
         inner = ("expect", *path.split(".")) if path else ()
         return place_of(self.root, ("steps", step, *inner)).line
 
@@ -91,24 +91,24 @@ class Scenario:
 def load_scenario(
     name: str, loaded_model: str, model: Path | None = None, robot: Path | None = None
 ) -> Scenario:
-    """Read a scenario and get its robot ready.
+    """Read a scenario and prepare its robot.
 
     Args:
-        name: Path of the file; `-` is the standard input, and paths in it are beside nothing but
-            the working directory.
-        loaded_model: Text of the model for who names none.
-        model: File with another model than that of the scenario.
-        robot: File with other settings than those of the scenario.
+        name: Path of the file; `-` is the standard input, whose paths are relative to the working
+            directory.
+        loaded_model: Text of the default model.
+        model: Model file that replaces the model of the scenario.
+        robot: Robot file that replaces the settings of the scenario.
 
     Raises:
-        UnreadableFileError: One of these files is not there, or is not a text.
-        InvalidScenarioError: Something in the scenario, or in what it names, is wrong.
+        UnreadableFileError: One of these files does not exist, or is not text.
+        InvalidScenarioError: The scenario, or a file that it names, is invalid.
     """
     path = _STANDARD_INPUT if name == "-" else Path(name)
     folder = Path() if name == "-" else path.parent
     source, data = _read_yaml(name, read_text_file(path))
     if not isinstance(data, dict):
-        source.complain((), "there must be keys here, until_s among them")
+        source.complain((), "a scenario must have keys, at least until_s")
         source.raise_if_faulty()
     model_file = _named_file(source, data, "model", folder, model)
     robot_file = _named_file(source, data, "robot", folder, robot)
@@ -120,7 +120,7 @@ def load_scenario(
         text = _text_for(source, "robot", robot_file, robot)
         settings, data["robot"] = _read_yaml(str(robot_file), text)
         if isinstance(data["robot"], dict) and "start_task" in data["robot"]:
-            message = "a simulation drives no start task: say it as a step of the scenario"
+            message = "start_task has no effect in a simulation: use a task step of the scenario"
             settings.complain(("start_task",), message)
             settings.raise_if_faulty()
     _fill_in_tracks(source, data, folder)
@@ -165,7 +165,8 @@ def _read_yaml(name: str, text: str) -> tuple[_Source, Any]:
     if documents:
         source.root = documents[0]
     if len(documents) > 1:
-        source.findings.append(finding_at(documents[1], "INVALID_VALUE", "this is one document"))
+        message = "a scenario file holds one document only"
+        source.findings.append(finding_at(documents[1], "INVALID_VALUE", message))
         source.raise_if_faulty()
     return source, _plain(source.root)
 
@@ -191,7 +192,7 @@ def _named_file(
     key = f"{what}_file"
     named = data.pop(key, None)
     if named is not None and data.get(what) is not None:
-        source.complain((key,), f"there is {what} as well; leave one of them out")
+        source.complain((key,), f"{what} is given as well; leave out one of them")
     if named is not None and not isinstance(named, str):
         source.complain((key,), f"{key}: the path of a file is needed")
         return None
@@ -234,7 +235,7 @@ def _with_waypoints(
     if not isinstance(name, str):
         source.complain((*keys, "file"), "file: the path of a CSV is needed")
     elif "waypoints" in task:
-        source.complain((*keys, "file"), "there are waypoints as well; leave one of them out")
+        source.complain((*keys, "file"), "waypoints are given as well; leave out one of them")
     elif heading not in tuple(Heading):
         message = f"heading: one of {', '.join(Heading)}"
         source.complain((*keys, "heading"), message)
@@ -258,7 +259,7 @@ def _validated(source: _Source, settings: _Source, data: dict[str, Any]) -> Simu
     """Return the scenario as it would be posted.
 
     Raises:
-        InvalidScenarioError: It would be refused, or a step is after the end.
+        InvalidScenarioError: It is invalid, or a step is after the end.
     """
     try:
         body = SimulationBody.model_validate(data)
@@ -267,10 +268,10 @@ def _validated(source: _Source, settings: _Source, data: dict[str, Any]) -> Simu
         _blame(source, settings, ((place_in_body(fault["loc"]), _words(fault)) for fault in faults))
         raise
     if body.begin is not None:
-        source.complain(("from",), "there is no live robot here; leave it out")
+        source.complain(("from",), "a scenario file has no live robot; leave out `from`")
     late = [index for index, step in enumerate(body.steps) if step.t_s > body.until_s]
     for index in late:
-        message = f"this is after the end, until_s {body.until_s:g}"
+        message = f"this is after the end of the scenario, until_s: {body.until_s:g}"
         source.complain(("steps", index, "t_s"), message)
     source.raise_if_faulty()
     return body
@@ -283,10 +284,10 @@ def _robot(
     loaded_model: str,
     model_file: Path | None,
 ) -> VirtualService:
-    """Return the robot that the scenario begins with.
+    """Return the robot at the start of the scenario.
 
     Raises:
-        InvalidScenarioError: Its model or settings are wrong.
+        InvalidScenarioError: Its model or settings are invalid.
     """
     try:
         return robot_for(body, loaded_model, None)
@@ -310,7 +311,7 @@ def _robot(
 
 
 def _blame(source: _Source, settings: _Source, faults: Iterator[tuple[Keys, str]]) -> None:
-    """Place faults in the file that they are in.
+    """Add each fault to the findings of its file.
 
     Raises:
         InvalidScenarioError: Always.

@@ -1,4 +1,4 @@
-"""Runs a scenario: steps at their times, samples on a grid, everything due in between."""
+"""Runs a scenario: steps at their times, samples on a grid, deadlines in between."""
 
 import asyncio
 import heapq
@@ -26,17 +26,17 @@ from domain.timebase import NANOSECONDS_PER_SECOND, Duration, seconds, to_second
 from service.simulation.virtual_time import VirtualService
 
 MAX_REFUSALS = 1_000
-"""More of them, that were not expected, are not told."""
+"""Further unexpected rejections are not listed."""
 
 _STRIDE = seconds(10)
-"""Time passes at most so far without a look at what happened."""
+"""Longest simulated time between two collections of events."""
 
 
 class Simulation:
-    """One scenario on one robot; `run` it once, then look at what came of it.
+    """One scenario on one robot; `run` it once, then read the results.
 
-    At one instant, what is due comes first, then the steps in their order, each with what follows
-    from it at once, then the sample. Only the sample at the begin comes before the first step.
+    At one instant, deadlines come first, then the steps in their order, each with its immediate
+    consequences, then the sample. Only the sample at the start comes before the first step.
     """
 
     def __init__(self, body: SimulationBody, robot: VirtualService) -> None:
@@ -48,36 +48,36 @@ class Simulation:
         """As JSON."""
         self.refusals: list[RefusalJson] = []
         self.expectations: list[ExpectationJson] = []
-        """Of `expect` steps, and of steps that were expected to be refused."""
+        """Of `expect` steps, and of steps with `refused: true`."""
         self._unexpected = 0
         self._progress: Callable[[float], None] = lambda _: None
 
     @property
     def events(self) -> Sequence[RecordedEvent]:
-        """Return all that happened so far."""
+        """Return all events so far."""
         return self._sampler.events
 
     def seconds_to(self, event: RecordedEvent) -> float:
-        """Return when an event was, in seconds since the begin."""
+        """Return the time of an event since the start, s."""
         return to_seconds(event.at - self._begin)
 
     def failed_expectations(self) -> list[ExpectationJson]:
-        """Return the steps at which something was seen otherwise than expected."""
+        """Return the steps whose expectations were not met."""
         return [found for found in self.expectations if found.differences]
 
     def unexpected_refusals(self) -> list[RefusalJson]:
-        """Return the steps that were refused, and that nobody expected to be."""
+        """Return the steps that were rejected unexpectedly."""
         steps = self._body.steps
         return [found for found in self.refusals if not _may_be_refused(steps[found.step])]
 
     def run(self, progress: Callable[[float], None] = lambda _: None) -> None:
-        """Let the scenario happen from begin to end.
+        """Run the scenario.
 
         Args:
-            progress: Is told now and then how many seconds of it are over.
+            progress: Called repeatedly with the simulated time so far, s.
 
         Raises:
-            TooComplexError: More happens than can be told.
+            TooComplexError: The results are too large.
         """
         self._progress = progress
         with asyncio.Runner() as runner:
@@ -98,7 +98,7 @@ class Simulation:
                 self._take_sample(next_sample)
 
     def as_json(self) -> str:
-        """Return what came of it as `SimulationJson`."""
+        """Return the results as `SimulationJson`."""
         refusals = ",".join(item.model_dump_json(exclude_unset=True) for item in self.refusals)
         expectations = ",".join(item.model_dump_json() for item in self.expectations)
         return (
@@ -108,7 +108,7 @@ class Simulation:
         )
 
     def _timeline(self) -> Iterator[tuple[Duration, int | None]]:
-        """Yield each time with the step that happens at it, in order, and last the end."""
+        """Yield each time with its step, in order, and finally the end."""
         end = seconds(self._body.until_s)
         coming = [(seconds(step.t_s), index, 0) for index, step in enumerate(self._body.steps)]
         heapq.heapify(coming)
@@ -124,7 +124,7 @@ class Simulation:
         yield end, None
 
     def _sample_times(self) -> Iterator[Duration]:
-        """Yield when samples are taken, after the one at the begin."""
+        """Return the times of the samples after the one at the start."""
         period = seconds(self._body.sample_period_s)
         end = seconds(self._body.until_s)
         return iter(range(period, end + 1, period)) if period else iter(())
@@ -163,7 +163,7 @@ class Simulation:
         self.samples.append(self._sampler.kept_sample(to_seconds(at), len(self.samples)))
 
     def _compare(self, step: ExpectStep, at: Duration) -> Iterator[DifferenceJson]:
-        """Compare with a sample of now, with the last task where there is none, and with events."""
+        """Compare with a current sample, with the last task, and with the counts of events."""
         expected = dict(step.expect)
         events = expected.pop("events", {})
         seen: dict[str, Any] = from_json(self._sampler.sample(to_seconds(at), 0))

@@ -1,4 +1,4 @@
-"""Scenarios that a client posts; the functions here run in a worker process."""
+"""Posted scenarios; `simulate_posted` runs in a worker process."""
 
 import copyreg
 import io
@@ -27,11 +27,11 @@ from service.simulation.virtual_time import VirtualClock, VirtualService
 
 EPOCH = "simulation"
 BEGIN = datetime(2000, 1, 1, tzinfo=UTC)
-"""What a calendar says at 0 s, so that two runs say the same."""
+"""Wall time at 0 s; fixed, so that all runs are equal."""
 
 
 class SimulatedParts(NamedTuple):
-    """A live robot of which nothing is real, so that a simulation can go on with a copy of it."""
+    """A live robot that is completely simulated, so that a simulation can copy it."""
 
     onboard: Onboard
     robot: SimulatedRobot
@@ -39,7 +39,7 @@ class SimulatedParts(NamedTuple):
 
 @dataclass(frozen=True, slots=True)
 class LiveCopy:
-    """The live robot at one moment, to go on from in virtual time."""
+    """The live robot at one instant, for a simulation that continues from there."""
 
     state: bytes
     """Pickled supervision, navigation and simulated robot."""
@@ -50,7 +50,7 @@ class LiveCopy:
 
 
 def copy_of(onboard: Onboard, robot: SimulatedRobot) -> bytes:
-    """Return both as they are now; what happens to the copy does not happen to them."""
+    """Return a pickled copy of both in their current state."""
     copy = io.BytesIO()
     _Pickler(copy, pickle.HIGHEST_PROTOCOL).dump((onboard, robot))
     return copy.getvalue()
@@ -61,12 +61,12 @@ def _reduce_view(view: MappingProxyType[Any, Any]) -> tuple[Callable[..., Any], 
 
 
 def _view_of(values: dict[Any, Any]) -> MappingProxyType[Any, Any]:
-    # Needed since the type itself is known by no name under which it could be found.
+    # pickle cannot find the type itself by its name.
     return MappingProxyType(values)
 
 
 class _Pickler(pickle.Pickler):
-    """Also takes read-only views of mappings, which the standard one does not."""
+    """A pickler that also supports `MappingProxyType`."""
 
     dispatch_table: Mapping[type, Callable[[Any], Any]] = {
         **copyreg.dispatch_table,
@@ -75,15 +75,15 @@ class _Pickler(pickle.Pickler):
 
 
 def simulate_posted(raw: bytes, model_text: str, live: LiveCopy | None) -> bytes:
-    """Return what comes of a posted scenario, as JSON.
+    """Run a posted scenario and return the results as JSON.
 
     Args:
-        raw: The body, as `SimulationBody` describes it.
+        raw: The body, as described by `SimulationBody`.
         model_text: The loaded model.
-        live: A copy of the live robot; None: it is not to be had.
+        live: A copy of the live robot; None: not available.
 
     Raises:
-        PilothouseError: The body is invalid, or too much would happen.
+        PilothouseError: The body is invalid, or the results are too large.
     """
     body = _read(raw)
     simulation = Simulation(body, robot_for(body, model_text, live))
@@ -101,15 +101,20 @@ def _read(raw: bytes) -> SimulationBody:
 
 
 def robot_for(body: SimulationBody, model_text: str, live: LiveCopy | None) -> VirtualService:
-    """Return the robot that a scenario begins with.
+    """Return the robot at the start of a scenario.
+
+    Args:
+        body: The scenario.
+        model_text: The loaded model, for a scenario without one.
+        live: A copy of the live robot; None: not available.
 
     Raises:
-        InvalidBodyError: Its settings are wrong, or it cannot be a copy of the live robot.
-        InvalidModelError: Its model is.
+        InvalidBodyError: The settings are invalid, or the live robot cannot be copied.
+        InvalidModelError: The model is invalid.
     """
     if body.begin == "live":
         if live is None:
-            error = InvalidValueError("the live robot is not simulated: it cannot be copied yet")
+            error = InvalidValueError("the live robot is real: only a simulated one can be copied")
             raise InvalidBodyError.at("from", error)
         return _copied(model_text, live)
     loaded = read_model(model_text if body.model is None else body.model)

@@ -1,4 +1,4 @@
-"""Lets the steps of a scenario happen to a robot in virtual time."""
+"""Performs the steps of a scenario on a robot in virtual time."""
 
 import asyncio
 
@@ -34,7 +34,7 @@ _ACTOR = Actor("simulation")
 
 
 class Actors:
-    """Whoever does something in a scenario: sensors, operators, faults."""
+    """The actors of a scenario: sensors, operators, faults."""
 
     def __init__(self, robot: VirtualService, runner: asyncio.Runner) -> None:
         self._robot = robot
@@ -42,7 +42,7 @@ class Actors:
         self._requests: Requests | None = None
 
     def act(self, step: AnyStep) -> Problem | None:
-        """Let one step happen; return why it was refused, or None."""
+        """Perform one step; return why it was rejected, or None."""
         try:
             match step:
                 case RequestStep():

@@ -1,1 +1,1 @@
-"""What `WS /ws` sends and takes; the route itself is in `api/streaming/route.py`."""
+"""The stream `WS /ws`; the route itself is in `api/streaming/route.py`."""

@@ -1,4 +1,4 @@
-"""What a client of the stream asks for in the address, and the messages that it may send."""
+"""The query of a stream client, and the messages that it may send."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -27,21 +27,21 @@ ClientMessage: TypeAlias = ReadingMessage | ResyncMessage | AuthMessage
 
 @dataclass(frozen=True, slots=True)
 class StreamQuery:
-    """Which topics, and behind which event."""
+    """The topics, and the event to start after."""
 
     topics: frozenset[str]
     after: int | None
-    """Id of the last event known; None: only new ones."""
+    """Id of the last known event; None: only new events."""
     epoch: str | None
 
     @property
     def wants_state(self) -> bool:
-        """Tell whether `state` frames are wanted at all."""
+        """Tell whether `state` frames are requested."""
         return bool(self.topics & STATE_TOPICS)
 
     @property
     def wants_events(self) -> bool:
-        """Tell whether `event` frames are wanted."""
+        """Tell whether `event` frames are requested."""
         return "events" in self.topics
 
 
@@ -49,7 +49,7 @@ def read_stream_query(query: Mapping[str, str]) -> StreamQuery:
     """Read `topics`, `after` and `epoch`.
 
     Raises:
-        InvalidValueError: An unknown topic, none at all, or an `after` that is no id.
+        InvalidValueError: There is an unknown topic, no topic, or an `after` that is not an id.
     """
     return StreamQuery(_topics(query.get("topics")), _after(query.get("after")), query.get("epoch"))
 
@@ -77,17 +77,17 @@ def _after(text: str | None) -> int | None:
 
 
 def read_client_message(message: Mapping[str, Any]) -> ClientMessage:
-    """Return what a client said.
+    """Parse a message of a client.
 
     Args:
-        message: As ASGI has it, with `text` or `bytes`.
+        message: An ASGI message with `text` or `bytes`.
 
     Raises:
-        PilothouseError: It is none of the messages that a client may send.
+        PilothouseError: It is not a message that a client may send.
     """
     text = message.get("text")
     if text is None:
-        raise InvalidValueError("binary messages are not read; send JSON as text")
+        raise InvalidValueError("binary messages are not supported; send JSON as text")
     said = parse_json(text.encode())
     kind = said.get("type") if isinstance(said, dict) else None
     if kind == "auth":

@@ -1,4 +1,4 @@
-"""How far a client has got in what is published, and the bytes of what comes next."""
+"""The position of a client in frames and events, and the bytes to send next."""
 
 from copy import copy
 
@@ -14,7 +14,7 @@ _EVENTS_AT_ONCE = 32
 
 
 class FrameBytes:
-    """Bytes of what is new, made for the first who needs them, and then the same for all."""
+    """Encoded frames and events, made for the first client that needs them and then shared."""
 
     def __init__(self, encoder: StreamEncoder) -> None:
         self._encoder = encoder
@@ -22,7 +22,7 @@ class FrameBytes:
         self._events: dict[int, bytes] = {}
 
     def frame(self, frame: Frame, skipped: int, topics: frozenset[str]) -> bytes:
-        """Return a `state` frame for those who missed so many before it."""
+        """Return a `state` frame for clients that skipped that many frames before it."""
         key = (frame.seq, frame.full, skipped, topics)
         known = self._frames.get(key)
         if known is None:
@@ -40,10 +40,10 @@ class FrameBytes:
 
 
 class Cursor:
-    """A cursor in the frames and events; what is before it has been sent."""
+    """A position in the frames and events; everything before it was sent."""
 
     def __init__(self, supervisor: Supervisor, query: StreamQuery) -> None:
-        """Begin with a complete frame, and behind the event that `query` names."""
+        """Start with a complete frame, and after the event that `query` names."""
         self.topics = query.topics
         self._frames = FrameReader(supervisor.frames) if query.wants_state else None
         self._events = (
@@ -52,14 +52,14 @@ class Cursor:
 
     @property
     def has_events(self) -> bool:
-        """Tell whether there are events behind this cursor."""
+        """Tell whether there are events after this cursor."""
         return self._events is not None and self._events.is_behind
 
     def take(self, encoded: FrameBytes) -> tuple[bytes, int]:
-        """Move on, past some events and to the newest frame.
+        """Advance past some events and to the newest frame.
 
         Returns:
-            The WebSocket frames to send for that, and how many `state` frames are skipped by it.
+            The WebSocket frames to send, and the number of skipped `state` frames.
         """
         content: list[bytes] = []
         skipped = 0
@@ -72,18 +72,18 @@ class Cursor:
         return b"".join(content), skipped
 
     def begin_frames_anew(self) -> None:
-        """Take a complete frame next; events go on where they are."""
+        """Take a complete frame next; the position in the events stays."""
         if self._frames is not None:
             self._frames.begin_anew()
 
     @property
     def position(self) -> tuple[object, object]:
-        """Return what tells this cursor from others of the same topics."""
+        """Return a value that is equal for cursors of the same topics at the same position."""
         frames, events = self._frames, self._events
         return frames and frames.position, events and events.position
 
     def copy(self) -> "Cursor":
-        """Return a cursor of its own that begins here."""
+        """Return an independent cursor at the same position."""
         other = copy(self)
         other._frames, other._events = copy(self._frames), copy(self._events)  # noqa: SLF001
         return other

@@ -1,4 +1,4 @@
-"""Make the text of frames and events, once for all clients that get the same."""
+"""Encodes frames and events as JSON, once for all clients that get the same text."""
 
 import asyncio
 from collections.abc import Iterator
@@ -23,22 +23,22 @@ _MEMBERS_AT_ONCE = 200
 _PATH = "/ws"
 
 _Shape: TypeAlias = tuple[bool, frozenset[str]]
-"""What the texts of one frame differ by: whether it is complete, and for which topics."""
+"""Distinguishes the texts of one frame: whether it is complete, and its topics."""
 
 
 class StreamEncoder:
-    """Text of what is streamed, kept as long as somebody may still need it."""
+    """Texts of frames and events, cached while a client may still need them."""
 
     def __init__(self, supervisor: Supervisor) -> None:
         self._supervisor = supervisor
         self._clock = supervisor.clock
         self._robot = RobotEncoder(supervisor)
         self._texts: dict[_Shape, tuple[Frame, _StateText]] = {}
-        """The newest of each shape; clients that ask for the same share it."""
+        """The newest text of each shape, shared by the clients of the same topics."""
         self._events: dict[int, str] = {}
 
     def hello(self, topics: frozenset[str]) -> str:
-        """Return the first frame of a client."""
+        """Return the `hello` frame."""
         return HelloJson(
             epoch=self._supervisor.epoch,
             started_at=timestamp(self._clock, self._supervisor.started_at),
@@ -48,9 +48,9 @@ class StreamEncoder:
         ).model_dump_json()
 
     async def prepare(self, frame: Frame, topics: frozenset[str]) -> None:
-        """Encode a large number of new members a few at a time, and let others run in between.
+        """Encode new members a few at a time, and let other tasks run in between.
 
-        The first frame of a robot with 10,000 parts takes longer than a tick may be late.
+        Encoding the first frame of a robot with 10,000 parts at once would delay the tick.
         """
         if "parts" in topics and self._known_text(frame, topics) is None:
             parts = self._robot.parts
@@ -60,7 +60,7 @@ class StreamEncoder:
                 await asyncio.sleep(0)
 
     def frame(self, frame: Frame, skipped: int, topics: frozenset[str]) -> str:
-        """Return a `state` frame; to clients in step with the same topics, the same string."""
+        """Return a `state` frame; clients with the same topics that skip nothing share the text."""
         known = self._known_text(frame, topics)
         if known is None:
             known = self._encode(frame, topics)
@@ -81,7 +81,7 @@ class StreamEncoder:
         return GapJson(first=gap.first, last=gap.last, epoch=gap.epoch).model_dump_json()
 
     def problem(self, error: PilothouseError) -> str:
-        """Return a `problem` frame: a problem document whose `type` is that of the frame."""
+        """Return a `problem` frame: a problem document whose `type` is `problem`."""
         document = problem_of(error, self._clock, _PATH)
         return document.model_copy(update={"type": "problem"}).as_json()
 
@@ -114,7 +114,7 @@ class StreamEncoder:
 
 
 class _StateText:
-    """A `state` frame; only the number of skipped frames differs between clients."""
+    """A `state` frame; only the number of skipped frames may differ between clients."""
 
     def __init__(self, head: str, tail: str) -> None:
         self._head = head
@@ -122,7 +122,7 @@ class _StateText:
         self._in_step = f"{head}0{tail}"
 
     def after(self, skipped: int) -> str:
-        """Return the frame for a client that missed so many before it."""
+        """Return the frame for a client that skipped that many frames before it."""
         return self._in_step if skipped == 0 else f"{self._head}{skipped}{self._tail}"
 
 

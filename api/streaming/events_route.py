@@ -1,4 +1,4 @@
-"""`GET /events`: the log that the stream reads too, for clients that ask now and then."""
+"""`GET /events`: the event log, for clients that do not use the stream."""
 
 from itertools import islice
 from typing import Annotated
@@ -24,21 +24,21 @@ _READ_AT_ONCE = 1_000
 async def get_events(
     server: StreamServerDep,
     after: Annotated[
-        int | None, Query(ge=0, lt=2**63, description="Id of the last event known")
+        int | None, Query(ge=0, lt=2**63, description="Id of the last known event")
     ] = None,
     epoch: Annotated[str | None, Query(max_length=64, description="Epoch of that id")] = None,
     limit: Annotated[
-        int, Query(ge=1, le=MAX_EVENTS, description="At most so many")
+        int, Query(ge=1, le=MAX_EVENTS, description="Most events to return")
     ] = _DEFAULT_EVENTS,
     kind: Annotated[
         str | None,
-        Query(max_length=100, description="`change.failed`, or `change` for all that begin so"),
+        Query(max_length=100, description="A kind as `change.failed`, or a prefix as `change`"),
     ] = None,
 ) -> Response:
     """Return events in order: those that follow `after`, or else the newest.
 
-    Events that were asked for and are not kept any more are told in `gaps`; one without an end
-    means that the service was restarted since.
+    Requested events that are no longer kept are listed in `gaps`; a gap without an end means that
+    the service was restarted since.
     """
     log = server.supervisor.events
     gaps: list[Gap] = []
@@ -59,10 +59,17 @@ async def get_events(
 def _following(
     log: EventLog, after: int, epoch: str | None, limit: int, kind: str | None
 ) -> tuple[list[Gap], list[RecordedEvent]]:
-    """Read on behind a cursor until there are `limit` events of `kind`.
+    """Return the gaps and at most `limit` events of `kind` after a cursor.
 
-    It is one look at the log, without turns for others: it takes 3 ms at most, and `newest` so
-    tells up to where it was read.
+    The log is read without letting other tasks run, which takes 3 ms at most: so `newest` is
+    consistent with the events that were read.
+
+    Args:
+        log: The event log.
+        after: Id of the last known event.
+        epoch: Epoch of that id; None: the current one.
+        limit: Most events.
+        kind: A kind or a prefix of kinds; None: all.
     """
     reader = EventReader(log, after, epoch)
     gaps: list[Gap] = []

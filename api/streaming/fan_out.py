@@ -1,7 +1,7 @@
-"""Write what is published to all clients of the stream: encoded once, framed once, in one loop.
+"""Writes frames and events to all stream clients: encoded once, framed once, in one loop.
 
-Nothing is queued for a client. Those in step get the same bytes; one that has not yet taken what
-was written before is left out, and so a slow client skips frames, and delays nobody.
+Nothing is queued for a client. Clients in step get the same bytes. A client that has not yet read
+what was written before is passed over: it skips frames, and does not delay the others.
 """
 
 import asyncio
@@ -20,19 +20,19 @@ from service.supervisor import Supervisor
 log = logging.getLogger(__name__)
 
 PING_EVERY = seconds(2.2)
-"""Who has not answered a ping when the next is due is dropped: 4.4 s after it stopped to read."""
+"""Clients that miss a ping are dropped when the next one is due, 4.4 s after their last sign."""
 _CLIENTS_AT_ONCE = 100
-"""After so many others get their turn: some 1 ms."""
+"""Clients written to before other tasks of the event loop run: about 1 ms."""
 
 
 class FanOut:
-    """The clients, and the task that writes to them; it runs as long as there are any."""
+    """The clients, and the task that writes to them, which runs while there are any."""
 
     def __init__(self, supervisor: Supervisor, encoder: StreamEncoder) -> None:
         self.skipped = 0
-        """Frames that clients missed so far."""
+        """Frames skipped so far, of all clients."""
         self.dropped = 0
-        """Clients cut off so far because they did not read."""
+        """Clients dropped so far because they did not read."""
         self._supervisor = supervisor
         self._encoder = encoder
         self._groups: dict[frozenset[str], Group] = {}
@@ -44,12 +44,12 @@ class FanOut:
     def serve(
         self, connection: Connection, query: StreamQuery, address: str
     ) -> Iterator[StreamClient]:
-        """Write to a client as long as the context lasts.
+        """Write to a client while the context is open.
 
         Args:
-            connection: It is accepted.
-            query: What the client asked for.
-            address: Named in the log.
+            connection: An accepted connection.
+            query: The request of the client.
+            address: Of the client, for the log.
         """
         group = self._groups.get(query.topics)
         if group is None:
@@ -76,14 +76,14 @@ class FanOut:
                 self._task = None
 
     def resync(self, client: StreamClient) -> None:
-        """Write a complete frame to a client next, to it alone."""
+        """Send a complete frame to one client next."""
         client.resync()
         self._woken.set()
 
     def drop(self, transport: asyncio.WriteTransport, address: str) -> None:
-        """Cut off a client that does not read."""
+        """Disconnect a client that does not read."""
         self.dropped += 1
-        log.info("dropped %s: it does not read", address)
+        log.info("dropped client %s: it does not read", address)
         transport.abort()
 
     async def _run(self) -> None:
@@ -98,11 +98,12 @@ class FanOut:
                     await self._prepare(group.cursor.topics)
                     await self._write_in_step(group, encoded, ping)
                     await self._write_apart(group, encoded, ping)
-                # A transport with room lets nobody else run, and a long history is many rounds.
+                # Writing to a transport with room never suspends, and a long history takes many
+                # rounds: other tasks must run in between.
                 await asyncio.sleep(0)
 
     def _ping(self) -> bytes:
-        """Return a ping if one is due, before which all go that have not answered the last."""
+        """Return a ping if one is due, after dropping the clients that missed the last one."""
         now = self._supervisor.clock.now()
         if now < self._ping_at:
             return b""
@@ -113,16 +114,16 @@ class FanOut:
         return PING
 
     async def _prepare(self, topics: frozenset[str]) -> None:
-        """Encode what is large a few parts at a time, before it is needed all at once."""
+        """Encode new parts a few at a time, before the whole frame is needed."""
         frame = self._supervisor.frames.newest
         if frame is not None:
             await self._encoder.prepare(frame, topics)
 
     async def _write_in_step(self, group: Group, encoded: FrameBytes, ping: bytes) -> None:
-        """Write the same bytes to all who have taken everything before.
+        """Write the same bytes to all clients that have read everything before.
 
-        For each client and frame, the innermost line is all the Python there is. Who cannot take
-        all of it parts from the group while it is written to.
+        The innermost loop is the only code that runs per client and frame. A client that cannot
+        read all of it leaves the group during the write.
         """
         content, skipped = group.cursor.take(encoded)
         if not content and not ping:
@@ -140,7 +141,7 @@ class FanOut:
             await asyncio.sleep(0)
 
     async def _write_apart(self, group: Group, encoded: FrameBytes, ping: bytes) -> None:
-        """Write to each of the others what it has not got, and take it in once it has it all."""
+        """Write to each of the other clients what it lacks; then it may rejoin the group."""
         now = self._supervisor.clock.now()
         for number, client in enumerate(tuple(group.apart.values()), 1):
             if client.is_ready(now):
@@ -161,7 +162,7 @@ class FanOut:
             self._woken.set()
 
     def _ended(self, task: asyncio.Task[None]) -> None:
-        """Cut all clients off when the task has failed: a silent connection would deceive them."""
+        """Disconnect all clients if the task failed: a silent connection would mislead them."""
         if task.cancelled():
             return
         log.critical("the fan-out failed", exc_info=task.exception())

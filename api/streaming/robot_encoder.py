@@ -1,4 +1,4 @@
-"""JSON text of what a robot shows and of its events; what is the same is not encoded again."""
+"""JSON text of the views and events of a robot; unchanged views are not encoded again."""
 
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from typing import Any, Generic, TypeVar
@@ -26,13 +26,13 @@ View = TypeVar("View")
 
 
 class RobotEncoder:
-    """Encodes views and events of one robot, for frames as for samples of a simulation."""
+    """Encodes views and events of one robot, for frames and for samples of a simulation."""
 
     def __init__(self, supervisor: Supervisor) -> None:
-        """Keep nothing yet.
+        """Start with empty caches.
 
         Args:
-            supervisor: Its clock, epoch and vehicle limits are used.
+            supervisor: Provides clock, epoch and vehicle limits.
         """
         self._supervisor = supervisor
         self._clock = clock = supervisor.clock
@@ -48,7 +48,14 @@ class RobotEncoder:
     def system_state(
         self, view: SystemStateView, seq: int, at: Instant, simulated: Sequence[str]
     ) -> str:
-        """Return the state of the robot as it was at `at`, when frame `seq` was the newest."""
+        """Return the system state.
+
+        Args:
+            view: The state.
+            seq: Number of the frame.
+            at: Time of the frame.
+            simulated: The simulated pieces of the robot.
+        """
         return SystemStateJson.of(view, seq, at, simulated, self._clock).model_dump_json()
 
     def task(self, view: TaskView | None) -> str:
@@ -56,20 +63,20 @@ class RobotEncoder:
         return "null" if view is None else TaskJson.of(view, self._clock).model_dump_json()
 
     def vehicle(self, view: VehicleView) -> str:
-        """Return where the vehicle is and what it is told."""
+        """Return pose, motion and last command of the vehicle."""
         limits = self._supervisor.core.driving.limits
         return VehicleJson.of(view, limits, self._clock).model_dump_json()
 
     def holds(self, views: Mapping[str, HoldView]) -> str:
-        """Return holds by owner; encoded anew only for another mapping."""
+        """Return the holds by owner; encoded again only for another mapping."""
         return self._holds.text(views)
 
     def emergency_stop(self, view: EmergencyStopView) -> str:
-        """Return the emergency stop; encoded anew only for another view."""
+        """Return the emergency stop; encoded again only for another view."""
         return self._emergency_stop.text(view)
 
     def event(self, event: RecordedEvent) -> str:
-        """Return an `event` frame, as it is in the log and in simulations too."""
+        """Return an `event` frame, which has the same form in `/events` and in simulations."""
         shown = {
             "type": "event",
             "epoch": self._supervisor.epoch,
@@ -82,7 +89,7 @@ class RobotEncoder:
             "words": event.event.words,
             "notable": event.event.notable,
         }
-        # A node may report a parameter that is NaN, which JSON does not know.
+        # A node may report a parameter that is NaN, which JSON cannot hold.
         return to_json(shown, inf_nan_mode="null", fallback=_plain).decode()
 
     def _encode_holds(self, views: Mapping[str, HoldView]) -> str:
@@ -92,10 +99,10 @@ class RobotEncoder:
 
 
 class MemberCache(Generic[View]):
-    """Members of a JSON object, kept by name; a view that is the same object is not made again.
+    """Members of a JSON object, cached by name; a view is encoded again only if it changed.
 
-    So a frame with 10,000 parts of which none changed is little more than joining strings. Names
-    are never forgotten, so that this is for those that the model or the robot file fix.
+    So a frame with 10,000 unchanged parts costs little more than joining strings. Entries are never
+    removed, so this is only for names that are fixed by the model or the robot file.
     """
 
     def __init__(self, encode: Callable[[View], str]) -> None:
@@ -107,14 +114,14 @@ class MemberCache(Generic[View]):
         return f"{{{','.join(self._each(views))}}}"
 
     def new_ones(self, views: Iterable[tuple[str, View]]) -> Iterator[tuple[str, View]]:
-        """Yield the members that are not known as they are here."""
+        """Yield the members that are new or have changed."""
         for name, view in views:
             known = self._known.get(name)
             if known is None or known[0] is not view:
                 yield name, view
 
     def learn(self, views: Iterable[tuple[str, View]]) -> None:
-        """Encode members and keep their text."""
+        """Encode members and cache their text."""
         for name, view in views:
             self._known[name] = (view, f"{to_json(name).decode()}:{self._encode(view)}")
 
@@ -124,7 +131,7 @@ class MemberCache(Generic[View]):
 
 
 class LatestCache(Generic[View]):
-    """Text of one view, kept until another one is asked for."""
+    """Text of one view, cached until another view is encoded."""
 
     def __init__(self, encode: Callable[[View], str]) -> None:
         self._encode = encode
@@ -138,5 +145,5 @@ class LatestCache(Generic[View]):
 
 
 def _plain(value: object) -> object:
-    """Return what JSON can hold instead of `value`, such as a read-only mapping."""
+    """Convert a value that pydantic cannot encode, such as a read-only mapping."""
     return dict(value) if isinstance(value, Mapping) else str(value)

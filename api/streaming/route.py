@@ -1,7 +1,7 @@
 """`WS /ws`: frames and events to each client at its own pace, and readings from it.
 
-What is published is written by `api.streaming.fan_out`, to all clients at once. Here each client
-has one coroutine that lets it in and hears what it says.
+`api.streaming.fan_out` writes frames to all clients at once. Here each client has one coroutine
+that authenticates it and reads its messages.
 """
 
 import asyncio
@@ -27,9 +27,9 @@ router = APIRouter()
 log = logging.getLogger(__name__)
 
 AUTH_TIMEOUT_S = 5.0
-"""For a client to say who it is."""
+"""Timeout for the token of a client, s."""
 ANSWER_TIMEOUT_S = 4.5
-"""For a client to take the answer to what it said."""
+"""Timeout for a client to read the answer to its message, s."""
 _CLOSE_TIMEOUT_S = 1.0
 
 _POLICY_VIOLATION = 1008
@@ -40,10 +40,10 @@ _UNAUTHORIZED = 4401
 @router.websocket("/ws")
 @policy(Permission.OBSERVE)
 async def stream(socket: WebSocket, server: StreamServerDep) -> None:
-    """Serve one client until it goes, is too slow, or the service ends.
+    """Serve one client until it disconnects, stops reading, or the service ends.
 
-    What is wrong with the address is told after the handshake, as a `problem` frame and with close
-    code 1008, since a browser does not show a page why its handshake was refused.
+    An invalid query is reported after the handshake, with a `problem` frame and close code 1008,
+    since a browser does not tell a page why its handshake was rejected.
     """
     await socket.accept()
     client = _Client(socket, server)
@@ -58,11 +58,11 @@ async def stream(socket: WebSocket, server: StreamServerDep) -> None:
 
 
 class _GoneError(Exception):
-    """The client is not there any more."""
+    """The client has disconnected."""
 
 
 class _Client:
-    """One client, as the interface hears it."""
+    """One client of the stream."""
 
     def __init__(self, socket: WebSocket, server: StreamServer) -> None:
         self._socket = socket
@@ -94,14 +94,14 @@ class _Client:
         return True
 
     async def send_away(self) -> None:
-        """Close, since there are too many already."""
+        """Close, since there are too many clients."""
         await self._close(_TRY_AGAIN_LATER, "too many clients")
 
     async def serve(self) -> None:
-        """Write to the client and hear it until it goes.
+        """Write to the client and read its messages until it disconnects.
 
         Raises:
-            _GoneError: It went.
+            _GoneError: It disconnected.
         """
         try:
             query = read_stream_query(self._socket.query_params)
@@ -119,34 +119,34 @@ class _Client:
             await self._listen(client)
 
     async def _hear_token(self) -> None:
-        """Take the first message.
+        """Check the first message.
 
         Raises:
-            UnauthorizedError: It is not the right token, or does not come soon.
+            UnauthorizedError: It is not the right token, or it is late.
         """
         try:
             async with asyncio.timeout(AUTH_TIMEOUT_S):
                 message = await self._receive()
         except TimeoutError as error:
-            raise UnauthorizedError(f"no token came within {AUTH_TIMEOUT_S:g} s") from error
+            raise UnauthorizedError(f"no token was sent within {AUTH_TIMEOUT_S:g} s") from error
         try:
             said = read_client_message(message)
         except PilothouseError:
             said = None
         if not isinstance(said, AuthMessage):
-            raise UnauthorizedError("the first message has to be the token")
+            raise UnauthorizedError("the first message must be the token")
         if not self._server.access.accepts(said.token):
-            raise UnauthorizedError("this is not the token of the service")
+            raise UnauthorizedError("wrong token")
 
     async def _listen(self, client: StreamClient) -> None:
-        """Take one message after the other; the next waits in the client until this one is done."""
+        """Process one message after the other; further ones wait in the connection."""
         while True:
             message = await self._receive()
             try:
                 self._take(message, client)
             except PilothouseError as error:
                 await self._answer(error)
-            # Messages that came together are all there at once: others get their turn in between.
+            # Messages that came together are available at once: other tasks must run in between.
             await asyncio.sleep(0)
 
     async def _receive(self) -> Mapping[str, Any]:
@@ -159,7 +159,7 @@ class _Client:
         supervisor = self._server.supervisor
         given = read_client_message(message)
         if isinstance(given, AuthMessage):
-            # A page that still has a token sends it, whether or not it is needed.
+            # A page with a stored token sends it even if it is not needed.
             return
         if isinstance(given, ResyncMessage):
             self._server.fan_out.resync(client)
@@ -169,7 +169,7 @@ class _Client:
         supervisor.readings.submit([reading], given.source, actor)
 
     async def _answer(self, error: PilothouseError) -> None:
-        """Say what is wrong, once the client has taken most of what was written before."""
+        """Send a problem, once the client has read most of what was written before."""
         try:
             async with asyncio.timeout(ANSWER_TIMEOUT_S):
                 await self._socket.send_text(self._server.encoder.problem(error))
@@ -177,8 +177,8 @@ class _Client:
             self._server.fan_out.drop(self._connection.transport, self._address)
             raise _GoneError from late
         except (WebSocketDisconnect, RuntimeError) as gone:
-            # RuntimeError: the server itself closed the connection just now, as for a message that
-            # is too large, and that was not heard of yet.
+            # RuntimeError: the server has just closed the connection itself, for example because a
+            # message was too large.
             raise _GoneError from gone
 
     async def _refuse(self, error: PilothouseError, code: int) -> None:
@@ -190,4 +190,4 @@ class _Client:
             async with asyncio.timeout(_CLOSE_TIMEOUT_S):
                 await self._socket.close(code, reason)
         except (TimeoutError, WebSocketDisconnect, RuntimeError):
-            log.debug("%s went without a goodbye", self._address)
+            log.debug("client %s disconnected without a close frame", self._address)

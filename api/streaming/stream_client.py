@@ -1,4 +1,4 @@
-"""The clients of the stream: together as long as they are in step, and each by itself else."""
+"""Stream clients: those in step are written to together, the others one by one."""
 
 import asyncio
 
@@ -7,23 +7,23 @@ from domain.timebase import Instant, seconds
 from service.clock import Clock
 
 PATIENCE = seconds(4.5)
-"""A client for which something waits, and that was not seen to read for so long, is dropped."""
+"""A client with waiting data that shows no sign of reading for this long is dropped."""
 
 
 class Group:
-    """The clients that asked for the same topics."""
+    """The clients with the same topics."""
 
     def __init__(self, cursor: Cursor) -> None:
         self.cursor = cursor
-        """Where all are who are in step."""
+        """Position of all clients in step."""
         self.in_step: dict[asyncio.WriteTransport, StreamClient] = {}
-        """Those who have taken everything so far, by what is written to."""
+        """Clients that have read everything so far, by transport."""
         self.apart: dict[asyncio.WriteTransport, StreamClient] = {}
-        """Those who have not."""
+        """The other clients."""
 
     @property
     def clients(self) -> tuple["StreamClient", ...]:
-        """Return all of them."""
+        """Return all clients."""
         return (*self.in_step.values(), *self.apart.values())
 
     @property
@@ -32,32 +32,32 @@ class Group:
         return not self.in_step and not self.apart
 
     def add(self, client: "StreamClient") -> None:
-        """Take a client that has got nothing yet."""
+        """Add a client that has received nothing yet."""
         self.apart[client.transport] = client
 
     def remove(self, client: "StreamClient") -> None:
-        """Forget a client; it may be forgotten already."""
+        """Remove a client; it may be removed already."""
         self.in_step.pop(client.transport, None)
         self.apart.pop(client.transport, None)
 
     def part_from(self, client: "StreamClient") -> None:
-        """Let a client that cannot take more go on alone, from where all are now."""
+        """Let a client that cannot read more continue alone, from the position of the group."""
         if self.in_step.pop(client.transport, None) is not None:
             client.cursor = self.cursor.copy()
             self.apart[client.transport] = client
 
     def take_in_if_level(self, client: "StreamClient") -> None:
-        """Let a client that has got and taken everything go on with the others."""
+        """Let a client that has received and read everything rejoin the others."""
         has_all = client.cursor.position == self.cursor.position
         has_taken = not client.transport.get_write_buffer_size()
-        # It may have gone just now, while it was written to.
+        # It may have disconnected during the write.
         if has_all and has_taken and self.apart.pop(client.transport, None) is not None:
             self.in_step[client.transport] = client
 
     def take_silent(self) -> tuple["StreamClient", ...]:
-        """Forget and return those who have not answered a ping, and expect an answer of the rest.
+        """Remove and return the clients that missed a ping; the others must answer the next one.
 
-        To whom something waits, the ping may not have come yet; see `StreamClient.is_stuck`.
+        Clients with waiting data may not have received the ping yet; see `StreamClient.is_stuck`.
         """
         free = [c for c in self.clients if not c.transport.get_write_buffer_size()]
         silent = tuple(client for client in free if client.owes_answer)
@@ -69,7 +69,7 @@ class Group:
 
 
 class StreamClient:
-    """One client; it learns from its connection how that fares."""
+    """One client; its connection notifies it of congestion, pongs and loss."""
 
     def __init__(
         self,
@@ -81,7 +81,7 @@ class StreamClient:
     ) -> None:
         self.transport = transport
         self.cursor = cursor
-        """Its own, while it is apart."""
+        """Its own position, while it is apart."""
         self.address = address
         self.owes_answer = False
         """Whether it has not answered the last ping."""
@@ -89,19 +89,19 @@ class StreamClient:
         self._clock = clock
         self._waiting = 0
         self._read_at = clock.now()
-        """When it was last seen to read."""
+        """Time of its last sign of reading."""
 
     def clogged(self) -> None:
-        """Go on alone: what was written last has to be taken first."""
+        """Continue alone, until the data that was written last has been read."""
         self._group.part_from(self)
 
     def resync(self) -> None:
-        """Go on alone, with a complete frame."""
+        """Continue alone, with a complete frame."""
         self._group.part_from(self)
         self.cursor.begin_frames_anew()
 
     def answered(self) -> None:
-        """Learn that the client reads."""
+        """Note that the client answered a ping, and so reads."""
         self.owes_answer = False
         self._read_at = self._clock.now()
 
@@ -110,7 +110,7 @@ class StreamClient:
         self._group.remove(self)
 
     def is_ready(self, now: Instant) -> bool:
-        """Tell whether everything written before is on its way, and more can be written."""
+        """Tell whether all earlier data was sent, and more can be written."""
         waiting = self.transport.get_write_buffer_size()
         if waiting == 0 or waiting < self._waiting:
             self._read_at = now
@@ -118,5 +118,5 @@ class StreamClient:
         return waiting == 0 and not self.transport.is_closing()
 
     def is_stuck(self, now: Instant) -> bool:
-        """Tell whether it has neither taken anything of what waits nor answered for too long."""
+        """Tell whether it has neither read waiting data nor answered a ping for `PATIENCE`."""
         return now - self._read_at > PATIENCE and not self.transport.is_closing()

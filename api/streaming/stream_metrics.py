@@ -1,4 +1,4 @@
-"""What Prometheus reads of the stream."""
+"""Prometheus metrics of the stream."""
 
 from collections.abc import Iterator
 
@@ -10,7 +10,7 @@ from api.streaming.stream_server import StreamServer
 
 
 class StreamCollector(Collector):
-    """How many clients there are, and how well they read."""
+    """Number of clients, dropped clients and skipped frames."""
 
     def __init__(self, hub: StreamServer) -> None:
         self._hub = hub
@@ -22,11 +22,11 @@ class StreamCollector(Collector):
         )
         yield CounterMetricFamily(
             "pilothouse_ws_dropped",
-            "Clients cut off because they read too slowly",
+            "Clients dropped because they read too slowly",
             value=self._hub.fan_out.dropped,
         )
         yield CounterMetricFamily(
             "pilothouse_ws_frames_skipped",
-            "Frames that clients were too slow for",
+            "Frames skipped because clients read too slowly",
             value=self._hub.fan_out.skipped,
         )

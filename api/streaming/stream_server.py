@@ -1,4 +1,4 @@
-"""What all clients of the stream share: encoder, fan-out, limits and access."""
+"""The parts that all stream clients share: encoder, fan-out, limits and access."""
 
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -14,7 +14,7 @@ from api.streaming.fan_out import FanOut
 from service.supervisor import Supervisor
 
 MAX_STRANGERS = 100
-"""Clients that have not given the token yet; beside those that have, whom they keep out of nothing.
+"""Clients that have not sent the token yet; counted apart, so that they take no places of others.
 """
 
 
@@ -31,22 +31,22 @@ class StreamServer:
         self.fan_out = FanOut(supervisor, self.encoder)
         self.clients = 0
         self.strangers = 0
-        """Connections that have not given the token that is needed, and still may."""
+        """Connections that need the token and have not sent it yet."""
         self._max_clients = max_clients
 
     @property
     def is_full(self) -> bool:
-        """Tell whether the next client is one too many."""
+        """Tell whether the maximum number of clients is reached."""
         return self.clients >= self._max_clients
 
     @property
     def has_many_strangers(self) -> bool:
-        """Tell whether the next stranger is one too many."""
+        """Tell whether the maximum number of clients without a token is reached."""
         return self.strangers >= MAX_STRANGERS
 
     @contextmanager
     def count_client(self) -> Iterator[None]:
-        """Count one more client as long as the context lasts."""
+        """Count one more client while the context is open."""
         self.clients += 1
         try:
             yield
@@ -55,7 +55,7 @@ class StreamServer:
 
     @contextmanager
     def count_stranger(self) -> Iterator[None]:
-        """Count one more stranger as long as the context lasts."""
+        """Count one more client without a token while the context is open."""
         self.strangers += 1
         try:
             yield

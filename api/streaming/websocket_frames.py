@@ -1,8 +1,8 @@
-"""How bytes of WebSocket frames, made once for all clients, reach a connection.
+"""Sends the bytes of WebSocket frames, made once for all clients, on a connection.
 
-Frames of a server are not masked (RFC 6455, 5.1), so that without compression the bytes are the
-same for all clients. ASGI knows only messages, each of which would be framed anew for each client,
-by a coroutine of its own. So the server offers an extension in the scope of a WebSocket: a
+Frames of a server are not masked (RFC 6455, section 5.1), so that without compression the bytes are
+the same for all clients. ASGI has only messages, which are framed separately for each client, by
+its own coroutine. So the server offers an extension in the scope of a WebSocket: a
 `Connection`, as `scope["extensions"][EXTENSION]["connection"]`. Nothing else of ASGI changes;
 messages and prepared frames may follow each other in any order.
 """
@@ -19,29 +19,29 @@ EXTENSION = "pilothouse.frames"
 
 
 class Listener(Protocol):
-    """Learns how a connection fares, at once and not when it is next looked at."""
+    """Is notified of events of a connection at once."""
 
     def clogged(self) -> None:
-        """Learn that not all that was written could be sent; it waits in the transport."""
+        """Handle that not all data could be sent; the rest waits in the transport."""
         ...
 
     def answered(self) -> None:
-        """Learn that the client answered a ping, and so reads."""
+        """Handle that the client answered a ping, and so reads."""
         ...
 
     def lost(self) -> None:
-        """Learn that nothing can be written any more."""
+        """Handle that nothing can be written any more."""
         ...
 
 
 @dataclass(frozen=True, slots=True)
 class Connection:
-    """The connection of one client, as its server offers it."""
+    """The connection of one client, as offered by the server."""
 
     transport: asyncio.WriteTransport
-    """To be written to once the client is accepted: whole frames."""
+    """For whole frames, once the client is accepted."""
     listen: Callable[[Listener | None], None]
-    """Name who learns how it fares from now on; None: nobody."""
+    """Sets the listener from now on; None: none."""
 
 
 def connection_of(scope: Scope) -> Connection:

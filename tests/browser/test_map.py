@@ -149,7 +149,7 @@ def test_a_track_that_begins_far_away_can_be_begun_where_it_passes_the_vehicle(
     choose(desktop, passing.encode(), "passing.csv")
     button(desktop, "Start").click()
     expect(desktop.locator("ph-task-form").get_by_role("alert")).to_contain_text("begins 20.0 m")
-    button(desktop, "Begin at waypoint 20").click()
+    button(desktop, "Start at waypoint 20").click()
 
     expect(sentence(desktop)).to_contain_text("RUNNING: task ")
 
@@ -157,7 +157,7 @@ def test_a_track_that_begins_far_away_can_be_begun_where_it_passes_the_vehicle(
 def test_a_refused_file_shows_the_line_and_starts_nothing(desktop: Page, service: Service) -> None:
     choose(desktop, b"0,0,0\n1,0,0\n2,zwei<b>,0\n3,0,0\n", "bad.csv")
     alert = desktop.locator("ph-task-form").get_by_role("alert")
-    expect(alert).to_contain_text("Refused: ")
+    expect(alert).to_contain_text("Rejected: ")
     expect(alert).to_contain_text("Line 3")
     expect(alert.locator("code")).to_have_text("2,zwei<b>,0")
     expect(button(desktop, "Start")).to_be_hidden()
@@ -182,7 +182,7 @@ def test_a_preview_is_drawn_and_gone_when_it_is_discarded(
 
 def test_an_empty_file_is_refused_in_words(desktop: Page) -> None:
     choose(desktop, b"", "empty.csv")
-    expect(desktop.locator("ph-task-form").get_by_role("alert")).to_contain_text("Refused: ")
+    expect(desktop.locator("ph-task-form").get_by_role("alert")).to_contain_text("Rejected: ")
 
 
 def test_headings_in_degrees_are_asked_about_and_then_taken(

@@ -65,7 +65,7 @@ def test_of_two_changes_of_a_part_the_panel_shows_the_newer(
     for mode in ("PERFORMANCE", "MODERATE"):
         service.request("POST", "/systems/actuation/mode?wait=15", {"mode": mode})
     desktop.reload()
-    expect(desktop.locator("ph-change")).to_contain_text("mode MODERATE, asked at")
+    expect(desktop.locator("ph-change")).to_contain_text("mode MODERATE, requested at")
     expect(desktop.locator("ph-change")).to_contain_text("succeeded after")
     assert complaints.messages == []
 
@@ -81,7 +81,7 @@ def test_the_changes_that_others_ask_for_are_shown_at_few_requests(
     for transition in ("cleanup", "configure", "activate"):
         path = "/systems/actuation/state?wait=15"
         service.request("POST", path, {"transition": transition})
-        expect(change).to_contain_text(f"{transition}, asked at")
+        expect(change).to_contain_text(f"{transition}, requested at")
         expect(change).to_contain_text("succeeded after")
     desktop.wait_for_timeout(1000)
     seconds = time.monotonic() - begin
@@ -119,7 +119,7 @@ def test_details_are_left_out_of_the_events_until_they_are_asked_for(
     expect(events).to_contain_text("hold gate set: the gate is shut")
     detail = events.locator('[data-kind="audit.write"]')
     expect(detail).to_have_count(0)
-    desktop.get_by_role("switch", name="Details too").check()
+    desktop.get_by_role("switch", name="Show details").check()
     expect(detail).not_to_have_count(0)
 
 

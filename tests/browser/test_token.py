@@ -60,7 +60,7 @@ def test_the_page_asks_for_the_token_and_shows_nothing_of_the_robot_before(page:
 def test_a_wrong_token_is_called_wrong_and_not_kept(page: Page, wrong: str) -> None:
     give(page, wrong)
 
-    expect(page.get_by_role("alert")).to_have_text("This is not the token of this robot.")
+    expect(page.get_by_role("alert")).to_have_text("Wrong token.")
     expect(page.locator("main")).to_be_hidden()
     assert page.evaluate("sessionStorage.length") == 0
 
@@ -92,7 +92,7 @@ def test_a_write_is_told_once_and_by_whom_where_details_are_wanted(page: Page) -
     written = page.locator('ph-event-list [data-kind="audit.write"]')
 
     expect(written).to_have_count(0)
-    page.get_by_role("switch", name="Details too").check()
+    page.get_by_role("switch", name="Show details").check()
 
     expect(written.first).to_contain_text("POST /systems/actuation/mode from 127.0.0.1:")
     expect(written.first).to_contain_text("answered 202")

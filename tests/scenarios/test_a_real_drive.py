@@ -55,7 +55,7 @@ def test_waypoints_that_cannot_be_driven_are_refused(serving: ServiceProcess) ->
 
     assert code == 1
     assert "1600 waypoints" in told
-    assert complaints.startswith("refused: ")
+    assert complaints.startswith("rejected: ")
     assert "Traceback" not in complaints
 
 

@@ -50,5 +50,5 @@ def test_an_example_that_expects_something_else_fails_and_says_where(
     assert main(["simulate", str(wrong)]) == 1
 
     lines = capsys.readouterr().out.splitlines()
-    at = lines.index(f"{wrong}:{place}: otherwise than expected at 2 s: system_state.state")
-    assert lines[at + 1 : at + 3] == ['    expected "ERROR"', '    seen     "IDLE"']
+    at = lines.index(f"{wrong}:{place}: not as expected at 2 s: system_state.state")
+    assert lines[at + 1 : at + 3] == ['    expected "ERROR"', '    actual   "IDLE"']

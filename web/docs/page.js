@@ -1,11 +1,11 @@
-/** /docs: the OpenAPI document by Swagger UI, and below it the stream, which it does not know. */
+/** /docs: the OpenAPI document in Swagger UI, and below it the stream, which it does not cover. */
 
 import { showStream } from "/web/docs/stream.js";
 
 window.SwaggerUIBundle({
   url: "/openapi.json",
   domNode: document.getElementById("requests"),
-  // Else it sends the address of the document to a service elsewhere.
+  // By default Swagger UI sends the address of the document to an external validator.
   validatorUrl: null,
   docExpansion: "list",
   defaultModelsExpandDepth: -1,

@@ -1,17 +1,17 @@
-/** The AsyncAPI document in words and tables: what goes over the WebSocket. */
+/** The AsyncAPI document as text and tables: the messages on the WebSocket. */
 
 import { el } from "/web/js/dom.js";
 
 const DIRECTIONS = { send: "to the client", receive: "from the client" };
 
-/** Fetch the document and show it in `section`; say so where that fails. */
+/** Fetch the document and show it in `section`, or an error message. */
 export async function showStream(section) {
   try {
     const answer = await fetch("/asyncapi.json");
     if (!answer.ok) throw new Error(`status ${answer.status}`);
     section.append(...streamParts(await answer.json()));
   } catch (error) {
-    section.append(el("p", { role: "alert" }, `The stream is not shown: ${error.message}`));
+    section.append(el("p", { role: "alert" }, `Cannot show the stream: ${error.message}`));
   }
 }
 
@@ -22,7 +22,7 @@ function streamParts(described) {
   return [
     el("h2", { id: "stream-title" }, `The stream: WS ${channel.address}`),
     ...blocks(described.info.description),
-    el("h3", {}, "In its address"),
+    el("h3", {}, "Query parameters"),
     table(Object.entries(query).map(([name, schema]) => row(name, schema, described, false))),
     ...operations.flatMap((operation) =>
       operation.messages.flatMap((message) =>
@@ -86,7 +86,7 @@ function row(name, schema, described, required) {
   );
 }
 
-/** Say in few words what a value may be. */
+/** Describe the type of a value briefly. */
 function typeOf(schema, described) {
   if (schema.$ref) return typeOf(found(described, schema), described);
   if (schema.const !== undefined) return JSON.stringify(schema.const);

@@ -1,8 +1,8 @@
-/** Requests to the server; whatever goes wrong becomes a ProblemError with words to show. */
+/** Requests to the server; every failure becomes a ProblemError with a text to show. */
 
 import { token } from "/web/js/token.js";
 
-/** A refusal or failure as RFC 9457 describes it. */
+/** A rejected or failed request, as a problem document of RFC 9457. */
 export class ProblemError extends Error {
   constructor(problem) {
     super(problem.detail || problem.title);
@@ -18,16 +18,16 @@ const NO_ANSWER = {
   title: "No answer",
   status: 0,
   code: "NO_CONTACT",
-  detail: "The server did not answer. Whether it was done is not known.",
+  detail: "The server did not answer. It is not known whether the request was carried out.",
 };
 
 /** Send a request and return the JSON of the answer.
  *
- * A body is sent as JSON, or as the text it is where its media `type` is given.
+ * A body is sent as JSON, or as plain text if its media `type` is given.
  *
- * Where the token is missing or wrong, the document hears `ph-unauthorized` besides.
+ * If the token is missing or wrong, `ph-unauthorized` is dispatched on the document as well.
  *
- * @throws {ProblemError} On any status from 400, and where no answer comes within `timeoutMs`.
+ * @throws {ProblemError} On any status from 400, and if there is no answer within `timeoutMs`.
  */
 export async function request(method, path, body, options = {}) {
   return parse(await exchange(method, path, body, options));
@@ -60,14 +60,14 @@ async function exchange(
     throw new ProblemError(NO_ANSWER);
   }
   if (response.ok) return text;
-  // An answer to what was sent with an earlier token says nothing about the one in use.
+  // An answer to a request with an earlier token is no evidence about the current one.
   if (response.status === 401 && sent === token())
     document.dispatchEvent(new CustomEvent("ph-unauthorized"));
   const unnamed = { title: `HTTP ${response.status}`, detail: response.statusText };
   throw new ProblemError({ ...unnamed, ...parse(text), status: response.status });
 }
 
-/** Path of a part; its name may hold slashes, which stay. */
+/** Path of a part; slashes in its name are kept. */
 export function partPath(part) {
   return `/${part.kind}s/${part.name.split("/").map(encodeURIComponent).join("/")}`;
 }

@@ -1,4 +1,4 @@
-/** The server's clock as seen from here, in ms since 1970. */
+/** The server's clock as estimated here, in ms since 1970. */
 
 const WINDOW_MS = 10_000;
 
@@ -9,8 +9,8 @@ export function localNow() {
 
 /** Estimates the offset between our clock and the server's from the times in its frames.
  *
- * A frame is late by its travel, never early, so the smallest offset of the last 10 to 20 s is the
- * nearest to the truth. Older ones are forgotten, since either clock may be set.
+ * Transmission can only delay a frame, so the smallest offset of the last 10 to 20 s is the most
+ * accurate. Older ones are dropped, since either clock may be set.
  */
 export class ServerClock {
   #windowStart = -Infinity;

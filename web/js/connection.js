@@ -1,4 +1,4 @@
-/** The stream: a WebSocket that comes back by itself and never hides how old its last frame is. */
+/** The stream: a WebSocket that reconnects by itself and tracks the age of its last frame. */
 
 import { localNow } from "/web/js/clock.js";
 import { token } from "/web/js/token.js";
@@ -9,10 +9,10 @@ const SILENCE_MS = 5000;
 const RETRY_MS = [500, 1000, 2000, 4000, 8000];
 const UNAUTHORIZED = 4401;
 
-/** Dispatches `frame` with the decoded frame as `detail`, and `unauthorized` where the token is
- * missing or wrong; then it does not come back by itself.
+/** Dispatches `frame` with the decoded frame as `detail`, and `unauthorized` if the token is
+ * missing or wrong; then it does not reconnect by itself.
  *
- * `resume()` returns the query to go on with, or null to begin anew.
+ * `resume()` returns the query to continue with, or null for a fresh start.
  */
 export class Connection extends EventTarget {
   #socket = null;
@@ -33,7 +33,7 @@ export class Connection extends EventTarget {
     window.addEventListener("online", recheck);
   }
 
-  /** Drop what there is and connect at once. */
+  /** Close the connection and reconnect at once. */
   tryNow() {
     this.#stopped = false;
     this.#retryAt = null;
@@ -45,7 +45,7 @@ export class Connection extends EventTarget {
     if (query) url.search = new URLSearchParams(query);
     const socket = new WebSocket(url);
     this.#socket = socket;
-    // A browser cannot give the handshake a header.
+    // A browser cannot set headers in the handshake.
     socket.onopen = () => {
       if (token() !== null) socket.send(JSON.stringify({ type: "auth", token: token() }));
     };
@@ -56,14 +56,14 @@ export class Connection extends EventTarget {
     };
   }
 
-  /** Drop what there is, until `tryNow` is called. */
+  /** Close the connection until `tryNow` is called. */
   stop() {
     this.#stopped = true;
     this.#retryAt = null;
     this.#drop();
   }
 
-  /** How good the contact is: "connecting" (never had any), "live", "late" or "lost". */
+  /** State of the connection: "connecting" (no frame yet), "live", "late" or "lost". */
   level() {
     if (this.#lastFrameAt === null) return this.#attempts < 2 ? "connecting" : "lost";
     const silence = this.silenceMs();
@@ -96,11 +96,11 @@ export class Connection extends EventTarget {
     this.#socket = null;
     const wait = RETRY_MS[Math.min(this.#attempts, RETRY_MS.length - 1)];
     this.#attempts += 1;
-    // Spread, so that many pages do not knock at a restarted server in the same moment.
+    // Randomized, so that many pages do not reconnect to a restarted server at the same time.
     this.#retryAt = localNow() + wait * (0.8 + 0.4 * Math.random());
   }
 
-  /** A dead peer never closes: after a silence the socket is given up without waiting for it. */
+  /** A dead peer never closes the socket: after a silence it is closed here, and reconnects. */
   #watch() {
     const quietSince = Math.max(this.#startedAt, this.#lastFrameAt ?? 0);
     if (this.#socket !== null && localNow() - quietSince > SILENCE_MS) {
@@ -110,7 +110,7 @@ export class Connection extends EventTarget {
     if (this.#retryAt !== null && localNow() >= this.#retryAt) this.tryNow();
   }
 
-  /** A page that was asleep does not wait for its timers. */
+  /** A page that was suspended does not wait for its timers. */
   #recheck() {
     if (this.#stopped) return;
     const quiet = this.#lastFrameAt !== null && this.silenceMs() > LOST_MS;

@@ -1,4 +1,4 @@
-/** Building and changing elements. Text from the network only ever becomes a text node. */
+/** Creates and changes elements. Text from the network is only used for text nodes. */
 
 /** Make an element; `props` are attributes, or listeners where the name begins with "on". */
 export function el(tag, props = {}, ...children) {
@@ -41,7 +41,7 @@ const PATHS = {
   late: "M12 3a9 9 0 1 0 .01 0M12 7v5l3.5 2",
 };
 
-/** Make a line drawing that says the same as the text beside it, hidden from screen readers. */
+/** Make an icon that repeats the text beside it, hidden from screen readers. */
 export function icon(name) {
   const space = "http://www.w3.org/2000/svg";
   const svg = document.createElementNS(space, "svg");

@@ -1,4 +1,4 @@
-/** Wires the stream, the store and the elements. */
+/** Connects the stream, the store and the elements. */
 
 import { request } from "/web/js/api.js";
 import { localNow, ServerClock } from "/web/js/clock.js";
@@ -70,7 +70,7 @@ function draw() {
   for (const element of elements) element.update(view);
 }
 
-/** The title tells a hidden page too, so it does not wait for an animation frame. */
+/** The title is also visible for a hidden page, so it does not wait for an animation frame. */
 function title() {
   const level = connection.level();
   const known = level === "lost" ? "No contact" : (state.systemState?.state ?? "Connecting");
@@ -78,16 +78,16 @@ function title() {
   if (document.title !== text) document.title = text;
 }
 
-/** Ask for what no frame tells; what fails is asked for again with the next contact. */
+/** Request what no frame carries; after a failure it is requested again on reconnection. */
 async function load(paths, use) {
   try {
     use(await Promise.all(paths.map((path) => request("GET", path))));
   } catch {
-    // Lost contact is told by the state bar; there is nothing to add here.
+    // The state bar shows lost contact; there is nothing to add here.
   }
 }
 
-/** The mock is asked for only where signals are simulated; else the page shows values only. */
+/** The mock is requested only if signals are simulated; otherwise only values are shown. */
 function loadMock() {
   mockAsked = false;
   if (!state.systemState?.simulated?.includes("signals")) return;
@@ -96,14 +96,14 @@ function loadMock() {
   });
 }
 
-/** What is set at the mock is no fact of the robot, and so in no frame; each write is an event. */
+/** Settings of the mock are in no frame, but each write to it is an event. */
 function hearMock({ kind, data }) {
   if (mockAsked || kind !== "audit.write" || !data.path.startsWith("/mock/")) return;
   mockAsked = true;
   setTimeout(loadMock, MOCK_PAUSE_MS);
 }
 
-/** A service without examples answers 404, and there is no button then. */
+/** Without example tracks there is no button for them. */
 function loadTracks() {
   load(["/examples/tracks"], ([{ items }]) => (taskPanel.tracks = items));
   load(["/tasks"], ([{ controllers }]) => (taskPanel.controllers = controllers));
@@ -117,7 +117,7 @@ function greet({ epoch }) {
   panel.refresh();
 }
 
-/** What was drawn stays below, hidden: it is of before, and nobody may act on it. */
+/** Show the token form; the rest of the page is hidden, since it is out of date. */
 function askForToken() {
   connection.stop();
   tokenForm.ask();
@@ -156,5 +156,5 @@ document.addEventListener("ph-latch", ({ detail }) => take({ type: "latch", latc
 setInterval(askToDraw, REDRAW_MS);
 setInterval(title, REDRAW_MS);
 connection.tryNow();
-// A service that wants a token says so at once to a request; the stream waits for it first.
+// A request shows at once whether a token is needed; the stream would wait for it first.
 load(["/system_state"], () => {});

@@ -1,11 +1,11 @@
-/** Follows what the stream does not carry of the selected part.
+/** Loads what the stream does not carry of the selected part.
  *
- * That is what may be asked of it, why something may not, and how its last change goes.
+ * That is the available transitions and modes, what blocks them, and the progress of its last change.
  */
 
 import { partPath, request } from "/web/js/api.js";
 
-// One load is three requests, so that a burst of events must not lead to a burst of loads.
+// One load is three requests, so a burst of events must not cause a burst of loads.
 const PAUSE_MS = 500;
 
 /** Calls `changed` after each load; `transitions`, `modes` and `change` are the newest answers. */
@@ -37,9 +37,9 @@ export class PartWatch {
     if (this.part === part && last && this.#changeId === null) this.follow(last);
   }
 
-  /** Learn from a frame which change the part is under, or which one has just ended.
+  /** Take from a frame the running change of the part, or the one that has just ended.
    *
-   * A quick change can begin and end between two frames: only its last event names it.
+   * A quick change can start and end between two frames: then only its events name it.
    */
   hear(frame) {
     if (frame.type === "hello") this.#begin(frame.epoch);
@@ -47,12 +47,12 @@ export class PartWatch {
     if (frame.type === "state") this.#name(frame.parts?.[this.part.name]?.change);
     if (frame.type !== "event") return;
     const { part, change } = frame.data;
-    // What supersedes a change is newer than it, and known by its own frames.
+    // The change that supersedes another one is newer, and known from its own frames.
     if (part === this.part.name && frame.kind !== "change.superseded") this.#name(change);
     this.refresh();
   }
 
-  /** Load now, or once more after the load under way: bursts become two loads, not many. */
+  /** Load now, or once more after the running load, so that a burst causes two loads only. */
   async refresh() {
     if (this.part === null) return;
     if (this.#busy) {
@@ -68,7 +68,7 @@ export class PartWatch {
     }, PAUSE_MS);
   }
 
-  /** Follow a change that was just asked for, or that was the last. */
+  /** Follow a change that was just requested, or that was the last. */
   follow(change) {
     this.change = change;
     this.#changeId = change.id;
@@ -76,7 +76,7 @@ export class PartWatch {
     this.refresh();
   }
 
-  /** A server that was restarted counts its changes anew: an old id would name another change. */
+  /** Ids of changes start again after a restart: an old id would name another change. */
   #begin(epoch) {
     if (epoch !== this.#epoch) this.change = this.#changeId = null;
     this.#epoch = epoch;
@@ -101,7 +101,7 @@ export class PartWatch {
     this.#changed();
   }
 
-  /** What cannot be loaded stays as it was: the state bar tells of lost contact. */
+  /** What cannot be loaded stays as it was: the state bar shows lost contact. */
   #answers(paths) {
     return Promise.all(paths.map((path) => request("GET", path).catch(() => ({}))));
   }

@@ -1,4 +1,4 @@
-/** Loads the path of the task that is shown: it is too large for a frame, and never changes. */
+/** Loads the path of the shown task, which is too large for a frame and never changes. */
 
 import { request } from "/web/js/api.js";
 
@@ -14,15 +14,15 @@ export class PathWatch {
     this.#tell = tell;
   }
 
-  /** Ask for the path if it is of another task; what was not answered is asked for again. */
+  /** Request the path if the task is another one; after a failure it is requested again. */
   async look({ task, path }) {
     if (!task || path?.task === task.id || this.#busy) return;
     this.#busy = true;
     const waypoints = `/tasks/${task.id}/waypoints?max_points=${MOST_POINTS}`;
-    // Lost contact is told by the state bar; there is nothing to add here.
+    // The state bar shows lost contact; there is nothing to add here.
     const answer = await request("GET", waypoints).catch(() => null);
     if (answer) this.#tell({ type: "path", task: task.id, ...answer });
-    // A pause, so that a refusal is not asked for with each frame.
+    // A pause, so that a rejected request is not repeated with each frame.
     setTimeout(() => (this.#busy = false), answer ? 0 : RETRY_MS);
   }
 }

@@ -1,13 +1,13 @@
-/** What is known of the robot, as a pure fold of the frames of the stream.
+/** The known state of the robot, as a pure fold of the frames of the stream.
  *
- * `fold(state, message)` returns the next state and never changes the one given. Besides the frames
- * of the server it takes messages of our own: `log` (`items` of /events), `path` (waypoints of a
- * task), `latch` (the answer to a press of STOP) and `restart_read` (nobody wonders any more).
+ * `fold(state, message)` returns the next state and does not change the given one. Besides the
+ * frames of the server it takes messages of the page: `log` (`items` of /events), `path` (waypoints
+ * of a task), `latch` (the answer to a press of STOP) and `restart_read` (the notice was dismissed).
  */
 
 const EVENTS_KEPT = 200;
 
-/** What is known before the first frame: nothing. */
+/** The state before the first frame: nothing is known. */
 export function emptyState() {
   return {
     epoch: null,
@@ -32,18 +32,18 @@ export function fold(state, message) {
   return folder ? folder(state, message) : state;
 }
 
-/** The task that has not ended, or null; `state.task` is also the one that ended last. */
+/** The task that has not ended, or null; `state.task` may also be the last one that ended. */
 export function currentTask({ task }) {
   return task && !task.ended_at ? task : null;
 }
 
 const FOLDERS = {
-  /** After a restart of the service nothing of before is true. */
+  /** After a restart of the service the earlier state is void. */
   hello(state, { epoch, started_at }) {
     if (epoch === state.epoch) return state;
     if (state.epoch === null) return { ...state, epoch };
     const note = {
-      note: "The service was restarted: earlier tasks and holds are gone. What follows is new.",
+      note: "The service was restarted: earlier tasks and holds are gone.",
       id: `restart-${epoch}`,
     };
     const events = keep([...state.events, note]);
@@ -54,7 +54,7 @@ const FOLDERS = {
     return { ...state, restartedAt: null };
   },
 
-  /** Frames carry what changed; the first one and each after a loss carry everything. */
+  /** Frames carry changes; the first one, and the first after a loss, carry everything. */
   state(state, frame) {
     return {
       ...state,
@@ -74,7 +74,7 @@ const FOLDERS = {
     return { ...state, lastEventId: event.id, events: keep([...state.events, event]) };
   },
 
-  /** The log is asked for once; events of the stream may have come before the answer did. */
+  /** The log is requested once; events of the stream may arrive before the answer. */
   log(state, { items }) {
     const begin = state.events.findLastIndex((event) => event.note) + 1;
     const streamed = state.events.slice(begin);
@@ -85,10 +85,10 @@ const FOLDERS = {
     return { ...state, lastEventId, events };
   },
 
-  /** Without `to` nobody knows how many: the server was restarted meanwhile, and ids begin anew. */
+  /** Without `to` the number is unknown: the server was restarted, and ids start again. */
   gap(state, { from, to }) {
-    const which = to ? `Events ${from} to ${to} are` : `Whatever followed event ${from - 1} is`;
-    const note = { note: `${which} missing here.`, id: `gap-${from}` };
+    const which = to ? `Events ${from} to ${to}` : `Events after ${from - 1}`;
+    const note = { note: `${which} are missing here.`, id: `gap-${from}` };
     const lastEventId = to ? Math.max(to, state.lastEventId) : state.lastEventId;
     return { ...state, lastEventId, events: keep([...state.events, note]) };
   },
@@ -102,7 +102,7 @@ const FOLDERS = {
   },
 };
 
-/** A frame that was on its way when STOP was answered tells of the time before. */
+/** A frame that was sent before the answer to STOP holds the earlier state. */
 function newerStop(known, { at, emergency_stop }) {
   const isOld = known?.since_at && Date.parse(at) < Date.parse(known.since_at);
   return !emergency_stop || isOld ? known : emergency_stop;

@@ -1,8 +1,8 @@
-/** What is said of tasks, holds and the vehicle: pure functions from facts to text. */
+/** Texts on tasks, holds and the vehicle: pure functions. */
 
 import { duration, timeOfDay } from "/web/js/words.js";
 
-// Of a vehicle at rest frames tell once a second only, so a pose of a second is not old yet.
+// Frames carry a vehicle at rest only once a second, so a pose of 1 s is not old yet.
 const OLD_POSE_MS = 1500;
 
 /** "Pure Pursuit" for pure_pursuit. */
@@ -19,12 +19,12 @@ export const TASK_STATUS = {
   ABORTED: "Aborted",
 };
 
-/** "412 m"; with decimals where it is short. */
+/** "412 m"; with a decimal below 10 m. */
 export function metres(value) {
   return `${value.toFixed(Math.abs(value) < 10 ? 1 : 0)} m`;
 }
 
-/** Whole percent; 100 only where all is done. */
+/** Whole percent; 100 only at the end. */
 export function percent(share) {
   return `${Math.floor(share * 100 + 1e-9)} %`;
 }
@@ -34,7 +34,7 @@ export function waypointWords({ target_index, waypoint_count }) {
   return `waypoint ${Math.min(target_index + 1, waypoint_count)} of ${waypoint_count}`;
 }
 
-/** What the robot does with its task, for the sentence at the top. */
+/** State of the task, for the sentence at the top. */
 export function taskWords(task) {
   const { id, status, progress, reason } = task;
   const why = reason ? `: ${reason}` : "";
@@ -52,7 +52,7 @@ export function endWords({ id, status, reason, created_at, ended_at, distance_m,
   return `Task ${id} ${how} at ${timeOfDay(ended_at)}${why} (${way})`;
 }
 
-/** "2.8 of 2.8 m/s, 0.03 m left of the path": what there is, and what was asked for. */
+/** "2.8 of 2.8 m/s, 0.03 m left of the path": actual and cruise speed, cross-track error. */
 export function driveWords(task, vehicle) {
   const now = typeof vehicle?.speed_mps === "number" ? vehicle.speed_mps.toFixed(1) : "?";
   const speed = `${now} of ${task.speed_mps.toFixed(1)} m/s`.replace("-", "−");
@@ -76,7 +76,7 @@ function besidePath(error_m) {
   return Math.abs(error_m) < 0.005 ? "on the path" : `${offPath(error_m)} of the path`;
 }
 
-/** How old a pose is that is not of now; empty for one of now, or for none. */
+/** Age of a pose that is not current; empty for a current one, or for none. */
 export function poseAge(vehicle, contact, now) {
   if (!vehicle?.at || !vehicle.pose) return "";
   if (contact.level === "lost") return `pose of ${timeOfDay(vehicle.at)}`;
@@ -84,7 +84,7 @@ export function poseAge(vehicle, contact, now) {
   return age > OLD_POSE_MS ? `pose ${duration(age)} old` : "";
 }
 
-/** The map in a sentence or two, for those who do not see it. */
+/** The map in a sentence or two, for screen readers. */
 export function mapSentence({ vehicle, task }, age) {
   const said = [];
   if (vehicle?.pose) {
@@ -92,7 +92,7 @@ export function mapSentence({ vehicle, task }, age) {
     const place = `x ${x_m.toFixed(1)} m, y ${y_m.toFixed(1)} m`;
     const heading = `heading ${Math.round((yaw_rad * 180) / Math.PI)} degrees`;
     said.push(`Vehicle at ${place}, ${heading}, ${speedWords(vehicle.speed_mps)}.`);
-  } else said.push("Where the vehicle is, is not known.");
+  } else said.push("The pose of the vehicle is unknown.");
   if (age) said.push(`This is old: ${age}.`);
   if (task?.ended_at) said.push(`${endWords(task)}.`);
   else if (task) {
@@ -103,13 +103,13 @@ export function mapSentence({ vehicle, task }, age) {
   return said.join(" ");
 }
 
-/** What part of the world the map shows. */
+/** The area that the map shows. */
 export function viewSentence({ x_m, y_m, scale, width, height }) {
   const size = `${metres(width / scale)} by ${metres(height / scale)}`;
   return `The map shows ${size} around x ${metres(x_m)}, y ${metres(y_m)}.`;
 }
 
-/** The facts of a preview, each a line. */
+/** The lines of a preview. */
 export function previewLines(preview, speed_mps) {
   const { waypoint_count, length_m, spacing, min_radius_m, vehicle_min_radius_m } = preview;
   const lines = [
@@ -117,16 +117,16 @@ export function previewLines(preview, speed_mps) {
   ];
   if (typeof preview.duration_s === "number")
     lines.push(`About ${duration(preview.duration_s * 1000)} at ${speed_mps} m/s`);
-  const limit = `the vehicle turns in ${metres(vehicle_min_radius_m)}`;
+  const limit = `the vehicle needs ${metres(vehicle_min_radius_m)}`;
   lines.push(
     typeof min_radius_m === "number"
       ? `Tightest radius ${metres(min_radius_m)}; ${limit}`
-      : "Straight all the way",
+      : "Straight path",
   );
   if (preview.start) {
     const turn = Math.round((Math.abs(preview.start.heading_error_rad) * 180) / Math.PI);
     lines.push(
-      `Begins ${metres(preview.start.distance_m)} from the vehicle, ${turn}° off its heading`,
+      `Starts ${metres(preview.start.distance_m)} from the vehicle, ${turn}° off its heading`,
     );
   }
   return lines;

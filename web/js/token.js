@@ -1,4 +1,4 @@
-/** The token of the service: kept for this tab only, and sent with each request and to the stream. */
+/** The token of the service, kept for this tab only; requests and the stream send it. */
 
 const KEY = "pilothouse-token";
 
@@ -16,7 +16,7 @@ export function setToken(value) {
     if (value === null) sessionStorage.removeItem(KEY);
     else sessionStorage.setItem(KEY, value);
   } catch {
-    // A browser that keeps nothing asks again after a reload.
+    // Without session storage the page asks again after a reload.
   }
 }
 

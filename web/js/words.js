@@ -1,4 +1,4 @@
-/** What the page says, in words: pure functions from facts to text. */
+/** Texts of the page: pure functions. */
 
 /** "0.4 s", "12 s", "3 min 5 s", "2 h 4 min". */
 export function duration(ms) {
@@ -9,7 +9,7 @@ export function duration(ms) {
   return `${Math.floor(s / 3600)} h ${Math.floor((s % 3600) / 60)} min`;
 }
 
-/** Whole seconds, for what ticks in a sentence. */
+/** Whole seconds, for durations that count up in a sentence. */
 export function wholeSeconds(ms) {
   return ms < 60_000 ? `${Math.floor(ms / 1000)} s` : duration(ms);
 }
@@ -25,7 +25,7 @@ export function label({ state, mode }) {
   return mode ? `${state}.${mode}` : state;
 }
 
-/** What was asked for by a change. */
+/** What a change requests. */
 export function requestWords(asked) {
   if (typeof asked === "string") return asked;
   if (asked.mode) return `mode ${asked.mode}`;
@@ -33,7 +33,7 @@ export function requestWords(asked) {
   return "parameters";
 }
 
-/** The state of a change in words, with the time it took or has taken. */
+/** The status of a change, with its duration so far. */
 export function changeWords(change, now) {
   const took = duration(
     (change.ended_at ? Date.parse(change.ended_at) : now) - Date.parse(change.started_at),

@@ -1,5 +1,6 @@
-"""The terminal monitor: what is known of a robot, and how a terminal shows it.
+"""The terminal monitor: shows the state of a robot on a terminal.
 
-`store` folds the frames of the stream into what is known; `picture` makes lines of that; both are
-pure. `link` keeps up the contact, `watch` holds what it brought, and `screen` and `output` write.
+`store` folds the frames of the stream into the known state; `picture` makes lines of it; both are
+pure. `api.client.link` keeps up the connection, `watch` holds the state, `screen` and `output`
+write.
 """

@@ -27,7 +27,7 @@ from api.cli.monitor.sentence import (
 from api.cli.monitor.table import Column, printable, table
 from api.cli.monitor.view import Level, View, seconds_of
 
-LEGEND = "(*) inferred   ! not as it should be   > changing or coming   x unreachable"
+LEGEND = "(*) inferred   ! deviation or error   > changing or pending   x unreachable"
 
 _MARK_STYLES = {UNREACHABLE: "bold red", WRONG: "bold yellow", CHANGES: "cyan", CALM: ""}
 _WORD_STYLES = {"IDLE": "bold", "RUNNING": "bold green", "CONNECTING": "bold", "RESTARTED": "bold"}
@@ -52,11 +52,11 @@ _SIGNAL_COLUMNS = (
 
 
 def head(view: View, width: int) -> list[Text]:
-    """Return the line that says where this is from, and of when."""
+    """Return the first line: address, simulated pieces and time of the values."""
     at = view.robot.at
     of = "" if at is None else words.time_of_day(seconds_of(at))
     if of and view.contact.level is not Level.LIVE:
-        of = f"old, of {of}"
+        of = f"old, from {of}"
     state = view.robot.system_state
     unreal = ", ".join(state["simulated"]) if state else ""
     line = Text(printable(f"Pilothouse  {view.url}"), style="bold")
@@ -68,7 +68,7 @@ def head(view: View, width: int) -> list[Text]:
 
 
 def sentences(view: View, console: Console) -> list[Text]:
-    """Return how the robot is and why, and how the contact is where it is not good."""
+    """Return the state of the robot with its reasons, and connection problems."""
     told = (
         contact_sentence(view),
         stop_sentence(view),
@@ -141,7 +141,7 @@ def _part_note(view: View, row: PartRow) -> str:
 
 
 def signals(view: View, every: Sequence[SignalRow], width: int, room: int | None) -> list[Text]:
-    """Return the signals, with values, ages, and what is judged of them.
+    """Return the signals with values, ages and errors.
 
     Args:
         view: What is drawn.
@@ -184,7 +184,7 @@ def task(view: View, console: Console) -> list[Text]:
         far = f"{words.percent(now['progress'])}, {way}, {words.waypoint_words(now)}"
         lines = _wrapped(f"task {now['id']}  {now['status']}  {far}", console, indent=2)
         lines += _wrapped(f"  {words.drive_words(now, robot.vehicle)}", console, indent=4)
-        # The holds say the same at more length, where there are any.
+        # Holds are listed below, with more detail.
         if now["reason"] and not robot.holds:
             lines += _wrapped(f"  {now['reason']}", console, indent=4)
     for hold in (robot.holds or {}).values():
@@ -196,7 +196,7 @@ def task(view: View, console: Console) -> list[Text]:
 
 
 def notes(view: View, room: int) -> list[Text]:
-    """Return the newest of what happened, the newest last."""
+    """Return the newest notable events, the newest last."""
     told = view.robot.notes[-room:] if room > 0 else ()
     return [Text(printable(f"{_when(note.at)}  {note.words}"), style="dim") for note in told]
 

@@ -1,4 +1,4 @@
-"""`pilothouse monitor`: watch a robot on a terminal, or write down what becomes of it."""
+"""`pilothouse monitor`: watch a robot on a terminal, or log its changes."""
 
 import asyncio
 import io
@@ -31,9 +31,8 @@ def monitor(url: str, form: Form, *, once: bool) -> int:
         once: Write one picture only.
 
     Raises:
-        NoAnswerError: `url` is no address, the token in the environment cannot be used, or nobody
-            answers who is asked once.
-        ServiceProblemError: The service refuses us.
+        NoAnswerError: The address or the token is invalid, or with `once` there is no answer.
+        ServiceProblemError: The service rejects us.
     """
     address = Address.with_token_of_environment(url)
     console = _console()
@@ -48,9 +47,9 @@ def monitor(url: str, form: Form, *, once: bool) -> int:
 
 
 def _console() -> Console:
-    """Return what writes to the standard output, with colours only on a terminal."""
+    """Return a console for the standard output, with colours only on a terminal."""
     if isinstance(sys.stdout, io.TextIOWrapper):
-        # A terminal that has no ellipsis gets a question mark.
+        # An encoding without an ellipsis shows a question mark.
         sys.stdout.reconfigure(errors="replace")
     return Console(force_terminal=sys.stdout.isatty(), highlight=False, markup=False, emoji=False)
 
@@ -66,7 +65,7 @@ async def _once(address: Address, form: Form, console: Console) -> None:
         async with asyncio.timeout(_PATIENCE_S):
             await until_first_ends(Link(address, watch).serve(), wait())
     except TimeoutError as error:
-        message = f"no whole picture from {address.url} within {_PATIENCE_S:g} s"
+        message = f"no complete state from {address.url} within {_PATIENCE_S:g} s"
         raise NoAnswerError(message) from error
     write_picture(watch.view(), form, console)
 
@@ -89,14 +88,14 @@ async def _draw(address: Address, console: Console) -> None:
 
 
 async def _redraw(screen: Screen, watch: Watch, console: Console) -> None:
-    """Look a few times a second, which is what a slow line can carry."""
+    """Redraw a few times a second, so that a slow serial line keeps up."""
     while True:
         screen.draw(picture(watch.view(), console, console.height))
         await asyncio.sleep(REDRAW_S)
 
 
 def _end_with_signals() -> None:
-    """Let SIGTERM and SIGHUP end this like Ctrl-C, so that the terminal is left as it was."""
+    """Let SIGTERM and SIGHUP end this like Ctrl-C, so that the terminal is restored."""
     task = asyncio.current_task()
     for name in ("SIGTERM", "SIGHUP"):
         # Windows has neither SIGHUP nor loops with signal handlers; Ctrl-C ends this there.
@@ -109,7 +108,7 @@ async def until_first_ends(*coroutines: Coroutine[Any, Any, None]) -> None:
     """Run until one ends, and cancel the others.
 
     Raises:
-        Exception: That of the one that failed, by itself and not in a group.
+        Exception: Of the coroutine that failed; not in a group.
     """
     tasks = [asyncio.create_task(coroutine) for coroutine in coroutines]
     try:

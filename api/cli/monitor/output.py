@@ -1,4 +1,4 @@
-"""Pictures one below the other, as text or JSON: where there is no terminal, or only one."""
+"""Writes pictures one below the other, as text or JSON, without drawing on a terminal."""
 
 import json
 import sys
@@ -15,7 +15,7 @@ Form = Literal["text", "json"]
 
 
 def write_picture(view: View, form: Form, console: Console) -> None:
-    """Write all that is known.
+    """Write the known state.
 
     Args:
         view: What is drawn.
@@ -31,7 +31,7 @@ def write_picture(view: View, form: Form, console: Console) -> None:
 
 
 class ChangeLog:
-    """Writes a picture whenever something happened, and says when there is no contact."""
+    """Writes a picture whenever something changed, and reports lost connections."""
 
     def __init__(self, form: Form, console: Console, complaints: TextIO | None = None) -> None:
         """Write nothing yet.
@@ -39,7 +39,7 @@ class ChangeLog:
         Args:
             form: `text` for people, `json` for programs.
             console: Where to write.
-            complaints: Where to say that there is no contact; None: the standard error.
+            complaints: Where to report lost connections; None: the standard error.
         """
         self._form: Form = form
         self._console = console
@@ -48,12 +48,12 @@ class ChangeLog:
         self._why = ""
 
     def look(self, view: View) -> None:
-        """Write what there is to be told."""
+        """Write a picture or a report if something changed."""
         contact = view.contact
         if contact.why != self._why:
             self._why = contact.why
             if contact.why:
-                print(f"pilothouse: {contact.why}; trying again", file=self._complaints, flush=True)
+                print(f"pilothouse: {contact.why}; reconnecting", file=self._complaints, flush=True)
         if not view.robot.is_whole or (self._form == "json" and contact.level is not Level.LIVE):
             return
         now = (contact.level, what_stands(view.robot))
@@ -66,7 +66,7 @@ class ChangeLog:
 
 
 def what_stands(robot: Robot) -> Hashable:
-    """Return what is equal as long as nothing has happened: values, ages and ways do not count."""
+    """Return a key that changes with states, errors, tasks and holds, but not with values."""
     state, task, stop = robot.system_state, robot.task, robot.emergency_stop
     return (
         robot.epoch,

@@ -18,7 +18,7 @@ def picture(view: View, console: Console, height: int | None = None) -> list[Tex
     Args:
         view: What is drawn.
         console: Whose width is used; nothing is written to it.
-        height: Most lines; None: as many as are needed, without what happened before.
+        height: Most lines; None: as many as are needed, without recent events.
     """
     top = [*blocks.head(view, console.width), *blocks.sentences(view, console)]
     if height is not None:
@@ -33,7 +33,7 @@ def picture(view: View, console: Console, height: int | None = None) -> list[Tex
 
 
 def _joined(view: View, console: Console, top: list[Text], height: int | None) -> list[Text]:
-    """Share the lines: how it is, and the task, have theirs first, and blank ones come last."""
+    """Distribute the lines: state and task come first, blank lines last."""
     task = blocks.task(view, console)
     parts = part_rows(view.robot.parts or {})
     signals = [SignalRow(signal) for signal in (view.robot.signals or {}).values()]
@@ -63,7 +63,7 @@ def _joined(view: View, console: Console, top: list[Text], height: int | None) -
 
 
 def _shares(parts: int, signals: int, left: int) -> tuple[int, int]:
-    """Return how many lines parts and signals get; of too few, the signals a third."""
+    """Return the lines for parts and for signals; if they are scarce, signals get a third."""
     if parts + signals <= left:
         return parts, signals
     for_signals = min(signals, max(left // 3, left - parts))

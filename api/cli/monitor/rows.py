@@ -1,4 +1,4 @@
-"""Parts and signals as rows, and which of them are shown where there is no room for all."""
+"""Parts and signals as rows, and the choice of rows if there is no room for all."""
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
@@ -17,8 +17,7 @@ class Row(Protocol):
 
     @property
     def name(self) -> str:
-        """Return what it is about."""
-        ...
+        """Return the name of the part or signal."""
 
     @property
     def mark(self) -> str:
@@ -48,7 +47,7 @@ class PartRow:
 
     @property
     def mark(self) -> str:
-        """Return what needs attention; that a node of a system is not reachable, the node tells."""
+        """Return the mark; only nodes are marked as unreachable, not their systems."""
         part = self.part
         if not part.get("reachable", True) and part.get("kind") == "node":
             return UNREACHABLE
@@ -74,7 +73,7 @@ class SignalRow:
 
     @property
     def mark(self) -> str:
-        """Return what needs attention; `>` is an error that comes if it stays bad."""
+        """Return the mark; `>` is a pending error."""
         if self.signal["error"] or self.signal["stale"]:
             return WRONG
         return CHANGES if self.signal["pending"] else CALM
@@ -86,7 +85,7 @@ class SignalRow:
 
 @dataclass(frozen=True, slots=True)
 class Chosen(Generic[RowType]):
-    """The rows for which there is room, and how many there are besides."""
+    """The rows that fit, and the number of those left out."""
 
     rows: tuple[RowType, ...]
     left_out: int = 0

@@ -1,4 +1,4 @@
-"""A terminal that is drawn on: the alternate screen, and only the lines that changed.
+"""Draws on the alternate screen of a terminal; only changed lines are written.
 
 Rich would write the whole screen for each picture; over a serial line of 9600 baud that takes two
 seconds.
@@ -29,7 +29,7 @@ class Screen:
         self._size = console.size
 
     def forget(self) -> None:
-        """Draw everything anew with the next picture: something else has written."""
+        """Redraw everything next time, since another program has written to the terminal."""
         self._shown = []
 
     def draw(self, lines: Sequence[Text]) -> None:
@@ -53,16 +53,16 @@ class Screen:
             self._console.file.flush()
 
     def _codes(self, line: Text, width: int) -> str:
-        """Return what writes a line over another one."""
+        """Return the text that overwrites a line."""
         with self._console.capture() as captured:
             self._console.print(line, end="", no_wrap=True, overflow="crop")
-        # Behind a line that is full, terminals would erase its last character.
+        # After a full line, terminals would erase its last character.
         return captured.get() + (_ERASE_LINE if line.cell_len < width else "")
 
 
 @contextmanager
 def alternate_screen(console: Console) -> Iterator[Screen]:
-    """Draw on a screen of its own; at the end, however that comes, there is what was before.
+    """Draw on the alternate screen; the terminal is always restored at the end.
 
     Args:
         console: Of a terminal.
@@ -73,7 +73,7 @@ def alternate_screen(console: Console) -> Iterator[Screen]:
 
 @contextmanager
 def _without_echo() -> Iterator[None]:
-    """Keep keys that somebody presses from being written over the picture."""
+    """Keep the terminal from echoing keys into the picture."""
     if sys.platform == "win32" or not sys.stdin.isatty():
         yield
         return
@@ -86,5 +86,5 @@ def _without_echo() -> Iterator[None]:
     try:
         yield
     finally:
-        # What was typed was not meant for the shell.
+        # Discards typed keys, which were not meant for the shell.
         termios.tcsetattr(sys.stdin, termios.TCSAFLUSH, before)

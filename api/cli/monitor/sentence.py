@@ -1,4 +1,4 @@
-"""The sentence that says how the robot is."""
+"""The sentences at the top: state of the robot, emergency stop, connection, restart."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -21,31 +21,31 @@ _RESTART_TOLD_S = 600.0
 
 @dataclass(frozen=True, slots=True)
 class Sentence:
-    """How the robot is, the most important reason first."""
+    """A state and its reasons, the most important one first."""
 
     word: str
-    """IDLE, RUNNING, ERROR, WAS ERROR, or how the contact is."""
+    """IDLE, RUNNING, ERROR, WAS ERROR, or the state of the connection."""
     text: str
     more: tuple[str, ...] = ()
     """Further reasons."""
 
 
 def contact_sentence(view: View) -> Sentence | None:
-    """Return how the contact is; None while there is nothing to be said of it."""
+    """Return the state of the connection; None while it is good."""
     contact, at = view.contact, view.robot.at
     if contact.level is Level.LIVE and view.robot.system_state is not None:
         return None
     if contact.level is not Level.LOST:
         return Sentence("CONNECTING", contact.why or "waiting for the first values")
     began = words.time_of_day(view.now_s - contact.silence_s)
-    since = f"since {began} ({words.duration(contact.silence_s)}), trying again"
-    old = "" if at is None else f"what is shown is of {words.time_of_day(seconds_of(at))}"
+    since = f"since {began} ({words.duration(contact.silence_s)}), reconnecting"
+    old = "" if at is None else f"values shown are from {words.time_of_day(seconds_of(at))}"
     more = tuple(text for text in (contact.why, old) if text)
     return Sentence("NO CONTACT", since, more)
 
 
 def state_sentence(view: View) -> Sentence | None:
-    """Return how the robot is, or was when it was heard of last; None: it never was."""
+    """Return the current or last known state of the robot; None: no state was received."""
     state, task = view.robot.system_state, view.robot.current_task
     if state is None:
         return None
@@ -68,12 +68,12 @@ def stop_sentence(view: View) -> Sentence | None:
     by = f", by {stop['by']}" if stop["by"] else ""
     why = f": {stop['reason']}" if stop["reason"] else ""
     since = f"for {words.duration(view.age_s(stop['since_at']))}"
-    stands = "the vehicle stands" if stop["standstill_at"] else "no standstill seen yet"
+    stands = "the vehicle is at a standstill" if stop["standstill_at"] else "no standstill yet"
     return Sentence("EMERGENCY STOP", f"engaged{why}, {since}{by}, {stands}")
 
 
 def restart_sentence(view: View) -> Sentence | None:
-    """Return that the service was restarted, for as long as somebody may wonder; else None."""
+    """Return that the service was restarted, for 10 min after a restart; else None."""
     at = view.robot.restarted_at
     if at is None or view.age_s(at) > _RESTART_TOLD_S:
         return None

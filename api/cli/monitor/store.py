@@ -1,4 +1,4 @@
-"""What is known of the robot, as a pure fold of the frames of the stream."""
+"""The known state of the robot, as a pure fold of the frames of the stream."""
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
@@ -11,20 +11,20 @@ _NOTES_KEPT = 20
 
 @dataclass(frozen=True, slots=True)
 class Note:
-    """Something that happened, in words."""
+    """The text of an event."""
 
     at: str
-    """As in frames."""
+    """Time as in frames."""
     words: str
 
 
 @dataclass(frozen=True, slots=True)
 class Robot:
-    """What is known of the robot; before the first frame, nothing."""
+    """The known state of the robot; before the first frame, nothing is known."""
 
     epoch: str | None = None
     restarted_at: str | None = None
-    """When the service began anew while it was watched; None: it never did."""
+    """Time of a restart of the service since the monitor runs; None: there was none."""
     at: str | None = None
     """Time of the newest frame."""
     system_state: Json | None = None
@@ -39,7 +39,7 @@ class Robot:
     emergency_stop: Json | None = None
     last_event_id: int = 0
     notes: tuple[Note, ...] = ()
-    """The newest of what happened, in order."""
+    """The newest notable events, in order."""
 
     @property
     def current_task(self) -> Json | None:
@@ -48,12 +48,12 @@ class Robot:
 
     @property
     def is_whole(self) -> bool:
-        """Tell whether there is something to be said of everything."""
+        """Tell whether everything is known."""
         known = (self.system_state, self.parts, self.signals, self.holds, self.emergency_stop)
         return None not in known
 
     def as_json(self) -> dict[str, Any]:
-        """Return what is known, each member as an answer to a request has it."""
+        """Return the known state; each member has the form of the HTTP API."""
         return {
             "at": self.at,
             "system_state": self.system_state,
@@ -67,10 +67,10 @@ class Robot:
 
 
 def fold(robot: Robot, frame: Json) -> Robot:
-    """Return what is known after one more frame; one of an unknown type tells nothing.
+    """Return the known state after one more frame; frames of unknown types are ignored.
 
     Args:
-        robot: What is known; it is not changed.
+        robot: The state before; it is not changed.
         frame: Of the stream.
     """
     folder = _FOLDERS.get(frame["type"])
@@ -78,7 +78,7 @@ def fold(robot: Robot, frame: Json) -> Robot:
 
 
 def _hello(robot: Robot, frame: Json) -> Robot:
-    """Go on, or begin anew: after a restart of the service nothing of before is true."""
+    """Continue, or start again: after a restart of the service the earlier state is void."""
     if robot.epoch in (None, frame["epoch"]):
         return replace(robot, epoch=frame["epoch"])
     at = frame["started_at"]
@@ -103,7 +103,7 @@ def _state(robot: Robot, frame: Json) -> Robot:
 def _merged(
     known: Mapping[str, Json] | None, changed: Mapping[str, Json] | None
 ) -> Mapping[str, Json] | None:
-    """Frames carry the members that changed; the first one has all, in their order."""
+    """Merge the changed members of a frame; the first frame has all members, in order."""
     return known if changed is None else {**(known or {}), **changed}
 
 
@@ -117,7 +117,7 @@ def _event(robot: Robot, event: Json) -> Robot:
 
 
 def _gap(robot: Robot, gap: Json) -> Robot:
-    """Events that are missing say nothing that the next frame does not say."""
+    """Skip missing events: the next frame shows their effects."""
     return replace(robot, last_event_id=max(robot.last_event_id, gap["to"] or 0))
 
 

@@ -1,4 +1,4 @@
-"""Tables whose lines are cut to fit, each cell with an ellipsis where it is too long."""
+"""Tables that fit the terminal; cells that are too long end with an ellipsis."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -23,7 +23,7 @@ class Column:
 
 
 def printable(text: str) -> str:
-    """Return a text that cannot move the cursor: others wrote it."""
+    """Replace control characters, since names and reasons come from other programs."""
     return "".join(character if character.isprintable() else "?" for character in text)
 
 
@@ -53,9 +53,9 @@ def table(
 
 
 def _widths(columns: Sequence[Column], lines: Sequence[Sequence[str]], width: int) -> list[int]:
-    """Give each column what it needs, and what is usual as far as there is room.
+    """Give each column the width it needs, and its usual width as far as there is room.
 
-    What is too much is taken from the widest, down to the least of each.
+    If there is too little room, the widest columns are reduced, down to the least of each.
     """
     widths = [max(map(cell_len, cells)) for cells in zip(*lines, strict=True)]
     spare = width - sum(widths) - _GAP * (len(widths) - 1)

@@ -1,4 +1,4 @@
-"""What is drawn: the robot, how good the contact is, and what time it is."""
+"""The content of a picture: the robot, the connection, and the time."""
 
 from dataclasses import dataclass
 from datetime import datetime
@@ -8,28 +8,28 @@ from api.cli.monitor.store import Robot
 
 
 class Level(StrEnum):
-    """How good the contact is."""
+    """State of the connection."""
 
     CONNECTING = "connecting"
-    """There never was any."""
+    """No frame was received yet."""
     LIVE = "live"
     LOST = "lost"
 
 
 @dataclass(frozen=True, slots=True)
 class Contact:
-    """How good the contact is, and why."""
+    """The connection at one instant."""
 
     level: Level
     silence_s: float
-    """Since the last frame, or since the beginning."""
+    """Since the last frame, or since the start."""
     why: str = ""
-    """Why there is none; empty where there is, or where nobody knows."""
+    """Why there is no connection; empty if there is one, or if the reason is unknown."""
 
 
 @dataclass(frozen=True, slots=True)
 class View:
-    """What is drawn at one moment."""
+    """The content of one picture."""
 
     url: str
     robot: Robot

@@ -1,4 +1,4 @@
-"""What the monitor knows at this moment, and how good its contact is."""
+"""The current state of the robot and of the connection, for the monitor."""
 
 import time
 from collections.abc import Callable
@@ -8,7 +8,7 @@ from api.cli.monitor.store import Json, Robot, fold
 from api.cli.monitor.view import Contact, Level, View, seconds_of
 
 LOST_S = 3.0
-"""Frames come many times a second; after such a silence there is no contact."""
+"""Frames come many times a second; after this silence, s, the connection counts as lost."""
 
 _CLOCK_WINDOW_S = 10.0
 
@@ -21,7 +21,7 @@ def local_now() -> float:
 
 
 class Watch:
-    """Takes what comes from a service, and tells what there is to draw."""
+    """Takes the frames of a service, and provides the content of pictures."""
 
     def __init__(
         self,
@@ -29,11 +29,11 @@ class Watch:
         news: Callable[[], None] = lambda: None,
         now: Callable[[], float] = local_now,
     ) -> None:
-        """Begin without knowing anything.
+        """Start without any known state.
 
         Args:
             url: Of the service.
-            news: Called after each `state` frame, and with the loss of contact.
+            news: Called after each `state` frame, and when the connection is lost.
             now: Local time that never jumps, in seconds since 1970.
         """
         self.robot = Robot()
@@ -57,16 +57,16 @@ class Watch:
             self._news()
 
     def lose(self, why: str) -> None:
-        """Take that the contact is lost, or that there is none.
+        """Handle that the connection was lost, or cannot be made.
 
         Args:
-            why: In words.
+            why: The reason, for the user.
         """
         self._is_connected, self._why = False, why
         self._news()
 
     def contact(self) -> Contact:
-        """Return how good the contact is."""
+        """Return the state of the connection."""
         silence_s = self._now() - self._heard_s
         if self._is_connected and silence_s <= LOST_S:
             return Contact(Level.LIVE, silence_s)
@@ -75,15 +75,15 @@ class Watch:
         return Contact(Level.CONNECTING, silence_s, self._why)
 
     def view(self) -> View:
-        """Return what is to be drawn now."""
+        """Return the content of a picture of now."""
         return View(self._url, self.robot, self.contact(), self._clock.at(self._now()))
 
 
 class ServerClock:
     """Estimates the offset between our clock and the service's from the times in its frames.
 
-    A frame is late by its travel, never early, so the smallest offset of the last 10 to 20 s is the
-    nearest to the truth. Older ones are forgotten, since either clock may be set.
+    Transmission can only delay a frame, so the smallest offset of the last 10 to 20 s is the most
+    accurate. Older ones are dropped, since either clock may be set.
     """
 
     def __init__(self) -> None:
@@ -95,8 +95,8 @@ class ServerClock:
         """Take the time of a frame.
 
         Args:
-            server_s: What the frame says, in seconds since 1970.
-            local_s: When it came, in seconds since 1970.
+            server_s: Time in the frame, in seconds since 1970.
+            local_s: Time of its arrival, in seconds since 1970.
         """
         if local_s - self._window_start_s > _CLOCK_WINDOW_S:
             self._smallest_before_s, self._smallest_s = self._smallest_s, inf

@@ -1,4 +1,4 @@
-"""What the monitor says of single facts: pure functions from values to text."""
+"""Texts of the monitor for single values: pure functions."""
 
 from collections.abc import Mapping
 from datetime import datetime
@@ -10,7 +10,7 @@ UNKNOWN = "?"
 
 
 def duration(seconds: float) -> str:
-    """Return "12 s", "3 min 5 s" or "2 h 4 min": whole seconds, as what ticks is easiest read."""
+    """Return "12 s", "3 min 5 s" or "2 h 4 min", in whole seconds for easy reading."""
     whole = int(max(0.0, seconds))
     if whole < 60:
         return f"{whole} s"
@@ -59,11 +59,11 @@ def value_words(signal: Json) -> str:
 
 
 def verdict_words(signal: Json, pending_s: float | None) -> str:
-    """Return what is judged of a signal.
+    """Return the errors of a signal, or "ok".
 
     Args:
         signal: As in frames.
-        pending_s: For how long an error has been coming; None: none is.
+        pending_s: How long an error has been pending, s; None: none is.
     """
     error, pending = signal["error"], signal["pending"]
     said = [error] if error else []
@@ -75,12 +75,12 @@ def verdict_words(signal: Json, pending_s: float | None) -> str:
 
 
 def metres(value: float) -> str:
-    """Return "412 m"; with a decimal where it is short."""
+    """Return "412 m"; with a decimal below 10 m."""
     return f"{value:.1f} m" if abs(value) < 10 else f"{value:.0f} m"
 
 
 def percent(share: float) -> str:
-    """Return whole percent; 100 only where all is done."""
+    """Return whole percent; 100 only at the end."""
     return f"{int(share * 100 + 1e-9)} %"
 
 
@@ -101,7 +101,7 @@ def end_words(task: Json) -> str:
 
 
 def drive_words(task: Json, vehicle: Json | None) -> str:
-    """Return "2.8 of 2.8 m/s, 0.03 m left of the path": what there is, and what was asked."""
+    """Return "2.8 of 2.8 m/s, 0.03 m left of the path": actual and cruise speed, deviation."""
     speed = None if vehicle is None else vehicle["speed_mps"]
     now = UNKNOWN if speed is None else f"{speed:.1f}"
     words = f"{now} of {task['speed_mps']:.1f} m/s"

@@ -1,4 +1,4 @@
-"""Who wrote what, and how it was answered: one event for each request that changes something."""
+"""The audit: one event for each request that changes something, with client and status."""
 
 from collections.abc import Callable
 
@@ -17,7 +17,7 @@ _FLAG = TypeAdapter(bool)
 
 
 class Audit:
-    """Record each write that reached a route, also one that the route refused."""
+    """Records each write that reached a route, also if the route rejected it."""
 
     def __init__(
         self, app: ASGIApp, record: Callable[[WriteRecord], object], policies: RoutePolicies
@@ -25,16 +25,16 @@ class Audit:
         """Watch `app`.
 
         Args:
-            app: What is behind.
-            record: Takes what was written, before the answer is sent.
-            policies: Tells which routes are recorded.
+            app: The application behind this one.
+            record: Takes the record before the answer is sent.
+            policies: Which routes are recorded.
         """
         self._app = app
         self._record = record
         self._policies = policies
 
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
-        """Pass the request on, and note how it is answered."""
+        """Pass the request on, and record the status of its answer."""
         if scope["type"] != "http" or not self._is_recorded(scope):
             await self._app(scope, receive, send)
             return
@@ -47,7 +47,7 @@ class Audit:
         await self._app(scope, receive, send_and_record)
 
     def _is_recorded(self, scope: Scope) -> bool:
-        """Tell whether a request may change something, beside what it reports."""
+        """Tell whether a request is recorded."""
         declared = self._policies.of(scope)
         if declared is None or declared.audit is AuditClass.NEVER:
             return False
@@ -55,7 +55,7 @@ class Audit:
 
 
 def _is_dry_run(scope: Scope) -> bool:
-    """Tell whether the query says so, as the route reads it."""
+    """Tell whether the query has `dry_run=true`, parsed as the route does."""
     try:
         return _FLAG.validate_python(QueryParams(scope["query_string"]).get("dry_run"))
     except ValidationError:

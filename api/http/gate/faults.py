@@ -1,4 +1,4 @@
-"""What nobody foresaw."""
+"""Unexpected exceptions."""
 
 import logging
 from http import HTTPStatus
@@ -11,13 +11,13 @@ log = logging.getLogger(__name__)
 
 
 class UnexpectedErrors:
-    """The edge of the service: what nobody foresaw is logged, and answered without its inside."""
+    """The edge of the service: logs unexpected exceptions, and answers without details."""
 
     def __init__(self, app: ASGIApp) -> None:
         self._app = app
 
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
-        """Answer 500 where the application raises."""
+        """Answer 500 if the application raises."""
         if scope["type"] != "http":
             await self._app(scope, receive, send)
             return
@@ -35,6 +35,6 @@ class UnexpectedErrors:
             if has_begun:
                 raise
             status = HTTPStatus.INTERNAL_SERVER_ERROR
-            detail = "this is a fault in Pilothouse; its log tells more"
+            detail = "this is a bug in Pilothouse; see its log"
             problem = make_problem(status, "INTERNAL", detail, scope["path"])
             await problem_response(problem)(scope, receive, send)

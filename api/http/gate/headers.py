@@ -1,4 +1,4 @@
-"""What every answer tells browsers."""
+"""The security headers of every answer."""
 
 from typing import ClassVar
 
@@ -12,7 +12,7 @@ CONTENT_SECURITY_POLICY = (
 
 
 class SecurityHeaders:
-    """Tell browsers to be strict with whatever comes from here."""
+    """Adds security headers to answers."""
 
     HEADERS: ClassVar = {
         "Content-Security-Policy": CONTENT_SECURITY_POLICY,
@@ -20,9 +20,9 @@ class SecurityHeaders:
         "Referrer-Policy": "no-referrer",
         # No Cross-Origin-Opener-Policy: over plain HTTP browsers complain and ignore it.
         "Cross-Origin-Resource-Policy": "same-origin",
-        # The page needs none of what a browser could let it use.
+        # The page uses none of these features.
         "Permissions-Policy": "camera=(), geolocation=(), microphone=(), payment=(), usb=()",
-        # Of a robot only the present is worth anything; the page's files say otherwise themselves.
+        # Old states of a robot must not be cached; the files of the page set their own value.
         "Cache-Control": "no-store",
     }
 
@@ -30,7 +30,7 @@ class SecurityHeaders:
         self._app = app
 
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
-        """Add to the headers of the answer what it does not say itself."""
+        """Add the headers that the answer does not set itself."""
 
         async def send_with_headers(message: Message) -> None:
             if message["type"] == "http.response.start":

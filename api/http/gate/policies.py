@@ -1,4 +1,4 @@
-"""Which route a request is for, and what that route declares, before the router has seen it."""
+"""Finds the policy of the route of a request, before the router runs."""
 
 import re
 from collections import defaultdict
@@ -15,11 +15,11 @@ _KEY = "pilothouse.policy"
 _WEBSOCKET = "WEBSOCKET"
 
 _Routes = dict[tuple[str, str], list[tuple[re.Pattern[str], RoutePolicy]]]
-"""By method and first name of the path, each list in the order in which its routes are tried."""
+"""By method and first segment of the path, in the order in which routes are tried."""
 
 
 class RoutePolicies:
-    """What the routes of an application declare, by method and path as the router matches them."""
+    """The policies of all routes, found by method and path as the router matches them."""
 
     def __init__(self, routes: Sequence[BaseRoute]) -> None:
         """Read the declarations.
@@ -28,7 +28,7 @@ class RoutePolicies:
             routes: Of the whole application, in the order in which they are tried.
 
         Raises:
-            UndeclaredRouteError: One declares nothing.
+            UndeclaredRouteError: A route has no policy.
         """
         self._routes: _Routes = defaultdict(list)
         for route in each_route(routes):
@@ -40,9 +40,9 @@ class RoutePolicies:
                 self._routes[method, _first_name(route.path)].append((pattern, declared))
 
     def of(self, scope: Scope) -> RoutePolicy | None:
-        """Return what the route of a request declares; None: there is no such route.
+        """Return the policy of the route of a request; None: there is no such route.
 
-        A HEAD is for what its GET is for. What was found is kept in the scope, for the next gate.
+        HEAD has the policy of GET. The result is kept in the scope, for the next gate.
 
         Args:
             scope: Of an HTTP request or a WebSocket.
@@ -61,14 +61,14 @@ class RoutePolicies:
 
 
 def _first_name(path: str) -> str:
-    """Return what is between the first slash and the next; no route has a parameter there."""
+    """Return the first segment of a path; no route has a parameter there."""
     return path.split("/", 2)[1] if "/" in path else ""
 
 
 def each_route(routes: Sequence[BaseRoute]) -> Iterator[Any]:
     """Yield each route with its whole path, methods and endpoint, also those of included routers.
 
-    FastAPI 0.115 copies the routes of a router that is included; later ones keep the router.
+    FastAPI 0.115 copies the routes of an included router; later versions keep the router.
     """
     flattened = getattr(routing, "iter_route_contexts", iter)
     yield from flattened(routes)

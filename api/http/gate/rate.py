@@ -1,4 +1,4 @@
-"""How often a client may ask."""
+"""The rate limit of requests."""
 
 from http import HTTPStatus
 from math import ceil
@@ -14,22 +14,22 @@ from service.clock import Clock
 
 MAX_ADDRESSES = 10_000
 _BURST_S = 2
-"""A client that was quiet may ask at once what it may ask in so many seconds."""
+"""After a pause a client may send the requests of this many seconds at once."""
 
 
 class TokenBuckets:
     """A token bucket for each address.
 
-    Of a bucket one instant is kept: when it will be full again. It is full if that has passed, and
-    empty if that is as far ahead as it takes to fill it.
+    Only one instant is stored per bucket: when it will be full again. The bucket is full if that
+    has passed, and empty if it is as far ahead as filling the bucket takes.
     """
 
     def __init__(self, per_s: int, max_addresses: int = MAX_ADDRESSES) -> None:
-        """Begin with full buckets.
+        """Start with full buckets.
 
         Args:
-            per_s: Requests per second that each address may make.
-            max_addresses: So many buckets are kept.
+            per_s: Requests per second of each address.
+            max_addresses: Most buckets that are kept.
         """
         self._each: Duration = NANOSECONDS_PER_SECOND // per_s
         self._depth: Duration = _BURST_S * NANOSECONDS_PER_SECOND
@@ -40,7 +40,7 @@ class TokenBuckets:
         return len(self._full_at)
 
     def take(self, address: str, now: Instant) -> Duration:
-        """Take a token; return 0, or how long it is until there is one.
+        """Take a token; return 0, or the time until there is one.
 
         Args:
             address: Of the client.
@@ -59,9 +59,9 @@ class TokenBuckets:
         return 0
 
     def _forget_some(self) -> None:
-        """Forget the tenth with the fullest buckets: a full one is as good as none.
+        """Remove the fullest tenth of the buckets: a full bucket holds no information.
 
-        So many at once, that the search is seldom, however many addresses there are.
+        A tenth at once, so that the search is rare, however many addresses there are.
         """
         fullest = sorted(self._full_at, key=self._full_at.__getitem__)
         for address in fullest[: max(1, self._max_addresses // 10)]:
@@ -69,7 +69,7 @@ class TokenBuckets:
 
 
 class RateGate:
-    """Refuse who asks too often, before anything is done for it; but never a stop."""
+    """Rejects clients that send too many requests; never limits a stop."""
 
     def __init__(
         self,
@@ -84,9 +84,9 @@ class RateGate:
         Args:
             app: What is behind the gate.
             per_s: Requests per second of one address; twice as many may come at once.
-            clock: Tells how often that is.
-            policies: Tells which routes are never limited.
-            refusals: Counts who was refused.
+            clock: Of the service.
+            policies: Which routes are never limited.
+            refusals: Counts rejected requests.
         """
         self._app = app
         self._per_s = per_s
@@ -114,6 +114,6 @@ class RateGate:
 
     def _problem(self, path: str) -> Problem:
         detail = f"more than {self._per_s} requests a second came from this address"
-        hint = "`limits.requests_per_s` in the robot file sets how many may; WS /ws tells by itself"
+        hint = "see `limits.requests_per_s` in the robot file; use WS /ws instead of polling"
         status = HTTPStatus.TOO_MANY_REQUESTS
         return make_problem(status, status.name, detail, path, more={"hint": hint})

@@ -1,6 +1,6 @@
-"""Refusals at the gate: answered, counted, and told in the log without filling it.
+"""Requests rejected at the gate: answered, counted, and logged at a limited rate.
 
-They are no events: a flood of them would wash out of the log of events what happened.
+They are not recorded as events, since a flood of them would displace the others.
 """
 
 import logging
@@ -24,7 +24,7 @@ _POLICY_VIOLATION = 1008
 
 
 class Refusals:
-    """How often clients were turned away, by status; the log has one line a second of each."""
+    """Counts of rejected requests by status; at most one log line per second and status."""
 
     def __init__(self, clock: Clock) -> None:
         self.counts: Counter[HTTPStatus] = Counter()
@@ -33,11 +33,11 @@ class Refusals:
         self._untold: Counter[HTTPStatus] = Counter()
 
     def note(self, status: HTTPStatus, address: str) -> None:
-        """Count a refusal, and log it if none of its kind was logged in the last second.
+        """Count a rejected request, and log it if none of its status was in the last second.
 
         Args:
-            status: As it was answered; `/metrics` shows those of `COUNTED`.
-            address: Of the client; what it tried is not told.
+            status: Of the answer; `/metrics` shows those of `COUNTED`.
+            address: Of the client; the request itself is not logged.
         """
         self.counts[status] += 1
         now = self._clock.now()
@@ -47,7 +47,7 @@ class Refusals:
         self._quiet_until[status] = now + _LOG_EVERY
         more = self._untold.pop(status, 0)
         untold = f", and {more} more since the last line" if more else ""
-        log.warning("%d %s: refused %s%s", status, status.phrase, address, untold)
+        log.warning("%d %s: rejected %s%s", status, status.phrase, address, untold)
 
 
 async def refuse(
@@ -57,9 +57,9 @@ async def refuse(
     send: Send,
     headers: Mapping[str, str] | None = None,
 ) -> None:
-    """Answer a request with a problem; a WebSocket is closed before it was accepted.
+    """Answer a request with a problem, or close a WebSocket before it is accepted.
 
-    The server makes 403 of that. A page is not shown a body anyway.
+    The server answers such a handshake with 403; browsers do not show pages its body anyway.
     """
     if scope["type"] == "websocket":
         await send({"type": "websocket.close", "code": _POLICY_VIOLATION})

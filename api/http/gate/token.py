@@ -1,4 +1,4 @@
-"""The token: demanded of every request but for what a route says everybody may ask."""
+"""The token, required for every request except on routes that need none."""
 
 from http import HTTPStatus
 
@@ -12,13 +12,13 @@ from api.http.problems import make_problem
 from api.http.schemas.problem import Problem
 
 _CHALLENGE = 'Bearer realm="pilothouse"'
-_HINT = "send the header `Authorization: Bearer TOKEN` with the token that the service was given"
+_HINT = "send the header `Authorization: Bearer TOKEN` with the token of the service"
 
 
 class TokenGate:
-    """Let through who has the token.
+    """Passes on requests with the token.
 
-    A WebSocket passes: a browser cannot give its handshake a header, so the stream asks for the
+    WebSockets always pass: a browser cannot set headers in the handshake, so the stream checks the
     token itself.
     """
 
@@ -29,9 +29,9 @@ class TokenGate:
 
         Args:
             app: What is behind the gate.
-            access: Whom the service lets in.
-            policies: Tells which routes need no token; where there is none, it is needed.
-            refusals: Counts who was not.
+            access: The access control.
+            policies: Which routes need no token; unknown paths need it.
+            refusals: Counts rejected requests.
         """
         self._app = app
         self._access = access
@@ -59,6 +59,6 @@ class TokenGate:
 
 
 def _problem(path: str, *, is_given: bool) -> Problem:
-    detail = "this is not the token of the service" if is_given else "this needs a token"
+    detail = "wrong token" if is_given else "a token is required"
     status = HTTPStatus.UNAUTHORIZED
     return make_problem(status, status.name, detail, path, more={"hint": _HINT})

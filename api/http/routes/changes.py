@@ -1,4 +1,4 @@
-"""Changes: what became of what was asked."""
+"""Changes: the requested ones, their steps and how they ended."""
 
 from collections.abc import Iterator
 from typing import Annotated
@@ -54,9 +54,9 @@ async def get_change(change: ChangePath, supervisor: SupervisorDep) -> ChangeJso
 async def cancel_change(
     change: ChangePath, supervisor: SupervisorDep, actor: ActorDep
 ) -> ChangeJson:
-    """Cancel a change: no further step is begun; one in flight is not recalled.
+    """Cancel a change: no further step is started; steps in progress are not recalled.
 
-    A change that has ended stays as it ended.
+    A change that has ended keeps its status.
     """
     supervisor.submit(CancelRequest(ChangeId(change), actor))
     return ChangeJson.of(supervisor.core.change(change), supervisor.clock)

@@ -1,4 +1,4 @@
-"""The emergency stop: a latch that no reading releases, only a person."""
+"""The emergency stop: a latch that only an operator releases, never a reading."""
 
 from fastapi import APIRouter
 
@@ -23,10 +23,10 @@ async def get_emergency_stop(supervisor: SupervisorDep) -> EmergencyStopJson:
 async def set_emergency_stop(
     body: EmergencyStopBody, supervisor: SupervisorDep, actor: ActorDep
 ) -> EmergencyStopJson:
-    """Engage or release the emergency stop; to do so twice changes nothing.
+    """Engage or release the emergency stop; repeating a request changes nothing.
 
-    This is a software stop. It is not safety-rated, and replaces no hardware stop. In this version
-    a restart of the service releases it, since it is not stored.
+    This is a software stop. It is not safety-rated and does not replace a hardware stop. In this
+    version a restart of the service releases it, since it is not stored.
     """
     supervisor.submit(EmergencyStopRequest(body.engaged, body.reason or "", actor))
     return EmergencyStopJson.of(supervisor.core.emergency_stop(), supervisor.clock)

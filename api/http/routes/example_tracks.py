@@ -1,4 +1,4 @@
-"""Tracks to try a simulated vehicle on."""
+"""Built-in tracks for a simulated vehicle."""
 
 from typing import Annotated
 
@@ -16,14 +16,14 @@ router = APIRouter(prefix="/examples/tracks", tags=["drive"])
 
 
 class ExampleTrackJson(Json):
-    """A track that comes along."""
+    """A built-in track."""
 
     name: str = Field(description="As in `GET /examples/tracks/{name}`")
     title: str
 
 
 class ExampleTracksJson(Json):
-    """Tracks that come along; none where the vehicle is real."""
+    """The built-in tracks; none if the vehicle is real."""
 
     items: list[ExampleTrackJson]
 
@@ -31,7 +31,7 @@ class ExampleTracksJson(Json):
 @router.get("")
 @policy(Permission.OBSERVE)
 async def list_example_tracks(supervisor: SupervisorDep) -> ExampleTracksJson:
-    """List the tracks that come along; none where the vehicle is real."""
+    """List the built-in tracks; none if the vehicle is real."""
     return ExampleTracksJson(
         items=[ExampleTrackJson(name=name, title=title) for name, title in _offered(supervisor)]
     )

@@ -1,4 +1,4 @@
-"""Holds: who keeps the vehicle from driving its task, and why."""
+"""Holds: they keep the vehicle from driving its task, each with an owner and a reason."""
 
 from http import HTTPStatus
 from typing import Annotated
@@ -25,7 +25,7 @@ OwnerPath = Annotated[
 @router.get("")
 @policy(Permission.OBSERVE)
 async def list_holds(supervisor: SupervisorDep) -> HoldsJson:
-    """List the holds, the oldest first; a task runs only without any."""
+    """List the holds, the oldest first; a task runs only without holds."""
     clock = supervisor.clock
     holds = supervisor.core.driving.holds.values()
     return HoldsJson(items=[HoldJson.of(hold, clock) for hold in holds])
@@ -39,9 +39,9 @@ async def set_hold(
     actor: ActorDep,
     body: HoldBody | None = None,
 ) -> HoldJson:
-    """Hold the task: speed 0 is commanded at once. To repeat it renews the reason only.
+    """Hold the task: speed 0 is commanded at once. Repeating the request only updates the reason.
 
-    A hold lasts until its owner lets go, whatever task is served in between.
+    A hold stays in force until it is released, also if another task is submitted meanwhile.
     """
     supervisor.submit(HoldRequest(owner, body.reason if body else "", actor))
     return HoldJson.of(supervisor.core.driving.holds[owner], supervisor.clock)
@@ -50,5 +50,5 @@ async def set_hold(
 @router.delete("/{owner}", status_code=HTTPStatus.NO_CONTENT, response_class=Response)
 @policy(Permission.OPERATE)
 async def release_hold(owner: OwnerPath, supervisor: SupervisorDep, actor: ActorDep) -> None:
-    """Release a hold; with the last one the task goes on. Without such a hold nothing happens."""
+    """Release a hold; the task resumes without holds. If there is no such hold, nothing changes."""
     supervisor.submit(ReleaseRequest(owner, actor))

@@ -1,4 +1,4 @@
-"""Inference over facts that are handed in: what would the robot be in, if ..."""
+"""Inference of states and modes from posted facts."""
 
 from fastapi import APIRouter, Request, Response
 
@@ -13,7 +13,7 @@ router = APIRouter(tags=["inference"])
 
 _MAX_BYTES_HERE = 16_384
 _MAX_PARTS_HERE = 100
-"""Up to these the work takes less than 5 ms, and is not worth a way to the worker and back."""
+"""Up to these limits the job takes less than 5 ms, and is not worth sending to the worker."""
 
 
 @router.post(
@@ -34,8 +34,8 @@ async def infer_from_facts(
 ) -> Response:
     """Infer states and modes from targets and reported facts; nothing live is read or changed.
 
-    Without a `model`, the loaded one is meant. A node left out, or without a `state`, never
-    reported. A `mode` is what the node reported; without one it is inferred from the parameters.
+    The default `model` is the loaded one. A node that is left out, or has no `state`, counts as
+    never reported. `mode` is a reported mode; without it, the mode is inferred from the parameters.
     """
     raw = await read_body(request, limits_of(request).model_bytes)
     if len(raw) <= _MAX_BYTES_HERE and len(supervisor.model.parts) <= _MAX_PARTS_HERE:

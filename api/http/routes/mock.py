@@ -1,4 +1,4 @@
-"""The mock: signals of a robot that is not there. 404 where it does not run."""
+"""The mock signals. 404 if the mock is not running."""
 
 from http import HTTPStatus
 from typing import Annotated
@@ -22,7 +22,7 @@ router = APIRouter(prefix="/mock", tags=["health"], route_class=JsonRoute)
 @router.get("")
 @policy(Permission.OBSERVE)
 async def get_mock(supervisor: SupervisorDep) -> MockJson:
-    """Show what the mock holds and publishes."""
+    """Show the values of the mock signals, and which are published."""
     return MockJson(items=_signals(_mock_of(supervisor)))
 
 
@@ -34,7 +34,7 @@ async def change_mock(
     supervisor: SupervisorDep,
     actor: ActorDep,
 ) -> MockSignalJson:
-    """Hold another value of a signal, or stop or resume its publishing; both, or none, are done."""
+    """Set the value of a mock signal, or stop or resume publishing it; both or none are done."""
     mock = _mock_of(supervisor)
     if not mock.holds(signal):
         known = [item.signal for item in mock.view()]
@@ -52,7 +52,7 @@ async def change_mock(
 def _mock_of(supervisor: Supervisor) -> Mock:
     mock = supervisor.readings.mock
     if mock is None:
-        detail = "the mock does not run: signals come from outside"
+        detail = "the mock is not running: signals come from outside"
         hint = "start the service with --mock-signals, or with `mock: true` in the robot file"
         raise HttpError(HTTPStatus.NOT_FOUND, "NO_MOCK", detail, hint)
     return mock

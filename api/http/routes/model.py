@@ -1,4 +1,4 @@
-"""The model of the robot, and the check of any other one."""
+"""The model of the robot, and checks of other models."""
 
 from fastapi import APIRouter, Request, Response
 
@@ -17,7 +17,7 @@ _YAML_TYPES = (_YAML, "application/x-yaml", "text/yaml")
 
 
 def encode_model(supervisor: Supervisor) -> bytes:
-    """Return the loaded model as JSON; for 10,000 nodes too much work while the robot runs."""
+    """Return the loaded model as JSON; done at the start, since it is slow for 10,000 nodes."""
     model = supervisor.model
     shown = ModelJson(
         systems={name: SystemModelJson.of(system) for name, system in model.systems.items()},
@@ -34,7 +34,7 @@ def encode_model(supervisor: Supervisor) -> bytes:
 )
 @policy(Permission.OBSERVE)
 async def get_model(request: Request, supervisor: SupervisorDep) -> Response:
-    """Show the loaded model: the file with `Accept: application/yaml`, else what was read in it."""
+    """Show the loaded model as JSON, or its file with `Accept: application/yaml`."""
     headers = {"Vary": "Accept"}
     accepted = request.headers.get("accept", "")
     if any(part.partition(";")[0].strip().lower() in _YAML_TYPES for part in accepted.split(",")):
@@ -50,6 +50,6 @@ async def get_model(request: Request, supervisor: SupervisorDep) -> Response:
 )
 @policy(Permission.OBSERVE)
 async def check_posted_model(request: Request, worker: WorkerDep) -> Response:
-    """Check a model (SMH, YAML): everything that is wrong with it, and what is odd, at once."""
+    """Check a model (SMH, YAML): returns all errors and warnings at once."""
     raw = await read_body(request, limits_of(request).model_bytes)
     return Response(await worker.call(check_posted, raw), media_type="application/json")

@@ -22,7 +22,7 @@ router = APIRouter(prefix="/nodes", tags=["nodes"], route_class=JsonRoute)
 @router.get("/{part:path}/parameters")
 @policy(Permission.OBSERVE)
 async def list_parameters(part: PartDep, supervisor: SupervisorDep) -> ParametersJson:
-    """List the parameters of a node, and what its target mode wants of them."""
+    """List the parameters of a node, and the values that its target mode requires."""
     views = supervisor.core.parameters(part)
     return ParametersJson(items=[ParameterRowJson.of(view) for view in views])
 
@@ -37,10 +37,10 @@ async def set_parameters(
     actor: ActorDep,
     request: Request,
 ) -> Response:
-    """Set parameters of a node, all or none; the mode inferred from them follows.
+    """Set parameters of a node, all or none; its inferred mode follows from them.
 
-    An integer for a parameter that is known to be a double is taken as a double, so that `1` may be
-    written for `1.0`. A double is never taken as an integer.
+    An integer for a parameter that is known to be a double is converted, so that `1` may be written
+    for `1.0`. A double is never converted to an integer.
     """
     values = _as_known(supervisor, part, body)
     try:

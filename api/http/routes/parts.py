@@ -1,6 +1,6 @@
-"""Systems and nodes: what they are in, what they should be in, and requests to change that.
+"""Systems and nodes: their actual and target states and modes, and requests to change them.
 
-The same routes are there for both kinds, below `/systems` and `/nodes`. A name may hold slashes.
+Both kinds have the same routes, below `/systems` and `/nodes`. A name may contain slashes.
 """
 
 from fastapi import APIRouter, Request, Response
@@ -57,10 +57,10 @@ async def change_state(
     actor: ActorDep,
     request: Request,
 ) -> Response:
-    """Bring the part through a lifecycle transition.
+    """Request a lifecycle transition of the part.
 
-    What lies between is done on the way: activate configures first, cleanup deactivates first.
-    Activating a system means its mode `__DEFAULT__`.
+    Intermediate transitions are done as needed: activate configures first, cleanup deactivates
+    first. Activating a system means its mode `__DEFAULT__`.
     """
     asked = TransitionRequest(part, Transition(body.transition), actor)
     return await answer_change(supervisor, asked, options, request)
@@ -69,7 +69,7 @@ async def change_state(
 @router.get("/{part:path}/states")
 @policy(Permission.OBSERVE)
 async def list_states(part: PartDep) -> StatesJson:
-    """List the states that the part can rest in."""
+    """List the primary lifecycle states."""
     return StatesJson(items=[state for state in LifecycleState if state in PRIMARY_STATES])
 
 
@@ -90,7 +90,7 @@ async def change_mode(
     actor: ActorDep,
     request: Request,
 ) -> Response:
-    """Bring the part into a mode; it is configured and activated on the way if it must be."""
+    """Request a mode of the part; it is configured and activated first if needed."""
     try:
         asked = ModeRequest(part, body.mode, actor)
         return await answer_change(supervisor, asked, options, request)
@@ -101,7 +101,7 @@ async def change_mode(
 @router.get("/{part:path}/modes")
 @policy(Permission.OBSERVE)
 async def list_modes(part: PartDep, supervisor: SupervisorDep) -> ModesJson:
-    """List the modes, and for each what stands against entering it now."""
+    """List the modes, and for each the blockers that keep the part from entering it now."""
     clock = supervisor.clock
     modes = supervisor.core.modes(part)
     return ModesJson(items=[EnterableModeJson.of(mode, clock) for mode in modes])
@@ -111,5 +111,5 @@ async def list_modes(part: PartDep, supervisor: SupervisorDep) -> ModesJson:
 @router.get("/{part:path}")
 @policy(Permission.OBSERVE)
 async def get_part(part: PartDep, supervisor: SupervisorDep) -> PartJson:
-    """Show one part: what was asked of it, what is pursued, and what it is in."""
+    """Show one part: its requested target, the target in force, and its actual state and mode."""
     return PartJson.of(supervisor.core.part(part), supervisor.clock)

@@ -1,4 +1,4 @@
-"""How the service fares. The robot is not meant: one in ERROR is watched by a healthy service."""
+"""Health of the service, not of the robot: a healthy service may supervise a robot in ERROR."""
 
 from collections.abc import Iterator
 from http import HTTPStatus
@@ -22,13 +22,13 @@ MAX_TICK_AGE: Duration = seconds(1.0)
 
 
 class LiveJson(Json):
-    """The event loop turns."""
+    """The event loop is running."""
 
     status: Literal["alive"] = "alive"
 
 
 class CheckJson(Json):
-    """One thing without which the service is of no use."""
+    """A check that must pass for the service to work."""
 
     name: str
     ok: bool
@@ -36,21 +36,21 @@ class CheckJson(Json):
 
 
 class WarningJson(Json):
-    """Something that works, and should be looked at."""
+    """Something that works but needs attention."""
 
     code: str
     message: str
 
 
 class ReadyJson(Json):
-    """The service does its work."""
+    """The service is ready."""
 
     status: Literal["ready"] = "ready"
     checks: list[CheckJson]
 
 
 class HealthJson(Json):
-    """What is well with the service, and what should be looked at."""
+    """The checks and warnings of the service."""
 
     status: Literal["ok", "failing"]
     checks: list[CheckJson]
@@ -60,14 +60,14 @@ class HealthJson(Json):
 @router.get("/livez")
 @policy(Permission.PROBE)
 async def get_livez() -> LiveJson:
-    """Tell that the event loop turns."""
+    """Report that the event loop is running."""
     return LiveJson()
 
 
-@router.get("/readyz", response_model=ReadyJson, responses={503: {"description": "It does not"}})
+@router.get("/readyz", response_model=ReadyJson, responses={503: {"description": "Not ready"}})
 @policy(Permission.PROBE)
 async def get_readyz(supervisor: SupervisorDep, request: Request) -> ReadyJson | Response:
-    """Tell whether the model is loaded and the core ticks; 503 if not."""
+    """Report whether the model is loaded and the core ticks; 503 if not."""
     checks = _checks(supervisor)
     failing = [f"{check.name}: {check.message}" for check in checks if not check.ok]
     if failing:
@@ -81,7 +81,7 @@ async def get_readyz(supervisor: SupervisorDep, request: Request) -> ReadyJson |
 @router.get("/healthz")
 @policy(Permission.OBSERVE)
 async def get_healthz(supervisor: SupervisorDep, request: Request) -> HealthJson:
-    """Tell how the service fares, and what should be looked at; always 200."""
+    """Return the checks and warnings of the service; always 200."""
     checks = _checks(supervisor)
     exposed = bool(getattr(request.app.state, "exposed", False))
     return HealthJson(
@@ -125,13 +125,13 @@ def _warnings(supervisor: Supervisor, *, exposed: bool) -> Iterator[WarningJson]
         yield WarningJson(code=finding.code, message=finding.message)
     for name, signal in supervisor.core.signals().items():
         if signal.skewed:
-            message = f"the clock of who sends {name} differs from ours by more than 1 s"
+            message = f"the clock of the sender of {name} differs from ours by more than 1 s"
             yield WarningJson(code="CLOCK_SKEW", message=message)
     lost = supervisor.core.driving.holds.get(VEHICLE_HOLD)
     if lost is not None:
         yield WarningJson(code="NO_POSE", message=lost.reason)
     if late := supervisor.publisher.late_ticks:
-        message = f"{late} ticks were skipped since the start: the machine is slow"
+        message = f"{late} ticks skipped since the start: the machine is too slow"
         yield WarningJson(code="LATE_TICKS", message=message)
     if exposed:
         message = "anybody on the network can control the robot: there is no authentication"

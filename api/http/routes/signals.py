@@ -28,7 +28,7 @@ SignalPath = Annotated[str, Path(description="One of those in `GET /signals`")]
 @router.get("")
 @policy(Permission.OBSERVE)
 async def list_signals(supervisor: SupervisorDep) -> SignalsJson:
-    """List all signals: the values held, and what is judged of them."""
+    """List all signals: their values and errors."""
     clock, now = supervisor.clock, supervisor.clock.now()
     views = supervisor.core.signals().values()
     return SignalsJson(items=[SignalJson.at(view, clock, now) for view in views])
@@ -37,7 +37,7 @@ async def list_signals(supervisor: SupervisorDep) -> SignalsJson:
 @router.get("/{signal}")
 @policy(Permission.OBSERVE)
 async def get_signal(signal: SignalPath, supervisor: SupervisorDep) -> SignalJson:
-    """Show one signal: the value held, and what is judged of it."""
+    """Show one signal: its value and errors."""
     clock = supervisor.clock
     return SignalJson.at(supervisor.core.signal(signal), clock, clock.now())
 
@@ -52,11 +52,11 @@ async def post_readings(
     supervisor: SupervisorDep,
     actor: ActorDep,
 ) -> SystemStateJson:
-    """Hand in one reading of each of several signals; all are taken, or none is.
+    """Submit readings of several signals; all or none are accepted.
 
-    They are decided on arrival; the answer is the system state that follows. A text by the name
-    `source` tells who measured, unless there is a signal of that name. A sender without a name is
-    `api`, or the mock where the mock runs.
+    They are evaluated on arrival; the answer is the resulting system state. A text named `source`
+    is the source of the readings, unless there is a signal of that name. The default source is
+    `api`, or the mock if it is running.
     """
     values, source = dict(body), None
     if "source" not in supervisor.core.signals() and isinstance(values.get("source"), str):
@@ -77,11 +77,11 @@ async def post_readings(
 async def post_reading(
     signal: SignalPath, body: ReadingBody, supervisor: SupervisorDep, actor: ActorDep
 ) -> SystemStateJson:
-    """Hand in a reading; it is decided on arrival, and the system state that follows is returned.
+    """Submit a reading; it is evaluated on arrival, and the answer is the resulting system state.
 
-    `stamp` is shown and never makes a reading younger or older; a reading older than the one that
-    is held is refused, unless it is worse. A sender without a `source` is `api`, or the mock where
-    the mock runs.
+    `stamp` is only shown; it does not change the age of a reading. A reading older than the current
+    one is rejected, unless it is worse. The default `source` is `api`, or the mock if it is
+    running.
     """
     reading = body.reading(signal, supervisor.clock)
     try:

@@ -14,7 +14,7 @@ router = APIRouter(tags=["health"])
 
 
 def current_system_state(supervisor: Supervisor) -> SystemStateJson:
-    """Return the system state of this moment."""
+    """Return the current system state."""
     clock = supervisor.clock
     view = supervisor.core.system_state()
     return SystemStateJson.of(
@@ -36,6 +36,6 @@ async def acknowledge_error(
     supervisor: SupervisorDep,
     actor: ActorDep,
 ) -> SystemStateJson:
-    """Acknowledge an error whose recovery needs that; it ends once its cause is gone as well."""
+    """Acknowledge an error that requires it; the error ends once its cause is gone as well."""
     supervisor.submit(AcknowledgeRequest(error, actor))
     return current_system_state(supervisor)

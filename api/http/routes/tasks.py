@@ -1,4 +1,4 @@
-"""Waypoint tasks: what the vehicle drives."""
+"""Waypoint tasks of the vehicle."""
 
 from http import HTTPStatus
 from typing import Annotated
@@ -37,7 +37,7 @@ router = APIRouter(prefix="/tasks", tags=["drive"])
 
 _MAX_BYTES_HERE = 8_192
 _MAX_POINTS_HERE = 500
-"""Up to these the work takes less than 5 ms, and is not worth a way to the worker and back."""
+"""Up to these limits the job takes less than 5 ms, and is not worth sending to the worker."""
 
 _BODY = {
     "requestBody": {
@@ -54,23 +54,23 @@ async def _csv_options(
     request: Request,
     controller: Annotated[
         Controller | None,
-        Query(description=f"Of a CSV: the path tracker, {DEFAULT_CONTROLLER} unless told"),
+        Query(description=f"Of a CSV: the path tracker, by default {DEFAULT_CONTROLLER}"),
     ] = None,
     speed_mps: Annotated[
         float | None,
         Query(
             allow_inf_nan=False,
-            description=f"Of a CSV: the cruise speed, {DEFAULT_SPEED_MPS} m/s unless told",
+            description=f"Of a CSV: the cruise speed, by default {DEFAULT_SPEED_MPS} m/s",
         ),
     ] = None,
     start_index: Annotated[
-        int | None, Query(ge=0, description="Of a CSV: the waypoint to begin with, from 0")
+        int | None, Query(ge=0, description="Of a CSV: index of the first waypoint, from 0")
     ] = None,
     heading: Annotated[
-        Heading | None, Query(description="Of a CSV: what its third column is, `rad` unless told")
+        Heading | None, Query(description="Of a CSV: unit of its third column, by default `rad`")
     ] = None,
 ) -> TaskOptions | None:
-    """Return how a CSV is to be driven; None: the body is JSON, and says so itself."""
+    """Return the options for a CSV; None: the body is JSON, and holds them itself."""
     kind = request.headers.get("content-type", "").partition(";")[0].strip().lower()
     if kind == "text/csv":
         return TaskOptions(
@@ -93,17 +93,17 @@ CsvOptionsDep = Annotated[TaskOptions | None, Depends(_csv_options)]
 
 @router.post("", status_code=HTTPStatus.CREATED, response_model=TaskJson, openapi_extra=_BODY)
 @policy(Permission.OPERATE)
-async def serve_task(
+async def post_task(
     request: Request,
     csv: CsvOptionsDep,
     supervisor: SupervisorDep,
     worker: WorkerDep,
     actor: ActorDep,
 ) -> Response:
-    """Drive along waypoints, in place of the current task.
+    """Submit a task along waypoints; it replaces the current task.
 
-    They are JSON, or CSV with `x,y,yaw` in m, m and rad (`Content-Type: text/csv`). While something
-    holds the vehicle, as an error does, the task is taken and waits.
+    The waypoints are JSON, or CSV with `x,y,yaw` in m, m and rad (`Content-Type: text/csv`). If
+    there are holds, for example because of an error, the task is accepted and waits.
     """
     raw = await read_body(request, limits_of(request).waypoints_bytes)
     posted = await _read(raw, csv, worker)
@@ -113,16 +113,16 @@ async def serve_task(
 
 
 def submit_task(supervisor: Supervisor, posted: PostedTask, actor: Actor) -> TaskJson:
-    """Hand a task to the core and show what became of it.
+    """Submit a task to the core and return it.
 
     Raises:
-        InvalidBodyError: It cannot be driven.
+        InvalidBodyError: The task cannot be driven.
     """
     asked = TaskRequest(posted.path, posted.start_index, posted.controller, posted.speed_mps, actor)
     try:
         identity = supervisor.submit(asked).task
     except FarStartError:
-        # It says more than the place in the body: where the task could begin instead.
+        # Passed on unchanged: it holds the waypoints at which the task could start instead.
         raise
     except InvalidValueError as error:
         raise InvalidBodyError.at(error.pointer, error) from error
@@ -138,7 +138,7 @@ def submit_task(supervisor: Supervisor, posted: PostedTask, actor: Actor) -> Tas
 async def preview_task(
     request: Request, csv: CsvOptionsDep, supervisor: SupervisorDep, worker: WorkerDep
 ) -> Response:
-    """Check waypoints and describe their path; nothing is started."""
+    """Check waypoints and preview their path; nothing is started."""
     raw = await read_body(request, limits_of(request).waypoints_bytes)
     driving = supervisor.core.driving
     state = driving.vehicle.state
@@ -161,7 +161,7 @@ async def list_tasks(supervisor: SupervisorDep) -> TasksJson:
 @router.get("/current")
 @policy(Permission.OBSERVE)
 async def get_current_task(supervisor: SupervisorDep) -> TaskJson:
-    """Show the task that is driven or held."""
+    """Show the current task, which is driven or held."""
     view = supervisor.core.driving.current_task
     if view is None:
         raise UnknownTaskError("task", "current", (), hint="there is none now; see GET /tasks")
@@ -171,7 +171,7 @@ async def get_current_task(supervisor: SupervisorDep) -> TaskJson:
 @router.delete("/current", status_code=HTTPStatus.NO_CONTENT, response_class=Response)
 @policy(Permission.STOP)
 async def cancel_task(supervisor: SupervisorDep, actor: ActorDep) -> None:
-    """End the current task and stand still; also right where there is none."""
+    """Cancel the current task and stop; succeeds also if there is none."""
     supervisor.submit(CancelTaskRequest(actor))
 
 
@@ -189,7 +189,7 @@ async def get_waypoints(
     supervisor: SupervisorDep,
     worker: WorkerDep,
     max_points: Annotated[
-        int | None, Query(ge=2, description="At most so many, evenly spread; else all")
+        int | None, Query(ge=2, description="Most waypoints, evenly spread; by default all")
     ] = None,
 ) -> Response:
     """Return the waypoints of a task."""

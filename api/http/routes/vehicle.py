@@ -12,6 +12,6 @@ router = APIRouter(prefix="/vehicle", tags=["drive"])
 @router.get("")
 @policy(Permission.OBSERVE)
 async def get_vehicle(supervisor: SupervisorDep) -> VehicleJson:
-    """Show where the vehicle is, how it moves, and what it was told last."""
+    """Show pose, motion and last command of the vehicle."""
     driving = supervisor.core.driving
     return VehicleJson.of(driving.vehicle, driving.limits, supervisor.clock)

@@ -1,4 +1,4 @@
-/** <ph-change>: how the last change goes, step by step, or why a request was refused. */
+/** <ph-change>: the progress of the last change, step by step, or why a request was rejected. */
 
 import { request } from "/web/js/api.js";
 import { el, renderOnce, setAttribute, setText } from "/web/js/dom.js";
@@ -39,7 +39,7 @@ class Change extends HTMLElement {
     const of = change.part === part.name ? "" : ` of ${change.part}`;
     setText(
       this.asked,
-      `${requestWords(change.request)}${of}, asked at ${timeOfDay(change.started_at)}`,
+      `${requestWords(change.request)}${of}, requested at ${timeOfDay(change.started_at)}`,
     );
     setText(
       this.status,

@@ -1,4 +1,4 @@
-/** <ph-event-list>: what happened last, newest first; missing events leave a visible line. */
+/** <ph-event-list>: recent events, newest first; a line marks missing events. */
 
 import { el } from "/web/js/dom.js";
 import { timeOfDay } from "/web/js/words.js";
@@ -17,7 +17,7 @@ class EventList extends HTMLElement {
       "aria-label": "Recent events, newest first",
     });
     this.append(
-      el("label", { class: "switch" }, this.details, el("span", {}, "Details too")),
+      el("label", { class: "switch" }, this.details, el("span", {}, "Show details")),
       this.list,
     );
     this.details.addEventListener("change", () => this.#render());
@@ -39,7 +39,7 @@ class EventList extends HTMLElement {
   }
 }
 
-/** Details are of use when one looks for a cause; that events are missing is no detail. */
+/** Notable events are always shown, and so are lines for missing events. */
 function isNotable(event) {
   return Boolean(event.note) || event.notable;
 }

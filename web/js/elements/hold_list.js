@@ -1,4 +1,4 @@
-/** <ph-hold-list>: what keeps the vehicle from driving, and a button where a person may end it.
+/** <ph-hold-list>: the holds that keep the vehicle from driving, with buttons to release them.
  *
  * Dispatches `ph-release` with the owner.
  */
@@ -28,11 +28,11 @@ class HoldList extends HTMLElement {
     const ask = () =>
       this.dispatchEvent(new CustomEvent("ph-release", { bubbles: true, detail: owner }));
     const name = `Release the hold ${owner}`;
-    // What nobody set, Pilothouse clears itself when what it stands for is over.
+    // Pilothouse clears its own holds when their cause is gone.
     const release = by
       ? el("button", { type: "button", "aria-label": name, onclick: ask }, "Release")
       : null;
-    const whose = by ? (by === owner ? "" : `, by ${by}`) : ", ends by itself";
+    const whose = by ? (by === owner ? "" : `, by ${by}`) : ", cleared automatically";
     const line = el(
       "li",
       {},

@@ -1,4 +1,4 @@
-/** <ph-map>: path, vehicle and trail on a canvas, with the same in words beside it. */
+/** <ph-map>: path, vehicle and trail on a canvas, with a description for screen readers. */
 
 import { el, setAttribute, setText } from "/web/js/dom.js";
 import { include } from "/web/js/map/bounds.js";
@@ -49,7 +49,7 @@ class TrackMap extends HTMLElement {
     this.#setMode("fit");
   }
 
-  /** Keep the way of the vehicle, from each frame, since a hidden page draws none. */
+  /** Record the trail of the vehicle from each frame, since a hidden page draws none. */
   hear({ epoch, vehicle, systemState }) {
     if (epoch !== this.#epoch) this.#trail.clear();
     this.#epoch = epoch;
@@ -77,7 +77,7 @@ class TrackMap extends HTMLElement {
     this.#tell(state, age, serverNow);
   }
 
-  /** A vehicle at rest reports itself all the time, with nothing new to draw. */
+  /** Draw only if something changed: a vehicle at rest reports the same pose all the time. */
   #askIfChanged(facts) {
     const { isOld, vehicle } = this.#scene;
     const { pose, steering_angle_rad, lookahead } = vehicle ?? {};
@@ -143,7 +143,7 @@ class TrackMap extends HTMLElement {
     this.#ask();
   }
 
-  /** Let the view go with what is shown, as far as the person left that to the map. */
+  /** Adapt the view to what is shown, unless the user has moved it. */
   #look() {
     const { preview, vehicle } = this.#scene;
     const pose = vehicle?.pose ?? null;
@@ -153,7 +153,7 @@ class TrackMap extends HTMLElement {
     const isLost = pose !== null && !looks.isWithin(this.#view, pose, 0);
     if (preview && isNew) this.#setMode("fit");
     else if (this.#mode === "fit" && (isNew || isLost)) this.#fit();
-    // With reduced motion the ground stands still until the vehicle nears an edge.
+    // With reduced motion the ground stays still until the vehicle approaches an edge.
     else if (this.#mode === "follow") this.#centre(this.still.matches ? 0.25 : 0.5);
   }
 
@@ -170,7 +170,7 @@ class TrackMap extends HTMLElement {
       this.#view = looks.centred(this.#view, pose);
   }
 
-  /** A path is made ready for drawing once; `items` are never changed in place. */
+  /** A path is prepared for drawing once; `items` are never changed in place. */
   #shape(name, path) {
     if (path === null) this.#shapes[name] = null;
     else if (this.#shapes[name]?.items !== path.items) {
@@ -213,7 +213,7 @@ class TrackMap extends HTMLElement {
     if (width === 0 || height === 0) return;
     const ratio = devicePixelRatio;
     const [across, down] = [Math.round(width * ratio), Math.round(height * ratio)];
-    // Setting the size empties a canvas, so only where it differs.
+    // Setting the size clears a canvas, so only if it differs.
     if (this.canvas.width !== across) this.canvas.width = across;
     if (this.canvas.height !== down) this.canvas.height = down;
     this.#ink ??= readInk(this);

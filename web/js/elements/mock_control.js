@@ -35,7 +35,7 @@ class MockControl extends HTMLElement {
     }
   }
 
-  /** Follow what comes in, except while a person is at the control; `mock` is from /mock. */
+  /** Show incoming values, except while a user operates the control; `mock` is from /mock. */
   show(signal, mock, enabled) {
     setAttribute(this.fields, "disabled", !enabled);
     if (this.#dragging || performance.now() - this.#touchedAt < REST_MS) return;
@@ -47,7 +47,7 @@ class MockControl extends HTMLElement {
     if (this.publishing.box.checked && signal.value !== null) this.input?.write(signal.value);
   }
 
-  /** Send the newest wish, at most ten a second and one at a time. */
+  /** Send the newest setting, at most ten per second and one at a time. */
   async #ask(wish) {
     this.#touchedAt = performance.now();
     this.#waiting = { ...this.#waiting, ...wish };

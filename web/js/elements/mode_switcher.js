@@ -1,6 +1,6 @@
-/** <ph-mode-switcher>: buttons for lifecycle and mode; where one is off, the first reason beneath.
+/** <ph-mode-switcher>: buttons for lifecycle and mode; a disabled one shows its first blocker.
  *
- * Dispatches `ph-change` with the change that the server began, or `ph-problem` with the refusal.
+ * Dispatches `ph-change` with the change that the server started, or `ph-problem`.
  */
 
 import { partPath, request } from "/web/js/api.js";
@@ -46,7 +46,7 @@ class ModeSwitcher extends HTMLElement {
     for (const item of modes) this.#fill(item);
   }
 
-  /** A part that was shut down cannot come back, so this one is held. */
+  /** A finalized part cannot be restarted, so shutdown needs a long press. */
   #transitionButton(name) {
     const ask = () => this.#ask("state", { transition: name });
     if (name === "shutdown")

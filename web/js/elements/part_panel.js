@@ -1,4 +1,4 @@
-/** <ph-part-panel>: the selected part, what can be asked of it, and how the last request went. */
+/** <ph-part-panel>: the selected part, its commands, and the progress of the last request. */
 
 import { el, setAttribute, setText } from "/web/js/dom.js";
 import { PartWatch } from "/web/js/part_watch.js";
@@ -27,12 +27,12 @@ class PartPanel extends HTMLElement {
     this.addEventListener("ph-problem", ({ detail }) => this.#refused(detail));
   }
 
-  /** Load again what the stream does not carry. */
+  /** Reload what the stream does not carry. */
   refresh() {
     this.watch.refresh();
   }
 
-  /** Take a frame of the stream: what it tells of the part's changes, and that there is news. */
+  /** Take a frame of the stream, which may hold news of the part and its changes. */
   hear(frame) {
     this.watch.hear(frame);
   }

@@ -1,4 +1,4 @@
-/** <ph-part-tree>: systems and their parts as a tree, by the WAI-ARIA tree pattern.
+/** <ph-part-tree>: systems and their parts as a tree, after the WAI-ARIA tree pattern.
  *
  * A part that belongs to two systems has a row in each. Dispatches `ph-select` with the name.
  */
@@ -14,7 +14,7 @@ class PartTree extends HTMLElement {
 
   connectedCallback() {
     this.list = el("ul", { role: "tree", "aria-label": "Systems and nodes" });
-    this.empty = el("p", { class: "quiet" }, "Not known yet.");
+    this.empty = el("p", { class: "quiet" }, "No data yet.");
     this.append(this.list, this.empty);
     this.list.addEventListener("keydown", (event) => this.#key(event));
     this.list.addEventListener("click", (event) => this.#click(event));
@@ -116,7 +116,7 @@ class PartTree extends HTMLElement {
   }
 }
 
-// Paths are joined by a character that no name holds, since names hold slashes.
+// Paths are joined by a character that no name contains; names may contain slashes.
 const JOINT = "\n";
 
 function nameOf(path) {

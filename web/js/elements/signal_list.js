@@ -1,4 +1,4 @@
-/** <ph-signal-list> and <ph-signal-card>: each signal with its age and what is judged of it. */
+/** <ph-signal-list> and <ph-signal-card>: each signal with value, age and errors. */
 
 import { el, setAttribute, setText } from "/web/js/dom.js";
 import { describe } from "/web/js/signal_catalog.js";
@@ -65,7 +65,7 @@ class SignalCard extends HTMLElement {
     const done = Math.min((now - Date.parse(pending.since_at)) / 1000, pending.needs_s);
     this.bar.max = pending.needs_s;
     this.bar.value = done;
-    setAttribute(this.bar, "aria-label", `${pending.error} is coming`);
+    setAttribute(this.bar, "aria-label", `${pending.error} is pending`);
     setText(this.verdict, `${pending.error} in ${Math.ceil(pending.needs_s - done)} s`);
   }
 }

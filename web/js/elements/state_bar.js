@@ -1,4 +1,4 @@
-/** <ph-state-bar>: one sentence on the robot, the reasons, and how good the contact is. */
+/** <ph-state-bar>: the state of the robot in one sentence, its reasons, and the connection. */
 
 import { el, icon, renderOnce, setAttribute, setText } from "/web/js/dom.js";
 import { restartWords, stateSentence } from "/web/js/state_sentence.js";
@@ -60,7 +60,7 @@ class StateBar extends HTMLElement {
     setAttribute(this.tryNow, "hidden", contact.retryInMs === null || contact.level === "live");
   }
 
-  /** Screen readers hear what the state becomes, and not each figure that moves in it. */
+  /** Screen readers announce changes of the state, and not each figure that changes in it. */
   #speak(state, said) {
     const errors = state.systemState?.errors ?? [];
     const { id, status, reason } = currentTask(state) ?? {};

@@ -1,4 +1,4 @@
-/** <ph-stop-button>: engages the emergency stop at one press and insists until it is acknowledged.
+/** <ph-stop-button>: engages the emergency stop with one press, and retries until it is confirmed.
  *
  * It needs neither the stream nor anything else on the page to work.
  */
@@ -29,7 +29,7 @@ class StopButton extends HTMLElement {
     this.by = el("p", { class: "quiet" });
     const text = el("div", { class: "stop-text" }, this.status, this.by, this.release, this.note);
     this.append(text, this.button);
-    // A press counts when it begins: a finger that slides off must still stop the robot.
+    // On pointerdown and not on click: a finger that slides off must still stop the robot.
     this.button.addEventListener("pointerdown", ({ button }) => button === 0 && this.#engage());
     this.button.addEventListener("click", () => this.#engage());
     this.release.addEventListener("ph-held", () => this.#release());
@@ -92,7 +92,7 @@ class StopButton extends HTMLElement {
   #statusWords(engaged) {
     if (this.#undelivered) {
       const refused = this.#problem?.status ? ` (${this.#problem.detail})` : "";
-      return `Not delivered. Use the hardware stop.${refused} Still trying.`;
+      return `Not delivered. Use the hardware stop.${refused} Retrying.`;
     }
     if (this.#sending) return "Sending the stop …";
     if (this.#problem) return `Not released: ${this.#problem.detail}`;

@@ -1,7 +1,7 @@
-/** <ph-task-form>: a new task from a CSV of waypoints: choose or drop it, see it, start it.
+/** <ph-task-form>: a new task from a CSV of waypoints: choose or drop it, preview it, start it.
  *
- * Dispatches `ph-file` when there is one, and `ph-preview` with what the server says of it, or with
- * null when that is over.
+ * Dispatches `ph-file` when a file was chosen, and `ph-preview` with the server's preview of it, or
+ * with null when there is none any more.
  */
 
 import { ProblemError, request, requestText } from "/web/js/api.js";
@@ -10,7 +10,7 @@ import { problemLines } from "/web/js/problem.js";
 import { controllerName, previewLines } from "/web/js/task_words.js";
 
 const UPLOAD_MS = 30_000;
-// More than the largest track there may be; a film dropped by mistake is not even read.
+// More than the largest valid track; a video dropped by mistake is not even read.
 const MOST_BYTES = 32 * 2 ** 20;
 const LINE_SHOWN = 60;
 const HEADINGS = {
@@ -107,7 +107,7 @@ class TaskForm extends HTMLElement {
     return this.#tracks.find(({ name }) => name === "loop") ?? this.#tracks[0] ?? null;
   }
 
-  /** A file dropped beside the zone would else take the place of the page. */
+  /** Otherwise a file dropped outside the drop zone would replace the page. */
   #takeDrops() {
     const carriesFile = ({ dataTransfer }) => dataTransfer?.types.includes("Files");
     document.addEventListener("dragover", (event) => {
@@ -129,7 +129,7 @@ class TaskForm extends HTMLElement {
   #chosen() {
     const [file] = this.choose.files;
     if (file) this.#take(file);
-    // The same file, mended, can be chosen again.
+    // So that the same file can be chosen again after it was corrected.
     this.choose.value = "";
   }
 
@@ -143,13 +143,13 @@ class TaskForm extends HTMLElement {
     try {
       taken.text = await file.text();
     } catch {
-      // A folder, or a file that is gone by now.
+      // A folder, or a file that was deleted meanwhile.
       return this.#refuse(`${file.name} cannot be read.`);
     }
     if (this.#file === taken) this.#look();
   }
 
-  /** Ask what the server thinks of the file; of several answers the one asked for last counts. */
+  /** Request a preview of the file; only the answer to the latest request is used. */
   async #look() {
     if (!this.#file || this.#file.text === null) return;
     const asked = ++this.#asked;
@@ -163,27 +163,27 @@ class TaskForm extends HTMLElement {
 
   async #start(startIndex = null) {
     const text = async () => this.#file.text;
-    const { answer, problem } = await this.#work(() => this.#serve(text, startIndex));
+    const { answer, problem } = await this.#work(() => this.#submit(text, startIndex));
     if (answer) this.#discard();
     this.#problem = problem;
   }
 
   async #drive(startIndex = null) {
     const path = `/examples/tracks/${encodeURIComponent(this.#track().name)}`;
-    const drive = () => this.#serve(() => requestText(path), startIndex);
+    const drive = () => this.#submit(() => requestText(path), startIndex);
     this.#problem = (await this.#work(drive)).problem;
   }
 
-  async #serve(text, startIndex) {
+  async #submit(text, startIndex) {
     return this.#post("/tasks", await text(), startIndex === null ? {} : { start_index: startIndex });
   }
 
-  /** A vehicle in the middle of a track may go on from there. */
+  /** A vehicle in the middle of a track may start from there. */
   #elsewhere() {
     const { code, available = [] } = this.#problem;
     if (code !== "FAR_START" || available.length === 0) return null;
     const begin = () => (this.#file ? this.#start(available[0]) : this.#drive(available[0]));
-    return el("button", { type: "button", onclick: begin }, `Begin at waypoint ${available[0]}`);
+    return el("button", { type: "button", onclick: begin }, `Start at waypoint ${available[0]}`);
   }
 
   #discard() {
@@ -199,7 +199,7 @@ class TaskForm extends HTMLElement {
   }
 
   #refuse(detail) {
-    this.#problem = { title: "Refused", detail };
+    this.#problem = { title: "Rejected", detail };
     this.#show(null);
   }
 
@@ -213,7 +213,7 @@ class TaskForm extends HTMLElement {
     return request("POST", `${path}?${query}`, text, { type: "text/csv", timeoutMs: UPLOAD_MS });
   }
 
-  /** Return the answer or the problem; meanwhile nothing else can be asked for. */
+  /** Return the answer or the problem; meanwhile the buttons are disabled. */
   async #work(act) {
     this.#busy = true;
     this.start.disabled = this.example.disabled = true;

@@ -1,4 +1,4 @@
-/** <ph-task-panel>: the current task and what can be asked of it, or how the last one ended.
+/** <ph-task-panel>: the current task and its commands, or how the last one ended.
  *
  * The form for a new task is folded away while there is one.
  */
@@ -95,7 +95,7 @@ class TaskPanel extends HTMLElement {
     this.cancel.disabled = !enabled;
   }
 
-  /** Folded when a task begins and unfolded when it is over; in between as a person likes. */
+  /** Folded when a task starts and unfolded when it ends; in between the user decides. */
   #foldForm(task) {
     const id = task?.id ?? null;
     if (this.shown === id) return;

@@ -1,13 +1,13 @@
-/** <ph-token-form>: asks for the token of the service; dispatches `ph-token` once it has the right one.
+/** <ph-token-form>: asks for the token of the service; dispatches `ph-token` once it is correct.
  *
- * While it is open, nothing else of the page is shown: without the token there is nothing to show.
+ * While it is open, nothing else of the page is shown.
  */
 
 import { request } from "/web/js/api.js";
 import { el, setText } from "/web/js/dom.js";
 import { setToken } from "/web/js/token.js";
 
-const WRONG = "This is not the token of this robot.";
+const WRONG = "Wrong token.";
 
 class TokenForm extends HTMLElement {
   connectedCallback() {
@@ -21,12 +21,12 @@ class TokenForm extends HTMLElement {
     });
     this.button = el("button", { type: "submit" }, "Use this token");
     this.error = el("p", { id: "token-error", class: "error", role: "alert" });
-    // Password managers file a password under a name.
+    // Password managers need a user name.
     const name = { type: "text", autocomplete: "username", value: "pilothouse", hidden: true };
     const form = el(
       "form",
       {},
-      el("h2", {}, "This robot asks for a token"),
+      el("h2", {}, "This robot requires a token"),
       el(
         "p",
         { id: "token-note" },
@@ -77,7 +77,7 @@ class TokenForm extends HTMLElement {
 
 /** Return what is wrong with a token, or null; a right one is in use from then on. */
 async function check(value) {
-  // What a header cannot carry is no token.
+  // A token must be valid in a header.
   if (!/^[!-~]+$/.test(value)) return WRONG;
   setToken(value);
   try {

@@ -1,7 +1,7 @@
-/** Hands, wheel and keys on a canvas, as calls of `pan(dx, dy)`, `zoom(factor, x, y)`, `fit()`.
+/** Turns pointers, wheel and keys into calls of `pan(dx, dy)`, `zoom(factor, x, y)` and `fit()`.
  *
- * A mouse drags. Of a touch screen two fingers move and zoom the map, while one finger scrolls the
- * page, so that nobody who scrolls is caught by the map.
+ * A mouse drags. On a touch screen two fingers move and zoom the map, and one finger scrolls the
+ * page, so that the map does not capture scrolling.
  */
 
 const STEP_PX = 40;

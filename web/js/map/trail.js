@@ -5,7 +5,7 @@ import { include } from "/web/js/map/bounds.js";
 const KEPT_MS = 5 * 60_000;
 const LEAST_STEP_M = 0.05;
 const PLACES_OF_A_RUN = 200;
-// Between two reports so far apart nobody knows the way, so no line is drawn.
+// Between two reports so far apart the path is unknown, so no line is drawn.
 const GAP_MS = 2000;
 const JUMP_M = 3;
 

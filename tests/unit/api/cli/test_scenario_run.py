@@ -60,16 +60,16 @@ def test_a_failed_expectation_is_told_with_line_and_difference(story: Path, caps
     assert run(story, STORY.replace("ERROR", "IDLE")) == FAILED
 
     assert capsys.readouterr().out.splitlines()[-4:-1] == [
-        f"{story}:9: otherwise than expected at 2 s: system_state.state",
+        f"{story}:9: not as expected at 2 s: system_state.state",
         '    expected "IDLE"',
-        '    seen     "ERROR"',
+        '    actual   "ERROR"',
     ]
 
 
 def test_a_member_that_is_not_there_is_told_as_such(story: Path, capsys: Output) -> None:
     assert run(story, STORY.replace("state: ERROR", "stat: ERROR")) == FAILED
 
-    assert "    seen     (not there)\n" in capsys.readouterr().out
+    assert "    actual   (not there)\n" in capsys.readouterr().out
 
 
 def test_a_long_value_is_cut(story: Path, capsys: Output) -> None:
@@ -82,15 +82,15 @@ def test_a_refused_step_fails_with_its_line_and_hint(story: Path, capsys: Output
     assert run(story, STORY.replace("battery_level: 0.4", "batery: 0.4")) == FAILED
 
     told = capsys.readouterr().out
-    assert f"{story}:5: refused at 1 s: there is no signal 'batery'\n    hint: known: " in told
-    assert "1 otherwise than expected, 1 refused" in told
+    assert f"{story}:5: rejected at 1 s: there is no signal 'batery'\n    hint: known: " in told
+    assert "1 not as expected, 1 rejected" in told
 
 
 def test_failures_are_told_in_the_order_of_time(story: Path, capsys: Output) -> None:
     run(story, STORY.replace("ERROR", "IDLE") + "  - {t_s: 0, reading: {batery: 1}}\n")
 
     told = capsys.readouterr().out
-    assert told.index(":10: refused") < told.index(":9: otherwise")
+    assert told.index(":10: rejected") < told.index(":9: not as")
 
 
 def test_a_step_that_may_be_refused_is_as_expected(story: Path, capsys: Output) -> None:
@@ -104,7 +104,7 @@ def test_a_step_that_should_have_been_refused_fails(story: Path, capsys: Output)
     step = "  - {t_s: 3, reading: {battery_level: 1}, refused: true}\n"
 
     assert run(story, STORY + step) == FAILED
-    assert f"{story}:10: not refused at 3 s, though" in capsys.readouterr().out
+    assert f"{story}:10: not rejected at 3 s, although" in capsys.readouterr().out
 
 
 def test_a_scenario_without_expectations_only_tells_what_happens(
@@ -114,7 +114,7 @@ def test_a_scenario_without_expectations_only_tells_what_happens(
 
     lines = capsys.readouterr().out.splitlines()
     assert "     0.00 s  drive_base is reachable" in lines
-    assert lines[-1].startswith(f"{story}: nothing was expected (3 s in ")
+    assert lines[-1].startswith(f"{story}: no expectations (3 s in ")
 
 
 @pytest.mark.parametrize(("text", "code"), [(STORY, HELD), (STORY.replace("ERROR", "x"), FAILED)])
@@ -175,7 +175,7 @@ def test_other_files_than_those_of_the_scenario_may_be_given(
 
     told = capsys.readouterr().out
     assert "arm is reachable" in told
-    assert '    seen     "IDLE"' in told
+    assert '    actual   "IDLE"' in told
 
 
 def test_a_terminal_shows_how_far_it_is_and_is_left_clean(

@@ -171,7 +171,7 @@ async def test_another_service_at_the_same_place_is_gone_on_with() -> None:
 @pytest.mark.parametrize(
     ("code", "reason", "words"),
     [
-        (1012, "", "the service ends or is restarted"),
+        (1012, "", "the service stopped or is restarting"),
         (1013, "too slow", "the service closed the stream: too slow"),
         (1011, "", "the service closed the stream: 1011"),
     ],
@@ -204,7 +204,7 @@ async def test_a_connection_that_breaks_is_told(monkeypatch: pytest.MonkeyPatch)
         service.streams[-1].transport.abort()
         await until(lambda: bool(told))
 
-    assert told[0] == "the connection broke"
+    assert told[0] == "the connection was lost"
 
 
 async def test_a_peer_that_is_silent_is_given_up(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -215,7 +215,7 @@ async def test_a_peer_that_is_silent_is_given_up(monkeypatch: pytest.MonkeyPatch
         monkeypatch.setattr(watch, "lose", told.append)
         await until(lambda: len(service.streams) > 1)
 
-    assert told[0] == "silent for 0.01 s"
+    assert told[0] == "no frame for 0.01 s"
 
 
 @pytest.mark.parametrize("status", [401, 403])
@@ -259,7 +259,7 @@ async def test_a_stream_that_begins_with_a_refusal_ends_it() -> None:
     ("answer", "words"),
     [
         ((503, {"detail": "the model is being read"}), "the model is being read"),
-        ((404, {}), "what answers says 404: is it Pilothouse?"),
+        ((404, {}), "the server answered 404: is it Pilothouse?"),
         ((200, {}), "is not Pilothouse"),
     ],
 )

@@ -116,7 +116,7 @@ def test_an_answer_without_content_is_empty(service: Service) -> None:
     "url", ["robot:8000", "ftp://robot", "http://", "http://[::1", "http://robot:0", "", "/ws"]
 )
 def test_what_is_no_address_is_refused_before_anything_is_sent(url: str) -> None:
-    with pytest.raises(NoAnswerError, match="is no address"), service_at(url):
+    with pytest.raises(NoAnswerError, match="invalid address"), service_at(url):
         pass
 
 
@@ -154,7 +154,7 @@ def test_who_has_no_or_another_token_is_told_what_to_do(token: str | None, hint:
         client.path_of("actuation")
 
     lines = list(refusal_lines(caught.value.problem))
-    assert lines[0] == "refused: it is so"
+    assert lines[0] == "rejected: it is so"
     assert hint in lines[-1]
     assert FILE_VARIABLE in lines[-1]
 

@@ -49,7 +49,7 @@ def test_a_summary_ends_with_the_first_clause(document: dict[str, Any]) -> None:
     canceling = document["paths"]["/changes/{change}"]["delete"]
 
     assert canceling["summary"] == "Cancel a change"
-    assert canceling["description"].startswith("Cancel a change: no further step is begun;")
+    assert canceling["description"].startswith("Cancel a change: no further step is started;")
 
 
 def test_no_description_breaks_its_lines_where_the_source_does(document: dict[str, Any]) -> None:
@@ -171,8 +171,8 @@ def test_bodies_that_routes_read_themselves_are_described(document: dict[str, An
     ("method", "path", "told"),
     [
         ("put", "/emergency_stop", "a restart of the service releases it"),
-        ("post", "/signals", "or the mock where the mock runs"),
-        ("post", "/signals/{signal}", "or the mock where the mock runs"),
+        ("post", "/signals", "or the mock if it is"),
+        ("post", "/signals/{signal}", "or the mock if it is"),
     ],
 )
 def test_what_an_operator_could_be_surprised_by_is_told(

@@ -58,8 +58,8 @@ def test_values_in_order_are_given_their_names(
 @pytest.mark.parametrize(
     ("type_name", "args", "words"),
     [
-        (CHANGE_MODE, ["FAST", "SLOW"], "takes mode_name, and 2 values came"),
-        ("std_srvs/srv/Empty", [1], "takes nothing"),
+        (CHANGE_MODE, ["FAST", "SLOW"], "has the fields mode_name, but 2 values were sent"),
+        ("std_srvs/srv/Empty", [1], "has no fields"),
     ],
 )
 def test_more_values_than_there_are_fields_are_refused(

@@ -198,7 +198,7 @@ async def test_a_client_that_gives_the_token_is_let_in(
 @pytest.mark.parametrize(
     ("text", "words"),
     [
-        ('{"op":"auth","token":"a guess","id":"auth:1"}', "not the token"),
+        ('{"op":"auth","token":"a guess","id":"auth:1"}', "wrong token"),
         ('{"op":"auth","mac":"x","id":"auth:1"}', "first message"),
         ('{"op":"publish","topic":"/estop","msg":{"enabled":true},"id":"auth:1"}', "first message"),
         ("{", "first message"),
@@ -224,7 +224,7 @@ async def test_a_client_that_says_nothing_is_closed_in_the_end(
 ) -> None:
     monkeypatch.setattr(rosbridge, "AUTH_TIMEOUT_S", 0.01)
     async with RosbridgeClient(closed_app) as client:
-        assert "no token came" in (await client.next("status"))["msg"]
+        assert "no token was sent" in (await client.next("status"))["msg"]
         assert await client.end() == 4401
 
 

@@ -150,7 +150,7 @@ async def test_a_client_that_takes_nothing_is_cut_off_within_five_seconds(
         await robot.tick(2)
 
         assert robot.pipe.aborted
-    assert "dropped test: it does not read" in caplog.text
+    assert "dropped client test: it does not read" in caplog.text
 
 
 async def test_a_client_that_vanished_is_cut_off_although_nothing_waits(robot: Robot) -> None:

@@ -120,7 +120,7 @@ async def test_without_an_id_all_subscriptions_of_a_topic_end(talk: Talk) -> Non
     ("asked", "words"),
     [
         ({"topic": "/nothing"}, "there is no topic '/nothing' (/rosapi/topics lists"),
-        ({"topic": "/estop"}, "/estop may be published to, and tells nothing"),
+        ({"topic": "/estop"}, "/estop can only be published to"),
         ({"topic": "/system_state", "type": "std_msgs/Bool"}, "is gem_state_msgs/msg/SystemState"),
         ({"topic": ""}, "/topic"),
     ],
@@ -157,7 +157,7 @@ async def test_no_client_has_subscriptions_without_end(
 
     talk.say("subscribe", topic="/actuation/mode_event")
 
-    assert "there already" in talk.only()["msg"]
+    assert "too many subscriptions" in talk.only()["msg"]
     assert talk.interface.listens(MODE_EVENT) == 0
 
 
@@ -219,7 +219,7 @@ async def test_a_reading_that_is_refused_is_answered_with_an_error(talk: Talk) -
 @pytest.mark.parametrize("first", ["advertise", "publish"])
 async def test_that_nobody_hears_a_topic_is_told_once(talk: Talk, first: str) -> None:
     talk.say(first, topic="/cmd_vel", type="geometry_msgs/Twist", msg={})
-    assert "there is no listener to '/cmd_vel'" in talk.only()["msg"]
+    assert "there is no subscriber of '/cmd_vel'" in talk.only()["msg"]
 
     talk.say("publish", topic="/cmd_vel", msg={})
     talk.say("publish", topic="/cmd_vel", msg={})
@@ -293,7 +293,7 @@ async def test_a_call_that_takes_long_keeps_no_other_from_its_answer(talk: Talk)
     [
         ("/nothing", {}, "there is no service /nothing"),
         ("/actuation/change_mode", {"mode_name": 7}, "mode_name must be a text"),
-        ("/actuation/change_mode", ["FAST", "SLOW"], "2 values came"),
+        ("/actuation/change_mode", ["FAST", "SLOW"], "2 values were sent"),
     ],
 )
 async def test_a_call_that_fails_says_why_and_has_no_result(
@@ -320,7 +320,7 @@ async def test_one_call_too_many_is_answered_at_once_and_not_made(talk: Talk) ->
     for _ in range(MAX_CALLS + 1):
         talk.say("call_service", service="/actuation/change_mode", args=["FAST"])
 
-    assert (await talk.answer())["values"] == "16 calls are under way already"
+    assert (await talk.answer())["values"] == "too many pending calls: at most 16"
     assert len(talk.interface.asked) == MAX_CALLS
     talk.interface.answer.set()
     await settle()

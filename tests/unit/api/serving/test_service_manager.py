@@ -132,7 +132,7 @@ async def test_a_manager_that_is_gone_is_complained_of_and_does_not_end_the_tick
             await clock.advance(1)
             assert supervisor.publisher.last_tick_at == clock.now()
 
-    assert "cannot tell READY=1 to the service manager" in caplog.text
+    assert "cannot send READY=1 to the service manager" in caplog.text
 
 
 @pytest.mark.parametrize("address", ["vsock:2:1234", "notify"])

@@ -116,4 +116,4 @@ def test_a_simulation_begins_no_other_one(ask: Ask) -> None:
 
     assert problem is not None
     assert problem.status == 409
-    assert "begins no other one" in problem.detail
+    assert "cannot start another one" in problem.detail

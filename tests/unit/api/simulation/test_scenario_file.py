@@ -159,20 +159,26 @@ def test_the_robot_is_ready_to_go(folder: Folder) -> None:
     ("text", "told"),
     [
         ("", "s.yaml:1:1: INVALID_VALUE until_s: missing key"),
-        ("- 1", "s.yaml:1:1: INVALID_VALUE there must be keys here, until_s among them"),
+        ("- 1", "s.yaml:1:1: INVALID_VALUE a scenario must have keys, at least until_s"),
         (
             "until_s: 1\nuntil_s: 2",
             "s.yaml:2:1: DUPLICATE_KEY duplicate key 'until_s'; first in line 1",
         ),
         ("until_s: soon", "s.yaml:1:1: INVALID_VALUE until_s: Input should be a valid number"),
         ("until_s: 1\nwings: 2", "s.yaml:2:1: INVALID_VALUE wings: unknown key"),
-        ("until_s: 1\nfrom: live", "s.yaml:2:1: INVALID_VALUE there is no live robot here"),
-        ("until_s: 1\n--- \na: 1", "s.yaml:3:1: INVALID_VALUE this is one document"),
+        ("until_s: 1\nfrom: live", "s.yaml:2:1: INVALID_VALUE a scenario file has no live robot"),
+        (
+            "until_s: 1\n--- \na: 1",
+            "s.yaml:3:1: INVALID_VALUE a scenario file holds one document only",
+        ),
         ("until_s: 1\nrobot:\n  wings: 2", "s.yaml:3:3: INVALID_VALUE robot.wings: "),
         ("until_s: 1\nrobot_file: no.yaml", "s.yaml:2:1: UNREADABLE_FILE "),
         ("until_s: 1\nmodel_file: no.yaml", "s.yaml:2:1: UNREADABLE_FILE "),
         ("until_s: 1\nmodel_file: 3", "s.yaml:2:1: INVALID_VALUE model_file: the path of a file"),
-        (f"until_s: 1\nmodel: '{ARM}'\nmodel_file: a", "s.yaml:3:1: INVALID_VALUE there is model"),
+        (
+            f"until_s: 1\nmodel: '{ARM}'\nmodel_file: a",
+            "s.yaml:3:1: INVALID_VALUE model is given as well",
+        ),
     ],
 )
 def test_what_is_wrong_is_told_with_its_place(text: str, told: str, folder: Folder) -> None:
@@ -189,12 +195,18 @@ def test_what_is_wrong_is_told_with_its_place(text: str, told: str, folder: Fold
             "s.yaml:3:31: INVALID_VALUE steps.0.why: unknown key",
         ),
         ("{t_s: 0, vehicle: off}", "s.yaml:3:14: INVALID_VALUE steps.0.vehicle: "),
-        ("{t_s: 2, vehicle: silent}", "s.yaml:3:6: INVALID_VALUE this is after the end, until_s 1"),
+        (
+            "{t_s: 2, vehicle: silent}",
+            "s.yaml:3:6: INVALID_VALUE this is after the end of the scenario, until_s: 1",
+        ),
         ("{t_s: 0, reading: {estop: }}", "s.yaml:3:24: INVALID_VALUE steps.0.reading.estop: "),
         ("{t_s: 0, node: arm}", "s.yaml:3:5: INVALID_VALUE steps.0: a node step must have"),
         ("{t_s: 0, task: {file: 3}}", "s.yaml:3:21: INVALID_VALUE file: the path of a CSV"),
         ("{t_s: 0, task: {file: no.csv}}", "s.yaml:3:21: UNREADABLE_FILE "),
-        ("{t_s: 0, task: {file: a.csv, waypoints: []}}", "s.yaml:3:21: INVALID_VALUE there are"),
+        (
+            "{t_s: 0, task: {file: a.csv, waypoints: []}}",
+            "s.yaml:3:21: INVALID_VALUE waypoints are given as well",
+        ),
         ("{t_s: 0, task: {file: a.csv, heading: up}}", "s.yaml:3:34: INVALID_VALUE heading: one"),
         ("{t_s: 0, task: {heading: deg}}", "s.yaml:3:21: INVALID_VALUE steps.0.task.heading"),
     ],
@@ -236,7 +248,7 @@ def test_faults_of_a_robot_file_are_placed_in_that_file(folder: Folder) -> None:
 @pytest.mark.parametrize(
     ("robot", "told"),
     [
-        ("start_task: {file: a.csv}", "robot.yaml:1:1: INVALID_VALUE a simulation drives no start"),
+        ("start_task: {file: a.csv}", "robot.yaml:1:1: INVALID_VALUE start_task has no effect in"),
         ("vehicle: [", "robot.yaml:1:11: YAML_SYNTAX "),
         ("- 1", "robot.yaml:1:1: INVALID_VALUE robot: "),
         ("5", "robot.yaml:1:1: INVALID_VALUE robot: "),

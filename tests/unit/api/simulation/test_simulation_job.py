@@ -98,7 +98,7 @@ def test_what_is_no_json_is_malformed(raw: bytes) -> None:
 def test_a_copy_that_cannot_be_had_is_refused() -> None:
     body = scenario(begin="live")
 
-    with pytest.raises(InvalidBodyError, match="cannot be copied"):
+    with pytest.raises(InvalidBodyError, match="only a simulated one can be copied"):
         robot_for(body, ACTUATION, None)
 
 

@@ -407,7 +407,7 @@ async def test_a_client_that_gives_it_in_the_handshake_is_let_in(closed_app: Fas
 @pytest.mark.parametrize(
     ("text", "words"),
     [
-        ('{"type":"auth","token":"a guess"}', "not the token"),
+        ('{"type":"auth","token":"a guess"}', "wrong token"),
         ('{"type":"auth","token":7}', "first message"),
         ('{"type":"reading","signal":"estop","value":true}', "first message"),
         ("{", "first message"),
@@ -437,7 +437,7 @@ async def test_a_client_that_says_nothing_is_closed_in_the_end(
         problem = await client.frame()
 
         assert await client.end() == 4401
-    assert "no token came" in problem["detail"]
+    assert "no token was sent" in problem["detail"]
 
 
 async def test_strangers_keep_out_other_strangers_only(

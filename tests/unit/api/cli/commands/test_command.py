@@ -25,7 +25,7 @@ def test_the_address_may_come_from_the_environment(
     monkeypatch.setenv("PILOTHOUSE_URL", "not-an-address")
 
     assert main(["state", "actuation", "activate"]) == 2
-    assert "'not-an-address' is no address" in capsys.readouterr().err
+    assert "invalid address 'not-an-address'" in capsys.readouterr().err
 
 
 def answer_with(monkeypatch: pytest.MonkeyPatch, ending: Callable[[], Outcome]) -> None:
@@ -53,7 +53,7 @@ def test_a_refusal_ends_with_one_and_its_reasons(
     answer_with(monkeypatch, refuse)
 
     assert main(["mode", "actuation", "PERFORMANCE"]) == 1
-    assert capsys.readouterr().err == "refused: e-stop is pressed\n  hint: release it\n"
+    assert capsys.readouterr().err == "rejected: e-stop is pressed\n  hint: release it\n"
 
 
 def test_a_lost_answer_ends_with_two(monkeypatch: pytest.MonkeyPatch) -> None:

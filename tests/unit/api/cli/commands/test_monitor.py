@@ -32,7 +32,7 @@ def test_monitor_hands_on_what_it_was_told(monkeypatch: pytest.MonkeyPatch) -> N
     ("error", "code", "words"),
     [
         (NoAnswerError("no service answers"), 2, "pilothouse: no service answers\n"),
-        (ServiceProblemError({"detail": "a token is needed"}), 1, "refused: a token is needed\n"),
+        (ServiceProblemError({"detail": "a token is needed"}), 1, "rejected: a token is needed\n"),
     ],
 )
 def test_monitor_says_why_there_is_nothing_to_see(

@@ -61,7 +61,7 @@ def test_the_head_says_what_is_not_real() -> None:
 def test_the_head_marks_what_is_old() -> None:
     (line,) = blocks.head(view(robot(), Contact(Level.LOST, 9.0)), 60)
 
-    assert "  old, of " in line.plain
+    assert "  old, from " in line.plain
 
 
 def test_before_the_first_frame_the_head_says_no_time() -> None:
@@ -223,7 +223,7 @@ def test_the_stop_is_told_before_the_state() -> None:
     lines = blocks.sentences(view(robot(frame(emergency_stop=engaged))), console(80))
 
     assert plain(lines) == [
-        "EMERGENCY STOP  engaged: smoke, for 0 s, no standstill seen yet",
+        "EMERGENCY STOP  engaged: smoke, for 0 s, no standstill yet",
         "IDLE  no task",
     ]
 

@@ -91,7 +91,7 @@ def test_once_waits_for_the_whole_picture_but_not_for_ever(
     monkeypatch.setattr(module, "_PATIENCE_S", 0.01)
     monkeypatch.setattr(Link, "says", WHOLE[1:])
 
-    with pytest.raises(NoAnswerError, match="no whole picture"):
+    with pytest.raises(NoAnswerError, match="no complete state"):
         monitor(URL, "text", once=True)
     assert capsys.readouterr().out == ""
 

@@ -90,9 +90,9 @@ def test_lost_contact_is_told_once_and_is_a_change_of_the_text() -> None:
     log.look(view(KNOWN))
 
     for silence_s in (0.0, 1.0):
-        log.look(view(KNOWN, Contact(Level.LOST, silence_s, "the connection broke")))
+        log.look(view(KNOWN, Contact(Level.LOST, silence_s, "the connection was lost")))
 
-    assert complaints.getvalue() == "pilothouse: the connection broke; trying again\n"
+    assert complaints.getvalue() == "pilothouse: the connection was lost; reconnecting\n"
     assert text_in(out).count("NO CONTACT") == 1
 
 

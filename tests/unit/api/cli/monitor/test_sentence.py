@@ -67,13 +67,15 @@ def test_before_the_first_contact_it_says_what_it_waits_for() -> None:
 
 
 def test_lost_contact_is_told_with_since_when_why_and_of_when_the_picture_is() -> None:
-    said = contact_sentence(view(robot(), Contact(Level.LOST, 14.0, "the connection broke"), 14.0))
+    said = contact_sentence(
+        view(robot(), Contact(Level.LOST, 14.0, "the connection was lost"), 14.0)
+    )
 
     assert said is not None
     assert said.word == "NO CONTACT"
-    assert said.text.endswith("(14 s), trying again")
-    assert said.more[0] == "the connection broke"
-    assert said.more[1].startswith("what is shown is of ")
+    assert said.text.endswith("(14 s), reconnecting")
+    assert said.more[0] == "the connection was lost"
+    assert said.more[1].startswith("values shown are from ")
 
 
 def test_without_contact_the_state_is_one_that_was() -> None:
@@ -93,10 +95,10 @@ def test_an_engaged_stop_says_why_since_when_by_whom_and_whether_the_vehicle_sta
     standing = view(robot(frame(emergency_stop={**engaged, "standstill_at": AT})))
 
     assert stop_sentence(moving) == Sentence(
-        "EMERGENCY STOP", "engaged: smoke, for 3 s, by anna, no standstill seen yet"
+        "EMERGENCY STOP", "engaged: smoke, for 3 s, by anna, no standstill yet"
     )
     assert stop_sentence(standing) == Sentence(
-        "EMERGENCY STOP", "engaged: smoke, for 0 s, by anna, the vehicle stands"
+        "EMERGENCY STOP", "engaged: smoke, for 0 s, by anna, the vehicle is at a standstill"
     )
 
 

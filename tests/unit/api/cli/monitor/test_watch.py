@@ -28,15 +28,15 @@ def test_contact_that_broke_is_lost_at_once_with_the_reason() -> None:
     watch = Watch(URL, now=Time())
     watch.take(frame())
 
-    watch.lose("the connection broke")
+    watch.lose("the connection was lost")
 
-    assert watch.contact() == Contact(Level.LOST, 0.0, "the connection broke")
+    assert watch.contact() == Contact(Level.LOST, 0.0, "the connection was lost")
 
 
 def test_with_the_next_frame_all_is_well_again() -> None:
     watch = Watch(URL, now=Time())
     watch.take(frame())
-    watch.lose("the connection broke")
+    watch.lose("the connection was lost")
 
     watch.take(frame(after(1)))
 
@@ -78,7 +78,7 @@ def test_news_are_told_with_the_frame_that_what_came_before_fits() -> None:
     watch.take(hello())
     watch.take(event(3))
     watch.take(frame())
-    watch.lose("the connection broke")
+    watch.lose("the connection was lost")
 
     assert told == [3, 3]
 

@@ -22,9 +22,9 @@ async def test_a_flood_of_refusals_fills_no_log(caplog: pytest.LogCaptureFixture
 
     assert refusals.counts == {UNAUTHORIZED: 3_000}
     assert caplog.messages == [
-        "401 Unauthorized: refused 10.0.0.1",
-        "401 Unauthorized: refused 10.0.0.1, and 999 more since the last line",
-        "401 Unauthorized: refused 10.0.0.1, and 999 more since the last line",
+        "401 Unauthorized: rejected 10.0.0.1",
+        "401 Unauthorized: rejected 10.0.0.1, and 999 more since the last line",
+        "401 Unauthorized: rejected 10.0.0.1, and 999 more since the last line",
     ]
 
 

@@ -175,7 +175,7 @@ async def test_a_name_may_hold_slashes_and_the_longest_known_part_wins() -> None
         ("/nodes/actuation/mode", "/systems/actuation/mode"),
         ("/systems/drive_base", "/nodes/drive_base"),
         ("/systems/nobody", "known: actuation"),
-        ("/nodes/drive_base/colour", "drive_base is there"),
+        ("/nodes/drive_base/colour", "there is drive_base"),
     ],
 )
 async def test_who_asks_for_a_part_that_is_not_there_is_told_where_to_look(

@@ -178,7 +178,7 @@ async def test_a_csv_that_does_not_say_so_is_refused_with_what_to_say(
     answer = await robot.http.post("/tasks", content=LINE * times)
 
     assert (answer.status_code, answer.json()["code"]) == (400, "MALFORMED")
-    assert answer.json()["hint"] == "a CSV is sent with Content-Type: text/csv"
+    assert answer.json()["hint"] == "send a CSV with Content-Type: text/csv"
 
 
 # --- looking and ending --------------------------------------------------------------------------
