@@ -69,7 +69,7 @@ test-image: $(INSTALLED_DEV) ## build the image and test it in a container; need
 # The wheels of ROS 2 are for this platform only.
 ifeq ($(shell uname -sm),Linux x86_64)
 test-ros2: $(INSTALLED_ROS2) ## the tests with real ROS 2 nodes, which need no ROS installation
-	@$(NOT_OF_ROS) $(ROS2)/bin/pytest -rs -p no:cacheprovider -m ros2 \
+	@$(NOT_OF_ROS) $(ROS2)/bin/pytest -rs -p no:cacheprovider -m ros2 $(PARALLEL) \
 	  tests/ros2 tests/conformance $(ARGS)
 else
 test-ros2:
