@@ -1,6 +1,7 @@
-"""The address of a service, of its stream, and the token for them."""
+"""The address of a service: its URL, the URL of its stream, and the access token."""
 
 import os
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 from urllib.parse import urlencode, urlsplit
 
@@ -12,23 +13,23 @@ _LOOPBACK = frozenset({"127.0.0.1", "::1", "localhost"})
 
 @dataclass(frozen=True, slots=True)
 class Address:
-    """The address of a service, and the token for it."""
+    """The URL of a service, and the token that gives access to it."""
 
     url: str
-    """Without a slash at the end."""
+    """Base URL, without a trailing slash."""
     token: str | None = field(default=None, repr=False)
-    """None: requests carry no token."""
+    """Access token; None: requests are sent without one."""
 
     @classmethod
     def of(cls, url: str, token: str | None = None) -> "Address":
-        """Return the address of a service.
+        """Return the address for a URL.
 
         Args:
-            url: For example `http://127.0.0.1:8000`.
-            token: None: requests carry no token.
+            url: Base URL, such as `http://127.0.0.1:8000`.
+            token: Access token; None: requests are sent without one.
 
         Raises:
-            NoAnswerError: `url` is not the address of a web server.
+            NoAnswerError: `url` is not a valid HTTP or HTTPS URL.
         """
         try:
             parts = urlsplit(url)
@@ -41,10 +42,10 @@ class Address:
 
     @classmethod
     def with_token_of_environment(cls, url: str) -> "Address":
-        """Return the address of a service, with the token from the environment.
+        """Return the address for a URL, with the access token set in the environment.
 
         Raises:
-            NoAnswerError: `url` is not the address of a web server, or the token is invalid.
+            NoAnswerError: `url` is not a valid HTTP or HTTPS URL, or the token is invalid.
         """
         try:
             return cls.of(url, read_token(os.environ))
@@ -58,18 +59,22 @@ class Address:
 
     @property
     def loopback(self) -> tuple[str, int] | None:
-        """Return host and port if the service is on this machine; else None."""
+        """Return host and port if the service is on this machine, so past any proxy; else None."""
         parts = urlsplit(self.url)
         if parts.hostname not in _LOOPBACK:
             return None
         return parts.hostname, parts.port or (443 if parts.scheme == "https" else 80)
 
-    def stream_url(self, epoch: str | None, last_event_id: int) -> str:
-        """Return the address of the stream.
+    def stream_url(self, topics: Sequence[str], epoch: str | None, last_event_id: int) -> str:
+        """Return the URL of the stream.
 
         Args:
-            epoch: Of the known events; None: none is known.
-            last_event_id: Of the newest known event.
+            topics: Topics to subscribe to; empty: all.
+            epoch: Epoch of the events received so far; None: none were received.
+            last_event_id: Id of the newest of these events.
         """
-        known = {} if epoch is None else {"after": last_event_id, "epoch": epoch}
-        return f"{self.url.replace('http', 'ws', 1)}/ws?{urlencode(known)}".rstrip("?")
+        query: dict[str, str | int] = {"topics": ",".join(topics)} if topics else {}
+        if epoch is not None:
+            query |= {"after": last_event_id, "epoch": epoch}
+        url = f"{self.url.replace('http', 'ws', 1)}/ws"
+        return f"{url}?{urlencode(query, safe=',')}" if query else url

@@ -1,13 +1,13 @@
-"""The connection to the stream of a service.
+"""Subscribes to the stream of a service, and reconnects with growing pauses.
 
-It reconnects by itself, with increasing pauses, and continues after the last event received.
+After a reconnect, events resume after the last one received.
 """
 
 import asyncio
 import json
 import random
 import socket
-from collections.abc import AsyncIterator, Iterator
+from collections.abc import AsyncIterator, Iterator, Sequence
 from contextlib import asynccontextmanager
 from http import HTTPStatus
 from itertools import chain, repeat
@@ -21,13 +21,13 @@ from api.client.address import Address
 from api.client.outcomes import Json, NoAnswerError, ServiceProblemError, token_hint
 
 SILENCE_S = 5.0
-"""A dead peer never closes the connection: after this silence, s, the client reconnects."""
+"""A dead peer never closes its connection: after this time without a frame, reconnect."""
 
 _ANSWER_S = 5.0
 _CLOSING_S = 1.0
 _RETRY_S = (0.5, 1.0, 2.0, 4.0)
 _MOST_BYTES = 64 * 2**20
-"""Of a frame; one with 10,000 parts has about 4 MB."""
+"""Largest frame that is accepted; with 10,000 parts, a frame has about 4 MB."""
 _ENDINGS = frozenset({1001, 1012})
 
 
@@ -35,30 +35,42 @@ class Listener(Protocol):
     """Receives the frames of a service."""
 
     def take(self, message: Json, /) -> None:
-        """Take a frame of the stream."""
+        """Process a frame of the stream."""
         ...
 
     def lose(self, why: str) -> None:
-        """Handle that the connection was lost, or cannot be made."""
+        """Handle a lost connection, or a failed attempt to connect.
+
+        Args:
+            why: The reason, in words.
+        """
         ...
 
 
 class Link:
-    """Keeps up the connection, and passes frames to a listener."""
+    """Passes the frames of a stream to a listener."""
 
-    def __init__(self, address: Address, listener: Listener) -> None:
+    def __init__(self, address: Address, listener: Listener, topics: Sequence[str] = ()) -> None:
+        """Prepare to connect; nothing is sent yet.
+
+        Args:
+            address: URL of the service, and the token.
+            listener: Receives the frames.
+            topics: Topics to subscribe to; empty: all.
+        """
         self._address = address
+        self._topics = topics
         self._listener = listener
         self._epoch: str | None = None
         self._last_event_id = 0
         self._is_heard = False
-        """Whether a `state` frame came since the last pause."""
+        """Whether a `state` frame was received since the last attempt to connect began."""
 
     async def run(self) -> NoReturn:
-        """Connect, and reconnect whenever the connection ends.
+        """Connect, and reconnect whenever the connection is lost.
 
         Raises:
-            ServiceProblemError: The service rejects us, and retrying would not help.
+            ServiceProblemError: The service denied access; a retry would not help.
         """
         pauses = _pauses()
         while True:
@@ -72,11 +84,11 @@ class Link:
             await asyncio.sleep(next(pauses))
 
     async def serve(self) -> None:
-        """Connect once, and pass on the frames.
+        """Connect once, and pass frames to the listener until the connection is lost.
 
         Raises:
-            NoAnswerError: The service did not answer, or the connection ended.
-            ServiceProblemError: The service rejects us.
+            NoAnswerError: The service did not answer, or the connection was lost.
+            ServiceProblemError: The service denied access.
         """
         await self._knock()
         async with self._stream() as stream:
@@ -87,7 +99,7 @@ class Link:
         address = self._address
         try:
             stream = await websockets.connect(
-                address.stream_url(self._epoch, self._last_event_id),
+                address.stream_url(self._topics, self._epoch, self._last_event_id),
                 additional_headers=address.headers,
                 max_size=_MOST_BYTES,
                 open_timeout=_ANSWER_S,
@@ -119,7 +131,7 @@ class Link:
             self._remember(frame)
 
     def _remember(self, frame: Json) -> None:
-        """Remember the last event: the next connection continues after it."""
+        """Remember the last event received; after a reconnect, the stream resumes after it."""
         match frame["type"]:
             case "hello" if frame["epoch"] != self._epoch:
                 self._epoch, self._last_event_id = frame["epoch"], 0
@@ -131,7 +143,7 @@ class Link:
                 self._is_heard = True
 
     async def _knock(self) -> None:
-        """Check access over HTTP, which rejects at once; the stream would wait for the token."""
+        """Check access over HTTP, which rejects at once; the stream first waits for a token."""
         url = self._address.url
         try:
             async with self._http() as http:
@@ -147,7 +159,7 @@ class Link:
             raise NoAnswerError(f"what answers at {url} is not Pilothouse")
 
     def _http(self) -> httpx.AsyncClient:
-        # A proxy of the environment does not lead back to this machine.
+        # A proxy set in the environment cannot reach this machine.
         return httpx.AsyncClient(
             base_url=self._address.url,
             headers=self._address.headers,
@@ -157,14 +169,14 @@ class Link:
 
 
 async def _socket(address: Address) -> socket.socket | None:
-    """Return a connection to this machine that bypasses any proxy; None: another host."""
+    """Return a connection to this machine, past any proxy; None: the library connects."""
     if address.loopback is None:
         return None
     return await asyncio.to_thread(socket.create_connection, address.loopback, _ANSWER_S)
 
 
 def _pauses() -> Iterator[float]:
-    """Yield increasing pauses, s, randomized so that many clients do not reconnect together."""
+    """Yield growing pauses in s, with jitter, so that clients do not all reconnect at once."""
     for pause_s in chain(_RETRY_S, repeat(_RETRY_S[-1])):
         yield pause_s * random.uniform(0.8, 1.2)
 
@@ -187,7 +199,7 @@ def _problem_in(content: bytes | bytearray | None, status: int) -> dict[str, Any
 
 
 def _refusal(problem: Json, address: Address) -> ServiceProblemError | NoAnswerError:
-    """Return the error for a problem: whether retrying may help depends on it."""
+    """Return the error for a problem: `NoAnswerError` if a retry may help."""
     if problem["status"] == HTTPStatus.UNAUTHORIZED:
         return ServiceProblemError({**problem, "hint": token_hint(given=address.token is not None)})
     if problem["status"] == HTTPStatus.FORBIDDEN:

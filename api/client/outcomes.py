@@ -1,4 +1,4 @@
-"""The outcomes of a request to a service: how it ended, a problem, or no answer."""
+"""Outcomes of requests to a service: how a change ended, a rejection, or no answer."""
 
 from collections.abc import Iterator, Mapping, Sequence
 from enum import IntEnum
@@ -13,12 +13,12 @@ Json = Mapping[str, Any]
 
 
 class Outcome(IntEnum):
-    """How a change ended, as the exit code of the command."""
+    """How a change or task ended; the exit code of a command."""
 
     SUCCEEDED = 0
     FAILED = 1
     UNKNOWN = 2
-    """Timed out, not ended yet, or no answer."""
+    """Timed out, not ended yet, or the service did not answer."""
 
 
 class ServiceProblemError(Exception):
@@ -34,17 +34,17 @@ class NoAnswerError(Exception):
 
 
 def token_hint(*, given: bool) -> str:
-    """Return a hint for a missing or wrong token."""
+    """Return a hint for a request without a token, or with a token that was not accepted."""
     return _OTHER_TOKEN if given else _NO_TOKEN
 
 
 def refusal_lines(problem: Json) -> Iterator[str]:
-    """Yield why a request was rejected, its blockers and faults, and the hint."""
+    """Yield why a request was rejected, with its blockers and a hint."""
     yield f"rejected: {problem.get('detail') or problem.get('title')}"
     for blocker in problem.get("blockers") or ():
         yield f"  {blocker['code']}: {blocker['message']}{_way(blocker.get('path') or ())}"
     faults = problem.get("errors") or ()
-    # The detail already holds a single fault.
+    # The detail of the problem already states a single fault.
     for fault in faults if len(faults) > 1 else ():
         yield f"  {fault['pointer'] or 'body'}: {fault['message']}"
     if problem.get("hint"):

@@ -1,4 +1,7 @@
-"""Blocking requests to a running service, for commands; needs only its HTTP interface."""
+"""Blocking HTTP requests to a running service, for commands.
+
+Only the HTTP interface is used, so commands work with any service that can be reached.
+"""
 
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
@@ -13,21 +16,21 @@ _TIMEOUT = httpx.Timeout(10.0, connect=3.0)
 
 
 class ServiceClient:
-    """A running service."""
+    """Sends requests to a running service."""
 
     def __init__(self, address: Address, transport: httpx.BaseTransport | None = None) -> None:
-        """Prepare; nothing is sent yet.
+        """Prepare to connect; nothing is sent yet.
 
         Args:
-            address: Of the service, with the token for each request.
+            address: URL of the service, and the token that is sent with each request.
             transport: Sends the requests; None: over the network.
         """
-        self.url = address.url
-        self._has_token = address.token is not None
+        self.address = address
+        """URL of the service, and the token."""
         self._http = httpx.Client(
             base_url=address.url,
             timeout=_TIMEOUT,
-            # A proxy of the environment does not lead back to this machine.
+            # A proxy set in the environment cannot reach this machine.
             trust_env=address.loopback is None,
             transport=transport,
             headers=address.headers,
@@ -38,11 +41,11 @@ class ServiceClient:
         self._http.close()
 
     def path_of(self, part: str) -> str:
-        """Return the path of a system or node.
+        """Return the URL path of a system or node.
 
         Raises:
             ServiceProblemError: There is no such part.
-            NoAnswerError: There was no answer.
+            NoAnswerError: The service did not answer.
         """
         path = f"/systems/{quote(part)}"
         try:
@@ -63,20 +66,21 @@ class ServiceClient:
         csv: str | None = None,
         query: Mapping[str, str | int | float] | None = None,
     ) -> Json:
-        """Send a request and return the JSON object of the answer; empty if it has no content.
+        """Send a request and return the JSON object of the response; without content, an empty one.
 
         Args:
-            method: For example `GET`.
-            path: For example `/tasks`.
-            body: Sent as JSON.
-            csv: Sent instead of `body`.
+            method: HTTP method, such as `GET`.
+            path: URL path, such as `/tasks`.
+            body: Request body, sent as JSON.
+            csv: Request body, sent as CSV instead of `body`.
             query: Query parameters.
 
         Raises:
             ServiceProblemError: The request was rejected.
-            NoAnswerError: There was no answer in JSON; whether the request was processed is not
-                known.
+            NoAnswerError: There was no response, or not in JSON; whether the request had an effect
+                is unknown.
         """
+        url = self.address.url
         try:
             content = None if csv is None else csv.encode()
             headers = {} if csv is None else {"Content-Type": "text/csv"}
@@ -84,9 +88,9 @@ class ServiceClient:
                 method, path, json=body, content=content, headers=headers, params=query or None
             )
         except httpx.ConnectError as error:
-            raise NoAnswerError(f"no service answers at {self.url}: is it running?") from error
+            raise NoAnswerError(f"no service answers at {url}: is it running?") from error
         except httpx.HTTPError as error:
-            raise NoAnswerError(f"no answer from {self.url}: {error}") from error
+            raise NoAnswerError(f"no answer from {url}: {error}") from error
         if response.status_code == httpx.codes.NO_CONTENT:
             return {}
         try:
@@ -94,9 +98,9 @@ class ServiceClient:
         except ValueError:
             answer = None
         if not isinstance(answer, dict):
-            raise NoAnswerError(f"what answers at {self.url} is not Pilothouse")
+            raise NoAnswerError(f"what answers at {url} is not Pilothouse")
         if response.status_code == httpx.codes.UNAUTHORIZED:
-            answer["hint"] = token_hint(given=self._has_token)
+            answer["hint"] = token_hint(given=self.address.token is not None)
         if response.is_error:
             raise ServiceProblemError(answer)
         return answer
@@ -104,10 +108,10 @@ class ServiceClient:
 
 @contextmanager
 def service_at(url: str) -> Iterator[ServiceClient]:
-    """Provide a client with the token from the environment while the context is open.
+    """Return a client with the token set in the environment; the context closes it.
 
     Raises:
-        NoAnswerError: The address or the token is invalid.
+        NoAnswerError: `url` is not a valid HTTP or HTTPS URL, or the token is invalid.
     """
     client = ServiceClient(Address.with_token_of_environment(url))
     try:

@@ -152,7 +152,7 @@ def change(
         if view["status"] != "running":
             break
         if time.monotonic() >= deadline:
-            say(f"not ended within {wait_s:g} s; see {client.url}/changes/{view['id']}")
+            say(f"not ended within {wait_s:g} s; see {client.address.url}/changes/{view['id']}")
             return Outcome.UNKNOWN
         pause(_POLL_S)
         view = client.call("GET", f"/changes/{view['id']}")

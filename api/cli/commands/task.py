@@ -2,7 +2,6 @@
 
 import argparse
 import sys
-import time
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from http import HTTPStatus
@@ -11,6 +10,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, TextIO
 
 from api.cli.commands.command import Command, add_url, with_service
+from api.cli.task_text import distance_text, status_text
 from api.cli.terminal_line import TerminalLine
 from api.client.outcomes import Json, Outcome, ServiceProblemError
 
@@ -30,13 +30,6 @@ exit code: 0 succeeded, or done; 1 rejected, canceled or aborted;
 """
 
 _STANDARD_INPUT = Path("/dev/stdin")
-_POLL_S = 0.2
-_BAR = 15
-_ENDS = {
-    "SUCCEEDED": Outcome.SUCCEEDED,
-    "CANCELED": Outcome.FAILED,
-    "ABORTED": Outcome.FAILED,
-}
 
 Say = Callable[[str], None]
 
@@ -92,23 +85,23 @@ COMMAND = Command("task", "submit or cancel a waypoint task", _TEXT, _add_option
 
 @dataclass(frozen=True, slots=True)
 class TaskOptions:
-    """Options of a task; None: the default of the service."""
+    """Options of a task; None: the service's default."""
 
     file: str
-    """Path of a CSV; `-` is the standard input."""
+    """Path of a CSV file; `-` is standard input."""
     controller: str | None = None
     speed_mps: float | None = None
     heading: str | None = None
     """`rad`, `deg` or `compass`."""
     start_index: int | None = None
     preview: bool = False
-    """Start nothing."""
+    """Only show the preview; submit nothing."""
     wait: bool = True
     """Follow the task to its end."""
 
     @property
     def query(self) -> dict[str, str | int | float]:
-        """Return what stands in the query beside a CSV."""
+        """Return the query parameters that go with the CSV."""
         given = {
             "controller": self.controller,
             "speed_mps": self.speed_mps,
@@ -123,21 +116,19 @@ def run_task(
     asked: TaskOptions,
     say: Say,
     complaints: TextIO | None = None,
-    pause: Callable[[float], None] = time.sleep,
 ) -> Outcome:
-    """Preview a task, start it, and follow it to its end.
+    """Preview a task, submit it, and follow it to its end.
 
     Args:
-        client: Where to ask.
-        asked: What is driven and how.
-        say: Takes a line for the user.
-        complaints: Where to write why a file cannot be driven, and the line that is redrawn; None:
-            the standard error.
-        pause: Waits for a number of seconds.
+        client: Sends requests to the service.
+        asked: The waypoint file, and the options of the task.
+        say: Prints a line.
+        complaints: Stream for invalid waypoints and the progress line; None: standard error.
 
     Raises:
-        ServiceProblemError: It was refused, and not for the waypoints.
-        NoAnswerError: Nobody answered; whether the task was started is not known.
+        ServiceProblemError: The task was rejected, and not because of its waypoints.
+        NoAnswerError: The service did not answer; whether the task was submitted, or how it ended,
+            is unknown.
     """
     err: TextIO = complaints or sys.stderr
     text = _text_of(asked.file, err)
@@ -157,18 +148,21 @@ def run_task(
             print(line, file=err)
         return Outcome.FAILED
     if not asked.wait:
-        say(f"task {task['id']} is started: {_state(task)}")
+        say(f"task {task['id']} is started: {status_text(task)}")
         return Outcome.SUCCEEDED
+    # Loaded late for a quick `--help`: it needs asyncio and websockets.
+    from api.cli.task_follower import REDRAW_S, follow_task
+
     try:
-        with TerminalLine(err) as progress:
-            return _follow(client, task, say, progress, pause)
+        with TerminalLine(err, REDRAW_S) as progress:
+            return follow_task(client, task, say, progress)
     except KeyboardInterrupt:
         say(f"task {task['id']} goes on; to cancel it: {_cancel_command(client)}")
         raise
 
 
 def _text_of(file: str, complaints: TextIO) -> str | None:
-    """Return what a file holds, or say why it cannot be read."""
+    """Return the text of a file; None: it cannot be read, and the reason was printed."""
     from service.files.text_file import UnreadableFileError, read_text_file
 
     try:
@@ -182,8 +176,8 @@ def cancel(client: "ServiceClient", say: Say) -> Outcome:
     """Cancel the current task.
 
     Raises:
-        ServiceProblemError: It was refused.
-        NoAnswerError: Nobody answered.
+        ServiceProblemError: The request was rejected.
+        NoAnswerError: The service did not answer.
     """
     try:
         task = client.call("GET", "/tasks/current")
@@ -194,16 +188,16 @@ def cancel(client: "ServiceClient", say: Say) -> Outcome:
         return Outcome.SUCCEEDED
     client.call("DELETE", "/tasks/current")
     ended = client.call("GET", f"/tasks/{task['id']}")
-    say(f"task {ended['id']} after {_way(ended)}: {_state(ended)}")
+    say(f"task {ended['id']} after {distance_text(ended)}: {status_text(ended)}")
     return Outcome.SUCCEEDED
 
 
 def preview_lines(file: str, found: Json) -> Iterator[str]:
-    """Yield what is known of waypoints before they are driven.
+    """Yield the preview of a task.
 
     Args:
-        file: Where they are from.
-        found: The answer of `POST /tasks/preview`.
+        file: Name of the waypoint file.
+        found: The response to `POST /tasks/preview`.
     """
     count, length_m = found["waypoint_count"], found["length_m"]
     yield f"{file}: {count} waypoints, {length_m:.1f} m, some {found['duration_s']:.0f} s"
@@ -225,12 +219,12 @@ def preview_lines(file: str, found: Json) -> Iterator[str]:
 
 
 def fault_lines(file: str, text: str, problem: Json) -> Iterator[str]:
-    """Yield why waypoints were refused: each fault with its line, and what helps.
+    """Yield why waypoints were rejected: each finding with its line, and a hint.
 
     Args:
-        file: Where they are from.
-        text: What was sent.
-        problem: The answer.
+        file: Name of the waypoint file.
+        text: Content of the file.
+        problem: The problem document of the response.
     """
     lines = text.split("\n")
     for finding in problem["findings"]:
@@ -238,66 +232,18 @@ def fault_lines(file: str, text: str, problem: Json) -> Iterator[str]:
         yield f"{file}:{number}:{column}: {finding['code']} {finding['message']}"
         if number <= len(lines) and lines[number - 1].strip():
             yield f"    {lines[number - 1].rstrip()[:100]}"
-    yield "refused: nothing is started"
+    yield "rejected: nothing was started"
     if problem.get("hint"):
         yield f"  hint: {_in_options(problem)['hint']}"
 
 
 def _in_options(problem: Json) -> Json:
-    """Return a problem whose hint names options instead of members of a request."""
+    """Return the problem with a hint that names command line options instead of parameters."""
     hint = problem.get("hint") or ""
     for member, option in (("?heading=", "--heading "), ("start_index", "--start-index")):
         hint = hint.replace(member, option)
     return {**problem, "hint": hint}
 
 
-def _follow(
-    client: "ServiceClient",
-    task: Json,
-    say: Say,
-    line: TerminalLine,
-    pause: Callable[[float], None],
-) -> Outcome:
-    """Tell how far a task is, until it ends; where there is no terminal, each change of state."""
-    told = ""
-    while task["status"] not in _ENDS:
-        if line.is_shown:
-            line.show(_progress(task, client.call("GET", "/vehicle")["speed_mps"]))
-        elif told != (told := _state(task)):
-            say(f"task {task['id']} at {_way(task)}: {told}")
-        pause(_POLL_S)
-        try:
-            task = client.call("GET", f"/tasks/{task['id']}")
-        except ServiceProblemError as error:
-            line.erase()
-            say(f"task {task['id']}: what became of it is not known: {error}")
-            return Outcome.UNKNOWN
-    line.erase()
-    say(f"task {task['id']} after {_way(task)}: {_state(task)}")
-    return _ENDS[task["status"]]
-
-
-def _progress(task: Json, speed_mps: float | None) -> str:
-    """Return how far a task is, and how it drives, or why it does not; for 80 columns."""
-    share = task["progress"]
-    bar = ("#" * round(share * _BAR)).ljust(_BAR, ".")
-    begin = f"[{bar}] {share:4.0%} {_way(task)}"
-    if task["reason"]:
-        return f"{begin}  {_state(task)}"
-    speed = "? m/s" if speed_mps is None else f"{speed_mps:.1f} m/s"
-    error_m = task["cross_track_error_m"]
-    error = "" if error_m is None else f"  {error_m:+.2f} m off"
-    return f"{begin}  {speed}{error}  {_state(task)}"
-
-
-def _way(task: Json) -> str:
-    return f"{task['distance_m']:.1f} of {task['length_m']:.1f} m"
-
-
-def _state(task: Json) -> str:
-    words, reason = str(task["status"]).lower(), task["reason"]
-    return f"{words}: {reason}" if reason and reason != words else words
-
-
 def _cancel_command(client: "ServiceClient") -> str:
-    return f"pilothouse task --cancel --url {client.url}"
+    return f"pilothouse task --cancel --url {client.address.url}"

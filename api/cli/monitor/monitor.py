@@ -4,12 +4,11 @@ import asyncio
 import io
 import signal
 import sys
-from collections.abc import Coroutine
 from contextlib import suppress
-from typing import Any
 
 from rich.console import Console
 
+from api.cli.first_ended import until_first_ends
 from api.cli.monitor.output import ChangeLog, Form, write_picture
 from api.cli.monitor.picture import picture
 from api.cli.monitor.screen import Screen, alternate_screen
@@ -102,21 +101,3 @@ def _end_with_signals() -> None:
         with suppress(AttributeError, NotImplementedError):
             number = getattr(signal, name)
             asyncio.get_running_loop().add_signal_handler(number, lambda: task and task.cancel())
-
-
-async def until_first_ends(*coroutines: Coroutine[Any, Any, None]) -> None:
-    """Run until one ends, and cancel the others.
-
-    Raises:
-        Exception: Of the coroutine that failed; not in a group.
-    """
-    tasks = [asyncio.create_task(coroutine) for coroutine in coroutines]
-    try:
-        await asyncio.wait(tasks, return_when=asyncio.FIRST_COMPLETED)
-    finally:
-        for task in tasks:
-            task.cancel()
-        ended = await asyncio.gather(*tasks, return_exceptions=True)
-    for error in ended:
-        if isinstance(error, Exception):
-            raise error

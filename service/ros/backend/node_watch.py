@@ -5,6 +5,7 @@ node are queried when it appears, and again whenever a message contradicts what 
 """
 
 from collections.abc import Callable, Coroutine
+from dataclasses import dataclass, field
 from functools import partial
 from types import MappingProxyType
 from typing import Any, TypeAlias
@@ -35,6 +36,18 @@ _TRIES = 3
 
 NodeMessage: TypeAlias = NodeReport | NodeAnswer
 Work: TypeAlias = Callable[[], Coroutine[Any, Any, None]]
+
+
+@dataclass(slots=True)
+class _SentCommands:
+    """What was asked of the node and is not done yet."""
+
+    open: dict[int, AskTransition | AskParameters] = field(default_factory=dict)
+    """Commands without an answer, or whose effect was not reported yet, by request."""
+    newest: int | None = None
+    """Request of the latest command: an older one must not be repeated after it."""
+    started: set[int] = field(default_factory=set)
+    """Requests of transitions that the node reported as started."""
 
 
 class NodeWatch:
@@ -89,12 +102,7 @@ class NodeWatch:
         self._looking = False
         self._wants_all = False
         """Whether the next query is for all facts, and not only for the state."""
-        self._commands: dict[int, AskTransition | AskParameters] = {}
-        """Commands without an answer, or whose effect was not reported yet, by request."""
-        self._newest: int | None = None
-        """Request of the latest command: an older one must not be repeated after it."""
-        self._taken: set[int] = set()
-        """Requests of transitions that the node reported as started."""
+        self._sent = _SentCommands()
         self._deliver(NodeReport(self._name, reachable=False))
 
     # --- messages of the node --------------------------------------------------------------------
@@ -103,9 +111,9 @@ class NodeWatch:
         """Take a report that the node went from one state to another."""
         self._note_word()
         self._heard += 1
-        for request, command in tuple(self._commands.items()):
-            if request not in self._taken and begins(command, start, goal):
-                self._taken.add(request)
+        for request, command in tuple(self._sent.open.items()):
+            if request not in self._sent.started and begins(command, start, goal):
+                self._sent.started.add(request)
                 self._answer(command, True)
         if not self._is_there:
             # Its answer to the pending query will report everything.
@@ -271,7 +279,7 @@ class NodeWatch:
         return moves or self._is_told_to_move()
 
     def _is_told_to_move(self) -> bool:
-        return any(isinstance(command, AskTransition) for command in self._commands.values())
+        return any(isinstance(command, AskTransition) for command in self._sent.open.values())
 
     def _lose(self) -> None:
         if self._is_there:
@@ -293,8 +301,8 @@ class NodeWatch:
             work = partial(self._change_state, command)
         else:
             work = partial(self._set_parameters, command)
-        self._commands[command.request] = command
-        self._newest = command.request
+        self._sent.open[command.request] = command
+        self._sent.newest = command.request
         self._start(work)
 
     def _why_not(self, command: AskTransition | AskParameters) -> str:
@@ -303,7 +311,7 @@ class NodeWatch:
             return "not reachable"
         if isinstance(command, AskTransition) and not self._has_lifecycle:
             return "the node has no lifecycle"
-        if len(self._commands) >= MOST_COMMANDS:
+        if len(self._sent.open) >= MOST_COMMANDS:
             return f"{MOST_COMMANDS} commands already wait for an answer"
         return ""
 
@@ -328,14 +336,14 @@ class NodeWatch:
                 self._clock,
             )
             self._note_word()
-            if ask.request not in self._taken:
+            if ask.request not in self._sent.started:
                 self._answer(ask, done, "" if done else await self._why_refused(ask))
             await self._clock.sleep_until(self._clock.now() + _STATE_FOLLOWS)
         except TimeoutError:
             return
         finally:
-            del self._commands[ask.request]
-            self._taken.discard(ask.request)
+            del self._sent.open[ask.request]
+            self._sent.started.discard(ask.request)
         rests = self._state is not None and self._state.is_primary
         if not self._is_told_to_move() and (heard == self._heard or not rests):
             self._ask_all()
@@ -345,12 +353,12 @@ class NodeWatch:
 
         An e-stop may have been pressed meanwhile, which is not known here.
         """
-        if ask.request in self._taken:
+        if ask.request in self._sent.started:
             return Seen.UNCLEAR
         state = await self._ask_state()
         if state is ask.transition.goal:
             return Seen.DONE
-        may_be_sent = ask.transition is not Transition.ACTIVATE and ask.request == self._newest
+        may_be_sent = ask.transition is not Transition.ACTIVATE and ask.request == self._sent.newest
         return Seen.LOST if state is start and may_be_sent else Seen.UNCLEAR
 
     async def _see_parameters(self, ask: AskParameters) -> Seen:
@@ -358,7 +366,7 @@ class NodeWatch:
         self._note_word()
         if holds_all(values, ask.values):
             return Seen.DONE
-        return Seen.LOST if ask.request == self._newest else Seen.UNCLEAR
+        return Seen.LOST if ask.request == self._sent.newest else Seen.UNCLEAR
 
     async def _why_refused(self, ask: AskTransition) -> str:
         try:
@@ -391,4 +399,4 @@ class NodeWatch:
         except InvalidValueError as error:
             self._answer(ask, False, error.message)
         finally:
-            del self._commands[ask.request]
+            del self._sent.open[ask.request]

@@ -13,13 +13,23 @@ from api.client.outcomes import NoAnswerError
     ],
 )
 def test_the_stream_is_beside_the_interface(url: str, stream: str) -> None:
-    assert Address.of(url).stream_url(None, 0) == stream
+    assert Address.of(url).stream_url((), None, 0) == stream
 
 
 def test_events_go_on_behind_the_one_that_is_known() -> None:
     address = Address.of("http://robot:8000")
 
-    assert address.stream_url("c20a", 88) == "ws://robot:8000/ws?after=88&epoch=c20a"
+    assert address.stream_url((), "c20a", 88) == "ws://robot:8000/ws?after=88&epoch=c20a"
+
+
+def test_a_client_subscribes_to_the_topics_that_it_needs() -> None:
+    address = Address.of("http://robot:8000")
+    topics = ("task", "vehicle")
+
+    assert address.stream_url(topics, None, 0) == "ws://robot:8000/ws?topics=task,vehicle"
+    assert address.stream_url(topics, "c20a", 88) == (
+        "ws://robot:8000/ws?topics=task,vehicle&after=88&epoch=c20a"
+    )
 
 
 @pytest.mark.parametrize(

@@ -80,13 +80,15 @@ class Service:
 
 
 @asynccontextmanager
-async def linked(service: Service, token: str | None = None) -> AsyncIterator[Watch]:
+async def linked(
+    service: Service, token: str | None = None, topics: tuple[str, ...] = ()
+) -> AsyncIterator[Watch]:
     """Run a link to a service, and end it with the context."""
     async with serve(service.stream, "127.0.0.1", 0, process_request=service.request) as server:
         port = server.sockets[0].getsockname()[1]
         address = Address.of(f"http://127.0.0.1:{port}", token)
         watch = Watch(address.url)
-        run = asyncio.create_task(Link(address, watch).run())
+        run = asyncio.create_task(Link(address, watch, topics).run())
         try:
             yield watch
         finally:
@@ -152,6 +154,19 @@ async def test_a_stream_that_ends_comes_back_and_goes_on_behind_the_last_event()
         await until(lambda: watch.contact().level is Level.LIVE)
 
     assert service.asked.count("/ws?after=7&epoch=one") == 1
+
+
+async def test_the_topics_are_asked_for_again_after_a_loss() -> None:
+    service = Service()
+    async with linked(service, topics=("task", "vehicle")) as watch:
+        await until(lambda: watch.robot.is_whole)
+        await service.streams[-1].close(1012)
+        await until(lambda: len(service.streams) == 2)
+
+    assert [path for path in service.asked if path.startswith("/ws")] == [
+        "/ws?topics=task,vehicle",
+        "/ws?topics=task,vehicle&after=0&epoch=one",
+    ]
 
 
 async def test_another_service_at_the_same_place_is_gone_on_with() -> None:

@@ -167,7 +167,7 @@ def test_the_token_of_the_environment_is_taken(monkeypatch: pytest.MonkeyPatch) 
 
     monkeypatch.setenv(TOKEN_VARIABLE, "correct-horse-battery")
     with service_at(URL) as client:
-        assert client.url == URL
+        assert client.address.url == URL
 
 
 def test_a_command_starts_quickly_since_a_client_needs_nothing_of_the_service() -> None:
