@@ -12,6 +12,8 @@ PIP_INSTALL := $(BIN)/python -m pip install -qq --disable-pip-version-check
 # pip is for where uv is not available or does not know a mirror that only pip is configured for.
 INSTALL = { $(PIP_INSTALL) uv && $(BIN)/uv pip install --quiet --python $(1)/bin/python $(2); } 2>/dev/null \
   || $(1)/bin/python -m pip install -qq --disable-pip-version-check $(2)
+# A comma that `call` does not take for the end of an argument.
+COMMA := ,
 LOWEST := $(VENV)/lowest
 ROS2 := $(VENV)/ros2
 INSTALLED_ROS2 := $(ROS2)/installed
@@ -67,7 +69,7 @@ test-image: $(INSTALLED_DEV) ## build the image and test it in a container; need
 # The wheels of ROS 2 are for this platform only.
 ifeq ($(shell uname -sm),Linux x86_64)
 test-ros2: $(INSTALLED_ROS2) ## the tests with real ROS 2 nodes, which need no ROS installation
-	@$(NOT_OF_ROS) $(ROS2)/bin/pytest -rs -p no:cacheprovider -m ros2 \
+	@$(NOT_OF_ROS) $(ROS2)/bin/pytest -rs -p no:cacheprovider -m ros2 $(PARALLEL) \
 	  tests/ros2 tests/conformance $(ARGS)
 else
 test-ros2:
@@ -154,5 +156,5 @@ $(INSTALLED_DEV): pyproject.toml | $(BIN)/python
 $(INSTALLED_ROS2): pyproject.toml | $(BIN)/python
 	@echo "Installing Pilothouse and the wheels of ROS 2 into $(ROS2) (about half a minute) ..."
 	@$(BIN)/python -m venv $(ROS2)
-	@$(call INSTALL,$(ROS2),--editable '.[dev,ros2]')
+	@$(call INSTALL,$(ROS2),--editable '.[dev$(COMMA)ros2]')
 	@touch $@

@@ -13,13 +13,15 @@ _HERE = Path(__file__).parent
 
 # Derandomized, so that a run fails for what was changed and never by luck; `make soak` looks for
 # new examples. No deadline, since a busy machine is not a fault of the code under test.
-settings.register_profile("default", deadline=None, derandomize=True, print_blob=True)
+settings.register_profile(
+    "default", max_examples=50, deadline=None, derandomize=True, print_blob=True
+)
 settings.register_profile("soak", deadline=None, max_examples=5_000, print_blob=True)
 settings.load_profile("soak" if os.environ.get("PILOTHOUSE_SOAK") == "1" else "default")
 
 
 # What takes longest begins first, so that the workers end at about the same time.
-_LONGEST_FIRST = ("browser", "docs", "process", "properties", "api")
+_LONGEST_FIRST = ("browser", "docs", "process", "properties", "api", "ros2/test_interfaces.py")
 
 
 def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
@@ -29,8 +31,9 @@ def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item
 
 
 def _rank(item: pytest.Item) -> int:
-    folder = item.path.relative_to(_HERE).parts[0]
-    return _LONGEST_FIRST.index(folder) if folder in _LONGEST_FIRST else len(_LONGEST_FIRST)
+    path = item.path.relative_to(_HERE)
+    begins = (rank for rank, first in enumerate(_LONGEST_FIRST) if path.is_relative_to(first))
+    return next(begins, len(_LONGEST_FIRST))
 
 
 @pytest.fixture

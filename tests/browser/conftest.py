@@ -32,18 +32,21 @@ def running_service(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Servic
     port = _free_port()
     with (tmp_path_factory.mktemp("service") / "output").open("w+b") as output:
         service = Service(port, output)
-        service.start()
-        yield service
-        service.kill()
+        try:
+            service.start()
+            yield service
+        finally:
+            service.kill()
 
 
 def _free_port() -> int:
     """Return a port that stays free while the service is down.
 
-    Those from 32768 on the kernel gives to whoever asks for any; each worker has its own range.
+    Those from 32768 on the kernel gives to whoever asks for any; each process has its own range,
+    of this run and of another one on the same machine.
     """
-    worker = int(os.environ.get("PYTEST_XDIST_WORKER", "gw0").removeprefix("gw"))
-    for port in range(20_000 + 100 * worker, 20_100 + 100 * worker):
+    begin = 20_000 + 100 * (os.getpid() % 120)
+    for port in range(begin, begin + 100):
         with socket.socket() as probe:
             # As the service does, which may follow another one on the same port.
             probe.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)

@@ -16,7 +16,7 @@ import pytest
 if TYPE_CHECKING:
     from playwright.sync_api import ConsoleMessage, Page
 
-START_WITHIN_S = 15.0
+START_WITHIN_S = 40.0
 HEALTHY = {
     "battery_level": 0.9,
     "estop": False,

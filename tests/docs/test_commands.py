@@ -11,6 +11,7 @@ from concurrent.futures import Future, ThreadPoolExecutor
 from contextlib import ExitStack
 from pathlib import Path
 
+import httpx
 import pytest
 
 from tests.support.documents import Block, read_blocks
@@ -32,6 +33,7 @@ NOT_RUN = {
 ADDRESS = re.compile(r"(?:localhost|127\.0\.0\.1):8000")
 STARTS = re.compile(r"make |(?:\.venv/bin/)?pilothouse serve\b")
 NOT_FOR_A_TEST = re.compile(r"\b(?:apt|apt-get|docker|pip|podman|rm|ssh|sudo|systemctl)\b")
+ATTEMPTS = 3
 REFUSED = 22
 """What curl ends with when the answer is an error, if it is told to."""
 NO_SUCH_OPTION = 9
@@ -110,6 +112,13 @@ class Reader:
             return text
         return ADDRESS.sub(self._url().removeprefix("http://"), text)
 
+    def has_lost_its_vehicle(self) -> bool:
+        """Tell whether the service put its vehicle on hold, since no pose came in time."""
+        if self._service is None or not self._service.runs:
+            return False
+        events = httpx.get(f"{self._service.url}/events?kind=hold.set&limit=1000").json()["items"]
+        return any(event["data"]["owner"] == "vehicle" for event in events)
+
     def _lines(self, block: Block) -> Iterator[str]:
         """Yield the lines to run; what starts a service is done at once, in place of the last."""
         for line in block.text.splitlines():
@@ -185,21 +194,43 @@ def has_something_to_do(page: Path) -> bool:
 FOLLOWED = sorted(filter(has_something_to_do, PAGES), key=lambda page: page.name != "tutorial.md")
 
 
-def follow(page: Path, home: Path) -> None:
-    """Do what a page says from its begin to its end."""
-    with ExitStack() as owner:
-        blocks = read_blocks(page)
-        reader, printed = Reader(home, blocks, owner), ""
-        for block in blocks:
-            if "file" in block.marks:
-                reader.write(block)
-                printed = reader.play(block) if block.language == "js" else ""
-            elif "not run" in block.marks:
-                printed = ""
-            elif block.is_command:
-                printed = reader.do(block)
-            elif block.is_output and printed:
-                assert_as_shown(block, printed, reader)
+def follow(page: Path, homes: Iterator[Path]) -> None:
+    """Do what a page says from its begin to its end.
+
+    Pages show a robot whose pose is always fresh. A service that got no time from a busy machine
+    has put its vehicle on hold for a moment: the page is then followed again, with a new service.
+
+    Args:
+        page: What to follow.
+        homes: Empty folders, one for each attempt.
+    """
+    for home in homes:
+        with ExitStack() as owner:
+            blocks = read_blocks(page)
+            reader = Reader(home, blocks, owner)
+            try:
+                follow_blocks(blocks, reader)
+            except AssertionError:
+                if not reader.has_lost_its_vehicle():
+                    raise
+            else:
+                return
+    pytest.fail(f"{page.name}: the machine is too busy for a vehicle")
+
+
+def follow_blocks(blocks: list[Block], reader: Reader) -> None:
+    """Let a reader do what blocks say, and compare what they show."""
+    printed = ""
+    for block in blocks:
+        if "file" in block.marks:
+            reader.write(block)
+            printed = reader.play(block) if block.language == "js" else ""
+        elif "not run" in block.marks:
+            printed = ""
+        elif block.is_command:
+            printed = reader.do(block)
+        elif block.is_output and printed:
+            assert_as_shown(block, printed, reader)
 
 
 @pytest.fixture(scope="module")
@@ -212,7 +243,12 @@ def followed(
     pages = [found.params["page"] for found in asked if found and "page" in found.params]
     mine = [page for page in FOLLOWED if page in pages]
     with ThreadPoolExecutor(2) as pool:
-        yield {page: pool.submit(follow, page, tmp_path_factory.mktemp("page")) for page in mine}
+        yield {
+            page: pool.submit(
+                follow, page, iter([tmp_path_factory.mktemp("page") for _ in range(ATTEMPTS)])
+            )
+            for page in mine
+        }
 
 
 # Pages that drive take their time, and on a busy machine more of it.

@@ -18,7 +18,8 @@ import pytest
 from tests.ros2.support.service import node, ros_robot
 from tests.support.shared import PROJECT
 
-pytestmark = [pytest.mark.ros2, pytest.mark.timeout(240)]
+# Most of it for the compiler, which is not what is tested.
+pytestmark = [pytest.mark.ros2, pytest.mark.timeout(600)]
 
 EXAMPLES = PROJECT / "examples" / "ros2"
 BUILD = EXAMPLES / "build_with_wheels.sh"

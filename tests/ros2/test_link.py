@@ -254,7 +254,7 @@ async def test_a_thread_that_breaks_down_is_not_silent(
 
     link._spinners[Lane.SENSORS].executor.create_task(break_down)  # noqa: SLF001
 
-    with pytest.raises(GraphFailedError, match="sensors broke down: OSError"):
+    with pytest.raises(GraphFailedError, match="thread of the lane sensors failed: OSError"):
         await asyncio.wait_for(link.wait_failed(), WITHIN_S)
     assert "out of file descriptors" in caplog.text
 

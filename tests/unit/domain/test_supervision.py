@@ -713,7 +713,6 @@ def test_the_same_inputs_at_the_same_times_give_the_same_outputs_byte_for_byte(
 
 
 @given(SCRIPTS, st.lists(st.integers(0, 60_000), max_size=40))
-@settings(max_examples=100)
 def test_one_big_step_equals_many_small_ones(script: list[Given], extra_ms: list[int]) -> None:
     big, small = _run(script), _run(script, extra_ms=extra_ms)
     assert small.events == big.events

@@ -442,7 +442,6 @@ def _from_scratch(inference: ModeInference) -> ModeInference:
 
 
 @given(st.data())
-@settings(max_examples=150)
 def test_the_order_of_reports_never_matters_only_what_is_known(data: st.DataObject) -> None:
     model = data.draw(models())
     inference = ModeInference(model)
@@ -464,7 +463,6 @@ def _as_wanted(actual: Actual, want: StateAndMode) -> bool:
 
 
 @given(st.data())
-@settings(max_examples=150)
 def test_an_active_system_has_every_part_as_its_mode_wants_it(data: st.DataObject) -> None:
     model = data.draw(models())
     inference = ModeInference(model)

@@ -61,7 +61,6 @@ def play(
     return reports + list(it.advance(start + until))
 
 
-@settings(max_examples=100)
 @given(plant=PLANTS, script=SCRIPTS, looks=LOOKS)
 def test_it_makes_no_difference_how_often_one_looks(
     plant: Plant, script: list[Act], looks: list[int]
@@ -96,7 +95,6 @@ def test_it_makes_no_difference_when_it_all_begins(
     assert play(some_day, script, END, START + later) == play(vehicle(plant), script, END)
 
 
-@settings(max_examples=100)
 @given(plant=PLANTS, before=SCRIPTS, after=SCRIPTS, half_way=st.integers(0, END))
 def test_a_copy_made_half_way_goes_on_like_the_original(
     plant: Plant, before: list[Act], after: list[Act], half_way: int
@@ -128,7 +126,6 @@ def test_it_wants_to_be_woken_exactly_when_there_is_something_to_report(
     assert times == [n * REPORT_PERIOD for n in range(61)]
 
 
-@settings(max_examples=100)
 @given(plant=PLANTS, script=SCRIPTS)
 def test_no_vehicle_does_what_it_cannot(plant: Plant, script: list[Act]) -> None:
     it = vehicle(plant)
