@@ -53,9 +53,12 @@ def _add_change_options(parser: argparse.ArgumentParser) -> None:
 
 
 def _wait_s(text: str) -> float:
-    number = float(text)
-    if not (math.isfinite(number) and 0 <= number <= _MAX_WAIT_S):
-        raise argparse.ArgumentTypeError(f"{text} is not within 0 to {_MAX_WAIT_S:g} seconds")
+    try:
+        number = float(text)
+    except ValueError:
+        number = math.nan
+    if not 0 <= number <= _MAX_WAIT_S:
+        raise argparse.ArgumentTypeError(f"{text!r} is not within 0 to {_MAX_WAIT_S:g} seconds")
     return number
 
 
@@ -97,18 +100,18 @@ STATE = Command(
 def show_plan(
     client: "ServiceClient", part: str, what: str, request: Json, say: Callable[[str], None]
 ) -> Outcome:
-    """Say which steps a change would take; nothing is changed.
+    """Show the steps that a change would take; nothing is changed.
 
     Args:
-        client: Where to ask.
+        client: The service.
         part: System or node.
         what: `mode` or `state`.
         request: Body of the request.
-        say: Takes a line for the user.
+        say: Prints a line for the user.
 
     Raises:
-        ServiceProblemError: It would be refused.
-        NoAnswerError: Nobody answered.
+        ServiceProblemError: The request would be rejected.
+        NoAnswerError: The service did not answer.
     """
     plan = client.call("POST", f"{client.path_of(part)}/{what}?dry_run=true", request)
     steps = plan["steps"]
@@ -128,20 +131,20 @@ def change(
     say: Callable[[str], None],
     pause: Callable[[float], None] = time.sleep,
 ) -> Outcome:
-    """Ask for a change, and say step by step what becomes of it.
+    """Request a change, and report its steps until it ends.
 
     Args:
-        client: Where to ask.
+        client: The service.
         part: System or node.
         what: `mode` or `state`.
         request: Body of the request.
-        wait_s: How long the end is waited for.
-        say: Takes a line for the user.
+        wait_s: Longest time to wait for the end, in seconds.
+        say: Prints a line for the user.
         pause: Waits for a number of seconds.
 
     Raises:
-        ServiceProblemError: It was refused.
-        NoAnswerError: Nobody answered; whether the change goes on is not known.
+        ServiceProblemError: The request was rejected.
+        NoAnswerError: The service did not answer; the outcome is unknown.
     """
     view = client.call("POST", f"{client.path_of(part)}/{what}", request)
     told: dict[tuple[str, int], str] = {}
@@ -162,7 +165,7 @@ def change(
 
 
 def _news(steps: Sequence[Json], told: dict[tuple[str, int], str]) -> Iterator[str]:
-    """Say what changed in the steps since the last time; a node's steps keep their order."""
+    """Yield a line for each step that changed; the steps of a node keep their order."""
     seen: dict[str, int] = {}
     for step in steps:
         number = seen[step["node"]] = seen.get(step["node"], 0) + 1
