@@ -70,5 +70,5 @@ def test_a_service_that_is_killed_and_restarted_leaves_the_end_unknown() -> None
                 output, errors = process.communicate()
 
     assert (process.returncode, errors) == (2, "")
-    assert lost == "task t1: reconnecting: the connection broke\n"
+    assert lost == "task t1: reconnecting: the connection was lost\n"
     assert output == "task t1: what became of it is not known: the service was restarted\n"

@@ -62,7 +62,7 @@ def test_the_command_line_takes_the_token_of_its_environment_or_says_that_it_nee
         code, _, complaints = run(*mode)
 
     assert code == 1
-    assert "rejected: this needs a token" in complaints
+    assert "rejected: a token is required" in complaints
     assert f"set {TOKEN_VARIABLE}" in complaints
 
 
