@@ -2,11 +2,12 @@
 
 from collections.abc import Callable
 from contextlib import AbstractAsyncContextManager
-from functools import partial
-from typing import TypeAlias
+from functools import cache, partial
+from typing import Any, TypeAlias
 
-from fastapi import FastAPI
+from fastapi import APIRouter, FastAPI
 from starlette.middleware import Middleware
+from starlette.routing import BaseRoute
 
 from api.distribution import installed_version
 from api.documents.openapi import describe
@@ -61,6 +62,24 @@ _RESOURCES = (
     service_health.router,
 )
 
+# "default" keeps the framework from describing an answer that is never given.
+_A_PROBLEM: dict[int | str, dict[str, Any]] = {"default": {"description": "A problem"}}
+
+
+@cache
+def _resources() -> list[BaseRoute]:
+    """Return the routes of all resources, which the applications of this process share.
+
+    FastAPI analyses the routes of a router anew for each application that includes it; each
+    simulation has one.
+    """
+    router = APIRouter(responses=_A_PROBLEM)
+    for resource in _RESOURCES:
+        router.include_router(resource)
+    for prefix in ("systems", "nodes"):
+        router.include_router(parts.router, prefix=f"/{prefix}", tags=[prefix])
+    return router.routes
+
 
 Lifespan: TypeAlias = Callable[[FastAPI], AbstractAsyncContextManager[None]]
 
@@ -92,16 +111,12 @@ def create_robot_app(
         redoc_url=None,
         redirect_slashes=False,
         lifespan=lifespan,
-        # "default" keeps the framework from describing an answer that is never given.
-        responses={"default": {"description": "A problem"}},
+        responses=_A_PROBLEM,
+        routes=_resources(),
         middleware=[Middleware(UnexpectedErrors)],
     )
     _share(app, supervisor, worker, access or Access.open(), limits)
     add_problem_handlers(app, supervisor.clock)
-    for router in _RESOURCES:
-        app.include_router(router)
-    for prefix in ("systems", "nodes"):
-        app.include_router(parts.router, prefix=f"/{prefix}", tags=[prefix])
     app.include_router(page_routes())
     app.openapi = partial(describe, app)  # type: ignore[method-assign]
     return app
