@@ -18,6 +18,7 @@ class Row(Protocol):
     @property
     def name(self) -> str:
         """Return the name of the part or signal."""
+        ...
 
     @property
     def mark(self) -> str:
