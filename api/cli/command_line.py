@@ -5,15 +5,19 @@ can report a foreign package with the name of one of ours before its import fail
 """
 
 import argparse
-import os
+import errno
 import sys
 from collections.abc import Sequence
 
 from api.cli.commands import change, check, monitor, serve, simulate, task
+from api.cli.standard_files import give_up_output, open_missing
 from api.distribution import ForeignPackageError, check_packages, installed_version
 from api.terminal_text import complain
 
 FAILED, MISUSED, INTERRUPTED = 1, 2, 130
+
+# EPIPE: the reader of our output, such as `head`, has closed the pipe.
+_OUTPUT_FAILED = frozenset({errno.EPIPE, errno.ENOSPC, errno.EDQUOT, errno.EIO, errno.EBADF})
 
 _COMMANDS = (
     serve.COMMAND,
@@ -45,24 +49,35 @@ def main(arguments: Sequence[str] | None = None) -> int:
     Args:
         arguments: Command line arguments without the program name; None: those of the process.
     """
-    parser = _parser()
-    options = parser.parse_args(arguments)
-    if options.run is None:
-        parser.print_help()
-        return MISUSED
+    open_missing()
     try:
-        check_packages()
-        code: int = options.run(options)
-        sys.stdout.flush()
+        try:
+            return _run(arguments)
+        finally:
+            # Also after `--help`, which ends with SystemExit.
+            sys.stdout.flush()
     except ForeignPackageError as error:
         complain(str(error))
         return FAILED
     except KeyboardInterrupt:
         return INTERRUPTED
-    except BrokenPipeError:
-        # The reader of our output, such as `head`, has closed the pipe; avoid a message at exit.
-        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+    except OSError as error:
+        if error.filename is not None or error.errno not in _OUTPUT_FAILED:
+            raise
+        give_up_output()
+        if not isinstance(error, BrokenPipeError):
+            complain(f"cannot write to standard output: {error.strerror}")
         return FAILED
+
+
+def _run(arguments: Sequence[str] | None) -> int:
+    parser = _parser()
+    options = parser.parse_args(arguments)
+    if options.run is None:
+        parser.print_help()
+        return MISUSED
+    check_packages()
+    code: int = options.run(options)
     return code
 
 

@@ -1,13 +1,12 @@
 """`pilothouse serve`: runs supervisor and web server side by side.
 
-Owns the handling of SIGINT and SIGTERM, and every task.
+Owns the handling of signals, and every task.
 """
 
 import asyncio
 import gc
 import logging
 import os
-import signal
 import socket
 import sys
 from collections.abc import Iterator, Sequence
@@ -18,7 +17,10 @@ from api.app import create_app, prepare
 from api.distribution import installed_version
 from api.http.access import MIN_GOOD_CHARACTERS, Access
 from api.serving.composition import EXAMPLE, Composition, MisuseError, ServeOptions, compose
+from api.serving.output import Output
+from api.serving.process_log import log_to
 from api.serving.service_manager import ServiceManager, UnknownManagerError
+from api.serving.stop_signals import StopSignals
 from api.serving.web_server import ListenError, WebServer, is_loopback, listen, url_of, web_server
 from api.terminal_text import complain, counted, finding_line
 from domain.errors import InvalidModelError
@@ -35,14 +37,26 @@ from service.supervisor import Supervisor
 log = logging.getLogger(__name__)
 
 _NOT_IN_ROS = (UnknownFieldError, UnknownTypeError)
-SUCCEEDED, FAILED, MISUSED, INTERRUPTED = 0, 1, 2, 130
+SUCCEEDED, FAILED, MISUSED = 0, 1, 2
+_STDOUT, _STDERR = 1, 2
 
 
 def serve(options: ServeOptions) -> int:
     """Run the service until a signal ends it, and return the exit code of the process."""
-    _log_to_stderr(options.log_level)
+    output, errors = Output(_STDOUT), Output(_STDERR)
     try:
-        access = access_of(options, take_token())
+        return _serve(options, output, errors)
+    finally:
+        output.close()
+        logging.shutdown()
+        errors.close()
+
+
+def _serve(options: ServeOptions, output: Output, errors: Output) -> int:
+    try:
+        token = take_token()
+        log_to(errors, options.log_level, token)
+        access = access_of(options, token)
         manager = ServiceManager.of(os.environ)
         composition = compose(options, MonotonicClock())
         sockets = listen(options.host, options.port)
@@ -65,7 +79,7 @@ def serve(options: ServeOptions) -> int:
     app.state.exposed = options.anonymous and not is_loopback(options.host)
     prepare(app)
     greeting = "\n".join(greet(composition, options, url_of(sockets, options.host), access))
-    server = web_server(app, lambda: _say_serving(greeting, manager, supervisor))
+    server = web_server(app, lambda: _say_serving(output, greeting, manager, supervisor))
     # Objects that exist now stay: without this each garbage collection would scan them again, and
     # delay the tick.
     gc.collect()
@@ -119,7 +133,14 @@ async def run_service(
     """
     supervisor, gateway = composition.supervisor, composition.gateway
     stopping = asyncio.Event()
-    _on_signals(stopping)
+
+    def stop() -> None:
+        # Also if the vehicle cannot be told.
+        stopping.set()
+        # The robot first, and here: a second signal may end the process before a task runs.
+        supervisor.stop_driving()
+
+    StopSignals(stop).install()
     code = SUCCEEDED
     try:
         async with asyncio.TaskGroup() as tasks:
@@ -128,8 +149,6 @@ async def run_service(
             offering = tasks.create_task(_offer(gateway), name="gateway") if gateway else None
             await stopping.wait()
             manager.say_stopping()
-            # The robot first: the rest may take a moment.
-            supervisor.stop_driving()
             supervisor.change_ends.stop()
             server.should_exit = True
             await serving
@@ -175,20 +194,12 @@ def greet(
     yield "Ctrl-C stops the service and the vehicle; nodes stay as they are."
 
 
-def _say_serving(greeting: str, manager: ServiceManager, supervisor: Supervisor) -> None:
+def _say_serving(
+    output: Output, greeting: str, manager: ServiceManager, supervisor: Supervisor
+) -> None:
     """Print that connections are accepted; the next tick notifies the service manager."""
-    print(greeting, flush=True)
+    output.write(f"{greeting}\n")
     manager.watch(supervisor)
-
-
-def _on_signals(stopping: asyncio.Event) -> None:
-    def stop() -> None:
-        if stopping.is_set():
-            os._exit(INTERRUPTED)
-        stopping.set()
-
-    for number in (signal.SIGINT, signal.SIGTERM):
-        asyncio.get_running_loop().add_signal_handler(number, stop)
 
 
 async def _serve_until(
@@ -231,17 +242,6 @@ def _new_event_loop() -> asyncio.AbstractEventLoop:
     except ImportError:  # There is none for Windows.
         return asyncio.new_event_loop()
     return uvloop.new_event_loop()
-
-
-def _log_to_stderr(level: str) -> None:
-    logging.basicConfig(
-        level=level.upper(),
-        stream=sys.stderr,
-        format="%(asctime)s %(levelname)s %(name)s: %(message)s",
-    )
-    # uvicorn logs every connection at INFO; our own modules log what matters.
-    for name in ("uvicorn.error", "uvicorn.access"):
-        logging.getLogger(name).setLevel("DEBUG" if level == "debug" else "WARNING")
 
 
 def _end(message: str, code: int) -> int:

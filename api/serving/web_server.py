@@ -4,12 +4,14 @@ import contextlib
 import errno
 import ipaddress
 import socket
-from collections.abc import Callable, Generator, Sequence
+from collections.abc import Awaitable, Callable, Generator, Sequence
+from functools import partial
 
 import uvicorn
 from fastapi import FastAPI
 from uvicorn.protocols.http.httptools_impl import HttpToolsProtocol
 
+from api.app import close_workers
 from api.http.limits import ServiceLimits
 from api.serving.websocket_protocol import WebSocketProtocol
 
@@ -31,14 +33,25 @@ class WebServer(uvicorn.Server):
     rest of it is wound down. The composition root owns the signals.
     """
 
-    def __init__(self, config: uvicorn.Config, on_started: Callable[[], None]) -> None:
+    def __init__(
+        self,
+        config: uvicorn.Config,
+        on_started: Callable[[], None],
+        on_stopping: Callable[[], Awaitable[None]],
+    ) -> None:
         super().__init__(config)
         self._on_started = on_started
+        self._on_stopping = on_stopping
 
     async def startup(self, sockets: list[socket.socket] | None = None) -> None:
         """Start to accept connections, and call `on_started`."""
         await super().startup(sockets)
         self._on_started()
+
+    async def shutdown(self, sockets: list[socket.socket] | None = None) -> None:
+        """Await `on_stopping`, then wait for running requests, and cancel those that take long."""
+        await self._on_stopping()
+        await super().shutdown(sockets)
 
     @contextlib.contextmanager
     def capture_signals(self) -> Generator[None, None, None]:
@@ -96,7 +109,8 @@ def web_server(app: FastAPI, on_started: Callable[[], None]) -> WebServer:
     )
     # Now and not at the start of the server, when the tick is running already.
     config.load()
-    return WebServer(config, on_started)
+    # The jobs of requests fail first, so that these are answered.
+    return WebServer(config, on_started, partial(close_workers, app))
 
 
 def listen(host: str, port: int) -> list[socket.socket]:

@@ -42,6 +42,14 @@ class WebSocketProtocol(WebSocketsSansIOProtocol):
         await super().run_asgi()
         self.loop.call_later(_LAST_WORDS_S, self.transport.abort)
 
+    def shutdown(self) -> None:
+        """Close, since the service ends: with code 1012, or 503 before the handshake is done."""
+        if not self.handshake_complete and self.handshake_initiated:
+            self.conn.send_response(self.conn.reject(503, "the service is shutting down\n"))
+            self.transport.write(b"".join(self.conn.data_to_send()))
+            self.handshake_complete = self.close_sent = True
+        super().shutdown()
+
     def pause_writing(self) -> None:
         """Notify the listener that not all data could be sent."""
         super().pause_writing()
