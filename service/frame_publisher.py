@@ -34,6 +34,8 @@ class FramePublisher:
         self.late_ticks = 0
         """Number of skipped ticks."""
         self.last_tick_at: Instant | None = None
+        self.published_at: Instant | None = None
+        """When the newest frame was published."""
         self.on_tick: list[Callable[[float], None]] = []
         """Called with the time since the previous tick, s; must return at once."""
         self._core = core
@@ -107,6 +109,7 @@ class FramePublisher:
         self._changed_signals.clear()
         self._task_changed = self._vehicle_changed = False
         self.frames.publish(frame)
+        self.published_at = frame.at
 
     def _tick(self) -> None:
         now = self._clock.now()

@@ -96,8 +96,8 @@ def access_of(options: ServeOptions, token: str | None) -> Access:
         token: Of the environment; None: there is none.
 
     Raises:
-        MisuseError: The network would have access without a token or --anonymous, or both are
-            given.
+        MisuseError: The network would have access without a token, with one that can be guessed,
+            or without --anonymous; or both are given.
         ListenError: There is no such host.
     """
     if token is None:
@@ -114,6 +114,11 @@ def access_of(options: ServeOptions, token: str | None) -> Access:
             "one of them"
         )
     if len(token) < MIN_GOOD_CHARACTERS:
+        if not is_loopback(options.host):
+            raise MisuseError(
+                f"the token can be guessed: with --host {options.host} it needs at least "
+                f"{MIN_GOOD_CHARACTERS} characters, as from: openssl rand -hex 32"
+            )
         log.warning("the token can be guessed: it has less than %d characters", MIN_GOOD_CHARACTERS)
     return Access.with_token(token)
 
