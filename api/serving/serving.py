@@ -60,13 +60,13 @@ def _serve(options: ServeOptions, output: Output, errors: Output) -> int:
         manager = ServiceManager.of(os.environ)
         composition = compose(options, MonotonicClock())
         sockets = listen(options.host, options.port)
-    except (InvalidTokenError, MisuseError, UnknownManagerError) as error:
+    except (InvalidTokenError, MisuseError, UnknownManagerError, UnreadableFileError) as error:
         return _end(str(error), MISUSED)
     except InvalidModelError as error:
         return _complain_of(options.model or EXAMPLE, error.findings)
     except InvalidRobotFileError as error:
         return _complain_of(options.robot, error.findings)
-    except (ListenError, StartTaskError, *_NOT_IN_ROS, UnreadableFileError) as error:
+    except (ListenError, StartTaskError, *_NOT_IN_ROS) as error:
         return _end(str(error), FAILED)
     supervisor, hosts = composition.supervisor, (options.host, *options.allowed_hosts)
     app = create_app(
