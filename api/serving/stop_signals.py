@@ -69,7 +69,7 @@ class StopSignals:
         """
         if self._since is None:
             self._since = read_clock()
-            log.info("%s: the vehicle is stopped, and the service ends", name)
+            log.debug("%s: the vehicle is stopped, and the service ends", name)
             self._stop()
         elif name in _URGENT and read_clock() - self._since >= _ONE_OCCASION_S:
             os._exit(INTERRUPTED)
