@@ -9,7 +9,7 @@ from collections.abc import Callable, Sequence
 from api.serving.closings import Closings
 from api.serving.intake import Dispensable, Intake
 
-ACCEPTED_PER_TURN = 16
+ACCEPTED_PER_TURN = 64
 _LOOK_EVERY_S = 1.0
 _RETRY_S = 0.1
 _OUT_OF_DESCRIPTORS = (errno.EMFILE, errno.ENFILE, errno.ENOBUFS, errno.ENOMEM)

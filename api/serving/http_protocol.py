@@ -47,7 +47,8 @@ class HttpProtocol(HttpToolsProtocol):
         super().__init__(config, server_state, app_state)
         self._closings = closings
         self._searched = 0
-        self._in_message = False
+        self.in_message = False
+        """Whether a request has begun whose body is incomplete."""
         self._in_head = False
         self._body_left: int | None = 0
         """Bytes of the body still to come; None: it is chunked."""
@@ -61,7 +62,7 @@ class HttpProtocol(HttpToolsProtocol):
 
     def next_piece(self, waiting: bytearray) -> Piece:
         """Return the next head, or a part of a body."""
-        if not self._in_message:
+        if not self.in_message:
             return self._next_head(waiting)
         if self._body_left is None:
             return Piece(min(len(waiting), _CHUNKED_PIECE), HEAD_COST)
@@ -98,7 +99,7 @@ class HttpProtocol(HttpToolsProtocol):
                 self.handle_websocket_upgrade()
         except httptools.HttpParserError:
             self._reject(HTTPStatus.BAD_REQUEST)
-        if self._in_message and self._body_left is None:
+        if self.in_message and self._body_left is None:
             overhead = self._taken - _CHUNK_OVERHEAD * self._body_bytes
             if overhead > MAX_HEAD_BYTES:
                 self._reject(HTTPStatus.BAD_REQUEST)
@@ -106,7 +107,7 @@ class HttpProtocol(HttpToolsProtocol):
     def on_message_begin(self) -> None:
         """Begin a request."""
         super().on_message_begin()
-        self._in_message = self._in_head = True
+        self.in_message = self._in_head = True
 
     def on_header(self, name: bytes, value: bytes) -> None:
         """Take a header; trailers are of no use, and without a limit."""
@@ -132,7 +133,7 @@ class HttpProtocol(HttpToolsProtocol):
 
     def on_message_complete(self) -> None:
         """Begin to wait for the next head."""
-        self._in_message = False
+        self.in_message = False
         super().on_message_complete()
 
     def on_response_complete(self) -> None:
@@ -147,7 +148,7 @@ class HttpProtocol(HttpToolsProtocol):
         """Return whether it may be closed for a new one."""
         if self.cycle is None or self.cycle.response_complete:
             return Dispensable.AT_ONCE
-        return Dispensable.IF_NEEDED if self._in_message else Dispensable.NOT
+        return Dispensable.IF_NEEDED if self.in_message else Dispensable.NOT
 
     def overdue(self, now: float) -> str | None:
         """Return for what the client took too long; None: for nothing."""
@@ -158,7 +159,7 @@ class HttpProtocol(HttpToolsProtocol):
         if unsent:
             return "unread" if now - self._unsent_since > UNREAD_TIMEOUT_S else None
         waited = now - self._since
-        if self._in_message:
+        if self.in_message:
             allowed = BODY_TIMEOUT_S + self._body_bytes / MIN_BODY_BYTES_PER_S
             # What the service itself makes wait is not the client's fault.
             return "body" if waited > allowed and not self.flow.read_paused else None

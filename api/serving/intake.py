@@ -30,6 +30,11 @@ class Inner(Protocol):
     """The protocol of a connection: HTTP, or WebSocket after the handshake."""
 
     @property
+    def in_message(self) -> bool:
+        """Tell whether a request has begun whose body is incomplete."""
+        ...
+
+    @property
     def dispensable(self) -> Dispensable:
         """Return whether it may be closed for a new one."""
         ...
@@ -109,6 +114,8 @@ class Intake(asyncio.BufferedProtocol):
         self._watcher = watcher
         self._urgent = urgent
         self._waiting = bytearray()
+        self._in_stop = False
+        """Whether the request whose body is awaited is urgent."""
         self._is_queued = False
         self._is_held = False
         """Whether the protocol wants no data."""
@@ -161,6 +168,9 @@ class Intake(asyncio.BufferedProtocol):
     def serve(self) -> int:
         """Handle the next piece."""
         cost = 0 if self._is_held else self._hand_on()
+        if cost and self.inner.in_message and not self._is_held:
+            # A small body is handled with its head, and does not wait for a turn of its own.
+            cost += self._hand_on()
         if not cost:
             self._is_queued = False
             self._read(not self._is_held)
@@ -176,20 +186,27 @@ class Intake(asyncio.BufferedProtocol):
             return 0
         data = bytes(memoryview(self._waiting)[: piece.length])
         del self._waiting[: piece.length]
-        self.is_urgent = False
+        if not self.inner.in_message:
+            self._in_stop = self._urgent(data)
         try:
             self.inner.data_received(data)
         except Exception:
             # The other connections go on.
             log.exception("a connection is closed")
             self.raw.abort()
+        self._judge()
         return piece.cost
+
+    def _judge(self) -> None:
+        """Note whether what waits is urgent, which a body is if its head was."""
+        in_message = self.inner.in_message
+        self.is_urgent = self._in_stop if in_message else self._urgent(self._waiting)
 
     def _queue(self) -> None:
         if self._waiting and not self._is_queued and not self._is_held:
             self._read(False)
             self._is_queued = True
-            self.is_urgent = self._urgent(self._waiting)
+            self._judge()
             self._turns.wait(self)
 
     def _hold(self) -> None:

@@ -47,6 +47,7 @@ class WebSocketProtocol(WebSocketsSansIOProtocol):
     _between_frames = False
     """Whether the next data certainly starts with a frame."""
     _is_let_in = False
+    in_message = False
 
     def __init__(
         self,

@@ -7,7 +7,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from api.serving.http_protocol import MAX_HEAD_BYTES
-from api.serving.intake import READ_BYTES
+from api.serving.intake import READ_BYTES, Dispensable
 from api.serving.pieces import HEAD_COST
 from api.serving.turns import BUDGET
 from tests.support.flooded_wire import FloodedService
@@ -76,7 +76,10 @@ async def test_a_stop_overtakes_a_flood() -> None:
 
     owner.send(b"PUT /emergency_stop HTTP/1.1\r\nHost: a\r\nContent-Length: 2\r\n\r\n{}")
     service.loop.turn()
+    # Also its body: no further turn is needed.
     await until(lambda: b"200" in owner.raw.written)
+    assert owner.intake.inner.dispensable is Dispensable.AT_ONCE
+    assert not owner.intake.inner.in_message
 
     for client in (owner, *flood):
         client.lose()
