@@ -2,7 +2,6 @@
 
 import asyncio
 from collections.abc import Iterator
-from itertools import islice
 from typing import TypeAlias
 
 from api.distribution import installed_version
@@ -21,6 +20,8 @@ from service.supervisor import Supervisor
 
 _EVENTS_KEPT = 1_000
 _MEMBERS_AT_ONCE = 200
+_PASSES = 3
+"""Over the parts that changed, each for those that changed during the one before."""
 _PATH = "/ws"
 
 _Shape: TypeAlias = tuple[bool, frozenset[str]]
@@ -57,13 +58,14 @@ class StreamEncoder:
         if "parts" not in topics:
             return
         feed, cache = self._supervisor.frames, self._robot.parts
-        rounds = 2 + 2 * len(feed.parts) // _MEMBERS_AT_ONCE
-        for _ in range(rounds):
-            new = list(islice(cache.new_ones(feed.parts.items()), _MEMBERS_AT_ONCE))
-            cache.learn(new)
-            if len(new) < _MEMBERS_AT_ONCE:
+        for _ in range(_PASSES):
+            new = list(cache.new_ones(feed.parts.items()))
+            for start in range(0, len(new), _MEMBERS_AT_ONCE):
+                cache.learn(new[start : start + _MEMBERS_AT_ONCE])
+                if len(new) > _MEMBERS_AT_ONCE:
+                    await asyncio.sleep(0)
+            if len(new) <= _MEMBERS_AT_ONCE:
                 return
-            await asyncio.sleep(0)
 
     def frame(self, frame: Frame, skipped: int, topics: frozenset[str]) -> str:
         """Return a `state` frame; clients with the same topics that skip nothing share the text."""
