@@ -14,7 +14,7 @@ from domain.errors import PilothouseError
 from domain.events.event import RecordedEvent
 from domain.timebase import to_seconds
 from service.event_log import Gap
-from service.frame_feed import Frame
+from service.frame_feed import PARTS_AT_ONCE, Frame
 from service.frame_publisher import PERIOD
 from service.supervisor import Supervisor
 
@@ -64,7 +64,7 @@ class StreamEncoder:
                 cache.learn(new[start : start + _MEMBERS_AT_ONCE])
                 if len(new) > _MEMBERS_AT_ONCE:
                     await asyncio.sleep(0)
-            if len(new) <= _MEMBERS_AT_ONCE:
+            if len(new) <= PARTS_AT_ONCE:
                 return
 
     def frame(self, frame: Frame, skipped: int, topics: frozenset[str]) -> str:
