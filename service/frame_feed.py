@@ -1,6 +1,6 @@
 """Distributes published frames to any number of readers; a slow reader skips frames."""
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
 
 from domain.snapshot import (
@@ -124,12 +124,19 @@ class FrameFeed(Watched):
         newest = self._newest
         if seen is None or newest is None or len(self._parts) <= PARTS_AT_ONCE:
             return self.complete()
-        changed = {}
+        return replace(
+            _all_changed(newest),
+            parts=dict(self.parts_since(seen)),
+            signals=dict(self._signals),
+            full=False,
+        )
+
+    def parts_since(self, seen: int) -> Iterator[tuple[PartName, PartView]]:
+        """Yield the parts that changed after the frame `seen`, the newest first."""
         for part in reversed(self._parts):
-            if self._changed_in.get(part, 0) <= seen:
-                break
-            changed[part] = self._parts[part]
-        return replace(_all_changed(newest), parts=changed, signals=dict(self._signals), full=False)
+            if self._changed_in[part] <= seen:
+                return
+            yield part, self._parts[part]
 
 
 def _all_changed(frame: Frame) -> Frame:

@@ -38,6 +38,8 @@ class StreamEncoder:
         self._texts: dict[_Shape, tuple[Frame, _StateText]] = {}
         """The newest text of each shape, shared by the clients of the same topics."""
         self._events: dict[int, str] = {}
+        self._prepared = 0
+        """Number of the frame up to which parts are encoded."""
 
     def hello(self, topics: frozenset[str]) -> str:
         """Return the `hello` frame."""
@@ -59,7 +61,10 @@ class StreamEncoder:
             return
         feed, cache = self._supervisor.frames, self._robot.parts
         for _ in range(_PASSES):
-            new = list(cache.new_ones(feed.parts.items()))
+            if feed.newest is None:
+                return
+            new = list(cache.new_ones(feed.parts_since(self._prepared)))
+            self._prepared = feed.newest.seq
             for start in range(0, len(new), _MEMBERS_AT_ONCE):
                 cache.learn(new[start : start + _MEMBERS_AT_ONCE])
                 if len(new) > _MEMBERS_AT_ONCE:
