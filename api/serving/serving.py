@@ -4,7 +4,6 @@ Owns the handling of SIGINT and SIGTERM, and every task.
 """
 
 import asyncio
-import gc
 import logging
 import os
 import signal
@@ -26,6 +25,7 @@ from domain.findings import Finding
 from service.clock import MonotonicClock
 from service.files.robot_file import InvalidRobotFileError
 from service.files.text_file import UnreadableFileError
+from service.garbage import collect_at_rest, settle_heap
 from service.ros.gateway import RosGateway
 from service.ros.graph.graph import GraphFailedError, UnknownFieldError, UnknownTypeError
 from service.running import TaskFailedError
@@ -66,10 +66,7 @@ def serve(options: ServeOptions) -> int:
     prepare(app)
     greeting = "\n".join(greet(composition, options, url_of(sockets, options.host), access))
     server = web_server(app, lambda: _say_serving(greeting, manager, supervisor))
-    # Objects that exist now stay: without this each garbage collection would scan them again, and
-    # delay the tick.
-    gc.collect()
-    gc.freeze()
+    settle_heap()
     with asyncio.Runner(loop_factory=_new_event_loop) as runner:
         return runner.run(run_service(composition, server, sockets, manager))
 
@@ -125,6 +122,9 @@ async def run_service(
         async with asyncio.TaskGroup() as tasks:
             supervising = tasks.create_task(supervisor.run(), name="supervisor")
             serving = tasks.create_task(_serve_until(stopping, server, sockets), name="web server")
+            collecting = tasks.create_task(
+                collect_at_rest(supervisor.core, supervisor.clock), name="garbage"
+            )
             offering = tasks.create_task(_offer(gateway), name="gateway") if gateway else None
             await stopping.wait()
             manager.say_stopping()
@@ -135,6 +135,7 @@ async def run_service(
             await serving
             if offering is not None:
                 offering.cancel()
+            collecting.cancel()
             supervising.cancel()
     except* Exception as failures:
         for failure in _leaves(failures):
