@@ -31,6 +31,14 @@ from collections.abc import Sequence
 from domain.findings import Blocker, Finding
 from domain.lifecycle import LifecycleState, Transition
 
+MAX_SHOWN = 200
+"""Characters of what somebody sent that a message repeats, so that answers stay short."""
+
+
+def shortened(text: str) -> str:
+    """Return a text that somebody sent as messages show it: cut if it is long."""
+    return text if len(text) <= MAX_SHOWN else f"{text[:MAX_SHOWN]}..."
+
 
 class PilothouseError(Exception):
     """Anything that Pilothouse rejects or fails to do; `code` is stable."""
@@ -56,7 +64,7 @@ class UnknownNameError(PilothouseError):
     code = "UNKNOWN_NAME"
 
     def __init__(self, what: str, name: str, known: Sequence[str], hint: str | None = None) -> None:
-        super().__init__(f"there is no {what} {name!r}")
+        super().__init__(f"there is no {what} {shortened(name)!r}")
         self.name = name
         if hint is not None:
             self.hint = hint
