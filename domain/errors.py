@@ -35,9 +35,9 @@ MAX_SHOWN = 200
 """Characters of what somebody sent that a message repeats, so that answers stay short."""
 
 
-def shortened(text: str) -> str:
-    """Return a text that somebody sent as messages show it: cut if it is long."""
-    return text if len(text) <= MAX_SHOWN else f"{text[:MAX_SHOWN]}..."
+def shortened(text: str, most: int = MAX_SHOWN) -> str:
+    """Return a text that somebody sent as messages show it: cut if it is longer than `most`."""
+    return text if len(text) <= most else f"{text[:most]}..."
 
 
 class PilothouseError(Exception):
