@@ -69,6 +69,11 @@ class FrameFeed(Watched):
         return self._newest
 
     @property
+    def parts(self) -> Mapping[PartName, PartView]:
+        """The newest view of every part; read only."""
+        return self._parts
+
+    @property
     def wants_full(self) -> bool:
         """Tell whether a full frame is needed first: until then readers get nothing."""
         return not self._has_all

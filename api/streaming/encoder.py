@@ -20,6 +20,8 @@ from service.supervisor import Supervisor
 
 _EVENTS_KEPT = 1_000
 _MEMBERS_AT_ONCE = 200
+_PASSES = 3
+"""Over the parts that changed, each for those that changed during the one before."""
 _PATH = "/ws"
 
 _Shape: TypeAlias = tuple[bool, frozenset[str]]
@@ -47,17 +49,23 @@ class StreamEncoder:
             version=installed_version(),
         ).model_dump_json()
 
-    async def prepare(self, frame: Frame, topics: frozenset[str]) -> None:
-        """Encode new members a few at a time, and let other tasks run in between.
+    async def prepare(self, topics: frozenset[str]) -> None:
+        """Encode changed parts a few at a time, and let other tasks run in between.
 
-        Encoding the first frame of a robot with 10,000 parts at once would delay the tick.
+        A client may be sent a complete frame next, and parts go on changing meanwhile: what is left
+        for one turn is little, unless parts change faster than they can be encoded.
         """
-        if "parts" in topics and self._known_text(frame, topics) is None:
-            parts = self._robot.parts
-            new = list(parts.new_ones(frame.parts.items()))
+        if "parts" not in topics:
+            return
+        feed, cache = self._supervisor.frames, self._robot.parts
+        for _ in range(_PASSES):
+            new = list(cache.new_ones(feed.parts.items()))
             for start in range(0, len(new), _MEMBERS_AT_ONCE):
-                parts.learn(new[start : start + _MEMBERS_AT_ONCE])
-                await asyncio.sleep(0)
+                cache.learn(new[start : start + _MEMBERS_AT_ONCE])
+                if len(new) > _MEMBERS_AT_ONCE:
+                    await asyncio.sleep(0)
+            if len(new) <= _MEMBERS_AT_ONCE:
+                return
 
     def frame(self, frame: Frame, skipped: int, topics: frozenset[str]) -> str:
         """Return a `state` frame; clients with the same topics that skip nothing share the text."""

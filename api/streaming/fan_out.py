@@ -95,7 +95,7 @@ class FanOut:
                 encoded = FrameBytes(self._encoder)
                 ping = self._ping()
                 for group in tuple(self._groups.values()):
-                    await self._prepare(group.cursor.topics)
+                    await self._encoder.prepare(group.cursor.topics)
                     await self._write_in_step(group, encoded, ping)
                     await self._write_apart(group, encoded, ping)
                 # Writing to a transport with room never suspends, and a long history takes many
@@ -112,12 +112,6 @@ class FanOut:
             for client in group.take_silent():
                 self.drop(client.transport, client.address)
         return PING
-
-    async def _prepare(self, topics: frozenset[str]) -> None:
-        """Encode new parts a few at a time, before the whole frame is needed."""
-        frame = self._supervisor.frames.newest
-        if frame is not None:
-            await self._encoder.prepare(frame, topics)
 
     async def _write_in_step(self, group: Group, encoded: FrameBytes, ping: bytes) -> None:
         """Write the same bytes to all clients that have read everything before.

@@ -112,9 +112,7 @@ class _Client:
             raise _GoneError
         encoder = self._server.encoder
         self._connection.transport.write(text_frame(encoder.hello(query.topics)))
-        complete = self._server.supervisor.frames.complete()
-        if complete is not None:
-            await encoder.prepare(complete, query.topics)
+        await encoder.prepare(query.topics)
         with self._server.fan_out.serve(self._connection, query, self._address) as client:
             await self._listen(client)
 
