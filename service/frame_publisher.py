@@ -13,8 +13,6 @@ from service.frame_feed import Frame, FrameFeed
 log = logging.getLogger(__name__)
 
 PERIOD = seconds(0.05)
-_TICKS_PER_FULL = 20
-"""One complete frame per second, so that a client that lost data soon recovers."""
 
 
 class FramePublisher:
@@ -39,7 +37,6 @@ class FramePublisher:
         self._core = core
         self._clock = clock
         self._simulated = simulated
-        self._ticks = 0
         self._changed_parts: set[PartName] = set()
         self._changed_signals: set[str] = set()
         self._task_changed = False
@@ -72,9 +69,9 @@ class FramePublisher:
         if self.seq:
             self._publish()
 
-    def _publish(self, *, full: bool = False) -> None:
-        """Publish one frame: everything, or the changes since the previous frame."""
-        full = full or self.frames.wants_full
+    def _publish(self) -> None:
+        """Publish one frame: everything at first, then the changes since the previous frame."""
+        full = self.frames.wants_full
         self.seq += 1
         core = self._core
         holds, emergency_stop = core.driving.holds, core.emergency_stop()
@@ -114,5 +111,4 @@ class FramePublisher:
             for observe in self.on_tick:
                 observe(to_seconds(now - self.last_tick_at))
         self.last_tick_at = now
-        self._publish(full=self._ticks % _TICKS_PER_FULL == 0)
-        self._ticks += 1
+        self._publish()

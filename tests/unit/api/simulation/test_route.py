@@ -2,6 +2,8 @@
 
 from typing import Any
 
+import pytest
+
 from api.simulation import route
 from domain.simulation.node_settings import Fault
 from service.worker import WorkerBusyError
