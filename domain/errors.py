@@ -34,6 +34,13 @@ from domain.lifecycle import LifecycleState, Transition
 
 _LONGEST_COMPARED = 64
 _MOST_COMPARED = 200
+MAX_SHOWN = 200
+"""Characters of what somebody sent that a message repeats, so that answers stay short."""
+
+
+def shortened(text: str, most: int = MAX_SHOWN) -> str:
+    """Return a text that somebody sent as messages show it: cut if it is longer than `most`."""
+    return text if len(text) <= most else f"{text[:most]}..."
 
 
 class PilothouseError(Exception):
@@ -71,7 +78,7 @@ class UnknownNameError(PilothouseError):
     code = "UNKNOWN_NAME"
 
     def __init__(self, what: str, name: str, known: Sequence[str], hint: str | None = None) -> None:
-        super().__init__(f"there is no {what} {name!r}")
+        super().__init__(f"there is no {what} {shortened(name)!r}")
         self.name = name
         if hint is not None:
             self.hint = hint

@@ -15,8 +15,6 @@ from service.frame_feed import PARTS_AT_ONCE, Frame, FrameFeed
 log = logging.getLogger(__name__)
 
 PERIOD = seconds(0.05)
-_TICKS_PER_FULL = 20
-"""One complete frame per second, so that a client that lost data soon recovers."""
 
 
 class FramePublisher:
@@ -43,7 +41,6 @@ class FramePublisher:
         self._core = core
         self._clock = clock
         self._simulated = simulated
-        self._ticks = 0
         self._changed_parts: dict[PartName, None] = {}
         """In the order in which they changed."""
         self._changed_signals: set[str] = set()
@@ -77,9 +74,9 @@ class FramePublisher:
         if self.seq:
             self._publish()
 
-    def _publish(self, *, full: bool = False) -> None:
-        """Publish one frame: everything, or the changes since the previous frame."""
-        full = full or self.frames.wants_full
+    def _publish(self) -> None:
+        """Publish one frame: everything at first, then the changes since the previous frame."""
+        full = self.frames.wants_full
         self.seq += 1
         core = self._core
         holds, emergency_stop = core.driving.holds, core.emergency_stop()
@@ -130,5 +127,4 @@ class FramePublisher:
             for observe in self.on_tick:
                 observe(to_seconds(now - self.last_tick_at))
         self.last_tick_at = now
-        self._publish(full=self._ticks % _TICKS_PER_FULL == 0)
-        self._ticks += 1
+        self._publish()

@@ -86,6 +86,14 @@ class Jobs(Protocol):
         """Stop; unfinished jobs fail."""
         ...
 
+    def require_room(self) -> None:
+        """Check that a job would be taken, before its arguments are made at some cost.
+
+        Raises:
+            WorkerBusyError: The queue is full.
+        """
+        ...
+
     async def call(self, function: Callable[[*Given], Result], *arguments: *Given) -> Result:
         """Return what a function returns.
 
@@ -104,6 +112,9 @@ class InlineJobs:
 
     async def close(self) -> None:
         """Do nothing: no process was started."""
+
+    def require_room(self) -> None:
+        """Do nothing: there is no queue."""
 
     async def call(self, function: Callable[[*Given], Result], *arguments: *Given) -> Result:
         """Return what a function returns.
@@ -141,6 +152,15 @@ class Worker:
             if process is not None:
                 await _end(process)
 
+    def require_room(self) -> None:
+        """Check that a job would be taken, before its arguments are made at some cost.
+
+        Raises:
+            WorkerBusyError: The queue is full.
+        """
+        if self._jobs > QUEUE_LENGTH:
+            raise WorkerBusyError
+
     async def call(self, function: Callable[[*Given], Result], *arguments: *Given) -> Result:
         """Run a function in the worker, and return its result.
 
@@ -155,8 +175,7 @@ class Worker:
             PilothouseError: Raised by the function.
             JobFailedError: The function has a bug.
         """
-        if self._jobs > QUEUE_LENGTH:
-            raise WorkerBusyError
+        self.require_room()
         self._jobs += 1
         try:
             async with self._turn:

@@ -11,6 +11,7 @@ from fastapi.responses import Response
 
 from api.http.access import UnauthorizedError
 from api.http.body_parsing import (
+    MAX_FAULTS,
     BodyTooLargeError,
     InvalidBodyError,
     MalformedBodyError,
@@ -114,7 +115,7 @@ def problem_of(error: PilothouseError, clock: Clock, instance: str = "") -> Prob
     if isinstance(error, IllegalTransitionError):
         more["available"] = [str(transition) for transition in error.available]
     if isinstance(error, InvalidModelError | InvalidWaypointsError):
-        more["findings"] = [FindingJson.of(finding) for finding in error.findings]
+        more["findings"] = [FindingJson.of(finding) for finding in error.findings[:MAX_FAULTS]]
     if isinstance(error, InvalidBodyError):
         more["errors"] = error.faults
     if isinstance(error, InvalidValueError):

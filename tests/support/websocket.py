@@ -163,6 +163,9 @@ class WebSocketClient(asyncio.WriteTransport):
         """Tell whether nothing can be sent to this client any more."""
         return self.cut_off or self.closed is not None
 
+    def close(self) -> None:
+        self.abort()
+
     def abort(self) -> None:
         """Cut this client off."""
         self.cut_off = True
