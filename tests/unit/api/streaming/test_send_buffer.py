@@ -1,8 +1,9 @@
+import asyncio
 import socket
 import sys
 from collections.abc import Iterator
 from types import SimpleNamespace
-from typing import Any, cast
+from typing import cast
 
 import pytest
 
@@ -18,8 +19,8 @@ def connection() -> Iterator[tuple[socket.socket, socket.socket]]:
             yield ours, theirs
 
 
-def transport_of(ours: socket.socket | None) -> Any:
-    return cast("Any", SimpleNamespace(get_extra_info=lambda name: ours))
+def transport_of(ours: socket.socket | None) -> asyncio.WriteTransport:
+    return cast("asyncio.WriteTransport", SimpleNamespace(get_extra_info=lambda name: ours))
 
 
 @pytest.mark.skipif(sys.platform != "linux", reason="asks the kernel of Linux")
