@@ -6,7 +6,7 @@
 import { request } from "/web/js/api.js";
 import { el, setAttribute, setText } from "/web/js/dom.js";
 import { whileSending } from "/web/js/sending.js";
-import { standstillWords } from "/web/js/state_sentence.js";
+import { mayMove, standstillWords } from "/web/js/state_sentence.js";
 import { timeOfDay } from "/web/js/words.js";
 
 const ANSWER_MS = 2000;
@@ -18,6 +18,7 @@ class StopButton extends HTMLElement {
   #problem = null;
   #latch = null;
   #stands = "";
+  #moves = false;
 
   connectedCallback() {
     this.word = el("span", { class: "octagon" }, "STOP");
@@ -49,6 +50,7 @@ class StopButton extends HTMLElement {
 
   update({ state, contact }) {
     this.#latch = state.emergencyStop;
+    this.#moves = mayMove(state);
     this.#stands = contact.level === "lost" ? "" : standstillWords(state);
     this.release.disabled = contact.level === "lost";
     this.#render();
@@ -100,6 +102,7 @@ class StopButton extends HTMLElement {
     setAttribute(this.release, "hidden", !engaged || this.#sending);
     setText(this.status, this.#statusWords(engaged));
     setText(this.by, phase === "engaged" ? byWords(this.#latch) : "");
+    setAttribute(this.standstill, "data-moving", this.#moves);
     setText(this.standstill, phase === "engaged" ? this.#stands : "");
   }
 
