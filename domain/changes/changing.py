@@ -75,6 +75,15 @@ class Changing(Concern):
         """Handle all deadlines up to `now`."""
         self._changes.pass_time(now)
 
+    @property
+    def has_more(self) -> bool:
+        """Tell whether nodes of a large change are still to be started."""
+        return self._changes.has_more
+
+    def go_on(self, now: Instant) -> None:
+        """Start some more nodes of large changes."""
+        self._changes.go_on(now)
+
     def settle(self, now: Instant) -> bool:
         """Begin the next change that restores a node; return whether one began."""
         return self._restoring.begin_next(now)

@@ -82,10 +82,15 @@ class NodeSteps:
         """Take over a node, whose earlier pursuit was dropped; `start` lets it move."""
         self._pursuits[pursuit.node] = pursuit
 
-    def start(self, node: PartName, now: Instant) -> None:
-        """Plan the steps of an added pursuit, and start the first unless one is in flight."""
-        self._foresee(self._pursuits[node])
-        self._advance(node, now)
+    def start(self, pursuit: Pursuit, now: Instant) -> None:
+        """Plan the steps of an added pursuit, and start the first unless one is in flight.
+
+        It may have been dropped since it was added, or a report may have started it.
+        """
+        if pursuit.steps or pursuit.waiting or self._pursuits.get(pursuit.node) is not pursuit:
+            return
+        self._foresee(pursuit)
+        self._advance(pursuit.node, now)
 
     def drop(self, pursuit: Pursuit, status: StepStatus, now: Instant) -> None:
         """Start no further step of a node; one in flight ends by itself.
