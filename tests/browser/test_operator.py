@@ -229,12 +229,19 @@ def test_a_press_shows_that_it_was_sent_before_the_answer_is_there(
         button.click()
     sent = desktop.locator(part).locator("[data-sending] .sent")
     expect(sent).to_have_text("sent …")
-    assert len(waiting) == 1
-    waiting[0].fulfill(status=409, json={"title": "Refused", "detail": "not now", "status": 409})
+    for _ in range(100):
+        if waiting:
+            break
+        # The example is loaded before it is sent.
+        desktop.wait_for_timeout(20)
+    [route] = waiting
+    expect(sent).to_have_text("sent …")
+    route.fulfill(status=409, json={"title": "Refused", "detail": "not now", "status": 409})
     expect(sent).to_have_count(0)
     expect(desktop.locator(part if part == "ph-task-panel" else "ph-change")).to_contain_text(
         "Rejected: not now"
     )
+    desktop.unroute_all(behavior="wait")
 
 
 def test_without_an_answer_nothing_is_called_rejected(desktop: Page, service: Service) -> None:
