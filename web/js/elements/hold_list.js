@@ -43,13 +43,16 @@ class HoldList extends HTMLElement {
       const detail = { owner, button: release.button };
       this.dispatchEvent(new CustomEvent("ph-release", { bubbles: true, detail }));
     });
-    const whose = by ? (by === owner ? "" : `, by ${by}`) : ", cleared automatically";
+    const whose = by ? (by === owner ? "" : `, by ${by}`) : (UNTIL[owner] ?? "");
     const words = el("div", {}, el("strong", {}, owner), reason, el("p", { class: "quiet" }, since, whose));
     const item = el("li", {}, words, release);
     this.list.append(item);
     this.#lines.set(keyOf(hold), { item, reason, since, release });
   }
 }
+
+/** What ends the holds of Pilothouse itself. */
+const UNTIL = { error: ", until the errors end", vehicle: ", until there is a pose" };
 
 function keyOf({ owner, by, since_at }) {
   return JSON.stringify([owner, by, since_at]);
