@@ -17,6 +17,7 @@ from api.access_token import FILE_VARIABLE, TOKEN_VARIABLE, InvalidTokenError, t
 from api.app import create_app, prepare
 from api.distribution import installed_version
 from api.http.access import MIN_GOOD_CHARACTERS, Access
+from api.http.gate.origins import AllowedOrigins, InvalidOriginError
 from api.serving.composition import EXAMPLE, Composition, MisuseError, ServeOptions, compose
 from api.serving.service_manager import ServiceManager, UnknownManagerError
 from api.serving.web_server import ListenError, WebServer, is_loopback, listen, url_of, web_server
@@ -43,10 +44,11 @@ def serve(options: ServeOptions) -> int:
     _log_to_stderr(options.log_level)
     try:
         access = access_of(options, take_token())
+        origins = AllowedOrigins(options.allowed_origins)
         manager = ServiceManager.of(os.environ)
         composition = compose(options, MonotonicClock())
         sockets = listen(options.host, options.port)
-    except (InvalidTokenError, MisuseError, UnknownManagerError) as error:
+    except (InvalidOriginError, InvalidTokenError, MisuseError, UnknownManagerError) as error:
         return _end(str(error), MISUSED)
     except InvalidModelError as error:
         return _complain_of(options.model or EXAMPLE, error.findings)
@@ -58,6 +60,7 @@ def serve(options: ServeOptions) -> int:
     app = create_app(
         supervisor,
         allowed_hosts=hosts,
+        allowed_origins=origins,
         access=access,
         limits=composition.limits,
         simulated=composition.simulated,
