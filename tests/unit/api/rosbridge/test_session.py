@@ -396,11 +396,11 @@ async def test_a_token_that_nobody_asked_for_is_passed_over(talk: Talk) -> None:
 async def test_who_may_only_read_subscribes_and_changes_nothing() -> None:
     talk = Talk(reads_only=True)
 
-    talk.say("subscribe", topic=SYSTEM_STATE)
+    talk.say("subscribe", topic=SYSTEM_STATE.name)
     assert not [said for said in talk.heard() if said["op"] == "status"]
     for op, members in (
         ("publish", {"topic": "/estop", "msg": {"enabled": True}}),
-        ("call_service", {"service": MODE_REQUEST, "args": {}}),
+        ("call_service", {"service": MODE_REQUEST.name, "args": {}}),
     ):
         talk.say(op, **members)
         assert "may only read" in talk.only()["msg"]
