@@ -11,6 +11,7 @@ from api.http import model_jobs, task_jobs
 from api.http.access import Access
 from api.http.gate.audit import Audit
 from api.http.gate.cors import CorsHeaders
+from api.http.gate.ending import Ending
 from api.http.gate.headers import SecurityHeaders
 from api.http.gate.origin import OriginGate
 from api.http.gate.origins import AllowedOrigins
@@ -92,6 +93,7 @@ def _guard(
     app.add_middleware(TargetGate, refusals=refusals)
     app.add_middleware(CorsHeaders, allowed=origins)
     app.add_middleware(SecurityHeaders)
+    app.add_middleware(Ending)
 
 
 def prepare(app: FastAPI) -> None:

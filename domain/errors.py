@@ -27,10 +27,13 @@ input changes nothing.
 """
 
 from collections.abc import Sequence
+from difflib import get_close_matches
 
 from domain.findings import Blocker, Finding
 from domain.lifecycle import LifecycleState, Transition
 
+_LONGEST_COMPARED = 64
+_MOST_COMPARED = 200
 MAX_SHOWN = 200
 """Characters of what somebody sent that a message repeats, so that answers stay short."""
 
@@ -51,6 +54,17 @@ class PilothouseError(Exception):
         self.message = message
 
 
+def near_match(name: str, known: Sequence[str]) -> str | None:
+    """Return the known name that is most like a name; None: none is.
+
+    The work is bounded: a long name is like none, and only the first names are looked at.
+    """
+    if len(name) > _LONGEST_COMPARED:
+        return None
+    short = [other for other in known[:_MOST_COMPARED] if len(other) <= _LONGEST_COMPARED]
+    return next(iter(get_close_matches(name, short, n=1)), None)
+
+
 class UnknownNameError(PilothouseError):
     """An unknown name.
 
@@ -69,7 +83,9 @@ class UnknownNameError(PilothouseError):
         if hint is not None:
             self.hint = hint
         elif known:
+            near = near_match(name, known) if len(known) > 1 else None
             self.hint = f"known: {', '.join(known[:20])}" + (", ..." if len(known) > 20 else "")
+            self.hint += "" if near is None else f"; did you mean {near}?"
 
 
 class UnknownPartError(UnknownNameError):

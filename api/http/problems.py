@@ -46,7 +46,7 @@ from service.files.robot_file import InvalidRobotFileError
 from service.files.text_file import UnreadableFileError
 from service.files.waypoint_file import InvalidWaypointsError
 from service.start_task import StartTaskError
-from service.worker import TooComplexError, WorkerBusyError, WorkerClosedError
+from service.worker import OutOfMemoryError, TooComplexError, WorkerBusyError, WorkerClosedError
 
 STATUS_OF: Mapping[type[PilothouseError], HTTPStatus] = {
     PilothouseError: HTTPStatus.INTERNAL_SERVER_ERROR,
@@ -70,6 +70,7 @@ STATUS_OF: Mapping[type[PilothouseError], HTTPStatus] = {
     InvalidBodyError: HTTPStatus.UNPROCESSABLE_ENTITY,
     InvalidModelError: HTTPStatus.UNPROCESSABLE_ENTITY,
     TooComplexError: HTTPStatus.UNPROCESSABLE_ENTITY,
+    OutOfMemoryError: HTTPStatus.UNPROCESSABLE_ENTITY,
     RefusedError: HTTPStatus.CONFLICT,
     IllegalTransitionError: HTTPStatus.CONFLICT,
     BlockedError: HTTPStatus.CONFLICT,

@@ -14,7 +14,7 @@ from domain.errors import PilothouseError
 from domain.events.event import RecordedEvent
 from domain.timebase import to_seconds
 from service.event_log import DEFAULT_CAPACITY, Gap
-from service.frame_feed import Frame
+from service.frame_feed import PARTS_AT_ONCE, Frame
 from service.frame_publisher import PERIOD
 from service.supervisor import Supervisor
 
@@ -40,6 +40,8 @@ class StreamEncoder:
         self._texts: dict[_Shape, tuple[Frame, _StateText]] = {}
         """The newest text of each shape, shared by the clients of the same topics."""
         self._events: dict[int, str] = {}
+        self._prepared = 0
+        """Number of the frame up to which parts are encoded."""
 
     def hello(self, topics: frozenset[str]) -> str:
         """Return the `hello` frame."""
@@ -61,12 +63,15 @@ class StreamEncoder:
             return
         feed, cache = self._supervisor.frames, self._robot.parts
         for _ in range(_PASSES):
-            new = list(cache.new_ones(feed.parts.items()))
+            if feed.newest is None:
+                return
+            new = list(cache.new_ones(feed.parts_since(self._prepared)))
+            self._prepared = feed.newest.seq
             for start in range(0, len(new), _MEMBERS_AT_ONCE):
                 cache.learn(new[start : start + _MEMBERS_AT_ONCE])
                 if len(new) > _MEMBERS_AT_ONCE:
                     await asyncio.sleep(0)
-            if len(new) <= _MEMBERS_AT_ONCE:
+            if len(new) <= PARTS_AT_ONCE:
                 return
 
     def frame(self, frame: Frame, skipped: int, topics: frozenset[str]) -> str:

@@ -18,7 +18,7 @@ _ONLY_HTTP = {
     "TOO_MANY_REQUESTS": (429, "More requests per second than one address may send."),
     "REPEATED_HEADER": (400, "A header that may occur once is there more than once."),
     "UNKNOWN_PATH": (404, "Nothing exists at this path."),
-    "URI_TOO_LONG": (414, "Path and query are longer than 8192 bytes."),
+    "URI_TOO_LONG": (414, "The path and its query are too long."),
     "UNSUPPORTED_TYPE": (415, "A page sent a body that is not JSON, YAML or CSV."),
 }
 # Where the docstring of a class is meant for readers of the source.

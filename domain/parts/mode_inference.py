@@ -24,7 +24,7 @@ from domain.state_and_mode import DEFAULT_MODE, ModeName, PartName, StateAndMode
 from domain.timebase import Instant
 
 
-def _is_there(actual: StateAndMode, target: StateAndMode) -> bool:
+def _is_there(actual: StateAndMode | Actual, target: StateAndMode) -> bool:
     if actual.state is not target.state:
         return False
     if target.state is not LifecycleState.ACTIVE or target.mode is None:
@@ -136,7 +136,7 @@ class ModeInference:
         An active part with an unknown mode does not count as in `__DEFAULT__`.
         """
         target = self._targets.get(part)
-        return target is None or _is_there(self._actual[part].state_and_mode, target)
+        return target is None or _is_there(self._actual[part], target)
 
     def deviations(self) -> list[tuple[PartName, StateAndMode, StateAndMode]]:
         """Return part, target and actual of each decidable part that deviates from its target."""
@@ -218,7 +218,8 @@ class ModeInference:
 
     def _matches(self, node: NodeModel, mode: ModeName) -> bool:
         known = self._facts[node.name].parameters
-        return all(
-            name in known and same_value(known[name], value)
-            for name, value in node.modes[mode].items()
-        )
+        # A plain loop: a generator costs as much as the comparison, and there may be 10,000 nodes.
+        for name, value in node.modes[mode].items():
+            if name not in known or not same_value(known[name], value):
+                return False
+        return True

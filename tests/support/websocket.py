@@ -61,7 +61,7 @@ class WebSocketClient(asyncio.WriteTransport):
             "server": ("127.0.0.1", 8000),
             "subprotocols": [],
             "state": {},
-            "extensions": {EXTENSION: {"connection": Connection(self, self._listen)}},
+            "extensions": {EXTENSION: {"connection": Connection(self, self._listen, lambda: None)}},
         }
         self._to_app: asyncio.Queue[Message] = asyncio.Queue()
         self._from_app: asyncio.Queue[Message] = asyncio.Queue()

@@ -40,7 +40,7 @@ class Wire(asyncio.WriteTransport):
 
     @property
     def connection(self) -> Connection:
-        return Connection(self, self._listen)
+        return Connection(self, self._listen, lambda: None)
 
     def write(self, data: Any) -> None:  # noqa: ANN401
         assert not self.closing

@@ -441,18 +441,20 @@ async def test_a_client_that_says_nothing_is_closed_in_the_end(
     assert "no token was sent" in problem["detail"]
 
 
-async def test_strangers_keep_out_other_strangers_only(
+async def test_the_oldest_client_without_a_token_makes_room(
     closed_app: FastAPI, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(stream_server_module, "MAX_STRANGERS", 1)
     headers = {"authorization": f"Bearer {TOKEN}"}
-    async with WebSocketClient(closed_app) as waits:
-        async with WebSocketClient(closed_app) as stranger:
-            assert await stranger.end() == 1013
-        async with WebSocketClient(closed_app, headers=headers) as known:
-            assert (await known.frame())["type"] == "hello"
-        waits.send({"type": "auth", "token": TOKEN})
-        assert (await waits.frame())["type"] == "hello"
+    async with WebSocketClient(closed_app) as oldest:
+        await settle()
+        async with WebSocketClient(closed_app) as owner:
+            await settle()
+            assert oldest.cut_off
+            async with WebSocketClient(closed_app, headers=headers) as known:
+                assert (await known.frame())["type"] == "hello"
+            owner.send({"type": "auth", "token": TOKEN})
+            assert (await owner.frame())["type"] == "hello"
 
 
 async def test_a_token_that_nobody_asked_for_is_passed_over(
