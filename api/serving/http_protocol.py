@@ -89,7 +89,9 @@ class HttpProtocol(HttpToolsProtocol):
         return Piece(end + len(_END_OF_HEAD), cost + cost_of_bytes(end))
 
     def data_received(self, data: bytes) -> None:
-        """Parse a piece."""
+        """Parse a piece; what is left of a lost connection is dropped."""
+        if self.parser is None:
+            return
         self._unset_keepalive_if_required()
         self._taken += len(data)
         try:

@@ -8,6 +8,7 @@ try:
     import termios
 except ImportError:  # There are none for Windows.
     fcntl = None  # type: ignore[assignment]
+    termios = None  # type: ignore[assignment]
 
 
 def unacknowledged_bytes(transport: asyncio.WriteTransport) -> int:
@@ -16,7 +17,7 @@ def unacknowledged_bytes(transport: asyncio.WriteTransport) -> int:
     While there are any, the client reads as fast as they become fewer.
     """
     connection = transport.get_extra_info("socket")
-    if connection is None or fcntl is None:
+    if connection is None or fcntl is None or termios is None:
         return 0
     try:
         answer = fcntl.ioctl(connection.fileno(), termios.TIOCOUTQ, b"\0\0\0\0")
