@@ -25,7 +25,7 @@ from domain.timebase import Instant
 KEPT_CHANGES = 1_000
 KEPT_PURSUITS = 50_000
 """Pursuits of all changes together; bounds the memory of large changes."""
-STARTS_AT_ONCE = 200
+STARTS_AT_ONCE = 100
 """Nodes that one turn starts. A large change goes on in later ones, and others come in between."""
 _TOLD_ERRORS = 20
 """Largest number of errors in the reason of one change; more would not be read."""

@@ -81,7 +81,7 @@ def test_a_newer_change_begins_while_nodes_of_the_older_one_wait(robot: CoreRobo
     robot.advance(5)
     assert robot.change(ChangeId("c1")).status is ChangeStatus.SUPERSEDED
     assert robot.change(ChangeId("c2")).status is ChangeStatus.SUCCEEDED
-    assert robot.actual("node_1999") == f"active.{SLOW}"
+    assert robot.actual("node_999") == f"active.{SLOW}"
 
 
 def test_a_large_change_succeeds(robot: CoreRobot) -> None:
