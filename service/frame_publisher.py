@@ -16,9 +16,6 @@ from service.frame_feed import PARTS_AT_ONCE, Frame, FrameFeed
 log = logging.getLogger(__name__)
 
 PERIOD = seconds(0.05)
-_TICKS_PER_FULL = 20
-"""One complete frame per second, so that a client that lost data soon recovers."""
-
 
 REPEATS_EVERY = seconds(0.5)
 """How often a signal is told whose value stays, and that is only received again: at 10 Hz, such
@@ -42,12 +39,13 @@ class FramePublisher:
         self.late_ticks = 0
         """Number of skipped ticks."""
         self.last_tick_at: Instant | None = None
+        self.published_at: Instant | None = None
+        """When the newest frame was published."""
         self.on_tick: list[Callable[[float], None]] = []
         """Called with the time since the previous tick, s; must return at once."""
         self._core = core
         self._clock = clock
         self._simulated = simulated
-        self._ticks = 0
         self._changed_parts: dict[PartName, None] = {}
         """In the order in which they changed."""
         self._changed_signals: set[str] = set()
@@ -82,9 +80,9 @@ class FramePublisher:
         if self.seq:
             self._publish()
 
-    def _publish(self, *, full: bool = False) -> None:
-        """Publish one frame: everything, or the changes since the previous frame."""
-        full = full or self.frames.wants_full
+    def _publish(self) -> None:
+        """Publish one frame: everything at first, then the changes since the previous frame."""
+        full = self.frames.wants_full
         self.seq += 1
         core = self._core
         holds, emergency_stop = core.driving.holds, core.emergency_stop()
@@ -111,17 +109,17 @@ class FramePublisher:
         )
         self._task_changed = self._vehicle_changed = False
         self.frames.publish(frame)
+        self.published_at = frame.at
 
     def _take_parts(self, *, full: bool) -> Mapping[PartName, PartView]:
-        """Return the parts that changed first; for a full frame, all as they were published."""
-        if self.frames.wants_full:
+        """Return all parts for a full frame, or else those that changed first."""
+        if full:
             self._changed_parts.clear()
             return self._core.parts()
         taken = list(islice(self._changed_parts, PARTS_AT_ONCE))
         for part in taken:
             del self._changed_parts[part]
-        changed = {part: self._core.part(part) for part in taken}
-        return {**self.frames.parts, **changed} if full else changed
+        return {part: self._core.part(part) for part in taken}
 
     def _take_signals(self, *, full: bool) -> Mapping[str, SignalView]:
         """Return the signals that changed; one that was only received again waits its turn."""
@@ -143,8 +141,7 @@ class FramePublisher:
             for observe in self.on_tick:
                 observe(to_seconds(now - self.last_tick_at))
         self.last_tick_at = now
-        self._publish(full=self._ticks % _TICKS_PER_FULL == 0)
-        self._ticks += 1
+        self._publish()
 
 
 def _only_repeats(view: SignalView, told: SignalView) -> bool:

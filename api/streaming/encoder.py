@@ -13,12 +13,14 @@ from api.streaming.robot_encoder import RobotEncoder
 from domain.errors import PilothouseError
 from domain.events.event import RecordedEvent
 from domain.timebase import to_seconds
-from service.event_log import Gap
+from service.event_log import DEFAULT_CAPACITY, Gap
 from service.frame_feed import PARTS_AT_ONCE, Frame
 from service.frame_publisher import PERIOD
 from service.supervisor import Supervisor
 
-_EVENTS_KEPT = 1_000
+_EVENTS_KEPT = DEFAULT_CAPACITY
+"""All that a client can ask for, some 5 MB: two hundred clients that come back at different places
+would otherwise have the same events encoded again and again."""
 _MEMBERS_AT_ONCE = 200
 _PASSES = 3
 """Over the parts that changed, each for those that changed during the one before."""

@@ -80,17 +80,16 @@ class _Client:
         """
         server = self._server
         if server.access.accepts_header(self._socket.headers):
+            self._connection.let_in()
             return True
-        if server.has_many_strangers:
-            await self.send_away()
-            return False
         try:
-            with server.count_stranger():
+            with server.host_stranger(self._connection.transport):
                 await self._hear_token()
         except UnauthorizedError as error:
             server.refusals.note(HTTPStatus.UNAUTHORIZED, self._address)
             await self._refuse(error, _UNAUTHORIZED)
             return False
+        self._connection.let_in()
         return True
 
     async def send_away(self) -> None:

@@ -2,7 +2,7 @@
 
 from itertools import islice
 
-from domain.changes.admission import ChangeAdmission
+from domain.changes.admission import ChangeAdmission, refuse
 from domain.changes.changes import Changes
 from domain.changes.plan import ChangeGoal, next_steps, presumed_steps
 from domain.changes.record import Step
@@ -133,7 +133,8 @@ class Changing(Concern):
         views = []
         for mode in self._parts.model.modes_of(part):
             blockers = self._admission.blockers(ModeRequest(part, mode), stop)
-            views.append(ModeView(mode, not blockers, blockers))
+            can_enter = self._backend.available and not refuse(blockers)
+            views.append(ModeView(mode, can_enter, blockers))
         return tuple(views)
 
     def available_transitions(self, part: PartName) -> tuple[Transition, ...]:

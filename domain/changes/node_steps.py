@@ -209,7 +209,8 @@ class NodeSteps:
         facts = self._facts[step.node]
         after = f"within {to_seconds(self._allowed(step)):g} s"
         if facts.reachable is False:
-            self._end_step(step, StepStatus.FAILED, f"the node {facts.why_unknown}", now)
+            # Whether it still did what was asked of it is not known.
+            self._end_step(step, StepStatus.TIMED_OUT, f"the node {facts.why_unknown}", now)
         elif step.facts_asked:
             error = f"not done {after}, and the node did not answer a query of its state"
             self._end_step(step, StepStatus.TIMED_OUT, error, now)
@@ -233,7 +234,10 @@ class NodeSteps:
         facts, node = self._facts[pursuit.node], pursuit.node
         state = facts.known_state
         if state is LifecycleState.UNKNOWN:
-            self._finish(pursuit, StepStatus.FAILED, f"{node} {facts.why_unknown}", now)
+            # An absent node was asked for nothing: that fails. What became of one that had begun is
+            # not known.
+            outcome = StepStatus.TIMED_OUT if pursuit.has_begun else StepStatus.FAILED
+            self._finish(pursuit, outcome, f"{node} {facts.why_unknown}", now)
         elif pursuit.facts_asked:
             why = f"{node} is still {state}; no step was started"
             self._finish(pursuit, StepStatus.FAILED, why, now)

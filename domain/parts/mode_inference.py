@@ -218,7 +218,7 @@ class ModeInference:
 
     def _matches(self, node: NodeModel, mode: ModeName) -> bool:
         known = self._facts[node.name].parameters
-        # A plain loop: a generator costs as much as the comparison, and ten thousand nodes are many.
+        # A plain loop: a generator costs as much as the comparison, and there may be 10,000 nodes.
         for name, value in node.modes[mode].items():
             if name not in known or not same_value(known[name], value):
                 return False

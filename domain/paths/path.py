@@ -21,6 +21,9 @@ from domain.vehicle import Point
 
 SPACING_M = 0.1
 """Minimum distance between two positions of a path longer than 10 m; else a hundredth of it."""
+_SPACING_SLACK = 1 - 1e-5
+"""Positions exactly `SPACING_M` apart are kept also far from the origin, where the last digits of
+coordinates are missing: in UTM, a northing of 5e6 m has steps of 1e-9 m."""
 WINDOW_M = 6.0
 """How far ahead of the first waypoint not yet passed the projection searches."""
 SKIP_PRICE = 0.1
@@ -273,7 +276,7 @@ def _places_apart(places: NDArray[np.float64]) -> NDArray[np.int64]:
     extent = float(_lengths(places - places[0]).max())
     if extent < _LEAST_EXTENT_M:
         raise InvalidValueError("all waypoints are at the same position", "waypoints")
-    spacing = min(SPACING_M, extent / 100)
+    spacing = min(SPACING_M, extent / 100) * _SPACING_SLACK
     if bool((_lengths(np.diff(places, axis=0)) >= spacing).all()):
         return np.arange(len(places))
     limit = spacing * spacing

@@ -6,7 +6,8 @@ from numpy.typing import NDArray
 from domain.errors import InvalidValueError
 
 MAX_WAYPOINTS = 100_000
-MAX_COORDINATE_M = 1e6
+MAX_COORDINATE_M = 1e7
+"""UTM northings reach 1e7 m."""
 COLUMNS = ("x_m", "y_m", "yaw_rad")
 
 

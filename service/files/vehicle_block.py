@@ -7,7 +7,7 @@ from pydantic import Field
 from domain.vehicle import VehicleLimits
 from service.files.robot_settings import Number, SettingsBlock
 
-Coordinate: TypeAlias = Annotated[float, Field(ge=-1e6, le=1e6, allow_inf_nan=False)]
+Coordinate: TypeAlias = Annotated[float, Field(ge=-1e7, le=1e7, allow_inf_nan=False)]
 Rate: TypeAlias = Annotated[float, Field(gt=0, le=1_000, allow_inf_nan=False)]
 Lag: TypeAlias = Annotated[float, Field(ge=0, le=60, allow_inf_nan=False)]
 Deviation: TypeAlias = Annotated[float, Field(ge=0, le=100, allow_inf_nan=False)]

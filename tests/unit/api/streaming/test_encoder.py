@@ -309,7 +309,7 @@ def test_an_event_is_encoded_once(encoder: StreamEncoder) -> None:
 
 def test_old_events_are_not_kept_for_ever(encoder: StreamEncoder) -> None:
     first = encoder.event(event(1))
-    for number in range(2, 1_500):
+    for number in range(2, 10_002):
         encoder.event(event(number))
 
     assert encoder.event(event(1)) is not first

@@ -42,10 +42,10 @@ def test_what_is_not_finite_is_refused_with_its_place(column: int, name: str, va
 @pytest.mark.parametrize(("column", "name"), [(0, "x_m"), (1, "y_m")])
 def test_what_is_further_out_than_a_thousand_kilometres_is_refused(column: int, name: str) -> None:
     points = line(20)
-    points[3, column] = 1e6
+    points[3, column] = 1e7
     check_waypoints(points)
 
-    points[3, column] = -1.001e6
+    points[3, column] = -1.001e7
     with pytest.raises(InvalidValueError) as caught:
         check_waypoints(points)
 
@@ -76,4 +76,4 @@ def test_what_is_wrong_with_a_waypoint_is_told_with_its_value() -> None:
     with pytest.raises(InvalidValueError) as caught:
         check_waypoints(points)
 
-    assert caught.value.message == ("y_m must be finite and within +-1,000,000 m, not 2.5e+07")
+    assert caught.value.message == ("y_m must be finite and within +-10,000,000 m, not 2.5e+07")

@@ -122,7 +122,7 @@ async def test_headings_in_degrees_are_refused_with_what_to_say(robot: HttpRobot
     [
         ({"waypoints": WAYPOINTS[:1]}, "/waypoints"),
         ({"waypoints": []}, "/waypoints"),
-        ({"waypoints": [WAYPOINTS[0], {**WAYPOINTS[1], "x_m": 2e6}]}, "/waypoints/1/x_m"),
+        ({"waypoints": [WAYPOINTS[0], {**WAYPOINTS[1], "x_m": 2e7}]}, "/waypoints/1/x_m"),
         ({"waypoints": [WAYPOINTS[0], {"x_m": 1.0}]}, "/waypoints/1/y_m"),
         ({"waypoints": [WAYPOINTS[0]] * 3}, "/waypoints"),
         ({"start_index": -1}, "/start_index"),
