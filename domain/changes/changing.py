@@ -1,11 +1,12 @@
 """Changes as a concern of the core: requests in; steps and verified results out."""
 
+from collections.abc import Sequence
 from itertools import islice
 
 from domain.changes.admission import ChangeAdmission, refuse
 from domain.changes.changes import Changes
 from domain.changes.plan import ChangeGoal, next_steps, presumed_steps
-from domain.changes.record import Step
+from domain.changes.record import Step, StepTable
 from domain.changes.request_check import check_request
 from domain.changes.restoring import Restoring
 from domain.changes.settings import ChangeSettings
@@ -141,7 +142,7 @@ class Changing(Concern):
         """Return the transitions that would be accepted now and change something."""
         return self._admission.available_transitions(part, self._health.stop_reasons)
 
-    def plan(self, request: ChangeRequest) -> tuple[StepView, ...]:
+    def plan(self, request: ChangeRequest) -> Sequence[StepView]:
         """Return the steps that a request would take now, without starting them.
 
         Raises:
@@ -154,8 +155,8 @@ class Changing(Concern):
             facts = self._parts.facts[node]
             unknown = facts.known_state is LifecycleState.UNKNOWN
             actions = presumed_steps(node_goal) if unknown else next_steps(facts, node_goal)
-            steps += [Step(ChangeId(""), node, action).view() for action in actions or ()]
-        return tuple(steps)
+            steps += [Step(ChangeId(""), node, action) for action in actions or ()]
+        return StepTable(steps)
 
     def change(self, identity: str) -> ChangeView:
         """Return a change.

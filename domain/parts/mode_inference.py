@@ -49,6 +49,10 @@ class ModeInference:
             name: any(isinstance(v, tuple) for mode in node.modes.values() for v in mode.values())
             for name, node in model.nodes.items()
         }
+        self._fitting: dict[PartName, tuple[ModeName, ...]] = {}
+        """Modes that the parameters of a node match; kept until it reports others."""
+        self._shared: dict[tuple[LifecycleState, ModeName | None, bool], Actual] = {}
+        """One object for all nodes in the same state and mode: fewer for Python to look through."""
         self._plain: set[PartName] = set()
         """Nodes without a lifecycle."""
         self._depth = {name: len(model.ancestors[name]) for name in model.systems}
@@ -71,6 +75,8 @@ class ModeInference:
         if not is_different:
             return set()
         node = report.node
+        if report.parameters:
+            self._fitting.pop(node, None)
         if facts.has_lifecycle is not (node in self._plain):
             return self._infer((node,))
         # Its parents judge a node with a lifecycle and one without differently.
@@ -172,7 +178,8 @@ class ModeInference:
 
     def _renew(self, part: PartName, actual: Actual) -> bool:
         """Take over the actual of a part; return whether it changed."""
-        if actual == self._actual[part]:
+        known = self._actual[part]
+        if actual is known or actual == known:
             return False
         self._actual[part] = actual
         self._tell_parents(part)
@@ -191,14 +198,25 @@ class ModeInference:
         if state is LifecycleState.UNKNOWN:
             return Actual(state, reason=f"{name} {facts.why_unknown}")
         if state is not LifecycleState.ACTIVE:
-            return Actual(state)
+            return self._share(state)
         if facts.mode is not None:
-            return Actual(state, facts.mode)
+            known = facts.mode in self.model.nodes[name].modes
+            return self._share(state, facts.mode) if known else Actual(state, facts.mode)
         mode = self._matching_mode(name)
-        if mode is None:
-            reason = f"the parameters of {name} match no mode" if self._by_rank[name] else None
-            return Actual(state, reason=reason)
-        return Actual(state, mode, mode_inferred=True)
+        if mode is not None:
+            return self._share(state, mode, mode_inferred=True)
+        if self._by_rank[name]:
+            return Actual(state, reason=f"the parameters of {name} match no mode")
+        return self._share(state)
+
+    def _share(
+        self, state: LifecycleState, mode: ModeName | None = None, *, mode_inferred: bool = False
+    ) -> Actual:
+        key = (state, mode, mode_inferred)
+        shared = self._shared.get(key)
+        if shared is None:
+            shared = self._shared[key] = Actual(state, mode, mode_inferred=mode_inferred)
+        return shared
 
     def _matching_mode(self, name: PartName) -> ModeName | None:
         """Return the mode that a node's parameters match: target mode first, then `__DEFAULT__`.
@@ -206,15 +224,21 @@ class ModeInference:
         The target mode is matched on all types of values. As in system_modes, other modes are not
         inferred if the node has list parameters.
         """
-        node = self.model.nodes[name]
+        fitting = self._fitting.get(name)
+        if fitting is None:
+            fitting = self._fitting[name] = self._find_fitting(name)
+        if not fitting:
+            return None
         target = self._targets.get(name)
         asked = target.mode if target is not None else None
-        if asked is not None and asked in node.modes and self._matches(node, asked):
+        if asked is not None and asked in fitting:
             return asked
-        for mode in self._by_rank[name]:
-            if self._matches(node, mode) and not self._has_lists[name]:
-                return mode
-        return None
+        return None if self._has_lists[name] else fitting[0]
+
+    def _find_fitting(self, name: PartName) -> tuple[ModeName, ...]:
+        """Return the modes that a node's parameters match, `__DEFAULT__` first."""
+        node = self.model.nodes[name]
+        return tuple(mode for mode in self._by_rank[name] if self._matches(node, mode))
 
     def _matches(self, node: NodeModel, mode: ModeName) -> bool:
         known = self._facts[node.name].parameters
