@@ -356,12 +356,9 @@ def test_a_node_that_reports_before_its_turn_is_told_to_have_deviated_first() ->
     robot = LargeRobot()
     cause = robot.ask_all(now=7)
     last = max(BIG.nodes)
-    facts = {"max_speed": 1.1, "controller": "PID_1"}
-    events = robot.report(NodeReport(last, state=S.ACTIVE, mode="FAST", parameters=facts), now=8)
-    kinds = [
-        (event.kind, event.cause == cause) for event in events if event.data.get("part") == last
-    ]
-    assert kinds == [
+    events = robot.report(NodeReport(last, state=S.ACTIVE, mode=ModeName("FAST")), now=8)
+    of_it = [event for event in events if event.data.get("part") == last]
+    assert [(event.kind, event.cause == cause) for event in of_it] == [
         ("part.deviation_began", True),
         ("part.actual_changed", False),
         ("part.deviation_ended", False),
