@@ -63,31 +63,29 @@ class ChangeGoal:
 class NodeGoals:
     """The goals of the nodes of a model: one object for all changes that want the same of a node.
 
-    Changes that are kept would otherwise have ten thousand equal ones each.
+    They are made with the model: ten thousand objects for each change that is kept would be looked
+    through by every garbage collection, while those that exist at the start are left out.
     """
 
     def __init__(self, model: SmhModel) -> None:
-        self._model = model
-        self._in_mode: dict[tuple[PartName, ModeName], NodeGoal] = {}
-        self._in_state: dict[tuple[LifecycleState, bool], NodeGoal] = {}
+        self._in_mode = {
+            name: {
+                mode: NodeGoal(LifecycleState.ACTIVE, mode, parameters)
+                for mode, parameters in node.modes.items()
+            }
+            for name, node in model.nodes.items()
+            if node.modes
+        }
+        self._in_state = {
+            configures: {state: NodeGoal(state, configures=configures) for state in LifecycleState}
+            for configures in (True, False)
+        }
 
     def of(self, node: PartName, target: StateAndMode, *, configures: bool = True) -> NodeGoal:
         """Return the goal of a node whose target is `target`."""
-        state, mode = target.state, target.mode
-        if state is not LifecycleState.ACTIVE or not self._model.nodes[node].modes:
-            return self._rest(state, configures)
-        asked = mode or DEFAULT_MODE
-        goal = self._in_mode.get((node, asked))
-        if goal is None:
-            goal = NodeGoal(state, asked, self._model.nodes[node].modes[asked])
-            self._in_mode[node, asked] = goal
-        return goal
-
-    def _rest(self, state: LifecycleState, configures: bool) -> NodeGoal:
-        goal = self._in_state.get((state, configures))
-        if goal is None:
-            goal = self._in_state[state, configures] = NodeGoal(state, configures=configures)
-        return goal
+        if target.state is LifecycleState.ACTIVE and node in self._in_mode:
+            return self._in_mode[node][target.mode or DEFAULT_MODE]
+        return self._in_state[configures][target.state]
 
 
 def goal_of(

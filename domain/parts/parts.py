@@ -25,7 +25,7 @@ from domain.parts.node_facts import NodeFacts
 from domain.parts.reachability import Reachability
 from domain.parts.system_model import SmhModel
 from domain.parts.targets import Targets
-from domain.snapshot import ParameterView, PartView
+from domain.snapshot import Actual, ParameterView, PartView
 from domain.state_and_mode import DEFAULT_MODE, PartName, StateAndMode
 from domain.timebase import Instant
 
@@ -33,7 +33,7 @@ LOOKS_AT_ONCE = 1_000
 """Parts whose deviations one turn tells. Those that a request of a large robot caused are told in
 several, in the order of the parts, before anything else of the request goes on."""
 
-_UNKNOWN = StateAndMode(LifecycleState.UNKNOWN)
+_UNKNOWN = Actual(LifecycleState.UNKNOWN)
 
 
 @dataclass(frozen=True, slots=True)
@@ -56,7 +56,7 @@ class Parts(Concern):
         self._deviations = Deviations(self.inference)
         self._reachability = Reachability(model)
         self._outbox = outbox
-        self._told: dict[PartName, StateAndMode] = {}
+        self._told: dict[PartName, Actual] = {}
         self._touched: set[PartName] = set()
         """Parts about which something changed since the last `settle`."""
         self._moved: set[PartName] = set()
@@ -217,10 +217,16 @@ class Parts(Concern):
             actual, was = self.inference.actual(part), self._told.get(part, _UNKNOWN)
             if actual.state is was.state and actual.mode == was.mode:
                 continue
-            now = actual.state_and_mode
-            self._told[part] = now
-            is_system = part in self.model.systems
-            self._outbox.emit(PartActualChanged(part, now, was, actual.reason, of_system=is_system))
+            self._told[part] = actual
+            self._outbox.emit(
+                PartActualChanged(
+                    part,
+                    actual.state_and_mode,
+                    was.state_and_mode,
+                    actual.reason,
+                    of_system=part in self.model.systems,
+                )
+            )
 
     def _tell_deviation(self, part: PartName, *, began: bool) -> None:
         actual = self.inference.actual(part)
