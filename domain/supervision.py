@@ -34,7 +34,7 @@ from domain.snapshot import (
     StepView,
     SystemStateView,
 )
-from domain.state_and_mode import PartName
+from domain.state_and_mode import ModeName, PartName
 from domain.tasks.driving import Driving
 from domain.tasks.settings import TaskSettings
 from domain.timebase import Instant
@@ -173,7 +173,11 @@ class Supervision:
 
     def modes(self, part: PartName) -> tuple[ModeView, ...]:
         """Return the modes of a part, with the blockers of each."""
-        return self._changing.modes(part)
+        return tuple(self.mode(part, mode) for mode in self.model.modes_of(part))
+
+    def mode(self, part: PartName, mode: ModeName) -> ModeView:
+        """Return a mode of a part, with its blockers."""
+        return self._changing.mode(part, mode)
 
     def parameters(self, node: PartName) -> tuple[ParameterView, ...]:
         """Return the parameters of a node."""

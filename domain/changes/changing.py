@@ -35,7 +35,7 @@ from domain.lifecycle import LifecycleState, Transition
 from domain.outbox import Outbox
 from domain.parts.parts import Parts
 from domain.snapshot import ChangeView, ModeView, StepView
-from domain.state_and_mode import PartName
+from domain.state_and_mode import ModeName, PartName
 from domain.timebase import Instant
 
 
@@ -128,15 +128,10 @@ class Changing(Concern):
 
     # --- what can be seen ------------------------------------------------------------------------
 
-    def modes(self, part: PartName) -> tuple[ModeView, ...]:
-        """Return the modes of a part, with the blockers of each."""
-        stop = self._health.stop_reasons
-        views = []
-        for mode in self._parts.model.modes_of(part):
-            blockers = self._admission.blockers(ModeRequest(part, mode), stop)
-            can_enter = self._backend.available and not refuse(blockers)
-            views.append(ModeView(mode, can_enter, blockers))
-        return tuple(views)
+    def mode(self, part: PartName, mode: ModeName) -> ModeView:
+        """Return a mode of a part, with its blockers."""
+        blockers = self._admission.blockers(ModeRequest(part, mode), self._health.stop_reasons)
+        return ModeView(mode, self._backend.available and not refuse(blockers), blockers)
 
     def available_transitions(self, part: PartName) -> tuple[Transition, ...]:
         """Return the transitions that would be accepted now and change something."""
