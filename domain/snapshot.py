@@ -74,7 +74,10 @@ class PartView:
     effective_target: EffectiveTarget | None
     actual: Actual
     converged: bool
+    """Whether it and all its parts are where their targets say."""
     deviation_since: Instant | None
+    deviation_reason: str | None
+    """Which part is not where its target says; None exactly while `converged`."""
     reachable: bool
     """For a system: whether all its nodes are reachable."""
     change: ChangeId | None

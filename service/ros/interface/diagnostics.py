@@ -9,6 +9,7 @@ from enum import IntEnum
 from typing import TypeVar
 
 from domain.lifecycle import LifecycleState
+from domain.parts.convergence import is_there
 from domain.snapshot import PartView, SignalView, SystemState, SystemStateView
 from service.clock import Clock
 from service.frame_feed import Frame
@@ -158,6 +159,8 @@ def _part_message(view: PartView) -> str:
         return f"{what}{why}"
     if view.change is not None:
         return f"changing to {view.target.label}" if view.target else "changing"
-    if not view.converged and view.target is not None:
-        return f"target {view.target.label}, actual {actual}{why}"
-    return f"{actual}{why}"
+    if view.converged:
+        return f"{actual}{why}"
+    if view.target is None or is_there(view.actual, view.target):
+        return f"{actual}: {view.deviation_reason}"
+    return f"target {view.target.label}, actual {actual}{why}"

@@ -127,6 +127,11 @@ UNDECIDABLE = Actual(LifecycleState.UNKNOWN, undecidable=True, reason="lidar is 
             Level.WARN,
             "target active.STRONG, actual inactive",
         ),
+        (
+            replace(ARM, converged=False, deviation_reason="hand is inactive, target active"),
+            Level.WARN,
+            "active.STRONG: hand is inactive, target active",
+        ),
         (replace(ARM, target=None, actual=UNDECIDABLE), Level.WARN, "unknown: lidar is unknown"),
         (replace(ARM, reachable=False), Level.ERROR, "is unreachable"),
         (
