@@ -89,14 +89,15 @@ def _most_urgent(
 def _reasons(view: SystemStateView) -> dict[str, str]:
     """Return the reasons of the active errors, by signal."""
     found: dict[str, list[str]] = {}
-    for reason in view.reasons:
+    for reason in (reason for reason in view.reasons if reason.code in view.errors):
         found.setdefault(reason.path[-1], []).append(reason.message)
     return {signal: "; ".join(messages) for signal, messages in found.items()}
 
 
 def _robot_status(frame: Frame, left_out: int) -> Fields:
     view = frame.system_state
-    level = Level.ERROR if view.state is SystemState.ERROR else Level.OK
+    # Without errors, the reason is a vehicle that should stand and does not.
+    level = Level.ERROR if view.state is SystemState.ERROR or view.reasons else Level.OK
     message = "; ".join(reason.message for reason in view.reasons) or str(view.state)
     values = {
         "state": view.state,
