@@ -19,6 +19,7 @@ from domain.inputs import NodeReport
 from domain.lifecycle import LifecycleState
 from domain.outbox import Outbox
 from domain.parameters import value_type
+from domain.parts.convergence import is_there
 from domain.parts.deviations import Deviations
 from domain.parts.mode_inference import ModeInference
 from domain.parts.node_facts import NodeFacts
@@ -229,9 +230,12 @@ class Parts(Concern):
             )
 
     def _tell_deviation(self, part: PartName, *, began: bool) -> None:
-        actual = self.inference.actual(part)
+        actual, target = self.inference.actual(part), self.target(part)
+        why = actual.reason
+        if began and (target is None or is_there(actual, target)):
+            why = self.inference.deviation_reason(part)
         kind = DeviationBegan if began else DeviationEnded
-        self._outbox.emit(kind(part, self.target(part), actual.state_and_mode, actual.reason))
+        self._outbox.emit(kind(part, target, actual.state_and_mode, why))
 
     def _deviation_since(self, part: PartName) -> Instant | None:
         """Return since when a part deviates, also if that is told in a later turn."""
@@ -254,6 +258,7 @@ class Parts(Concern):
             actual=self.inference.actual(part),
             converged=since is None,
             deviation_since=since,
+            deviation_reason=None if since is None else self.inference.deviation_reason(part),
             reachable=self._reachability.reaches(part),
             change=self.change_of(part),
         )
