@@ -43,7 +43,9 @@ class ModeInference:
             for name, node in model.nodes.items()
         }
         self._fitting: dict[PartName, tuple[ModeName, ...]] = {}
-        """Modes that the parameters of a node match; kept until it reports others."""
+        """Modes that the parameters of an active node match; kept until it reports others."""
+        self._wavering: set[PartName] = set()
+        """Nodes whose mode depends on their target, since their parameters match several."""
         self._shared: dict[tuple[LifecycleState, ModeName | None, bool], Actual] = {}
         """One object for all nodes in the same state and mode: fewer for Python to look through."""
         self._plain: set[PartName] = set()
@@ -73,6 +75,7 @@ class ModeInference:
         node = report.node
         if report.parameters:
             self._fitting.pop(node, None)
+            self._wavering.discard(node)
         if facts.has_lifecycle is not (node in self._plain):
             changed = self._infer((node,))
         else:
@@ -96,7 +99,8 @@ class ModeInference:
                 self._targets.pop(part, None)
             else:
                 self._targets[part] = target
-        changed = self._infer(targets)
+        nodes = targets.keys() & self._wavering
+        changed = self._infer((*nodes, *(part for part in targets if part in self._systems)))
         return changed | self._convergence.renew(changed | targets.keys())
 
     def target(self, part: PartName) -> StateAndMode | None:
@@ -243,7 +247,10 @@ class ModeInference:
     def _find_fitting(self, name: PartName) -> tuple[ModeName, ...]:
         """Return the modes that a node's parameters match, `__DEFAULT__` first."""
         node = self.model.nodes[name]
-        return tuple(mode for mode in self._by_rank[name] if self._matches(node, mode))
+        fitting = tuple(mode for mode in self._by_rank[name] if self._matches(node, mode))
+        if len(fitting) > 1 or (fitting and self._has_lists[name]):
+            self._wavering.add(name)
+        return fitting
 
     def _matches(self, node: NodeModel, mode: ModeName) -> bool:
         known = self._facts[node.name].parameters

@@ -216,7 +216,7 @@ class Parts(Concern):
         """Publish the parts whose actual state or mode differs from the last published one."""
         for part in sorted(parts):
             actual, was = self.inference.actual(part), self._told.get(part, _UNKNOWN)
-            if actual.state is was.state and actual.mode == was.mode:
+            if actual is was or (actual.state is was.state and actual.mode == was.mode):
                 continue
             self._told[part] = actual
             self._outbox.emit(
