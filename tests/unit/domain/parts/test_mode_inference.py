@@ -607,7 +607,10 @@ def test_modes_follow_every_target_and_report_as_if_all_had_been_told_at_once() 
     node, lists = PartName("node"), PartName("lists")
     both: Parameters = {"speed": 1.0}
     modes = {DEFAULT_MODE: both, ModeName("TWIN"): both, ModeName("FAST"): {"speed": 2.0}}
-    with_list = {DEFAULT_MODE: both, ModeName("LIST"): {"speed": 1.0, "gains": (1.0, 2.0)}}
+    with_list: dict[ModeName, Parameters] = {
+        DEFAULT_MODE: both,
+        ModeName("LIST"): {"speed": 1.0, "gains": (1.0, 2.0)},
+    }
     model = SmhModel({node: NodeModel(node, modes), lists: NodeModel(lists, with_list)}, {})
     drawn = Random(12)
     told = ModeInference(model)
