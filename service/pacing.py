@@ -26,7 +26,8 @@ class Paced(Protocol[MessageT_co]):
         ...
 
 
-_AT_ONCE = 25
+AT_ONCE = 25
+"""Messages delivered in one turn of the event loop."""
 
 
 class Pacer(Generic[MessageT]):
@@ -45,15 +46,33 @@ class Pacer(Generic[MessageT]):
         if self._resting is not None:
             self._resting.cancel()
 
-    async def run(self, deliver: Callable[[MessageT], None]) -> None:
-        """Pass messages to `deliver` in order when they are due, until cancelled."""
+    async def run(
+        self,
+        deliver: Callable[[MessageT], None],
+        tell_backlog: Callable[[Instant | None], None] = lambda since: None,
+    ) -> None:
+        """Pass messages to `deliver` in order when they are due, until cancelled.
+
+        Args:
+            deliver: Takes one message.
+            tell_backlog: Is told before more messages are delivered than one turn takes, until when
+                all that was due was delivered; and None, once all is again.
+        """
+        delivered, is_behind = self._clock.now(), False
         while True:
-            for number, message in enumerate(self._paced.advance(self._clock.now()), start=1):
+            now = self._clock.now()
+            messages = self._paced.advance(now)
+            was_behind, is_behind = is_behind, len(messages) > AT_ONCE
+            if is_behind or was_behind:
+                tell_backlog(delivered if is_behind else None)
+            for number, message in enumerate(messages, start=1):
                 deliver(message)
-                if number % _AT_ONCE == 0:
+                if number % AT_ONCE == 0:
                     # Thousands of nodes may appear at once; the other tasks must keep running.
                     await asyncio.sleep(0)
-            await self._rest()
+            delivered = now
+            if not is_behind:
+                await self._rest()
 
     async def _rest(self) -> None:
         """Wait until something is due or the object gets input."""

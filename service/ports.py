@@ -8,9 +8,18 @@ from collections.abc import Callable
 from typing import Protocol, TypeAlias
 
 from domain.commands import Drive, NodeCommand
-from domain.inputs import BackendStatus, NodeAnswer, NodeReport, Readings, VehicleReport
+from domain.inputs import (
+    BackendStatus,
+    NodeAnswer,
+    NodeReport,
+    Readings,
+    ReportBacklog,
+    VehicleReport,
+)
 
-BackendMessage: TypeAlias = NodeReport | NodeAnswer | BackendStatus | Readings | VehicleReport
+BackendMessage: TypeAlias = (
+    NodeReport | NodeAnswer | BackendStatus | ReportBacklog | Readings | VehicleReport
+)
 Deliver: TypeAlias = Callable[[BackendMessage], None]
 
 
@@ -29,7 +38,8 @@ class NodeBackend(Adapter, Protocol):
     """The nodes; `tests/conformance/test_node_backend.py` specifies what an adapter must do.
 
     It delivers `BackendStatus`, `NodeReport` and `NodeAnswer`. A node that cannot be reached is
-    reported as unreachable; when it reappears, all its facts are reported.
+    reported as unreachable; when it reappears, all its facts are reported. If more has arrived than
+    it delivers in one turn, it says so by `ReportBacklog`: no node is late meanwhile.
     """
 
     def send(self, command: NodeCommand, /) -> None:

@@ -1,7 +1,7 @@
 """The simulated robot in real time: a backend without a real robot."""
 
 from domain.commands import Drive, NodeCommand
-from domain.inputs import BackendStatus
+from domain.inputs import BackendStatus, ReportBacklog
 from domain.parameters import Parameters
 from domain.simulation.node_settings import Fault
 from domain.simulation.robot import SimulatedRobot
@@ -29,7 +29,7 @@ class SimulatedBackend:
     async def run(self, deliver: Deliver) -> None:
         """Deliver the state of every node and of the vehicle, then changes, until cancelled."""
         deliver(BackendStatus(available=True))
-        await self._pacer.run(deliver)
+        await self._pacer.run(deliver, lambda since: deliver(ReportBacklog("simulated", since)))
 
     def readings(self, submit: Submit) -> ReadingInput:
         """Return the input for external readings."""
