@@ -62,7 +62,8 @@ when the vehicle stands, or when a task drives it again."""
 _SIGNALS = """\
 `error_code` is the sum of the bits of all active errors. An error clears when its cause does, but
 stays active for at least 0.2 s. All numbers are [settings](settings.md).
-*for* counts from the last good reading, or from the start if there was none."""
+*for* counts from the last good reading, or from the start if there was none; with a `for_s` of all
+other signals, from the first bad reading after a good one or after staleness."""
 
 
 def blockers_page() -> str:

@@ -121,8 +121,8 @@ class Health(Concern):
         emit = self._outbox.emit
         for signal, error in changes.pending:
             self._pending[error] = emit(SignalPending(signal, error))
-        for signal, error in changes.settled:
-            emit(SignalSettled(signal, error))
+        for signal, error, stale in changes.settled:
+            emit(SignalSettled(signal, error, stale))
             self._pending.pop(error, None)
         for signal in changes.skewed:
             emit(SignalSkewed(signal))
