@@ -5,6 +5,7 @@ from collections.abc import Iterator
 from docs.generate.markdown import code, page, table
 from docs.generate.source_scan import codes_given_to, codes_in, require_described
 from domain.changes.admission import ADVISORY
+from domain.errors import BackendUnavailableError
 from domain.health.signals import (
     DECLARED_BIT,
     ESTOP,
@@ -21,6 +22,7 @@ from domain.timebase import to_seconds
 
 _OF_CHANGES = {
     ESTOP: "A node would be activated while ESTOP is active.",
+    BackendUnavailableError.code: "The whole backend is down; the request is answered with 503.",
     "FINALIZED": "A node is finalized: its process must be restarted.",
     "ERROR_PROCESSING": "A node is processing an error; it will soon report its final state.",
     "UNREACHABLE": "A node is unreachable.",
@@ -73,7 +75,7 @@ def blockers_page() -> str:
     Raises:
         UndescribedError: A code of the source is not described here, or the reverse.
     """
-    of_changes = codes_in("domain/changes/admission.py") | {ESTOP}
+    of_changes = codes_in("domain/changes/admission.py") | {ESTOP, BackendUnavailableError.code}
     require_described("blockers", of_changes, set(_OF_CHANGES))
     require_described("warnings", codes_given_to("WarningJson"), set(_WARNINGS))
     changes = (

@@ -18,6 +18,7 @@ from domain.events.changes import (
     ChangeRequested,
     NodeAnswered,
 )
+from domain.findings import Blocker
 from domain.health.health import Health
 from domain.identifiers import ChangeId
 from domain.inputs import (
@@ -51,6 +52,8 @@ class Changing(Concern):
         self._changes = Changes(parts, settings, outbox, health)
         self._restoring = Restoring(parts, self._changes, settings, outbox, self._admit)
         self._backend = BackendStatus(available=True)
+        self._backend_since: Instant | None = None
+        """Since when the backend is as it is; None: since the start."""
 
     # --- what happens ----------------------------------------------------------------------------
 
@@ -96,8 +99,8 @@ class Changing(Concern):
         self._restoring.forget(goal.targets)
 
     def _admit(self, request: ChangeRequest) -> ChangeGoal:
-        if not self._backend.available:
-            raise BackendUnavailableError(self._backend.reason)
+        if (down := self._backend_error()) is not None:
+            raise down
         return self._admission.admit(request, self._health.stop_reasons)
 
     def _take_cancel(self, request: CancelRequest, now: Instant) -> None:
@@ -123,6 +126,7 @@ class Changing(Concern):
             kind = BackendAvailable if status.available else BackendUnavailable
             self._outbox.begin(now, kind(status.reason))
             self._outbox.record_input()
+            self._backend_since = now
         self._backend = status
 
     # --- what can be seen ------------------------------------------------------------------------
@@ -132,13 +136,26 @@ class Changing(Concern):
         stop = self._health.stop_reasons
         views = []
         for mode in self._parts.model.modes_of(part):
-            blockers = self._admission.blockers(ModeRequest(part, mode), stop)
-            can_enter = self._backend.available and not refuse(blockers)
-            views.append(ModeView(mode, can_enter, blockers))
+            blockers = (
+                *self._backend_blockers(part),
+                *self._admission.blockers(ModeRequest(part, mode), stop),
+            )
+            views.append(ModeView(mode, not refuse(blockers), blockers))
         return tuple(views)
+
+    def _backend_error(self) -> BackendUnavailableError | None:
+        return None if self._backend.available else BackendUnavailableError(self._backend.reason)
+
+    def _backend_blockers(self, part: PartName) -> tuple[Blocker, ...]:
+        down = self._backend_error()
+        if down is None:
+            return ()
+        return (Blocker(down.code, down.message, (part,), since=self._backend_since),)
 
     def available_transitions(self, part: PartName) -> tuple[Transition, ...]:
         """Return the transitions that would be accepted now and change something."""
+        if not self._backend.available:
+            return ()
         return self._admission.available_transitions(part, self._health.stop_reasons)
 
     def plan(self, request: ChangeRequest) -> tuple[StepView, ...]:

@@ -5,6 +5,7 @@ from typing import Any, NamedTuple
 
 import pytest
 
+from domain.inputs import BackendStatus
 from domain.simulation.node_settings import Fault, NodeSettings
 from domain.timebase import seconds
 from tests.support.http_robot import HttpRobot, http_robot, http_scope
@@ -339,6 +340,25 @@ async def test_under_estop_a_refusal_carries_the_blockers_that_the_modes_show(
     assert (answer.status_code, answer.json()["code"]) == (409, "BLOCKED")
     assert answer.json()["blockers"] == shown["blockers"] != []
     assert shown["can_enter"] is False
+
+
+@pytest.mark.parametrize("part", ["systems/actuation", "nodes/drive_base"])
+async def test_what_is_answered_with_503_cannot_be_entered_and_says_so(
+    robot: HttpRobot, part: str
+) -> None:
+    robot.supervisor.deliver(BackendStatus(available=False, reason="no network"))
+
+    modes = (await robot.get(f"/{part}/modes"))["items"]
+    for shown in modes:
+        answer = await robot.http.post(f"/{part}/mode", json={"mode": shown["mode"]})
+        assert (answer.status_code, answer.json()["code"]) == (503, "BACKEND_UNAVAILABLE")
+        refusing = [each for each in shown["blockers"] if each["refuses"]]
+        assert shown["can_enter"] is False
+        assert [each["code"] for each in refusing] == ["BACKEND_UNAVAILABLE"]
+        assert refusing[0]["message"] == answer.json()["detail"]
+    answer = await robot.http.post(f"/{part}/state", json={"transition": "configure"})
+    assert answer.status_code == 503
+    assert (await robot.get(f"/{part}/state"))["available_transitions"] == []
 
 
 @pytest.mark.parametrize(
