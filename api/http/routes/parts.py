@@ -43,6 +43,8 @@ async def list_parts(request: Request, supervisor: SupervisorDep) -> Response:
 @policy(Permission.OBSERVE)
 async def get_state(part: PartDep, supervisor: SupervisorDep) -> StateJson:
     """Show the lifecycle state, and which transitions would be accepted now."""
+    # A request would find that what is due has passed.
+    supervisor.let_pass()
     core = supervisor.core
     return StateJson.of(core.part(part), core.available_transitions(part))
 
@@ -102,6 +104,8 @@ async def change_mode(
 @policy(Permission.OBSERVE)
 async def list_modes(part: PartDep, supervisor: SupervisorDep) -> ModesJson:
     """List the modes, and for each the blockers that keep the part from entering it now."""
+    # A request would find that what is due has passed.
+    supervisor.let_pass()
     clock = supervisor.clock
     modes = supervisor.core.modes(part)
     return ModesJson(items=[EnterableModeJson.of(mode, clock) for mode in modes])

@@ -8,7 +8,7 @@ import pytest
 from domain.inputs import BackendStatus
 from domain.simulation.node_settings import Fault, NodeSettings
 from domain.timebase import seconds
-from tests.support.http_robot import HttpRobot, http_robot, http_scope
+from tests.support.http_robot import ACTUATION, HttpRobot, http_robot, http_scope
 from tests.support.manual_clock import settle
 from tests.support.tables import table
 
@@ -326,6 +326,33 @@ async def test_a_transition_that_does_not_lead_from_here_is_refused_with_those_t
     problem = answer.json()
     assert (answer.status_code, problem["code"]) == (409, "ILLEGAL_TRANSITION")
     assert problem["available"] == ["configure", "activate", "shutdown"]
+
+
+async def test_what_is_due_has_passed_for_whoever_asks_what_can_be_entered(
+    robot: HttpRobot,
+) -> None:
+    """A loop that is a little late has not noticed yet that ESTOP may end."""
+    for value in (True, False):
+        await robot.http.post("/signals/estop", json={"value": value})
+    await robot.pass_time(0.19)
+    robot.clock.stall(0.02)
+
+    modes = (await robot.get("/nodes/drive_base/modes"))["items"]
+    state = await robot.get("/nodes/drive_base/state")
+    answer = await robot.http.post("/nodes/drive_base/mode", json={"mode": "FAST"})
+
+    assert {item["can_enter"] for item in modes} == {True}
+    assert "activate" in state["available_transitions"]
+    assert answer.status_code == 202
+
+
+async def test_a_mode_with_a_long_name_can_be_entered_like_any_other() -> None:
+    name = "VERY_" * 100 + "FAST"
+    async with http_robot(ACTUATION.replace("FAST", name)) as robot:
+        modes = (await robot.get("/nodes/drive_base/modes"))["items"]
+        answer = await robot.http.post("/nodes/drive_base/mode", json={"mode": name})
+    assert {item["mode"]: item["can_enter"] for item in modes}[name]
+    assert answer.status_code == 202
 
 
 async def test_under_estop_a_refusal_carries_the_blockers_that_the_modes_show(
