@@ -11,6 +11,8 @@ MESSAGE_COST = 200
 FRAME_COST = 30
 """Of a frame that is no whole message."""
 KIB_COST = 20
+LOSS_COST = 200
+"""Of the end of a connection, with what the service does then."""
 READ_COST = 5
 """Of the least that can be done."""
 

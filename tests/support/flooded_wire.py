@@ -4,7 +4,7 @@ import asyncio
 from collections.abc import Callable
 
 import uvicorn
-from starlette.types import Receive, Scope, Send
+from starlette.types import ASGIApp, Receive, Scope, Send
 from uvicorn.server import ServerState
 
 from api.serving.closings import Closings
@@ -94,17 +94,27 @@ async def answer(scope: Scope, receive: Receive, send: Send) -> None:
     await send({"type": "http.response.body", "body": b"ok"})
 
 
+class _CountedProtocol(HttpProtocol):
+    """Notes the bytes of each piece."""
+
+    handed_on: list[int]
+
+    def data_received(self, data: bytes) -> None:
+        self.handed_on.append(len(data))
+        super().data_received(data)
+
+
 class FloodedService:
     """The layers between network and application."""
 
-    def __init__(self, most: int = 1_000) -> None:
+    def __init__(self, most: int = 1_000, app: ASGIApp = answer) -> None:
         self.loop = CountedLoop()
         self.closings = Closings()
         self.connections = Connections(most, self.closings)
         self.state = ServerState()
         self._turns = Turns(self.loop.call_soon)
         self._config = uvicorn.Config(
-            answer,
+            app,
             ws=WebSocketProtocol,
             ws_per_message_deflate=False,
             ws_ping_interval=None,
@@ -121,14 +131,8 @@ class FloodedService:
         return Client(self.make(), self)
 
     def make(self) -> Intake:
-        inner = HttpProtocol(self._config, self.state, {}, self.closings)
-        take = inner.data_received
-
-        def count_and_take(data: bytes) -> None:
-            self.handed_on.append(len(data))
-            take(data)
-
-        inner.data_received = count_and_take  # type: ignore[method-assign]
+        inner = _CountedProtocol(self._config, self.state, {}, self.closings)
+        inner.handed_on = self.handed_on
         return Intake(inner, self._turns, self.connections, is_stop)
 
 
