@@ -10,7 +10,8 @@ MESSAGE_COST = 200
 """Of a WebSocket message with what it makes the service do."""
 FRAME_COST = 30
 """Of a frame that is no whole message."""
-KIB_COST = 20
+KIB_COST = 100
+"""Of what may be a body that is checked, or a path that is compared with routes."""
 LOSS_COST = 200
 """Of the end of a connection, with what the service does then."""
 READ_COST = 5
