@@ -19,6 +19,7 @@ from api.serving.pieces import (
     READ_COST,
     Piece,
     cost_of_bytes,
+    cost_of_checking,
 )
 
 MAX_HEAD_BYTES = 65_536
@@ -86,9 +87,11 @@ class HttpProtocol(HttpToolsProtocol):
         if not self.in_message:
             return self._next_head(waiting)
         if self._body_left is None:
-            return _next_chunks(waiting)
+            return _next_chunks(waiting, self._body_bytes)
         length = min(len(waiting), max(self._body_left, 1), _BODY_PIECE)
-        return Piece(length, cost_of_bytes(length))
+        is_last = length == self._body_left
+        cost = cost_of_checking(self._body_bytes + length) if is_last else cost_of_bytes(length)
+        return Piece(length, cost)
 
     def _next_head(self, waiting: bytearray) -> Piece:
         if not (65 <= waiting[0] <= 90 or waiting[0] in b"\r\n"):
@@ -107,7 +110,7 @@ class HttpProtocol(HttpToolsProtocol):
             return INCOMPLETE
         upgrades = _UPGRADE in waiting[:end].lower()
         cost = HANDSHAKE_COST if upgrades else HEAD_COST
-        return Piece(end + len(_END_OF_HEAD), cost + cost_of_bytes(end))
+        return Piece(end + len(_END_OF_HEAD), cost + cost_of_checking(end))
 
     def data_received(self, data: bytes) -> None:
         """Parse a piece; what is left of a lost connection is dropped."""
@@ -210,21 +213,28 @@ class HttpProtocol(HttpToolsProtocol):
         """Handle the end, and let go of the connection: the timer would keep it for a while."""
         super().connection_lost(exc)
         self._unset_keepalive_if_required()
+        # Requests that were never begun refer to this protocol, as it refers to them.
+        self.pipeline.clear()
+        self.cycle = None  # type: ignore[assignment]
 
 
-def _next_chunks(waiting: bytearray) -> Piece:
+def _next_chunks(waiting: bytearray, before: int) -> Piece:
     """Return a part of a chunked body that holds nothing of a further request.
 
     Whatever its chunks and trailers are, it ends with an empty line. Where one is in a chunk, the
     piece is only shorter; where one may just begin, that waits for the rest of it.
+
+    Args:
+        waiting: What follows in the connection.
+        before: Bytes of the body before it.
     """
     window = bytes(waiting[:_CHUNKED_PIECE])
     end = window.find(_END_OF_HEAD)
-    length = len(window) if end < 0 else end + len(_END_OF_HEAD)
     if end < 0:
         begun = next((n for n in (3, 2, 1) if window.endswith(_END_OF_HEAD[:n])), 0)
-        length -= begun
-    return Piece(length, READ_COST + length * _CHUNKED_COST // _CHUNKED_PIECE)
+        length = len(window) - begun
+        return Piece(length, READ_COST + length * _CHUNKED_COST // _CHUNKED_PIECE)
+    return Piece(end + len(_END_OF_HEAD), _CHUNKED_COST + cost_of_checking(before + end))
 
 
 def is_stop(head: bytes | bytearray) -> bool:

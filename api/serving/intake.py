@@ -197,6 +197,7 @@ class Intake(asyncio.BufferedProtocol):
         except Exception:
             log.exception("the end of a connection")
         # They refer to each other: parted here, they need no garbage collection.
+        self.transport.part()
         del self.inner, self.transport
         return LOSS_COST
 

@@ -2,6 +2,7 @@
 
 import asyncio
 from collections.abc import Callable
+from typing import Any, cast
 
 import uvicorn
 from starlette.types import ASGIApp, Receive, Scope, Send
@@ -104,18 +105,36 @@ class _CountedProtocol(HttpProtocol):
         super().data_received(data)
 
 
-class FloodedService:
-    """The layers between network and application."""
+class _CountedWebSocket(WebSocketProtocol):
+    """Notes the bytes of each piece."""
 
-    def __init__(self, most: int = 1_000, app: ASGIApp = answer) -> None:
+    handed_on: list[int]
+
+    def data_received(self, data: bytes) -> None:
+        self.handed_on.append(len(data))
+        super().data_received(data)
+
+
+class FloodedService:
+    """The layers between network and application.
+
+    Args:
+        most: Connections at the same time.
+        app: The application.
+        turns: Of the connections; None: those of `loop`, whose turns the test runs itself.
+    """
+
+    def __init__(
+        self, most: int = 1_000, app: ASGIApp = answer, turns: Turns | None = None
+    ) -> None:
         self.loop = CountedLoop()
         self.closings = Closings()
         self.connections = Connections(most, self.closings)
         self.state = ServerState()
-        self._turns = Turns(self.loop.call_soon)
+        self._turns = turns or Turns(self.loop.call_soon)
         self._config = uvicorn.Config(
             app,
-            ws=WebSocketProtocol,
+            ws=cast("type[WebSocketProtocol]", self._make_socket),
             ws_per_message_deflate=False,
             ws_ping_interval=None,
             interface="asgi3",
@@ -124,11 +143,16 @@ class FloodedService:
         )
         self._config.load()
         self.handed_on: list[int] = []
-        """Bytes of each piece."""
+        """Bytes of each piece, in order."""
 
     def connect(self) -> "Client":
         """Return a new client."""
         return Client(self.make(), self)
+
+    def _make_socket(self, **options: Any) -> WebSocketProtocol:  # noqa: ANN401
+        socket = _CountedWebSocket(**options, closings=self.closings)
+        socket.handed_on = self.handed_on
+        return socket
 
     def make(self) -> Intake:
         inner = _CountedProtocol(self._config, self.state, {}, self.closings)
