@@ -142,5 +142,11 @@ def test_members_are_counted_at_every_depth() -> None:
         require_few_members(many)
 
 
+@pytest.mark.parametrize("items", [[{}] * 1_001, [[]] * 1_001, [[[]] * 500] * 3])
+def test_objects_and_arrays_in_arrays_are_members(items: list[object]) -> None:
+    with pytest.raises(InvalidBodyError, match="more than 1000 members"):
+        require_few_members({"gains": items})
+
+
 def test_long_lists_of_numbers_are_no_members() -> None:
     require_few_members({"gains": [1.0] * 100_000})
