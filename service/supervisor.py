@@ -154,8 +154,7 @@ class Supervisor:
             if not isinstance(command, SendGoal | PreemptGoal):
                 self._backend.send(command)
         self.publisher.note(outputs)
-        for event in outputs.events:
-            self.events.append(event)
+        self.events.append(*outputs.events)
         self.change_ends.note(outputs.events)
         if outputs.system_state:
             self.publisher.publish_change()
