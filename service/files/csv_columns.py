@@ -3,7 +3,7 @@
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from domain.errors import InvalidValueError, PilothouseError
+from domain.errors import InvalidValueError
 from domain.paths.headings import Heading
 from service.files.csv_names import (
     ColumnName,
@@ -19,16 +19,22 @@ EXAMPLE = "?columns=x,y,yaw"
 _QUATERNION = (Meaning.QX, Meaning.QY, Meaning.QZ, Meaning.QW)
 
 
-class UnknownColumnsError(PilothouseError):
-    """Names of columns from which x and y do not follow."""
+_UNKNOWN = "UNKNOWN_COLUMNS"
 
-    code = "UNKNOWN_COLUMNS"
 
-    def __init__(self, message: str, code: str | None = None, hint: str | None = None) -> None:
+class UnknownColumnsError(Exception):
+    """Names of columns from which x and y do not follow; whoever reads a file knows the line."""
+
+    def __init__(self, message: str, code: str = _UNKNOWN, hint: str | None = None) -> None:
         super().__init__(message)
-        if code is not None:
-            self.code = code
+        self.message = message
+        self.code = code
         self.hint = hint or f"say what the columns are, such as {EXAMPLE}; _ stands for any other"
+
+    @property
+    def are_columns(self) -> bool:
+        """Return whether these are names of columns at all, although not of x and y."""
+        return self.code != _UNKNOWN
 
 
 @dataclass(frozen=True, slots=True)

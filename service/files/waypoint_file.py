@@ -136,7 +136,7 @@ def _is_header(names: Names) -> bool:
     try:
         named(names)
     except UnknownColumnsError as error:
-        return error.code != UnknownColumnsError.code
+        return error.are_columns
     return True
 
 
@@ -160,7 +160,7 @@ def _columns_of(table: CsvTable, names: Names) -> Columns:
         where = named(names)
     except UnknownColumnsError as error:
         line_number = first if table.header is None else table.header.line
-        raise refused(error.code, error.message, line_number, error.hint or "") from error
+        raise refused(error.code, error.message, line_number, error.hint) from error
     if max(where.used) >= table.most:
         message = f"{table.most} columns, and x, y or the heading was said to be in a later one"
         raise refused("TOO_FEW_COLUMNS", message, first, _say_columns())

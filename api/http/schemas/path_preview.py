@@ -97,7 +97,9 @@ class PathPreviewJson(Json):
     start: StartJson | None = Field(description="null: the pose of the vehicle is unknown")
     duration_s: float = Field(description="Estimated driving time, standstill to standstill")
     warnings: list[PathWarningJson]
-    csv: CsvJson | None = Field(description="How the CSV was read; null: the waypoints were JSON")
+    csv: CsvJson | None = Field(
+        default=None, description="How the CSV was read; null: the waypoints were JSON"
+    )
     items: list[PointJson] = Field(description=f"At most {MAX_DRAWN} waypoints, to draw the path")
 
     @classmethod
