@@ -57,12 +57,13 @@ class _Rows:
             if len(self.rows) == MAX_WAYPOINTS:
                 raise too_many_points(number)
             cells = cells_of(line, most)
-            try:
-                row = [float(cells[index]) for index in used]
-                is_plain = least <= len(cells) <= most and "_" not in line and line.isascii()
-            except (ValueError, IndexError):
-                is_plain = False
-            if not is_plain:
+            row = None
+            if least <= len(cells) <= most and "_" not in line and line.isascii():
+                try:
+                    row = [float(cells[index]) for index in used]
+                except (ValueError, IndexError):
+                    row = None
+            if row is None:
                 row = self._read_slowly(number, line, cells)
                 if len(self.findings) >= MAX_FINDINGS:
                     return
@@ -161,11 +162,18 @@ def first_rows(table: CsvTable, rows: int, columns: int) -> Floats:
     found = []
     for _, line in table.rows():
         cells = table.dialect.cells(line, table.most)[:width]
-        row = [number_in(cell) if is_number(cell) else np.nan for cell in cells]
+        row = [_number_or_nan(cell) for cell in cells]
         found.append(row + [np.nan] * (width - len(row)))
         if len(found) == rows:
             break
     return np.array(found, dtype=np.float64).reshape(-1, width)
+
+
+def _number_or_nan(cell: str) -> float:
+    try:
+        return number_in(cell)
+    except ValueError:
+        return np.nan
 
 
 def _out_of_range(

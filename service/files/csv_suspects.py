@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-ROWS = 500
+ROWS = 200
 COLUMNS = 12
 
 _UNIX_TIME = 1e8

@@ -104,15 +104,15 @@ def read_waypoint_file(
     table = read_table(text, _is_header if columns is None else None)
     names = columns or (() if table.header is None else table.header.names)
     where = _columns_of(table, names)
-    sample = first_rows(table, ROWS, COLUMNS)
-    if not names:
+    sample = None if names else first_rows(table, ROWS, COLUMNS)
+    if sample is not None:
         _refuse(table, other_format_in(sample))
     labels = [where.names[index].meaning for index in where.used]
     numbers = read_numbers(table, where.used, labels)
     ways = Ways(numbers.values[:, :2])
     is_given = heading is not None or columns is not None
     headings = _headings(numbers, where, ways, heading, is_given=is_given)
-    if not names:
+    if sample is not None:
         fits = _fits_closely(headings, ways, sample)
         _refuse(table, no_place_in(sample, numbers.values[:, :2], heading_fits=fits))
     reading = reading_of(

@@ -36,7 +36,7 @@ from service.worker import Jobs
 
 router = APIRouter(prefix="/tasks", tags=["drive"])
 
-_MAX_BYTES_HERE = 8_192
+_MAX_BYTES_HERE = 4_096
 _MAX_POINTS_HERE = 500
 """Up to these limits the job takes less than 5 ms, and is not worth sending to the worker."""
 
