@@ -128,7 +128,8 @@ def reading_of(
         elif index == columns.yaw:
             unit = heading or unit
         given = names[index] if index < len(names) else ""
-        shown.append(ColumnReading(given or None, meaning, index in used, unit))
+        is_name = any(character.isalnum() for character in given)
+        shown.append(ColumnReading(given if is_name else None, meaning, index in used, unit))
     return CsvReading(
         table.dialect.word,
         has_decimal_comma,

@@ -44,7 +44,8 @@ def other_format_in(sample: Floats) -> Suspect | None:
         return Suspect(message, f"say what the columns are, such as ?columns={columns}")
     if sample.shape[1] == COLUMNS and _are_matrices(sample):
         message = "12 numbers in each line are poses as 3x4 matrices; the first two are not x and y"
-        places = "?columns=_,_,_,x,_,_,_,y"
+        # The plane of a camera that looks ahead is that of x and z.
+        places = "?columns=_,_,_,x,_,_,_,_,_,_,_,y"
         return Suspect(message, f"write x,y of each pose, or say where they are, such as {places}")
     return None
 

@@ -320,7 +320,7 @@ def test_messages_have_no_words_of_the_interface(desktop: Page, service: Service
     form.get_by_label("Speed, m/s").fill("2.8")
     form.get_by_label("Speed, m/s").blur()
     expect(form).to_contain_text(
-        "say below what the columns are, such as x,y, or what its headings are in"
+        "say above what the columns are, such as x,y, or what its headings are in"
     )
     assert not re.search(r"/speed_mps|\?heading|\?columns|start_index", form.inner_text())
 
@@ -334,7 +334,7 @@ def test_messages_have_no_words_of_the_interface(desktop: Page, service: Service
             "",
         ),
         ({"detail": "query speed_mps: not a number"}, "Speed: not a number", ""),
-        ({"detail": "x", "hint": "set ?columns=x,y,yaw"}, "x", "say below what the columns are"),
+        ({"detail": "x", "hint": "set ?columns=x,y,yaw"}, "x", "say above what the columns are"),
         ({"detail": "x", "hint": "there is none now; see GET /tasks"}, "x", ""),
         (
             {"detail": "x", "hint": "waypoint 1 is 0.0 m away: start there with start_index"},

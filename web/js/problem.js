@@ -49,8 +49,8 @@ export function hintWords({ hint }) {
   if (hint.includes("?columns=")) {
     const [, example] = /\?columns=([\w,-]+)/.exec(hint) ?? [null, "x,y,yaw"];
     const heading = hint.includes("?heading=") ? ", or what its headings are in" : "";
-    return `say below what the columns are, such as ${example}${heading}`;
+    return `say above what the columns are, such as ${example}${heading}`;
   }
-  if (hint.includes("?heading=")) return "choose below what the headings are in";
+  if (hint.includes("?heading=")) return "choose above what the headings are in";
   return OF_THE_API.test(hint) ? "" : hint;
 }

@@ -55,6 +55,10 @@ def test_names_that_were_asked_are_told_by_their_columns() -> None:
     )
 
 
+def test_a_column_without_a_name_is_told_by_its_number() -> None:
+    assert reading("9,0,0,7\n9,1,0,7\n9,2,0,7", "_,x,y").words.endswith("not used: 1, 4")
+
+
 def test_each_column_has_its_meaning_and_unit() -> None:
     columns = reading("x_m,y_m,heading,vx_mps,flag\n0,0,90,1,0\n0,1,90,1,0\n0,2,90,1,0").columns
 
