@@ -25,6 +25,7 @@ from service.frame_publisher import FramePublisher
 from service.node_incidents import log_node_incidents
 from service.ports import RobotBackend
 from service.readings import DirectReadings, ReadingInput, Submit
+from service.refused_readings import RefusedReadings
 from service.running import run_forever
 from service.submitter import Submitter
 from service.watchdog import hanging
@@ -76,6 +77,8 @@ class Supervisor:
         """Processes the deadlines that have expired by now."""
         self.readings = readings(self.submit)
         """The input for external readings."""
+        self.refused_readings = RefusedReadings()
+        """Rejected readings, on all ways in."""
 
     @property
     def model(self) -> SmhModel:

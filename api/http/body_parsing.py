@@ -112,12 +112,12 @@ def parse_json(raw: bytes) -> object:
     """Parse a JSON text.
 
     Raises:
-        MalformedBodyError: It is not JSON, is nested too deeply, or holds a lone surrogate, which
-            cannot be encoded.
+        MalformedBodyError: It is not JSON, is nested too deeply, has a member twice, or holds a
+            lone surrogate, which cannot be encoded.
     """
     text = parse_text(raw)
     try:
-        value: object = json.loads(text)
+        value: object = json.loads(text, object_pairs_hook=_unique)
         if "\\u" in text:
             json.dumps(value, ensure_ascii=False).encode()
     except json.JSONDecodeError as error:
@@ -130,6 +130,21 @@ def parse_json(raw: bytes) -> object:
     except ValueError as error:
         raise MalformedBodyError("the body contains a number with too many digits") from error
     return value
+
+
+def _unique(members: list[tuple[str, object]]) -> dict[str, object]:
+    """Return an object; readers differ in which of two members of the same name they take.
+
+    Raises:
+        MalformedBodyError: A name occurs twice.
+    """
+    found = dict(members)
+    if len(found) < len(members):
+        left = iter(found)
+        # A dictionary has its keys in the order in which they first occurred.
+        twice = next(name for name, _ in members if name != next(left, None))
+        raise MalformedBodyError(f"the body has the member {shortened(twice)!r} twice")
+    return found
 
 
 def parse_body(kind: type[AnyBody], raw: bytes) -> AnyBody:

@@ -1,12 +1,12 @@
 """Signals and their readings."""
 
+from collections.abc import Mapping
 from typing import Annotated
 
 from fastapi import APIRouter, Body, Path
 
 from api.http.body_parsing import InvalidBodyError
 from api.http.dependencies import ActorDep, SupervisorDep
-from api.http.request_body import JsonRoute
 from api.http.route_policy import Permission, policy
 from api.http.routes.system_state import current_system_state
 from api.http.schemas.health import (
@@ -14,13 +14,15 @@ from api.http.schemas.health import (
     ReadingBody,
     SignalJson,
     SignalsJson,
-    SystemStateJson,
+    TakenReadingsJson,
 )
 from api.http.schemas.sent_values import SentSignalValue
+from api.http.stop_route import IgnoredDep, StopRoute
 from domain.errors import InvalidValueError, UnknownSignalError
 from domain.inputs import Reading
+from service.supervisor import Supervisor
 
-router = APIRouter(prefix="/signals", tags=["health"], route_class=JsonRoute)
+router = APIRouter(prefix="/signals", tags=["health"], route_class=StopRoute)
 
 SignalPath = Annotated[str, Path(description="One of those in `GET /signals`")]
 
@@ -42,7 +44,7 @@ async def get_signal(signal: SignalPath, supervisor: SupervisorDep) -> SignalJso
     return SignalJson.at(supervisor.core.signal(signal), clock, clock.now())
 
 
-@router.post("")
+@router.post("", response_model_exclude_unset=True)
 @policy(Permission.REPORT)
 async def post_readings(
     body: Annotated[
@@ -51,8 +53,11 @@ async def post_readings(
     ],
     supervisor: SupervisorDep,
     actor: ActorDep,
-) -> SystemStateJson:
+    ignored: IgnoredDep,
+) -> TakenReadingsJson:
     """Submit readings of several signals; all or none are accepted.
+
+    If `estop` asks for a stop, it is taken even if the rest is rejected; then `ignored` tells why.
 
     They are evaluated on arrival; the answer is the resulting system state. A text named `source`
     is the source of the readings, unless there is a signal of that name. The default source is
@@ -69,23 +74,33 @@ async def post_readings(
         supervisor.readings.submit(readings, source, actor)
     except UnknownSignalError as error:
         raise InvalidBodyError.at(error.name, error) from error
-    return current_system_state(supervisor)
+    return _taken(supervisor, ignored)
 
 
-@router.post("/{signal}")
+@router.post("/{signal}", response_model_exclude_unset=True)
 @policy(Permission.REPORT)
 async def post_reading(
-    signal: SignalPath, body: ReadingBody, supervisor: SupervisorDep, actor: ActorDep
-) -> SystemStateJson:
+    signal: SignalPath,
+    body: ReadingBody,
+    supervisor: SupervisorDep,
+    actor: ActorDep,
+    ignored: IgnoredDep,
+) -> TakenReadingsJson:
     """Submit a reading; it is evaluated on arrival, and the answer is the resulting system state.
 
     `stamp` is only shown; it does not change the age of a reading. A reading older than the current
     one is rejected, unless it is worse. The default `source` is `api`, or the mock if it is
-    running.
+    running. What asks for a stop of `estop` is taken whatever else is in the body; `ignored` tells
+    what was not.
     """
     reading = body.reading(signal, supervisor.clock)
     try:
         supervisor.readings.submit([reading], body.source, actor)
     except InvalidValueError as error:
         raise InvalidBodyError.at("value", error) from error
-    return current_system_state(supervisor)
+    return _taken(supervisor, ignored)
+
+
+def _taken(supervisor: Supervisor, ignored: Mapping[str, object]) -> TakenReadingsJson:
+    answer = TakenReadingsJson(**dict(current_system_state(supervisor)))
+    return answer.model_copy(update=ignored)

@@ -4,8 +4,18 @@ from collections.abc import Sequence
 from datetime import datetime
 
 from pydantic import Field
+from pydantic.json_schema import SkipJsonSchema
 
-from api.http.schemas.base import BlockerJson, Body, Json, Timestamp, timestamp, timestamp_or_none
+from api.http.schemas.base import (
+    BlockerJson,
+    Body,
+    Json,
+    Timestamp,
+    left_out,
+    timestamp,
+    timestamp_or_none,
+)
+from api.http.schemas.problem import BodyFault
 from api.http.schemas.sent_values import SentSignalValue
 from domain.errors import InvalidValueError
 from domain.findings import Fact
@@ -22,6 +32,9 @@ from service.clock import Clock
 
 MAX_SOURCE = 64
 """Largest length of the name of a source, in characters."""
+
+MAX_REASON = 500
+"""Largest length of the reason of an emergency stop, in characters."""
 
 
 class PendingJson(Json):
@@ -152,6 +165,17 @@ class SystemStateJson(Json):
         )
 
 
+_IGNORED = "What was ignored, so that a stop could be taken; left out: nothing"
+
+
+class TakenReadingsJson(SystemStateJson):
+    """The system state that follows from readings."""
+
+    ignored: list[BodyFault] | SkipJsonSchema[None] = Field(
+        default=None, description=_IGNORED, json_schema_extra=left_out
+    )
+
+
 class EmergencyStopJson(Json):
     """The latch that only a person releases."""
 
@@ -171,6 +195,14 @@ class EmergencyStopJson(Json):
             since_at=timestamp_or_none(clock, view.since),
             standstill_at=timestamp_or_none(clock, view.standstill_at),
         )
+
+
+class EmergencyStopAnswerJson(EmergencyStopJson):
+    """The latch after a request."""
+
+    ignored: list[BodyFault] | SkipJsonSchema[None] = Field(
+        default=None, description=_IGNORED, json_schema_extra=left_out
+    )
 
 
 class MockSignalJson(Json):
@@ -235,7 +267,7 @@ class EmergencyStopBody(Body):
     """Engage or release the emergency stop."""
 
     engaged: bool
-    reason: str | None = Field(default=None, max_length=500)
+    reason: str | None = Field(default=None, max_length=MAX_REASON)
 
 
 class MockBody(Body):
