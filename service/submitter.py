@@ -3,12 +3,14 @@
 import logging
 from collections.abc import Callable
 
+from domain.actor import Actor
 from domain.errors import PilothouseError
-from domain.inputs import Input, TimePassed
+from domain.inputs import Input, Readings, TimePassed
 from domain.onboard import Onboard
 from domain.outbox import Outputs
 from service.clock import Clock
 from service.pacing import Alarm
+from service.refused_readings import RefusedReadings
 
 log = logging.getLogger(__name__)
 
@@ -17,7 +19,11 @@ class Submitter:
     """Passes each input to the core at once, and the outputs to `carry_out`."""
 
     def __init__(
-        self, onboard: Onboard, clock: Clock, carry_out: Callable[[Outputs], None]
+        self,
+        onboard: Onboard,
+        clock: Clock,
+        carry_out: Callable[[Outputs], None],
+        refused: RefusedReadings,
     ) -> None:
         """Prepare.
 
@@ -25,10 +31,12 @@ class Submitter:
             onboard: The core.
             clock: Of the service.
             carry_out: Acts on the outputs of the core.
+            refused: Counts rejected readings of adapters, all of which hear ROS topics.
         """
         self._onboard = onboard
         self._clock = clock
         self._carry_out = carry_out
+        self._refused = refused
         self._alarm = Alarm(onboard.wake_at, self.let_pass, clock)
 
     async def run(self) -> None:
@@ -58,7 +66,10 @@ class Submitter:
         try:
             self.submit(given)
         except PilothouseError as error:
-            log.warning("rejected %s: %s", type(given).__name__, error)
+            if isinstance(given, Readings):
+                self._refused.note(Actor(given.source, way="ros"), error.message)
+            else:
+                log.warning("rejected %s: %s", type(given).__name__, error)
 
     def let_pass(self) -> None:
         """Process the deadlines that have expired by now."""

@@ -68,7 +68,9 @@ class Supervisor:
         self._loaded = loaded
         self._onboard = onboard
         self._backend = backend
-        self._submitter = Submitter(onboard, clock, self._carry_out)
+        self.refused_readings = RefusedReadings()
+        """Rejected readings, on all ways in."""
+        self._submitter = Submitter(onboard, clock, self._carry_out, self.refused_readings)
         self.submit: Callable[[Input], Outputs] = self._submitter.submit
         """Passes an input to the core; raises PilothouseError if it is rejected."""
         self.deliver: Callable[[Input], None] = self._submitter.deliver
@@ -77,8 +79,6 @@ class Supervisor:
         """Processes the deadlines that have expired by now."""
         self.readings = readings(self.submit)
         """The input for external readings."""
-        self.refused_readings = RefusedReadings()
-        """Rejected readings, on all ways in."""
 
     @property
     def model(self) -> SmhModel:

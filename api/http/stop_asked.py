@@ -10,11 +10,14 @@ import re
 from collections.abc import Iterable, Mapping
 from typing import Any, TypeAlias
 
+from domain.errors import InvalidValueError, PilothouseError
 from domain.health.signals import ESTOP_SIGNAL, asks_for_stop
+from service.ros.interface.reading_topics import STOP_FIELDS
 
-_ROS_FIELDS = ("enabled", "data", "value")
-"""Fields of messages on `/estop`; the first is that of smart_polaris, the second of std_msgs."""
 _NAMES = (ESTOP_SIGNAL, f"/{ESTOP_SIGNAL}")
+
+_MOST_DIGITS = 20
+"""Enough for 64 bits."""
 
 _Members: TypeAlias = "tuple[tuple[str, Any], ...]"
 """All members of a JSON object, also those with the same name."""
@@ -53,22 +56,51 @@ def is_stop_of_stream(message: Mapping[str, Any]) -> bool:
     return _is_estop(found, "signal") and any(map(asks_for_stop, _every(found, "value")))
 
 
+def source_of(message: Mapping[str, Any], longest: int) -> str | None:
+    """Return the source that a message of a stream client names; None: no valid one."""
+    for value in _every(_parsed(_text_of(message)), "source"):
+        if isinstance(value, str) and 0 < len(value) <= longest and value.isprintable():
+            return value
+    return None
+
+
+def members_of(message: Mapping[str, Any]) -> dict[str, Any]:
+    """Return the first of the members of each name of a message that is invalid JSON for us."""
+    found = _parsed(_text_of(message))
+    members: _Members = found if isinstance(found, tuple) else ()
+    return {name: _encodable(value) for name, value in reversed(members)}
+
+
+def _encodable(value: object) -> object:
+    """Return a text without lone surrogates; any other value unchanged."""
+    return value.encode(errors="replace").decode() if isinstance(value, str) else value
+
+
+class StopTakenError(InvalidValueError):
+    """A stop that was taken; the rest of its message was ignored."""
+
+    code = "STOP_TAKEN"
+
+    def __init__(self, ignored: PilothouseError) -> None:
+        super().__init__(f"the stop was taken; ignored: {ignored.message}")
+
+
 def is_stop_of_rosbridge(message: Mapping[str, Any]) -> bool:
     """Tell whether a message of a rosbridge client publishes what asks for a stop."""
     text = _text_of(message)
     found = _parsed(text)
     if found is None:
-        return _names_estop(text, "topic") and _writes(text, _ROS_FIELDS)
+        return _names_estop(text, "topic") and _writes(text, STOP_FIELDS)
     return _is_estop(found, "topic") and any(
         asks_for_stop(value)
         for published in _every(found, "msg")
-        for value in _every(published, *_ROS_FIELDS)
+        for value in _every(published, *STOP_FIELDS)
     )
 
 
 def may_ask_rosbridge(text: str) -> bool:
     """Tell, without parsing a text, whether it may publish what asks for a stop."""
-    return ESTOP_SIGNAL in text and _writes(text, _ROS_FIELDS)
+    return ESTOP_SIGNAL in text and _writes(text, STOP_FIELDS)
 
 
 def _text_of(message: Mapping[str, Any]) -> str:
@@ -82,10 +114,15 @@ def _text_of(message: Mapping[str, Any]) -> str:
 def _parsed(text: str) -> object | None:
     """Return JSON with objects as tuples of all their members; None: it is no JSON."""
     try:
-        found: object = json.loads(text, object_pairs_hook=tuple, parse_int=float)
+        found: object = json.loads(text, object_pairs_hook=tuple, parse_int=_whole)
     except (ValueError, RecursionError):
         return None
     return found
+
+
+def _whole(text: str) -> int | float:
+    """Return a whole number; one with too many digits for Python as a float."""
+    return int(text) if len(text) <= _MOST_DIGITS else float(text)
 
 
 def _every(found: object, *names: str) -> Iterable[Any]:

@@ -68,6 +68,7 @@ class ServedClient:
             message = await receive()
             if is_urgent(message):
                 self._wire.heard()
+                ahead.overtake()
                 session.hear(message)
                 await asyncio.sleep(0)
                 continue
@@ -78,7 +79,7 @@ class ServedClient:
     async def _hear(self, session: Session, ahead: ReadAhead) -> None:
         """Process messages one after the other."""
         while True:
-            message = await ahead.get()
+            message, number = await ahead.get()
             if message["type"] == "websocket.disconnect":
                 return
             self._wire.heard()
@@ -87,7 +88,7 @@ class ServedClient:
             # One message of all clients at a time: fifty large ones in one pass of the event loop
             # would delay the tick for too long.
             async with self._bridge.turn:
-                session.hear(message)
+                session.hear(message, overtaken=ahead.is_overtaken(number))
                 await asyncio.sleep(0)
 
     async def _write(self) -> None:

@@ -18,6 +18,7 @@ from api.http.task_jobs import task_of
 from api.simulation.requests import Requests
 from domain.actor import Actor
 from domain.errors import PilothouseError
+from domain.health.signals import ESTOP_SIGNAL, asks_for_stop
 from domain.inputs import (
     CancelTaskRequest,
     ModeRequest,
@@ -67,7 +68,14 @@ class Actors:
         if step.stamp_offset_s is not None:
             stamp = self._robot.clock.now() + seconds(step.stamp_offset_s)
         readings = [Reading(signal, value, stamp) for signal, value in step.reading.items()]
-        self._robot.supervisor.readings.submit(readings, step.source, _ACTOR)
+        take = self._robot.supervisor.readings.submit
+        try:
+            take(readings, step.source, _ACTOR)
+        except PilothouseError:
+            # As over HTTP, a stop is taken even if what came with it is rejected.
+            if asks_for_stop(step.reading.get(ESTOP_SIGNAL)):
+                take([Reading(ESTOP_SIGNAL, True, stamp)], step.source, _ACTOR)
+            raise
 
     def _drive(self, step: TaskStep) -> None:
         if step.task is None:

@@ -118,6 +118,9 @@ class _Source:
         value = _accuracy_mm(message) if self._path is None else _found(message, self._path)
         if self.spec.kind is SignalKind.BOOLEAN and isinstance(value, bool):
             return self.spec.checked(value is not self.topic.invert)
+        if self.spec.kind is SignalKind.BOOLEAN and self.topic.invert:
+            words = f"{self.spec.name} must be true or false to be inverted, not {value!r:.40}"
+            raise InvalidValueError(words, self.spec.name)
         if self.spec.kind is SignalKind.NUMBER and _is_number(value):
             value = value * self.topic.scale + self.topic.offset
             if not math.isfinite(value):
@@ -174,6 +177,5 @@ def _is_number(value: object) -> bool:
 def _stamp_ns(message: Message) -> int | None:
     """Return the time stamp of a message; None: it has none, or it is 0."""
     stamp = getattr(getattr(message, "header", None), "stamp", None)
-    if stamp is None:
-        return None
-    return (stamp.sec * NANOSECONDS_PER_SECOND + stamp.nanosec) or None
+    sec, nanosec = getattr(stamp, "sec", 0), getattr(stamp, "nanosec", 0)
+    return (sec * NANOSECONDS_PER_SECOND + nanosec) or None

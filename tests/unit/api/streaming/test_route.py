@@ -320,8 +320,55 @@ async def test_a_reading_over_the_stream_counts_like_any_other(
     assert supervisor.core.signal("battery_level").value == 0.2
 
 
+STOPS = [
+    '{"type":"reading","signal":"estop","value":true,"stamp":"garbage"}',
+    '{"type":"reading","signal":"estop","value":true,"more":{"of":[null]}}',
+    '{"type":"reading","signal":"estop","value":true,"value":false}',
+    '{"type":"reading","signal":"estop","signal":"temperature","value":1}',
+    '{"signal":"estop","value":"true"}',
+    '{"type":7,"signal":"/estop","value":true}',
+    '{"type":"reading","signal":"estop","value":true,"source":"\\ud800"}',
+    '{"type":"reading","signal":"estop","value":true',
+]
+
+
+@pytest.mark.parametrize("text", STOPS)
+async def test_a_stop_is_taken_whatever_stands_around_it_and_the_rest_is_told(
+    app: FastAPI, supervisor: Supervisor, text: str
+) -> None:
+    async with WebSocketClient(app, topics="events") as client:
+        await client.frame("hello")
+        client.send_text(text)
+        problem = await client.frame("problem")
+
+    assert problem["code"] == "STOP_TAKEN"
+    assert problem["detail"].startswith("the stop was taken; ignored: ")
+    assert supervisor.core.signal("estop").value is True
+
+
+async def test_a_stop_in_a_binary_message_is_taken(app: FastAPI, supervisor: Supervisor) -> None:
+    async with WebSocketClient(app, topics="events") as client:
+        await client.frame("hello")
+        client.send_bytes(b'{"type":"reading","signal":"estop","value":true,"source":"panel"}')
+        await client.frame("problem")
+
+    assert supervisor.core.signal("estop").source == "panel"
+
+
+async def test_a_rejected_reading_is_counted(app: FastAPI, supervisor: Supervisor) -> None:
+    async with WebSocketClient(app, topics="events") as client:
+        await client.frame("hello")
+        client.send({"type": "reading", "signal": "battery_level", "value": 7})
+        await client.frame("problem")
+
+    assert supervisor.refused_readings.counts == {"websocket": 1}
+
+
 BAD = [
     ("{", 400),
+    ('{"type":"reading","signal":"estop","value":false,"value":false}', 400),
+    ('{"type":"reading","signal":"estop","value":false,"more":1}', 422),
+    ('{"type":"reading","signal":"estop","value":"maybe"}', 422),
     ("", 400),
     ("[" * 30_000, 400),
     ('{"type":"reading","signal":"battery_level","value":"\\ud800"}', 400),

@@ -98,6 +98,7 @@ def test_a_reading_tells_its_value_its_topic_and_no_time_where_the_message_has_n
         ("temperature", TEMPERATURE, {"temperature": 31.5}, 31.5),
         ("temperature", {**TEMPERATURE, "offset": -273.15}, {"temperature": 300.0}, 26.85),
         ("estop", ESTOP, {"data": False}, False),
+        ("estop", ESTOP, {"data": 1}, True),
         ("estop", {**ESTOP, "invert": True}, {"data": False}, True),
         ("estop", {**ESTOP, "invert": True}, {"data": True}, False),
         ("signal_strength", STRENGTH, {"data": 0}, "NOT_CONNECTED"),
@@ -212,7 +213,7 @@ def test_what_was_not_measured_is_no_reading_and_nothing_to_complain_of(
     [
         ("battery_level", BATTERY, {"percentage": 80.0}, "battery_level must be at most 1"),
         ("wind", {**WIND, "field": "speed"}, {"speed": -1.0}, "wind must be at least 0"),
-        ("estop", ESTOP, {"data": 1}, "estop must be true or false, not 1"),
+        ("estop", ESTOP, {"data": 2}, "estop must be true or false, not 2"),
         ("temperature", TEMPERATURE, {"temperature": True}, "must be a number, not True"),
         ("signal_strength", STRENGTH, {"data": 3}, "must be one of CONNECTED"),
         ("signal_strength", STRENGTH, {"data": True}, "must be one of CONNECTED"),
@@ -245,7 +246,7 @@ async def test_a_topic_is_complained_of_once_a_minute_and_others_by_themselves(
     for _ in range(1_210):
         robot.publish("/battery_state", percentage=80.0)
         await robot.clock.advance(0.1)
-    robot.publish("/estop", data=1)
+    robot.publish("/estop", data=2)
 
     assert ["battery" in complaint for complaint in complaints(caplog)] == [True, True, True, False]
 
