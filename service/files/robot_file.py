@@ -8,15 +8,15 @@ from collections.abc import Mapping as AnyMapping
 from pathlib import Path
 from typing import Any, Literal
 
-from pydantic import Field, ValidationError
+from pydantic import Field, ValidationError, field_validator
 
 from domain.changes.settings import ChangeSettings
-from domain.errors import InvalidValueError, PilothouseError
+from domain.errors import InvalidValueError, PilothouseError, UnknownPartError, near_match
 from domain.findings import Finding
 from domain.health.signals import SignalSettings
 from domain.navigation import NavigationSettings
 from domain.parts.system_model import SmhModel
-from domain.state_and_mode import PartName
+from domain.state_and_mode import PartName, part_name
 from domain.tasks.settings import TaskSettings
 from domain.timebase import seconds
 from domain.vehicle import VehicleLimits
@@ -68,6 +68,14 @@ class RobotSettings(SettingsBlock):
     start_task: StartTaskBlock | None = None
     """A task that is submitted when the service starts. Not allowed in simulations, which do not
     read files."""
+
+    @field_validator("nodes")
+    @classmethod
+    def _without_leading_slashes(cls, nodes: dict[str, NodeBlock]) -> dict[str, NodeBlock]:
+        found: dict[str, NodeBlock] = {part_name(name): block for name, block in nodes.items()}
+        if len(found) < len(nodes):
+            raise ValueError("a node is named twice, with and without a leading slash")
+        return found
 
     def to_signal_settings(self) -> tuple[SignalSettings, ...]:
         """Return all signals: the five default ones with these settings, then the declared ones.
@@ -155,10 +163,18 @@ def robot_settings_of(data: AnyMapping[str, object], model: SmhModel) -> RobotSe
         raise InvalidValueError(error.message, f"/signals/{error.pointer}") from error
     for name in settings.nodes:
         if name not in model.nodes:
-            raise InvalidValueError(f"there is no node {name!r}", _pointer("nodes", name))
+            raise InvalidValueError(_no_node(name, model), _pointer("nodes", name))
     for keys, _, message in _faults_of_topics(settings):
         raise InvalidValueError(message, _pointer(*keys))
     return settings
+
+
+def _no_node(name: str, model: SmhModel) -> str:
+    """Return why the settings of a node are of none: there is none, or it is a system."""
+    if name in model.systems:
+        return UnknownPartError.of_other_kind(name, "node").message
+    near = near_match(name, tuple(model.nodes))
+    return f"there is no node {name!r}" + (f"; did you mean {near}?" if near else "")
 
 
 def _pointer(*keys: int | str) -> str:
@@ -185,10 +201,8 @@ def _settings(
         return None
     for name in settings.nodes:
         if name not in model.nodes:
-            what = "a system" if name in model.systems else "not in the model"
-            message = f"there is no node {name!r}: it is {what}"
             place = _place(root, ("nodes", name))
-            findings.append(finding_at(place, "UNKNOWN_NODE", message))
+            findings.append(finding_at(place, "UNKNOWN_NODE", _no_node(name, model)))
     for keys, code, message in _faults_of_topics(settings):
         findings.append(finding_at(_place(root, keys), code, message))
     return settings

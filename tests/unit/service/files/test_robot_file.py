@@ -239,7 +239,9 @@ def test_of_a_robot_of_which_nothing_is_sent_all_is_as_usual() -> None:
         ({"vehicle": {"plant": {"delay_s": -1}}}, "/vehicle/plant/delay_s", "greater than"),
         ({"driving": {"speed": 3}}, "/driving/speed", "unknown key"),
         ({"nodes": {"tail": {}}}, "/nodes/tail", "there is no node 'tail'"),
-        ({"nodes": {"actuation": {}}}, "/nodes/actuation", "there is no node 'actuation'"),
+        ({"nodes": {"actuation": {}}}, "/nodes/actuation", "'actuation' is a system, not a node"),
+        ({"nodes": {"/tail": {}}}, "/nodes/tail", "there is no node 'tail'"),
+        ({"nodes": {"x": {}, "/x": {}}}, "/nodes", "a node is named twice"),
         ({"nodes": {"manipulator": {"fault": "x"}}}, "/nodes/manipulator/fault", "'slow'"),
         ({"signals": {"motor": {"above": 3}}}, "/signals/motor", "error requires"),
         (
