@@ -13,6 +13,8 @@ MAX_CHARACTERS = 256 * 1_024
 _OVERHEAD = 100
 """Characters counted per message, so that the number of small ones is bounded as well."""
 _URGENT_CHARACTERS = 1_000
+_REPLACED_AT_ONCE = 50
+"""Messages replaced in one turn of the loop, about 1 ms of work."""
 _PUBLISH = re.compile(r'"op"\s*:\s*"publish"')
 _TOPIC = re.compile(r'"topic"\s*:\s*"([^"\\]{1,256})"')
 
@@ -32,19 +34,27 @@ class ReadAhead:
         """Messages that a newer one may replace, by topic as it was written, the oldest first."""
         self._characters = 0
         self._number = 0
+        self._replaced = 0
         self._overtaken = 0
         """Number of the last message that a stop has overtaken."""
         self._changed = asyncio.Event()
 
+    @property
+    def is_full(self) -> bool:
+        """Tell whether messages wait that are not even read."""
+        return self._characters > MAX_CHARACTERS
+
     async def put(self, message: Mapping[str, Any]) -> None:
         """Add a message, after waiting for room."""
         topic = _topic_of(message)
-        while self._characters > MAX_CHARACTERS:
+        while self.is_full:
             published = self._published.get(topic) if topic is not None else None
             if published:
                 self._take(published[0])
-                # Messages that came together are available at once: others must run in between.
-                await asyncio.sleep(0)
+                self._replaced += 1
+                if self._replaced % _REPLACED_AT_ONCE == 0:
+                    # Messages that came together are available at once: others must run in between.
+                    await asyncio.sleep(0)
             else:
                 self._changed.clear()
                 await self._changed.wait()

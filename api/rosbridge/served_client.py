@@ -15,6 +15,9 @@ from domain.actor import Actor
 
 log = logging.getLogger(__name__)
 
+_TURNS_TO_READ = 20
+"""Turns of the loop between two messages of a client that sends faster than it is heard."""
+
 
 class ServedClient:
     """Reads the messages of a client, and writes those to it."""
@@ -90,6 +93,10 @@ class ServedClient:
             async with self._bridge.turn:
                 session.hear(message, overtaken=ahead.is_overtaken(number))
                 await asyncio.sleep(0)
+            if ahead.is_full:
+                # A stop may be among what is not read yet, and a few frames are read per turn.
+                for _ in range(_TURNS_TO_READ):
+                    await asyncio.sleep(0)
 
     async def _write(self) -> None:
         """Write until cancelled, or until the client must be disconnected.
