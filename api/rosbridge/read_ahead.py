@@ -40,14 +40,14 @@ class ReadAhead:
         self._changed = asyncio.Event()
 
     @property
-    def is_full(self) -> bool:
-        """Tell whether messages wait that are not even read."""
-        return self._characters > MAX_CHARACTERS
+    def arrived(self) -> int:
+        """Return how many messages were added so far."""
+        return self._number
 
     async def put(self, message: Mapping[str, Any]) -> None:
         """Add a message, after waiting for room."""
         topic = _topic_of(message)
-        while self.is_full:
+        while self._characters > MAX_CHARACTERS:
             published = self._published.get(topic) if topic is not None else None
             if published:
                 self._take(published[0])

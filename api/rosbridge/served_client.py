@@ -15,8 +15,10 @@ from domain.actor import Actor
 
 log = logging.getLogger(__name__)
 
-_TURNS_TO_READ = 20
-"""Turns of the loop between two messages of a client that sends faster than it is heard."""
+_TURNS_TO_READ = 60
+"""Most turns of the loop between two messages of a client that sends faster than it is heard."""
+_QUIET_TURNS = 4
+"""So many turns without a message show that none waits: reading one takes up to three."""
 
 
 class ServedClient:
@@ -93,10 +95,7 @@ class ServedClient:
             async with self._bridge.turn:
                 session.hear(message, overtaken=ahead.is_overtaken(number))
                 await asyncio.sleep(0)
-            if ahead.is_full:
-                # A stop may be among what is not read yet, and a few frames are read per turn.
-                for _ in range(_TURNS_TO_READ):
-                    await asyncio.sleep(0)
+            await _let_read(ahead)
 
     async def _write(self) -> None:
         """Write until cancelled, or until the client must be disconnected.
@@ -120,3 +119,14 @@ class ServedClient:
                     wire.cut_off()
                     return
                 await asyncio.sleep(0)
+
+
+async def _let_read(ahead: ReadAhead) -> None:
+    """Let what has arrived be read first, a message in a few turns: a stop may be among it."""
+    arrived, quiet = ahead.arrived, 0
+    for _ in range(_TURNS_TO_READ):
+        await asyncio.sleep(0)
+        quiet = quiet + 1 if ahead.arrived == arrived else 0
+        arrived = ahead.arrived
+        if quiet == _QUIET_TURNS:
+            return
