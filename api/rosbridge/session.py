@@ -5,6 +5,7 @@ from collections.abc import Callable, Coroutine, Mapping
 from types import MappingProxyType
 from typing import Any, TypeAlias
 
+from api.http.access import ReadsOnlyError
 from api.http.stop_asked import StopTakenError, is_stop_of_rosbridge, members_of
 from api.rosbridge.bridge import Bridge, request_of
 from api.rosbridge.operations import (
@@ -48,7 +49,15 @@ Spawn: TypeAlias = Callable[[Coroutine[Any, Any, None]], asyncio.Task[None]]
 class Session:
     """One client."""
 
-    def __init__(self, bridge: Bridge, queue: SendQueue, caller: Actor, spawn: Spawn) -> None:
+    def __init__(
+        self,
+        bridge: Bridge,
+        queue: SendQueue,
+        caller: Actor,
+        spawn: Spawn,
+        *,
+        reads_only: bool = False,
+    ) -> None:
         """Prepare.
 
         Args:
@@ -56,7 +65,9 @@ class Session:
             queue: Takes messages to the client.
             caller: The client, as recorded in events.
             spawn: Runs a call as a task, and owns it.
+            reads_only: Whether it may only subscribe, and ask what there is.
         """
+        self._reads_only = reads_only
         self._bridge = bridge
         self._queue = queue
         self._caller = caller
@@ -110,7 +121,7 @@ class Session:
     def _hear_unreadable(self, message: Mapping[str, Any], error: PilothouseError) -> None:
         """Take the stop that an invalid message asks for, or say what is wrong with it."""
         said = members_of(message)
-        if is_stop_of_rosbridge(message):
+        if is_stop_of_rosbridge(message) and not self._reads_only:
             self._bridge.interface.heard[f"/{ESTOP_SIGNAL}"].take({"enabled": True}, self._caller)
             self._bridge.refused.note_ignored(self._caller, error.message)
             self._tell("warning", StopTakenError(error).message, id_of(said))
@@ -125,6 +136,8 @@ class Session:
             self._tell("error", sentence(error), id_)
 
     def _do(self, operation: Operation, *, overtaken: bool) -> None:
+        if self._reads_only and _writes(operation):
+            raise ReadsOnlyError
         match operation:
             case Subscribe():
                 self._subscribe(operation)
@@ -271,3 +284,10 @@ class Session:
 def _unheard(name: str) -> UnknownNameError:
     hint = "messages on it are discarded; only topics of signals have a subscriber"
     return UnknownNameError("subscriber of", name, (), hint)
+
+
+def _writes(operation: Operation) -> bool:
+    """Tell whether an operation may change something: all but subscribing and `/rosapi`."""
+    if isinstance(operation, CallService):
+        return not full_name(operation.service).startswith("/rosapi/")
+    return isinstance(operation, Publish | Advertise)

@@ -4,6 +4,7 @@ Owns the handling of signals, and every task.
 """
 
 import asyncio
+import gc
 import logging
 import os
 import socket
@@ -15,6 +16,7 @@ from api.access_token import FILE_VARIABLE, TOKEN_VARIABLE, InvalidTokenError, t
 from api.app import create_app, prepare
 from api.distribution import installed_version
 from api.http.access import MIN_GOOD_CHARACTERS, Access
+from api.http.gate.origins import AllowedOrigins, InvalidOriginError
 from api.serving.composition import EXAMPLE, Composition, MisuseError, ServeOptions, compose
 from api.serving.output import Output
 from api.serving.process_log import log_to
@@ -27,7 +29,6 @@ from domain.findings import Finding
 from service.clock import MonotonicClock
 from service.files.robot_file import InvalidRobotFileError
 from service.files.text_file import UnreadableFileError
-from service.garbage import collect_at_rest, settle_heap
 from service.ros.gateway import RosGateway
 from service.ros.graph.graph import GraphFailedError, UnknownFieldError, UnknownTypeError
 from service.running import TaskFailedError
@@ -38,6 +39,13 @@ log = logging.getLogger(__name__)
 
 _NOT_IN_ROS = (UnknownFieldError, UnknownTypeError)
 SUCCEEDED, FAILED, MISUSED = 0, 1, 2
+_MISUSES = (
+    InvalidOriginError,
+    InvalidTokenError,
+    MisuseError,
+    UnknownManagerError,
+    UnreadableFileError,
+)
 _STDOUT, _STDERR = 1, 2
 
 
@@ -57,10 +65,11 @@ def _serve(options: ServeOptions, output: Output, errors: Output) -> int:
         token = take_token()
         log_to(errors, options.log_level, token)
         access = access_of(options, token)
+        origins = AllowedOrigins(options.allowed_origins)
         manager = ServiceManager.of(os.environ)
         composition = compose(options, MonotonicClock())
         sockets = listen(options.host, options.port)
-    except (InvalidTokenError, MisuseError, UnknownManagerError, UnreadableFileError) as error:
+    except _MISUSES as error:
         return _end(str(error), MISUSED)
     except InvalidModelError as error:
         return _complain_of(options.model or EXAMPLE, error.findings)
@@ -72,6 +81,7 @@ def _serve(options: ServeOptions, output: Output, errors: Output) -> int:
     app = create_app(
         supervisor,
         allowed_hosts=hosts,
+        allowed_origins=origins,
         access=access,
         limits=composition.limits,
         simulated=composition.simulated,
@@ -80,7 +90,10 @@ def _serve(options: ServeOptions, output: Output, errors: Output) -> int:
     prepare(app)
     greeting = "\n".join(greet(composition, options, url_of(sockets, options.host), access))
     server = web_server(app, lambda: _say_serving(output, greeting, manager, supervisor))
-    settle_heap()
+    # Objects that exist now stay: without this each garbage collection would scan them again, and
+    # delay the tick.
+    gc.collect()
+    gc.freeze()
     with asyncio.Runner(loop_factory=_new_event_loop) as runner:
         return runner.run(run_service(composition, server, sockets, manager))
 
@@ -148,9 +161,6 @@ async def run_service(
         async with asyncio.TaskGroup() as tasks:
             supervising = tasks.create_task(supervisor.run(), name="supervisor")
             serving = tasks.create_task(_serve_until(stopping, server, sockets), name="web server")
-            collecting = tasks.create_task(
-                collect_at_rest(supervisor.core, supervisor.clock), name="garbage"
-            )
             offering = tasks.create_task(_offer(gateway), name="gateway") if gateway else None
             await stopping.wait()
             manager.say_stopping()
@@ -159,7 +169,6 @@ async def run_service(
             await serving
             if offering is not None:
                 offering.cancel()
-            collecting.cancel()
             supervising.cancel()
     except* Exception as failures:
         for failure in _leaves(failures):

@@ -13,7 +13,7 @@ from typing import Any
 
 from fastapi import APIRouter, WebSocket, WebSocketDisconnect
 
-from api.http.access import UnauthorizedError
+from api.http.access import READS_ONLY, ReadsOnlyError, UnauthorizedError
 from api.http.route_policy import Permission, policy
 from api.http.schemas.health import MAX_SOURCE
 from api.http.schemas.stream import AuthMessage, ResyncMessage
@@ -73,6 +73,7 @@ class _Client:
         self._connection = connection_of(socket.scope)
         self._server = server
         self._address = socket.client.host if socket.client else "unknown"
+        self._reads_only = bool(socket.scope.get(READS_ONLY))
 
     async def is_let_in(self) -> bool:
         """Ask for the token, where one is needed and the handshake did not hold it.
@@ -166,7 +167,7 @@ class _Client:
             self._obey(message, client)
         except PilothouseError as error:
             supervisor, actor = self._server.supervisor, self._actor
-            if not is_stop_of_stream(message):
+            if self._reads_only or not is_stop_of_stream(message):
                 supervisor.refused_readings.note(actor, error.message)
                 raise
             stop = Reading(ESTOP_SIGNAL, True)
@@ -187,6 +188,8 @@ class _Client:
         if isinstance(given, ResyncMessage):
             self._server.fan_out.resync(client)
             return
+        if self._reads_only:
+            raise ReadsOnlyError
         reading = given.reading(given.signal, supervisor.clock)
         supervisor.readings.submit([reading], given.source, self._actor)
 

@@ -24,7 +24,7 @@ from tests.support.rosbridge import (
 class Talk:
     """One session, and what it was told."""
 
-    def __init__(self, calls_per_s: int = 1_000) -> None:
+    def __init__(self, calls_per_s: int = 1_000, *, reads_only: bool = False) -> None:
         self.interface = SmallInterface()
         self.calls: list[asyncio.Task[None]] = []
         self._queue = SendQueue(lambda: None)
@@ -34,6 +34,7 @@ class Talk:
             self._queue,
             Actor(way="rosbridge", address="test"),
             self._spawn,
+            reads_only=reads_only,
         )
 
     def say(self, op: str, **members: object) -> None:
@@ -462,3 +463,21 @@ def test_a_message_that_cannot_be_read_is_counted_as_a_refused_reading(talk: Tal
     talk.session.hear({"text": '{"op":"publish","topic":"/battery_level","msg":7}'})
 
     assert talk.bridge.refused.counts == {"rosbridge": 1}
+
+
+# --- a page of another origin, without a token ---------------------------------------------------
+
+
+async def test_who_may_only_read_subscribes_and_changes_nothing() -> None:
+    talk = Talk(reads_only=True)
+
+    talk.say("subscribe", topic=SYSTEM_STATE.name)
+    assert not [said for said in talk.heard() if said["op"] == "status"]
+    for op, members in (
+        ("publish", {"topic": "/estop", "msg": {"enabled": True}}),
+        ("call_service", {"service": MODE_REQUEST.name, "args": {}}),
+    ):
+        talk.say(op, **members)
+        assert "may only read" in talk.only()["msg"]
+    assert not talk.calls
+    talk.session.end()
