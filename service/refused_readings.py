@@ -12,7 +12,11 @@ WAYS = ("http", "websocket", "rosbridge", "ros")
 
 
 class RefusedReadings:
-    """Counts of rejected readings by way; the log of the process limits their lines."""
+    """Counts of rejected readings by way; the log of the process limits their lines.
+
+    A message on `/ws` that cannot be read counts as one, since nearly all that clients send there
+    are readings.
+    """
 
     def __init__(self) -> None:
         self.counts: Counter[str] = Counter()
@@ -28,10 +32,10 @@ class RefusedReadings:
         log.warning("rejected a reading of %s: %.500s", sender.label, why)
 
     def note_ignored(self, sender: Actor, what: str) -> None:
-        """Log that a stop was taken, and what stood around it was not.
+        """Log that a stop or hold was taken, and what stood around it was not.
 
         Args:
             sender: Who sent it.
             what: What was ignored.
         """
-        log.warning("took a stop of %s and ignored the rest: %.500s", sender.label, what)
+        log.warning("took a stop or hold of %s, and ignored: %.500s", sender.label, what)

@@ -35,8 +35,15 @@ class BodyTooLargeError(PilothouseError):
 
     code = "TOO_LARGE"
 
-    def __init__(self, limit: int) -> None:
+    def __init__(self, limit: int, start: bytes = b"") -> None:
+        """Say what the limit is.
+
+        Args:
+            limit: Most bytes.
+            start: What was read of the body.
+        """
         super().__init__(f"the body is larger than {limit} bytes")
+        self.start = start
 
 
 class InvalidBodyError(PilothouseError):
@@ -92,7 +99,7 @@ async def read_limited(chunks: AsyncIterable[bytes], limit: int) -> bytes:
     async for chunk in chunks:
         body += chunk
         if len(body) > limit:
-            raise BodyTooLargeError(limit)
+            raise BodyTooLargeError(limit, bytes(body[:limit]))
     return bytes(body)
 
 

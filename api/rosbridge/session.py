@@ -99,7 +99,10 @@ class Session:
         try:
             self._do(operation, overtaken=overtaken)
         except PilothouseError as error:
-            self._tell("error", sentence(error), operation.id)
+            if isinstance(operation, CallService):
+                self._respond(operation, sentence(error), result=False)
+            else:
+                self._tell("error", sentence(error), operation.id)
 
     def leave(self) -> None:
         """Note that the client disconnected while some of its messages are still queued.
@@ -128,12 +131,12 @@ class Session:
             return
         if said.get("op") == "publish":
             self._bridge.refused.note(self._caller, error.message)
-        service, id_ = said.get("service"), id_of(said)
-        if said.get("op") == "call_service" and (isinstance(service, str) or id_ is not None):
+        if said.get("op") == "call_service":
+            service = said.get("service")
             named = service if isinstance(service, str) else ""
-            self._queue.put(response_text(named, sentence(error), False, id_))
+            self._queue.put(response_text(named, sentence(error), False, id_of(said)))
         else:
-            self._tell("error", sentence(error), id_)
+            self._tell("error", sentence(error), id_of(said))
 
     def _do(self, operation: Operation, *, overtaken: bool) -> None:
         if self._reads_only and _writes(operation):

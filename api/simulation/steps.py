@@ -18,7 +18,7 @@ from api.http.task_jobs import task_of
 from api.simulation.requests import Requests
 from domain.actor import Actor
 from domain.errors import PilothouseError
-from domain.health.signals import ESTOP_SIGNAL, asks_for_stop
+from domain.health.signals import ESTOP_SIGNAL, asks_for_stop, signal_name
 from domain.inputs import (
     CancelTaskRequest,
     ModeRequest,
@@ -67,13 +67,14 @@ class Actors:
         stamp = None
         if step.stamp_offset_s is not None:
             stamp = self._robot.clock.now() + seconds(step.stamp_offset_s)
-        readings = [Reading(signal, value, stamp) for signal, value in step.reading.items()]
+        sent = [(signal_name(name), value) for name, value in step.reading.items()]
+        readings = [Reading(signal, value, stamp) for signal, value in sent]
         take = self._robot.supervisor.readings.submit
         try:
             take(readings, step.source, _ACTOR)
         except PilothouseError:
             # As over HTTP, a stop is taken even if what came with it is rejected.
-            if asks_for_stop(step.reading.get(ESTOP_SIGNAL)):
+            if any(name == ESTOP_SIGNAL and asks_for_stop(value) for name, value in sent):
                 take([Reading(ESTOP_SIGNAL, True, stamp)], step.source, _ACTOR)
             raise
 

@@ -58,6 +58,11 @@ def asks_for_stop(value: object) -> bool:
     return value is True or (isinstance(value, int | float) and value == 1)
 
 
+def signal_name(name: str) -> str:
+    """Return the name of a signal without the leading slash of its topic in ROS."""
+    return name.lstrip("/")
+
+
 class Recovery(StrEnum):
     """How an error clears once its cause is gone."""
 
@@ -136,22 +141,15 @@ class SignalSpec:
             number = math.inf
         if not math.isfinite(number):
             raise self._invalid("a finite number", number)
-        rounding = self._rounding
         if self.minimum is not None and number < self.minimum:
-            if number < self.minimum - rounding:
+            if number < self.minimum - _rounding(self.minimum):
                 raise self._invalid(f"at least {self.minimum:g}", number)
             number = self.minimum
         if self.maximum is not None and number > self.maximum:
-            if number > self.maximum + rounding:
+            if number > self.maximum + _rounding(self.maximum):
                 raise self._invalid(f"at most {self.maximum:g}", number)
             number = self.maximum
         return number + 0.0
-
-    @property
-    def _rounding(self) -> float:
-        """Return what single precision may add to a value near a limit; at least that of 1."""
-        limits = [abs(limit) for limit in (self.minimum, self.maximum) if limit is not None]
-        return _FLOAT32_ROUNDING * (max(limits, default=0.0) or 1.0)
 
     def _invalid(self, wanted: str, value: object) -> InvalidValueError:
         return InvalidValueError(f"{self.name} must be {wanted}, not {value!r:.40}", self.name)
@@ -277,6 +275,11 @@ class SignalSettings:
     def _invalid(self, setting: str, what: str) -> InvalidValueError:
         pointer = f"{self.spec.name}/{setting}"
         return InvalidValueError(f"{setting} of {self.spec.name} {what}", pointer)
+
+
+def _rounding(limit: float) -> float:
+    """Return what single precision may add to a value at a limit; at 0, to one of about 1."""
+    return _FLOAT32_ROUNDING * (abs(limit) or 1.0)
 
 
 def _prefixed(condition: Condition, setting: str) -> str:

@@ -30,7 +30,7 @@ LEFT_OUT: list[CheckFunction] = [
     # 504 is an answer: the outcome is not known. Everything else is checked in the test.
     not_a_server_error,
 ]
-STOPS = ("/emergency_stop", "/signals", "/signals/{signal}", "/mock/{signal}")
+STOPS = ("/emergency_stop", "/holds/{owner}", "/signals", "/signals/{signal}", "/mock/{signal}")
 """What asks for a stop there is taken, also if its form is wrong otherwise."""
 EXAMPLES = 300 if os.environ.get("PILOTHOUSE_SOAK") == "1" else 4
 

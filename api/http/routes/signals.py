@@ -16,15 +16,16 @@ from api.http.schemas.health import (
     SignalsJson,
     TakenReadingsJson,
 )
-from api.http.schemas.sent_values import SentSignalValue
+from api.http.schemas.sent_values import SentSignalName, SentSignalValue
 from api.http.stop_route import IgnoredDep, StopRoute
 from domain.errors import InvalidValueError, UnknownSignalError
-from domain.inputs import Reading
+from domain.health.signals import signal_name
+from domain.inputs import Reading, SignalValue
 from service.supervisor import Supervisor
 
 router = APIRouter(prefix="/signals", tags=["health"], route_class=StopRoute)
 
-SignalPath = Annotated[str, Path(description="One of those in `GET /signals`")]
+SignalPath = Annotated[SentSignalName, Path(description="One of those in `GET /signals`")]
 
 
 @router.get("")
@@ -36,7 +37,7 @@ async def list_signals(supervisor: SupervisorDep) -> SignalsJson:
     return SignalsJson(items=[SignalJson.at(view, clock, now) for view in views])
 
 
-@router.get("/{signal}")
+@router.get("/{signal:path}")
 @policy(Permission.OBSERVE)
 async def get_signal(signal: SignalPath, supervisor: SupervisorDep) -> SignalJson:
     """Show one signal: its value and errors."""
@@ -63,7 +64,7 @@ async def post_readings(
     is the source of the readings, unless there is a signal of that name. The default source is
     `api`, or the mock if it is running.
     """
-    values, source = dict(body), None
+    values, source = _named(body), None
     if "source" not in supervisor.core.signals() and isinstance(values.get("source"), str):
         source = str(values.pop("source"))
         if not 0 < len(source) <= MAX_SOURCE:
@@ -77,7 +78,7 @@ async def post_readings(
     return _taken(supervisor, ignored)
 
 
-@router.post("/{signal}", response_model_exclude_unset=True)
+@router.post("/{signal:path}", response_model_exclude_unset=True)
 @policy(Permission.REPORT)
 async def post_reading(
     signal: SignalPath,
@@ -99,6 +100,22 @@ async def post_reading(
     except InvalidValueError as error:
         raise InvalidBodyError.at("value", error) from error
     return _taken(supervisor, ignored)
+
+
+def _named(body: Mapping[str, SignalValue]) -> dict[str, SignalValue]:
+    """Return values by the names of their signals, without leading slashes.
+
+    Raises:
+        InvalidBodyError: A signal is named both with and without one.
+    """
+    values: dict[str, SignalValue] = {}
+    for name, value in body.items():
+        signal = signal_name(name)
+        if signal in values:
+            error = InvalidValueError(f"{signal!r} is named twice, with and without a slash")
+            raise InvalidBodyError.at(signal, error)
+        values[signal] = value
+    return values
 
 
 def _taken(supervisor: Supervisor, ignored: Mapping[str, object]) -> TakenReadingsJson:

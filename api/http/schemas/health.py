@@ -4,21 +4,13 @@ from collections.abc import Sequence
 from datetime import datetime
 
 from pydantic import Field
-from pydantic.json_schema import SkipJsonSchema
 
-from api.http.schemas.base import (
-    BlockerJson,
-    Body,
-    Json,
-    Timestamp,
-    left_out,
-    timestamp,
-    timestamp_or_none,
-)
-from api.http.schemas.problem import BodyFault
+from api.http.schemas.base import BlockerJson, Body, Json, Timestamp, timestamp, timestamp_or_none
+from api.http.schemas.problem import WithIgnored
 from api.http.schemas.sent_values import SentSignalValue
 from domain.errors import InvalidValueError
 from domain.findings import Fact
+from domain.health.signals import signal_name
 from domain.inputs import Reading, SignalValue
 from domain.snapshot import (
     EmergencyStopView,
@@ -169,15 +161,8 @@ class SystemStateJson(Json):
         )
 
 
-_IGNORED = "What was ignored, so that a stop could be taken; left out: nothing"
-
-
-class TakenReadingsJson(SystemStateJson):
+class TakenReadingsJson(SystemStateJson, WithIgnored):
     """The system state that follows from readings."""
-
-    ignored: list[BodyFault] | SkipJsonSchema[None] = Field(
-        default=None, description=_IGNORED, json_schema_extra=left_out
-    )
 
 
 class EmergencyStopJson(Json):
@@ -201,12 +186,8 @@ class EmergencyStopJson(Json):
         )
 
 
-class EmergencyStopAnswerJson(EmergencyStopJson):
+class EmergencyStopAnswerJson(EmergencyStopJson, WithIgnored):
     """The latch after a request."""
-
-    ignored: list[BodyFault] | SkipJsonSchema[None] = Field(
-        default=None, description=_IGNORED, json_schema_extra=left_out
-    )
 
 
 class MockSignalJson(Json):
@@ -249,7 +230,7 @@ class ReadingBody(Body):
             InvalidValueError: The stamp is not a time with an offset.
         """
         stamp = None if self.stamp is None else read_stamp(self.stamp, clock)
-        return Reading(signal, self.value, stamp)
+        return Reading(signal_name(signal), self.value, stamp)
 
 
 def read_stamp(text: str, clock: Clock) -> Instant:

@@ -86,8 +86,17 @@ def _take(supervisor: Supervisor, given: _Input, fields: Fields, sender: Actor) 
 
 
 def asks_for_stop_by_fields(fields: Fields) -> bool:
-    """Tell whether a message on the topic of the e-stop asks for a stop."""
-    return any(asks_for_stop(fields.get(name)) for name in STOP_FIELDS)
+    """Tell whether a message on the topic of the e-stop asks for a stop, in whatever it is."""
+    waiting: list[object] = [fields]
+    while waiting:
+        found = waiting.pop()
+        if isinstance(found, Mapping):
+            if any(asks_for_stop(found.get(name)) for name in STOP_FIELDS):
+                return True
+            waiting += found.values()
+        elif isinstance(found, list):
+            waiting += found
+    return False
 
 
 def _stop(supervisor: Supervisor, given: _Input, fields: Fields, sender: Actor) -> str | None:

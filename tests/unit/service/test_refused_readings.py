@@ -32,4 +32,4 @@ def test_what_was_ignored_of_a_stop_is_logged_and_not_counted(
 
     assert refused.counts == {}
     assert caplog.records[0].levelno == logging.WARNING
-    assert "took a stop of ros" in caplog.text
+    assert "took a stop or hold of ros" in caplog.text

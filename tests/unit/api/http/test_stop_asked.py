@@ -35,8 +35,15 @@ KEPT = {"source": 4}
         (b"value=10", None),
         (b'{"value": trueish', None),
         (b'{"values":true', None),
-        (b'{"in":{"value":true}}', None),
+        (b'{"in":[{"value":true}]}', {"value": True}),
+        (b'[{"value":true,"source":"a"}]', {"value": True}),
+        (b'{"value":{"value":true}}', {"value": True}),
+        (b'{"Value":true}', {"value": True}),
+        (b'{"/value":true}', {"value": True}),
+        ('{"value":true}'.encode("utf-16"), {"value": True}),
+        ('{"value":true,'.encode("utf-16-be"), {"value": True}),
         (b'["value",true]', None),
+        (b"true", None),
         (b"", None),
     ],
 )
@@ -54,9 +61,23 @@ def test_any_bytes_are_looked_at_without_a_fault(raw: bytes) -> None:
     members_of({"bytes": raw})
 
 
+@pytest.mark.parametrize(
+    "part", ["value:", "value: ", "value: '", "value: 1.0x", " ", '"op":', '"op":"', '"signal":"/']
+)
+def test_a_long_text_is_looked_at_in_linear_time(part: str) -> None:
+    """If whitespace were tried at two places, this would take minutes."""
+    for text in (part * (250_000 // len(part)), part + " " * 250_000, part + "0" * 250_000):
+        assert stop_body(text.encode(), "value", KEPT) is None
+        assert not is_stop_of_stream({"text": text})
+        assert not is_stop_of_rosbridge({"text": text})
+        members_of({"text": text})
+
+
 def test_nothing_of_another_signal_or_topic_asks_for_a_stop() -> None:
     assert not is_stop_of_stream({"text": '{"signal":"door","value":true}'})
     assert not is_stop_of_stream({"text": '{"signal":"estop"}'})
+    apart = '[{"signal":"estop","value":false},{"signal":"door","value":1}]'
+    assert not is_stop_of_stream({"text": apart})
     assert not is_stop_of_rosbridge({"text": '{"topic":"/door","msg":{"data":true}}'})
     assert not is_stop_of_rosbridge({"text": '{"topic":"/estop","msg":[true]}'})
     assert not is_stop_of_rosbridge({"text": '{"topic":"/estop","msg":{"enabled":false}'})

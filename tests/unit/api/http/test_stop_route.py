@@ -53,8 +53,17 @@ def _is_stopped(robot: HttpRobot) -> bool:
         (STOP, '{"engaged":1}', "/engaged"),
         (STOP, '{"engaged":"true"}', "/engaged"),
         (MOCK, '{"value":true,"publishing":"perhaps"}', "/publishing"),
+        (READING, '[{"value":true}]', ""),
+        (READING, '{"value":{"value":true}}', "/value"),
+        (READING, '{"value":true,"x":"' + "x" * 300_000 + '"}', ""),
+        (READING, '{"value":true,' + ",".join(f'"m{n}":{n}' for n in range(1_500)) + "}", ""),
+        (STOP, '{"engaged":true,"x":"' + "x" * 300_000 + '"}', ""),
+        (STOP, '{"engaged":true}'.encode("utf-16"), ""),
+        (STOP, '{"Engaged":true}', "/engaged"),
+        (BATCH, '{"/estop":true,"estop":false}', "/estop"),
+        (BATCH, '{"estop":{"value":true},"x":{"estop":true}}', "/estop"),
     ],
-    ids=range(27),
+    ids=range(36),
 )
 async def test_a_stop_is_taken_and_what_was_ignored_is_told(
     robot: HttpRobot, path: str, body: str | bytes, pointer: str
@@ -82,6 +91,30 @@ async def test_nothing_is_ignored_of_what_is_valid(robot: HttpRobot, path: str, 
 
     assert "ignored" not in answer.json()
     assert _is_stopped(robot)
+
+
+@pytest.mark.parametrize("path", ["/signals//estop", "/signals/%2Festop", "/mock//estop"])
+async def test_a_signal_is_known_by_the_name_of_its_topic(robot: HttpRobot, path: str) -> None:
+    method = "PATCH" if path.startswith("/mock") else "POST"
+
+    assert (await robot.http.request(method, path, json={"value": True})).status_code == 200
+    assert _is_stopped(robot)
+
+
+async def test_signals_of_a_batch_are_known_by_the_names_of_their_topics(robot: HttpRobot) -> None:
+    await _send(robot, BATCH, '{"/battery_level":0.6,"temperature":20}')
+
+    assert (await robot.get("/signals/battery_level"))["value"] == 0.6
+    twice = await _send(robot, BATCH, '{"/battery_level":0.7,"battery_level":0.8}')
+    assert (twice.status_code, twice.json()["errors"][0]["pointer"]) == (422, "/battery_level")
+
+
+async def test_a_connection_ends_after_a_stop_whose_body_was_not_read_to_its_end(
+    robot: HttpRobot,
+) -> None:
+    answer = await _send(robot, STOP, '{"engaged":true,"x":"' + "x" * 300_000 + '"}')
+
+    assert answer.headers["connection"] == "close"
 
 
 async def test_the_rest_of_a_batch_is_not_taken(robot: HttpRobot) -> None:

@@ -403,6 +403,8 @@ STOPS = [
     '{"op":"publish","topic":"/estop","msg":{"enabled":true,"x":' + "1" * 5_000 + "}}",
     '{"op":"publish","topic":"/estop","msg":{"enabled":true}',
     '{"topic":"/estop","msg":{"enabled":true}}',
+    '{"op":"publish","topic":"/estop","enabled":true}',
+    '[{"op":"publish","topic":"//estop","msg":{"data":true}}]',
 ]
 
 
@@ -446,6 +448,10 @@ def test_a_release_that_a_stop_has_overtaken_is_void(talk: Talk) -> None:
         ('{"op":"call_service","service":"/x","id":12345678901234567}', None),
         ('{"op":"call_service","id":7}', ("", 7)),
         ('{"op":"call_service","service":"\\ud800","id":"a"}', ("?", "a")),
+        ('{"op":"call_service"}', ("", None)),
+        ('{"op":"call_service","service":["/x"],"id":{}}', ("", None)),
+        ('{"op":"call_service","service":"/x","id":"a","args":{"mode_name":', ("/x", "a")),
+        ('{\'op\':\'x\', "op": "call_service", "id": 7,}', ("", 7)),
     ],
 )
 async def test_a_call_that_cannot_be_read_is_answered_as_a_call(
@@ -478,6 +484,7 @@ async def test_who_may_only_read_subscribes_and_changes_nothing() -> None:
         ("call_service", {"service": MODE_REQUEST.name, "args": {}}),
     ):
         talk.say(op, **members)
-        assert "may only read" in talk.only()["msg"]
+        told = talk.only()
+        assert "may only read" in told["msg" if op == "publish" else "values"]
     assert not talk.calls
     talk.session.end()
