@@ -16,14 +16,20 @@ from domain.findings import Finding
 from domain.health.signals import SignalSettings
 from domain.navigation import NavigationSettings
 from domain.parts.system_model import SmhModel
-from domain.state_and_mode import PartName, part_name
+from domain.state_and_mode import PartName
 from domain.tasks.settings import TaskSettings
 from domain.timebase import seconds
 from domain.vehicle import VehicleLimits
 from service.files.driving_block import DrivingBlock, StartTaskBlock
 from service.files.limits_block import LimitsBlock
 from service.files.parameter_file import scalar_value
-from service.files.robot_settings import ChangesBlock, NodeBlock, SettingsBlock, SignalsBlock
+from service.files.robot_settings import (
+    ChangesBlock,
+    NodeBlock,
+    SettingsBlock,
+    SignalsBlock,
+    bare_names,
+)
 from service.files.ros2_block import Ros2Block
 from service.files.text_file import read_text_file
 from service.files.vehicle_block import VehicleBlock
@@ -72,10 +78,7 @@ class RobotSettings(SettingsBlock):
     @field_validator("nodes")
     @classmethod
     def _without_leading_slashes(cls, nodes: dict[str, NodeBlock]) -> dict[str, NodeBlock]:
-        found: dict[str, NodeBlock] = {part_name(name): block for name, block in nodes.items()}
-        if len(found) < len(nodes):
-            raise ValueError("a node is named twice, with and without a leading slash")
-        return found
+        return bare_names(nodes)
 
     def to_signal_settings(self) -> tuple[SignalSettings, ...]:
         """Return all signals: the five default ones with these settings, then the declared ones.
@@ -244,7 +247,9 @@ def _place(root: Node, location: tuple[int | str, ...]) -> Node:
     for step in location:
         if not isinstance(tree, Mapping):
             break
-        found = next(((key, value) for key, value in tree.entries if key.text == step), None)
+        named = str(step).lstrip("/")
+        entries = ((key, value) for key, value in tree.entries if key.text.lstrip("/") == named)
+        found = next(entries, None)
         if found is None:
             break
         place = found[0]
