@@ -486,5 +486,8 @@ async def test_who_may_only_read_subscribes_and_changes_nothing() -> None:
         talk.say(op, **members)
         told = talk.only()
         assert "may only read" in told["msg" if op == "publish" else "values"]
+    talk.session.hear({"text": '{"op":"publish","topic":"/estop","msg":{"enabled":true},"x"'})
+    assert "not JSON" in talk.only()["msg"]
     assert not talk.calls
+    assert not talk.interface.readings
     talk.session.end()

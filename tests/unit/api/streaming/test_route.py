@@ -1,10 +1,12 @@
 """`WS /ws` as a client sees it, over the real supervisor in virtual time."""
 
+import asyncio
 import json
 from collections.abc import AsyncIterator
 
 import pytest
 from fastapi import FastAPI
+from hypothesis import given
 
 from api.app import create_app
 from api.http.access import Access
@@ -17,6 +19,7 @@ from domain.actor import Actor
 from domain.inputs import EmergencyStopRequest, ModeRequest
 from domain.state_and_mode import PartName
 from service.supervisor import Supervisor
+from tests.support.around_a_stop import ANY, ASKING, MEMBERS, WRAPPED, object_of
 from tests.support.live_robot import make_supervisor, running
 from tests.support.manual_clock import ManualClock, settle
 from tests.support.waiting import until
@@ -347,6 +350,41 @@ async def test_a_stop_is_taken_whatever_stands_around_it_and_the_rest_is_told(
     assert supervisor.core.signal("estop").value is True
 
 
+@given(MEMBERS, ASKING, MEMBERS, WRAPPED)
+def test_whatever_json_stands_around_it_a_stop_is_taken(
+    before: list[tuple[str, object]],
+    asking: object,
+    after: list[tuple[str, object]],
+    wrapped: str,
+) -> None:
+    asks = [("type", "reading"), ("signal", "estop"), ("value", asking)]
+    text = wrapped % object_of([*before, *asks, *after])
+
+    assert asyncio.run(_value_after([text])) is True
+
+
+@given(MEMBERS, ANY, WRAPPED)
+def test_only_exactly_false_releases_a_stop(
+    around: list[tuple[str, object]], value: object, wrapped: str
+) -> None:
+    said = [*around, ("type", "reading"), ("signal", "estop"), ("value", value)]
+    pressed = '{"type":"reading","signal":"estop","value":true}'
+
+    assert asyncio.run(_value_after([pressed, wrapped % object_of(said)])) or value is False
+
+
+async def _value_after(texts: list[str]) -> object:
+    """Return the value of the e-stop after messages of one client."""
+    supervisor = make_supervisor()
+    app = create_app(supervisor, allowed_hosts=[])
+    async with running(supervisor), WebSocketClient(app, topics="events") as client:
+        await client.frame("hello")
+        for text in texts:
+            client.send_text(text)
+        await settle()
+    return supervisor.core.signal("estop").value
+
+
 async def test_a_stop_in_a_binary_message_is_taken(app: FastAPI, supervisor: Supervisor) -> None:
     async with WebSocketClient(app, topics="events") as client:
         await client.frame("hello")
@@ -524,7 +562,9 @@ async def test_a_page_of_another_origin_reads_and_sends_no_reading_without_a_tok
     async with WebSocketClient(app, headers=headers) as client:
         await settle()
         client.send({"type": "reading", "signal": "estop", "value": True})
+        client.send({"type": "reading", "signal": "estop", "value": True, "more": 1})
         await settle()
         problems = [frame for frame in client.frames() if frame["type"] == "problem"]
 
-    assert [problem["code"] for problem in problems] == ["READS_ONLY"]
+    assert [problem["code"] for problem in problems] == ["READS_ONLY", "INVALID_BODY"]
+    assert supervisor.core.signal("estop").value is not True

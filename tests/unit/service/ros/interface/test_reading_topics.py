@@ -151,7 +151,17 @@ async def test_a_stop_is_taken_whatever_its_header_and_what_was_ignored_is_told(
     assert robot.supervisor.core.system_state().errors == ("ESTOP",)
 
 
-@pytest.mark.parametrize("fields", [{"data": True}, {"value": True}, {"enabled": 1}])
+@pytest.mark.parametrize(
+    "fields",
+    [
+        {"data": True},
+        {"value": True},
+        {"enabled": 1},
+        {"msg": {"enabled": True}},
+        {"enabled": {"data": True}},
+        {"header": [{"enabled": "true"}], "enabled": False},
+    ],
+)
 async def test_a_stop_may_be_asked_in_the_fields_of_other_types(
     robot: RosRobot, fields: dict[str, Any]
 ) -> None:
