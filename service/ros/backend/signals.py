@@ -112,7 +112,7 @@ class _Source:
         An invalid value is returned too: the service rejects, logs and counts it, as those that
         come in another way.
         """
-        value = _accuracy_mm(message) if self._path is None else _found(message, self._path)
+        value: Any = _accuracy_mm(message) if self._path is None else _found(message, self._path)
         if self.spec.kind is SignalKind.BOOLEAN and self.topic.invert:
             # Of what is neither true nor false nobody knows the opposite.
             value = not value if isinstance(value, bool) else f"{value!r:.40}, inverted"
