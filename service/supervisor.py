@@ -27,6 +27,7 @@ from service.frame_publisher import PERIOD, FramePublisher
 from service.node_incidents import log_node_incidents
 from service.ports import RobotBackend
 from service.readings import DirectReadings, ReadingInput, Submit
+from service.refused_readings import RefusedReadings
 from service.running import run_forever
 from service.submitter import Submitter
 from service.watchdog import hanging
@@ -73,7 +74,11 @@ class Supervisor:
         self._loaded = loaded
         self._onboard = onboard
         self._backend = backend
-        self._submitter = Submitter(onboard, clock, self._carry_out, self._catch_up)
+        self.refused_readings = RefusedReadings()
+        """Rejected readings, on all ways in."""
+        self._submitter = Submitter(
+            onboard, clock, self._carry_out, self._catch_up, self.refused_readings
+        )
         self.publisher.on_tick.append(self._note_tick)
         self.submit: Callable[[Input], Outputs] = self._submitter.submit
         """Passes an input to the core; raises PilothouseError if it is rejected."""

@@ -149,6 +149,14 @@ class StateManager:
                 raise OutdatedReadingError(name, to_seconds(behind))
             held.take(reading, readings.source, now)
 
+    def released_by(self, readings: Readings) -> tuple[str, ...]:
+        """Return the stops that their source would release with readings that passed `check`."""
+        return tuple(
+            reading.signal
+            for reading in readings.items
+            if self._monitors[reading.signal].readings.is_released_by(reading, readings.source)
+        )
+
     def receive(self, readings: Readings, now: Instant) -> HealthChanges:
         """Process readings that passed `check`."""
         checked = self._checked(readings)

@@ -440,3 +440,19 @@ async def test_a_client_that_goes_while_it_waits_leaves_nothing_behind(robot: Ht
 def waiting_tasks() -> int:
     """Count the tasks that are not the robot's own, which come and go as its nodes do."""
     return sum(not task.get_name().startswith("rest of a pacer") for task in asyncio.all_tasks())
+
+
+@pytest.mark.parametrize("name", ["drive_base", "/drive_base", "%2Fdrive_base"])
+async def test_a_leading_slash_of_a_name_is_left_out(robot: HttpRobot, name: str) -> None:
+    assert (await robot.get(f"/nodes/{name}"))["name"] == "drive_base"
+    answer = await robot.http.post(f"/nodes/{name}/mode", json={"mode": "FAST"})
+    assert answer.json()["part"] == "drive_base"
+    assert (await robot.get(f"/changes?part={name}"))["items"][0]["part"] == "drive_base"
+
+
+@pytest.mark.parametrize("name", ["actuation", "/actuation"])
+async def test_a_system_is_not_said_to_be_missing(robot: HttpRobot, name: str) -> None:
+    problem = (await robot.http.get(f"/nodes/{name}/mode")).json()
+
+    assert problem["detail"] == "'actuation' is a system, not a node"
+    assert problem["hint"] == "actuation is a system: see /systems/actuation/mode"
