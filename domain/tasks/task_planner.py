@@ -175,10 +175,11 @@ class TaskPlanner:
     def take_feedback(self, feedback: GoalFeedback) -> None:
         """Update the progress of the task; late feedback of another goal is ignored."""
         task = self._current
-        if task is None or task.goal != feedback.goal:
+        if task is None or feedback.goal not in (task.goal, task.stopping):
             return
         task.advance(feedback)
-        self._vehicle.told(feedback.command, feedback.lookahead)
+        is_driving = feedback.goal == task.goal
+        self._vehicle.told(feedback.command, feedback.lookahead if is_driving else None)
         self._outbox.task_changed = True
 
     def take_result(self, result: GoalResult, now: Instant) -> None:
@@ -247,7 +248,7 @@ class TaskPlanner:
             self._end(task, TaskPhase.ABORTED, reason, now, cause)
             return
         self._goals_sent += 1
-        task.goal = GoalId(self._goals_sent)
+        task.goal, task.stopping = GoalId(self._goals_sent), None
         task.phase, task.reason = TaskPhase.RUNNING, None
         kind = TaskResumed if task.has_run else TaskStarted
         task.has_run = True
@@ -284,7 +285,7 @@ class TaskPlanner:
         if task.goal is None:
             return False
         self._outbox.command(PreemptGoal(task.goal))
-        task.goal = None
+        task.goal, task.stopping = None, task.goal
         return True
 
     def _stop(self) -> None:
