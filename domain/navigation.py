@@ -264,7 +264,7 @@ class Navigation:
             if run.approach is not None:
                 run.leg = self._new_leg(run, run.approach.way, "its way onto the path", 0, now)
         elif run.approach is not None and self._is_there(run, run.approach, run.leg, state):
-            run.target_index = run.path.index_after(run.approach.meets_m)
+            run.target_index = run.beside_index
             run.leg = run.approach = None
         if run.leg is None:
             run.leg = self._new_leg(run, run.path, "the path", run.target_index, now)
@@ -304,7 +304,7 @@ class Navigation:
         if leg.distance_m < approach.length_m:
             return False
         pose = state.pose
-        here = run.path.project(pose.x_m, pose.y_m, run.path.index_after(approach.meets_m))
+        here = run.path.project(pose.x_m, pose.y_m, run.beside_index)
         is_there = is_on_path(here, pose, self._limits, ALIGNED_RAD)
         return is_there or leg.distance_m >= leg.path.length_m
 
@@ -318,7 +318,10 @@ class Navigation:
             return step.cross_track_error_m
         run.coverage.note(state.pose, None)
         here = run.path.project(state.pose.x_m, state.pose.y_m, run.beside_index)
-        run.distance_m = max(run.distance_m, min(here.distance_m, run.approach.meets_m))
+        # A loop of the way may come near to the path further on than where it meets it.
+        along_m = max(step.distance_m - run.approach.length_m, 0.0)
+        most_m = run.approach.meets_m + along_m
+        run.distance_m = max(run.distance_m, min(here.distance_m, most_m))
         run.beside_index = run.path.index_after(run.distance_m)
         return here.cross_track_error_m
 
