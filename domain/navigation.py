@@ -17,9 +17,11 @@ from domain.commands import Drive, PreemptGoal, SendGoal
 from domain.inputs import GoalFeedback, GoalResult
 from domain.paths.approach import (
     ALIGNED_RAD,
+    MAY_MISS_SHARE,
     Approach,
     approach_mps,
     is_on_path,
+    near_path_m,
     on_path_m,
     plan_approach,
 )
@@ -46,7 +48,7 @@ class NavigationSettings:
     """Limits at which a goal is aborted, and speed limits."""
 
     max_cross_track_m: float | None = None
-    """Largest cross-track error, m; None: `MAX_CROSS_TRACK_M`, less for a small vehicle."""
+    """Largest cross-track error, m; None: 3 m, less for a small vehicle."""
     max_cross_track_for: Duration = seconds(1.0)
     """A larger cross-track error for this long aborts the goal."""
     no_progress_for: Duration = seconds(20.0)
@@ -61,14 +63,10 @@ class NavigationSettings:
         """Return the largest cross-track error of a vehicle, m."""
         if self.max_cross_track_m is not None:
             return self.max_cross_track_m
-        return MAX_CROSS_TRACK_M * min(limits.scale, 1.0)
+        return near_path_m(limits)
 
 
-MAX_CROSS_TRACK_M = 3.0
-"""Largest cross-track error of a vehicle with `REFERENCE_WHEELBASE_M`, or a larger one."""
 _LEAST_END_TOLERANCE_M = 0.05
-_MAY_MISS_SHARE = 0.8
-"""How much of what may be left out an approach plans to leave out at most."""
 _LOOP_RADII = 6.0
 """An approach turns within this multiple of the tightest radius of the vehicle."""
 
@@ -277,17 +275,17 @@ class Navigation:
 
     def _plan(self, run: _Run, state: VehicleState) -> Approach | None:
         goal, path = run.goal, run.path
-        may_miss = (1 - COVERED_SHARE) * _MAY_MISS_SHARE
         whole_m = path.length_m - path.distance_of(goal.first_index)
         approach = plan_approach(
             path,
             state.pose,
             goal.start_index,
+            run.coverage.reached_m,
             goal.speed_mps,
             self._limits,
             self.settings.speed,
             self._near_m,
-            max(may_miss * whole_m - goal.left_out_m, 0.0),
+            max(MAY_MISS_SHARE * whole_m - goal.left_out_m, 0.0),
         )
         limit_m = self._vehicle.settings.max_start_distance_m
         if self._preempted is not None and self._preempted.approach is not None:

@@ -17,6 +17,10 @@ from domain.vehicle import Pose, VehicleLimits
 
 ON_PATH_M = 0.5
 """With a larger cross-track error the path is approached; for `REFERENCE_WHEELBASE_M`."""
+NEAR_PATH_M = 3.0
+"""With a larger cross-track error the path is not passed; for `REFERENCE_WHEELBASE_M`."""
+MAY_MISS_SHARE = 0.03
+"""Planned share of the path that the vehicle never comes near; 5 % are too much."""
 TURNED_RAD = 0.5
 """With a larger heading error the path is approached."""
 ALIGNED_RAD = 0.2
@@ -32,8 +36,11 @@ _MEETS_WITHIN = 4.0
 """How far ahead of the vehicle the path is met at most, in radii."""
 _EARLY = 0.5
 """What a metre further along the path is worth, in metres of way: the way is driven slowly."""
-_NEAR_SHARE = 0.8
-"""The vehicle does not follow the curve exactly."""
+_NEAR_SHARE = 0.95
+"""The vehicle does not follow its way exactly: what is planned to be near is nearer."""
+_BARELY_SHARE = 0.85
+_BARELY = 5.0
+"""What a metre of the path that is passed just near enough costs, in metres of way."""
 _BEYOND_M = 9.0
 """The way goes on along the path, at least as far as a tracker looks ahead."""
 _SPACING_M = 0.1
@@ -62,6 +69,11 @@ def on_path_m(limits: VehicleLimits) -> float:
     return ON_PATH_M * min(limits.scale, 1.0)
 
 
+def near_path_m(limits: VehicleLimits) -> float:
+    """Return the largest cross-track error at which a vehicle passes the path, m."""
+    return NEAR_PATH_M * min(limits.scale, 1.0)
+
+
 def approach_mps(limits: VehicleLimits) -> float:
     """Return the speed of a vehicle that is not on its path, m/s."""
     return APPROACH_MPS * sqrt(limits.scale)
@@ -84,11 +96,12 @@ def plan_approach(
     path: Path,
     pose: Pose,
     start_index: int,
+    begin_m: float,
     cruise_mps: float,
     vehicle: VehicleLimits,
     speed: SpeedLimits,
-    near_m: float,
-    may_miss_m: float,
+    near_m: float | None = None,
+    may_miss_m: float | None = None,
 ) -> Approach | None:
     """Return the way of a vehicle onto a path; None: it is on it.
 
@@ -96,16 +109,22 @@ def plan_approach(
         path: As the vehicle sees it (`Path.for_vehicle`).
         pose: Of the vehicle.
         start_index: First waypoint not yet passed.
+        begin_m: Distance along the path up to which it is passed, m.
         cruise_mps: Speed of the task, m/s.
         vehicle: Limits of the vehicle.
         speed: Limits of its acceleration.
-        near_m: What is no further from the way is not missing, m.
-        may_miss_m: Length of the path that may be missing, m.
+        near_m: What is no further from the way is not missing, m; None: `near_path_m`.
+        may_miss_m: Length of the path that may be missing, m; None: `MAY_MISS_SHARE` of it.
     """
+    near_m = near_path_m(vehicle) if near_m is None else near_m
+    may_miss_m = MAY_MISS_SHARE * path.length_m if may_miss_m is None else may_miss_m
     here = path.project(pose.x_m, pose.y_m, start_index)
+    begin_m = min(begin_m, here.distance_m)
     if is_on_path(here, pose, vehicle, TURNED_RAD):
-        return None
-    begin_m = path.distance_of(max(start_index - 1, 0))
+        # Who stands too far ahead of the start drives back to it.
+        skipped_m = here.distance_m - begin_m - near_m
+        if skipped_m <= may_miss_m:
+            return None
     radius_m = RADIUS_SHARE * vehicle.min_radius_m
     curve, met_m = _best(path, pose, begin_m, here.distance_m, radius_m, near_m, may_miss_m)
     way = _joined(curve, path, met_m, vehicle)
@@ -138,27 +157,35 @@ def _best(
         place = path.point_at(met_m)
         end = Pose(place.x_m, place.y_m, path.heading_at(met_m))
         curve = shortest_curve(pose, end, radius_m)
-        missed_m = _missed_m(path, curve, begin_m, met_m, _NEAR_SHARE * near_m)
-        cost = (max(missed_m - may_miss_m, 0.0), curve.length_m - _EARLY * met_m)
+        missed_m, barely_m = _missed_m(path, curve, begin_m, met_m, near_m)
+        length_m = curve.length_m + _BARELY * barely_m
+        cost = (max(missed_m - may_miss_m, 0.0), length_m - _EARLY * met_m)
         if found is None or cost < best:
             found, best = (curve, met_m), cost
     assert found is not None
     return found
 
 
-def _missed_m(path: Path, curve: DubinsCurve, begin_m: float, met_m: float, near_m: float) -> float:
-    """Return the length of the path between two distances that a curve never comes near, m."""
+def _missed_m(
+    path: Path, curve: DubinsCurve, begin_m: float, met_m: float, near_m: float
+) -> tuple[float, float]:
+    """Return what a curve never comes near of the path between two distances, m.
+
+    Returns:
+        Its length, and the length of what it comes near enough or not quite.
+    """
     count = int((met_m - begin_m) / (near_m / 8))
     if count == 0:
-        return 0.0
+        return 0.0, 0.0
     piece_m = (met_m - begin_m) / count
     driven = curve.places(near_m / 8)[:, :2]
-    missed = 0
+    missed = barely = 0
     for number in range(count):
         place = path.point_at(begin_m + (number + 0.5) * piece_m)
-        gaps = np.hypot(driven[:, 0] - place.x_m, driven[:, 1] - place.y_m)
-        missed += bool(gaps.min() > near_m)
-    return missed * piece_m
+        away_m = np.hypot(driven[:, 0] - place.x_m, driven[:, 1] - place.y_m).min()
+        missed += bool(away_m > _NEAR_SHARE * near_m)
+        barely += bool(away_m > _BARELY_SHARE * near_m)
+    return missed * piece_m, barely * piece_m
 
 
 def _joined(curve: DubinsCurve, path: Path, met_m: float, vehicle: VehicleLimits) -> Path:

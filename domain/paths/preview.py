@@ -6,6 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from domain.paths.approach import plan_approach
 from domain.paths.path import Path
 from domain.paths.speed_profile import SpeedLimits, SpeedProfile
 from domain.vehicle import Pose, VehicleLimits
@@ -50,6 +51,22 @@ class StartDistance:
 
 
 @dataclass(frozen=True, slots=True)
+class ApproachPreview:
+    """How a vehicle beside a path, or turned, gets onto it."""
+
+    distance_m: float
+    """Distance of the vehicle from the path."""
+    turn_rad: float
+    """Heading of the path minus heading of the vehicle, -pi to pi."""
+    speed_mps: float
+    """Speed until it is on the path."""
+    length_m: float
+    """Distance that it drives until it is on the path; loops need room."""
+    meets_m: float
+    """Distance along the path where it gets onto it."""
+
+
+@dataclass(frozen=True, slots=True)
 class PathPreview:
     """Properties of a path for the vehicle that would drive it."""
 
@@ -63,8 +80,10 @@ class PathPreview:
     """Whether the vehicle can steer the tightest bend."""
     start: StartDistance | None
     """None: the pose of the vehicle is unknown."""
+    approach: ApproachPreview | None
+    """None: the vehicle is on the path, too far from it, or its pose is unknown."""
     duration_s: float
-    """Estimated driving time from standstill to standstill."""
+    """Estimated driving time from standstill to standstill, with the approach."""
     warnings: tuple[PathWarning, ...]
 
 
@@ -84,15 +103,22 @@ def preview(
         vehicle: Limits of the vehicle.
         limits: Limits of its acceleration.
     """
-    steps = min(max(math.ceil(path.length_m / _STEP_M), 1), _MAX_STEPS)
+    path = path.for_vehicle(vehicle)
+    step_m = _STEP_M * min(vehicle.scale, 1.0)
+    steps = min(max(math.ceil(path.length_m / step_m), 1), _MAX_STEPS)
     at = np.linspace(0.0, path.length_m, steps + 1)
     bends = np.abs(path.curvatures_at(at))
     tightest = int(bends.argmax())
     curvature = float(bends[tightest])
     radius = 1 / curvature if curvature > 1e-6 else None
-    vehicle_radius = vehicle.wheelbase_m / math.tan(vehicle.max_steering_angle_rad)
+    vehicle_radius = vehicle.min_radius_m
     steerable = radius is None or radius >= vehicle_radius
     start = None if pose is None else _start(path, pose)
+    approach = None if pose is None else _approach(path, pose, cruise_mps, vehicle, limits)
+    duration_s = _duration(path, cruise_mps, vehicle, limits, at)
+    if approach is not None:
+        left = 1 - approach.meets_m / path.length_m
+        duration_s = approach.length_m / approach.speed_mps + left * duration_s
     distances = np.hypot(*np.diff(path.waypoints[:, :2], axis=0).T)
     spacing = Spacing(float(distances.min()), float(np.median(distances)), float(distances.max()))
     warnings = [*_spacing_warnings(distances), *_start_warnings(start)]
@@ -111,7 +137,8 @@ def preview(
         vehicle_radius,
         steerable,
         start,
-        _duration(path, cruise_mps, vehicle, limits, at),
+        approach,
+        duration_s,
         tuple(warnings),
     )
 
@@ -121,6 +148,17 @@ def _start(path: Path, pose: Pose) -> StartDistance:
     distance = math.hypot(first.x_m - pose.x_m, first.y_m - pose.y_m)
     turned = math.remainder(pose.yaw_rad - path.heading_at(0.0), math.tau)
     return StartDistance(distance, turned)
+
+
+def _approach(
+    path: Path, pose: Pose, cruise_mps: float, vehicle: VehicleLimits, limits: SpeedLimits
+) -> ApproachPreview | None:
+    if _start(path, pose).distance_m > _FAR_START_M:
+        return None
+    way = plan_approach(path, pose, 0, 0.0, cruise_mps, vehicle, limits)
+    if way is None:
+        return None
+    return ApproachPreview(way.distance_m, way.turn_rad, way.speed_mps, way.length_m, way.meets_m)
 
 
 def _spacing_warnings(distances: NDArray[np.float64]) -> list[PathWarning]:

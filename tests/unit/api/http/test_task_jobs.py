@@ -58,11 +58,15 @@ def test_a_preview_of_an_impossible_speed_is_refused() -> None:
 
 
 def test_a_preview_knows_how_far_the_vehicle_is() -> None:
-    pose = Pose(0.0, 3.0, 0.0)
+    pose = Pose(0.0, 2.5, 0.0)
     shown = json.loads(preview_posted(LINE, OPTIONS, pose, VehicleLimits(), SpeedLimits()))
 
-    assert shown["start"]["distance_m"] == 3.0
-    assert shown["duration_s"] == pytest.approx(10 / 2.8 + 2.8, rel=0.1)
+    assert shown["start"]["distance_m"] == 2.5
+    assert shown["approach"]["distance_m"] == pytest.approx(2.5)
+    assert shown["approach"]["turn_rad"] == 0.0
+    # It drives onto the path at 1 m/s, and then the rest of it.
+    assert shown["approach"]["speed_mps"] == pytest.approx(1.0)
+    assert shown["approach"]["length_m"] < shown["duration_s"] < 10 / 2.8 + 2.8 + 10
 
 
 def test_thinned_points_keep_the_first_and_the_last() -> None:

@@ -43,7 +43,7 @@ def test_limits_that_are_said_hold() -> None:
         max_speed_mps=6.5,
         braking_mps2=2.25,
         steering_rate_radps=0.11,
-        steering_delay_s=pytest.approx(0.3),
+        steering_delay_s=0.2 + 0.1,
     )
 
 
