@@ -10,6 +10,7 @@ from domain.paths.speed_profile import (
     BRAKING_SHARE,
     CRAWL_MPS,
     REACTION_S,
+    TURNING_MPS,
     SpeedLimits,
     SpeedProfile,
 )
@@ -113,3 +114,45 @@ def test_it_never_asks_for_more_braking_than_allowed(
     fallen = squares[:-1] - squares[1:]
     assert (fallen <= 2 * braking * np.diff(at) + CRAWL_MPS**2 + 1e-9).all()
     assert squares.max() <= cruise**2 + 1e-9
+
+
+# --- slow front wheels ---------------------------------------------------------------------------
+
+
+def slowest(path: Path, vehicle: VehicleLimits) -> float:
+    return SpeedProfile(path, 7.0, LIMITS, vehicle).slowest_mps
+
+
+def test_slow_wheels_slow_a_corner_down() -> None:
+    corner = Path(np.array([[0.0, 0.0, 0.0], [50.0, 0.0, 0.0], [50.0, 50.0, 0.0]]))
+    quick, slow = VehicleLimits(), VehicleLimits(steering_rate_radps=0.3)
+
+    assert slowest(corner, slow) < 0.6 * slowest(corner, quick)
+
+
+def test_late_wheels_slow_a_corner_down() -> None:
+    corner = Path(np.array([[0.0, 0.0, 0.0], [50.0, 0.0, 0.0], [50.0, 50.0, 0.0]]))
+
+    assert slowest(corner, VehicleLimits(steering_delay_s=0.5)) < slowest(corner, VEHICLE)
+
+
+def test_slow_wheels_do_not_slow_a_straight_with_the_noise_of_a_recording() -> None:
+    x = np.arange(0.0, 100.0, 0.5)
+    noise = np.random.default_rng(3).normal(0.0, 0.01, len(x))
+    line = Path(np.column_stack((x, noise, np.zeros_like(x))))
+
+    assert slowest(line, VehicleLimits(steering_rate_radps=0.11)) == pytest.approx(
+        slowest(line, VEHICLE)
+    )
+
+
+def test_however_slow_the_wheels_it_goes_on() -> None:
+    corner = Path(np.array([[0.0, 0.0, 0.0], [50.0, 0.0, 0.0], [50.0, 50.0, 0.0]]))
+
+    assert slowest(corner, VehicleLimits(steering_rate_radps=1e-6)) == pytest.approx(TURNING_MPS)
+
+
+def test_who_brakes_weakly_brakes_earlier() -> None:
+    weak = SpeedProfile(line(100), 5.0, LIMITS, VehicleLimits(braking_mps2=0.2))
+
+    assert weak.speed_at(90.0) == pytest.approx(sqrt(2 * BRAKING_SHARE * 0.2 * 10), abs=0.1)
