@@ -25,7 +25,7 @@ REACTION_S = 0.15
 """Delay from a command to the wheels; without it the vehicle would overrun the end."""
 TURN_OVER_STEPS = (1, 2, 4, 8)
 """Number of steps over which the turn of the front wheels is limited to what they can."""
-FREE_TURN_RAD = 0.1
+FREE_TURN_RAD = 0.06
 """The front wheels need not follow a smaller turn: most are noise of the recording."""
 TRAIL_RAD = 0.1
 """How far late front wheels may trail what the path asks of them."""

@@ -138,7 +138,7 @@ def test_late_wheels_slow_a_corner_down() -> None:
 
 def test_slow_wheels_do_not_slow_a_straight_with_the_noise_of_a_recording() -> None:
     x = np.arange(0.0, 100.0, 0.5)
-    noise = np.random.default_rng(3).normal(0.0, 0.01, len(x))
+    noise = np.random.default_rng(3).normal(0.0, 0.005, len(x))
     line = Path(np.column_stack((x, noise, np.zeros_like(x))))
 
     assert slowest(line, VehicleLimits(steering_rate_radps=0.11)) == pytest.approx(
