@@ -10,10 +10,12 @@ from api.documents.asyncapi import stream_document
 from api.http import model_jobs, task_jobs
 from api.http.access import Access
 from api.http.gate.audit import Audit
+from api.http.gate.ending import Ending
 from api.http.gate.headers import SecurityHeaders
 from api.http.gate.origin import OriginGate
 from api.http.gate.policies import RoutePolicies
 from api.http.gate.rate import RateGate
+from api.http.gate.target import TargetGate
 from api.http.gate.token import TokenGate
 from api.http.limits import USUAL_LIMITS, ServiceLimits
 from api.robot_app import create_robot_app
@@ -75,7 +77,9 @@ def _guard(app: FastAPI, supervisor: Supervisor, allowed_hosts: Sequence[str]) -
     app.add_middleware(TokenGate, access=state.access, policies=policies, refusals=refusals)
     app.add_middleware(OriginGate, allowed_hosts=allowed_hosts, refusals=refusals)
     app.add_middleware(RateGate, per_s=per_s, clock=clock, policies=policies, refusals=refusals)
+    app.add_middleware(TargetGate, refusals=refusals)
     app.add_middleware(SecurityHeaders)
+    app.add_middleware(Ending)
 
 
 def prepare(app: FastAPI) -> None:

@@ -1,6 +1,7 @@
 """What commands of `pilothouse` write to a terminal, each in the same form."""
 
 import sys
+from contextlib import suppress
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
@@ -10,7 +11,9 @@ if TYPE_CHECKING:
 
 def complain(message: str) -> None:
     """Say on the standard error what went wrong."""
-    print(f"pilothouse: {message}", file=sys.stderr)
+    # Where standard error takes nothing, the exit code is all that is left.
+    with suppress(OSError):
+        print(f"pilothouse: {message}", file=sys.stderr, flush=True)
 
 
 def finding_line(file: str, finding: "Finding") -> str:

@@ -36,6 +36,14 @@ class Concern:
     def pass_time(self, now: Instant) -> None:
         """Handle all deadlines up to `now`."""
 
+    @property
+    def has_more(self) -> bool:
+        """Tell whether an input left work that `go_on` continues."""
+        return False
+
+    def go_on(self, now: Instant) -> None:
+        """Do the next portion of what an input left, so that no turn takes long."""
+
     def settle(self, now: Instant) -> bool:
         """React to changes of other concerns; return whether that changed anything here."""
         return False

@@ -27,9 +27,20 @@ input changes nothing.
 """
 
 from collections.abc import Sequence
+from difflib import get_close_matches
 
 from domain.findings import Blocker, Finding
 from domain.lifecycle import LifecycleState, Transition
+
+_LONGEST_COMPARED = 64
+_MOST_COMPARED = 200
+MAX_SHOWN = 200
+"""Characters of what somebody sent that a message repeats, so that answers stay short."""
+
+
+def shortened(text: str, most: int = MAX_SHOWN) -> str:
+    """Return a text that somebody sent as messages show it: cut if it is longer than `most`."""
+    return text if len(text) <= most else f"{text[:most]}..."
 
 
 class PilothouseError(Exception):
@@ -41,6 +52,17 @@ class PilothouseError(Exception):
     def __init__(self, message: str) -> None:
         super().__init__(message)
         self.message = message
+
+
+def near_match(name: str, known: Sequence[str]) -> str | None:
+    """Return the known name that is most like a name; None: none is.
+
+    The work is bounded: a long name is like none, and only the first names are looked at.
+    """
+    if len(name) > _LONGEST_COMPARED:
+        return None
+    short = [other for other in known[:_MOST_COMPARED] if len(other) <= _LONGEST_COMPARED]
+    return next(iter(get_close_matches(name, short, n=1)), None)
 
 
 class UnknownNameError(PilothouseError):
@@ -56,12 +78,14 @@ class UnknownNameError(PilothouseError):
     code = "UNKNOWN_NAME"
 
     def __init__(self, what: str, name: str, known: Sequence[str], hint: str | None = None) -> None:
-        super().__init__(f"there is no {what} {name!r}")
+        super().__init__(f"there is no {what} {shortened(name)!r}")
         self.name = name
         if hint is not None:
             self.hint = hint
         elif known:
+            near = near_match(name, known) if len(known) > 1 else None
             self.hint = f"known: {', '.join(known[:20])}" + (", ..." if len(known) > 20 else "")
+            self.hint += "" if near is None else f"; did you mean {near}?"
 
 
 class UnknownPartError(UnknownNameError):

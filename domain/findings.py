@@ -22,6 +22,8 @@ class Blocker:
     threshold: Fact = None
     since: Instant | None = None
     root_cause: bool = True
+    refuses: bool = True
+    """Whether a request is rejected because of it; False: it is only shown."""
 
 
 @dataclass(frozen=True, slots=True)

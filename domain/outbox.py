@@ -75,6 +75,16 @@ class Outbox:
         self._at, self._input, self._actor, self._cause = now, event, actor, cause
         self._input_id = None
 
+    def resume(self, now: Instant, recorded: int, actor: Actor) -> None:
+        """Go on with an input that was recorded earlier; what follows is its consequence.
+
+        Args:
+            now: The current time.
+            recorded: Its event id.
+            actor: Who sent it.
+        """
+        self._at, self._actor, self._input_id = now, actor, recorded
+
     def record_input(self) -> int:
         """Record the input, unless it is recorded already; return its event id."""
         if self._input_id is None:

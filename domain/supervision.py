@@ -94,6 +94,8 @@ class Supervision:
         self._takers = _takers(self._concerns)
         self._clocked = [c for c in self._concerns if _overrides(c, "wake_at")]
         self._settling = [c for c in self._concerns if _overrides(c, "settle")]
+        self._portioned = [c for c in self._concerns if _overrides(c, "go_on")]
+        self._has_more = False
         self._max_rounds = _SPARE_ROUNDS + len(model.parts)
         self._wake_at = self._next_wake()
         """Cached: it is read several times per input, and only inputs and time change it."""
@@ -101,8 +103,12 @@ class Supervision:
     # --- time and inputs -------------------------------------------------------------------------
 
     def wake_at(self) -> Instant | None:
-        """Return the next instant at which time alone changes something; None: never."""
-        return self._wake_at
+        """Return the next instant at which time alone changes something; None: never.
+
+        That is the time of the last input as long as work is left for later turns; each
+        `TimePassed` does a portion of it.
+        """
+        return self._now if self._has_more else self._wake_at
 
     def handle(self, given: Input, now: Instant) -> Outputs:
         """Handle one input, after everything that was due before it, each at its own time.
@@ -120,6 +126,9 @@ class Supervision:
         self._let_pass(max(now, self._now))
         for take in self._takers[type(given)]:
             take(given, self._now)
+        if self._has_more and isinstance(given, TimePassed):
+            for concern in self._portioned:
+                concern.go_on(self._now)
         self._settle()
         return self._outbox.take()
 
@@ -136,6 +145,7 @@ class Supervision:
     def _settle(self) -> None:
         settle(self._settling, self._now, self._max_rounds)
         self._wake_at = self._next_wake()
+        self._has_more = any(concern.has_more for concern in self._portioned)
 
     def _next_wake(self) -> Instant | None:
         due = None

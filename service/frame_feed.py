@@ -1,6 +1,6 @@
 """Distributes published frames to any number of readers; a slow reader skips frames."""
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
 
 from domain.snapshot import (
@@ -15,6 +15,10 @@ from domain.snapshot import (
 from domain.state_and_mode import PartName
 from domain.timebase import Instant
 from service.watching import Watched
+
+PARTS_AT_ONCE = 500
+"""Changed parts in one frame. The others wait for the next ones, in the order in which they
+changed: encoding the parts of a large robot at once would delay the ticks after it."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -60,6 +64,9 @@ class FrameFeed(Watched):
         self._newest: Frame | None = None
         self._complete: Frame | None = None
         self._parts: dict[PartName, PartView] = {}
+        """Those that changed last come last."""
+        self._changed_in: dict[PartName, int] = {}
+        """Number of the frame in which each part changed last."""
         self._signals: dict[str, SignalView] = {}
         self._has_all = False
 
@@ -69,13 +76,22 @@ class FrameFeed(Watched):
         return self._newest
 
     @property
+    def parts(self) -> Mapping[PartName, PartView]:
+        """The newest view of every part; read only."""
+        return self._parts
+
+    @property
     def wants_full(self) -> bool:
         """Tell whether a full frame is needed first: until then readers get nothing."""
         return not self._has_all
 
     def publish(self, frame: Frame) -> None:
         """Replace the newest frame and wake the readers. Never blocks."""
-        self._parts.update(frame.parts)
+        for part, view in frame.parts.items():
+            if self._parts.get(part) is not view:
+                self._parts.pop(part, None)
+                self._parts[part] = view
+                self._changed_in[part] = frame.seq
         self._signals.update(frame.signals)
         self._has_all = self._has_all or frame.full
         self._newest = frame
@@ -89,16 +105,49 @@ class FrameFeed(Watched):
         """
         if self._complete is None and self._newest is not None and self._has_all:
             self._complete = replace(
-                self._newest,
+                _all_changed(self._newest),
                 parts=dict(self._parts),
                 signals=dict(self._signals),
-                task_changed=True,
-                vehicle_changed=True,
-                holds_changed=True,
-                emergency_stop_changed=True,
                 full=True,
             )
         return self._complete
+
+    def since(self, seen: int | None) -> Frame | None:
+        """Return the newest frame for a reader that missed some; None before the first full frame.
+
+        It is complete, but of a large robot only what changed since is told: a complete frame takes
+        so long that a reader that missed one frame would miss the next one, too.
+
+        Args:
+            seen: Number of the last frame that the reader took; None: none.
+        """
+        newest = self._newest
+        if seen is None or newest is None or len(self._parts) <= PARTS_AT_ONCE:
+            return self.complete()
+        return replace(
+            _all_changed(newest),
+            parts=dict(self.parts_since(seen)),
+            signals=dict(self._signals),
+            full=False,
+        )
+
+    def parts_since(self, seen: int) -> Iterator[tuple[PartName, PartView]]:
+        """Yield the parts that changed after the frame `seen`, the newest first."""
+        for part in reversed(self._parts):
+            if self._changed_in[part] <= seen:
+                return
+            yield part, self._parts[part]
+
+
+def _all_changed(frame: Frame) -> Frame:
+    """Return a frame that tells everything but parts and signals anew."""
+    return replace(
+        frame,
+        task_changed=True,
+        vehicle_changed=True,
+        holds_changed=True,
+        emergency_stop_changed=True,
+    )
 
 
 class FrameReader:
@@ -120,14 +169,14 @@ class FrameReader:
     def take(self) -> tuple[Frame, int] | None:
         """Return the newest frame and how many were skipped; None: there is no new one.
 
-        The first frame is complete, and so is a frame after skipped ones.
+        The first frame is complete, and so is a frame after skipped ones; see `FrameFeed.since`.
         """
         newest = self._feed.newest
         if newest is None or newest.seq == self._seen:
             return None
         skipped = 0 if self._seen is None else newest.seq - self._seen - 1
         in_step = self._seen is not None and skipped == 0
-        frame = newest if in_step else self._feed.complete()
+        frame = newest if in_step else self._feed.since(self._seen)
         if frame is None:
             return None
         self._seen = frame.seq

@@ -1,20 +1,20 @@
 """Publishes frames: 20 per second, and one immediately when the system state changes."""
 
 import logging
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
+from itertools import islice
 
 from domain.outbox import Outputs
+from domain.snapshot import PartView
 from domain.state_and_mode import PartName
 from domain.supervision import Supervision
 from domain.timebase import Instant, seconds, to_seconds
 from service.clock import Clock
-from service.frame_feed import Frame, FrameFeed
+from service.frame_feed import PARTS_AT_ONCE, Frame, FrameFeed
 
 log = logging.getLogger(__name__)
 
 PERIOD = seconds(0.05)
-_TICKS_PER_FULL = 20
-"""One complete frame per second, so that a client that lost data soon recovers."""
 
 
 class FramePublisher:
@@ -34,13 +34,15 @@ class FramePublisher:
         self.late_ticks = 0
         """Number of skipped ticks."""
         self.last_tick_at: Instant | None = None
+        self.published_at: Instant | None = None
+        """When the newest frame was published."""
         self.on_tick: list[Callable[[float], None]] = []
         """Called with the time since the previous tick, s; must return at once."""
         self._core = core
         self._clock = clock
         self._simulated = simulated
-        self._ticks = 0
-        self._changed_parts: set[PartName] = set()
+        self._changed_parts: dict[PartName, None] = {}
+        """In the order in which they changed."""
         self._changed_signals: set[str] = set()
         self._task_changed = False
         self._vehicle_changed = False
@@ -62,7 +64,7 @@ class FramePublisher:
 
     def note(self, outputs: Outputs) -> None:
         """Remember what changed; the next frame shows it."""
-        self._changed_parts |= outputs.parts
+        self._changed_parts.update(dict.fromkeys(sorted(outputs.parts)))
         self._changed_signals |= outputs.signals
         self._task_changed |= outputs.task_changed
         self._vehicle_changed |= outputs.vehicle_changed
@@ -72,9 +74,9 @@ class FramePublisher:
         if self.seq:
             self._publish()
 
-    def _publish(self, *, full: bool = False) -> None:
-        """Publish one frame: everything, or the changes since the previous frame."""
-        full = full or self.frames.wants_full
+    def _publish(self) -> None:
+        """Publish one frame: everything at first, then the changes since the previous frame."""
+        full = self.frames.wants_full
         self.seq += 1
         core = self._core
         holds, emergency_stop = core.driving.holds, core.emergency_stop()
@@ -83,7 +85,7 @@ class FramePublisher:
             seq=self.seq,
             at=self._clock.now(),
             system_state=core.system_state(),
-            parts=core.parts() if full else {p: core.part(p) for p in sorted(self._changed_parts)},
+            parts=self._take_parts(full=full),
             signals=(
                 core.signals()
                 if full
@@ -103,10 +105,21 @@ class FramePublisher:
             full=full,
             simulated=self._simulated,
         )
-        self._changed_parts.clear()
         self._changed_signals.clear()
         self._task_changed = self._vehicle_changed = False
         self.frames.publish(frame)
+        self.published_at = frame.at
+
+    def _take_parts(self, *, full: bool) -> Mapping[PartName, PartView]:
+        """Return the parts that changed first; for a full frame, all as they were published."""
+        if self.frames.wants_full:
+            self._changed_parts.clear()
+            return self._core.parts()
+        taken = list(islice(self._changed_parts, PARTS_AT_ONCE))
+        for part in taken:
+            del self._changed_parts[part]
+        changed = {part: self._core.part(part) for part in taken}
+        return {**self.frames.parts, **changed} if full else changed
 
     def _tick(self) -> None:
         now = self._clock.now()
@@ -114,5 +127,4 @@ class FramePublisher:
             for observe in self.on_tick:
                 observe(to_seconds(now - self.last_tick_at))
         self.last_tick_at = now
-        self._publish(full=self._ticks % _TICKS_PER_FULL == 0)
-        self._ticks += 1
+        self._publish()

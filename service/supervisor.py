@@ -27,6 +27,7 @@ from service.ports import RobotBackend
 from service.readings import DirectReadings, ReadingInput, Submit
 from service.running import run_forever
 from service.submitter import Submitter
+from service.watchdog import hanging
 
 
 class Supervisor:
@@ -115,6 +116,16 @@ class Supervisor:
                 "log": log_node_incidents(self.events),
                 "tick": self.publisher.run(),
             }
+        )
+
+    def hanging(self) -> str | None:
+        """Return what of the supervision hangs, in words; None: all goes on."""
+        publisher = self.publisher
+        return hanging(
+            self._onboard.wake_at(),
+            publisher.last_tick_at,
+            publisher.published_at,
+            self.clock.now(),
         )
 
     def stop_driving(self) -> None:

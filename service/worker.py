@@ -2,20 +2,23 @@
 
 A thread would not do: it would hold the interpreter lock that the tick needs. The process is a new
 interpreter and not a fork, so that it inherits no sockets and no locked locks. It has its own
-session, so that Ctrl-C in the terminal does not reach it. It exits when this process ends for
-whatever reason, since its standard input is closed then.
+session, so that Ctrl-C in the terminal does not reach it. It ends when this process ends for
+whatever reason, also in the middle of a job.
 """
 
 import asyncio
+import errno
 import os
 import sys
 from asyncio.subprocess import PIPE, Process
 from collections.abc import Callable, Sequence
+from contextlib import suppress
 from typing import Protocol, TypeVar, TypeVarTuple, cast
 
 from domain.errors import PilothouseError
 from service.worker_process import (
     LENGTH_BYTES,
+    OUT_OF_MEMORY,
     ErrorParcel,
     Reply,
     large,
@@ -29,6 +32,8 @@ Result = TypeVar("Result")
 
 QUEUE_LENGTH = 4
 DEADLINE_S = 10.0
+_ENDING_S = 0.5
+"""A process whose pipes are closed is about to end."""
 
 
 class WorkerBusyError(PilothouseError):
@@ -51,6 +56,16 @@ class TooComplexError(PilothouseError):
         super().__init__(f"this is too complex: {how}")
 
 
+class OutOfMemoryError(TooComplexError):
+    """A job that needs more memory than a worker process may have."""
+
+    code = "MEMORY"
+
+    def __init__(self) -> None:
+        PilothouseError.__init__(self, "there is not enough memory for this")
+        self.hint = "ask for less at once, or give the service more memory (see `ulimit -v`)"
+
+
 class WorkerClosedError(PilothouseError):
     """A job for a service that is shutting down."""
 
@@ -71,6 +86,14 @@ class Jobs(Protocol):
         """Stop; unfinished jobs fail."""
         ...
 
+    def require_room(self) -> None:
+        """Check that a job would be taken, before its arguments are made at some cost.
+
+        Raises:
+            WorkerBusyError: The queue is full.
+        """
+        ...
+
     async def call(self, function: Callable[[*Given], Result], *arguments: *Given) -> Result:
         """Return what a function returns.
 
@@ -89,6 +112,9 @@ class InlineJobs:
 
     async def close(self) -> None:
         """Do nothing: no process was started."""
+
+    def require_room(self) -> None:
+        """Do nothing: there is no queue."""
 
     async def call(self, function: Callable[[*Given], Result], *arguments: *Given) -> Result:
         """Return what a function returns.
@@ -126,6 +152,15 @@ class Worker:
             if process is not None:
                 await _end(process)
 
+    def require_room(self) -> None:
+        """Check that a job would be taken, before its arguments are made at some cost.
+
+        Raises:
+            WorkerBusyError: The queue is full.
+        """
+        if self._jobs > QUEUE_LENGTH:
+            raise WorkerBusyError
+
     async def call(self, function: Callable[[*Given], Result], *arguments: *Given) -> Result:
         """Run a function in the worker, and return its result.
 
@@ -140,8 +175,7 @@ class Worker:
             PilothouseError: Raised by the function.
             JobFailedError: The function has a bug.
         """
-        if self._jobs > QUEUE_LENGTH:
-            raise WorkerBusyError
+        self.require_room()
         self._jobs += 1
         try:
             async with self._turn:
@@ -168,15 +202,18 @@ class Worker:
         except BaseException as error:
             # Also when cancelled: the reply to this job must never be taken for that of the next.
             self._process = None
-            await _end(process)
+            is_ending = isinstance(error, asyncio.IncompleteReadError | ConnectionError)
+            await _end(process, _ENDING_S if is_ending else 0.0)
             if isinstance(error, TimeoutError):
                 how = f"it took longer than {self._deadline_s:g} s"
                 raise TooComplexError(how) from error
-            if isinstance(error, asyncio.IncompleteReadError | ConnectionError):
+            if is_ending:
                 if self._is_closed:
                     raise WorkerClosedError from error
                 if not is_new:
                     return await self._exchange(job)
+                if process.returncode == OUT_OF_MEMORY:
+                    raise OutOfMemoryError from error
                 raise TooComplexError("it ended the process that worked on it") from error
             raise
 
@@ -190,22 +227,38 @@ class Worker:
         if self._is_closed:
             raise WorkerClosedError
         if self._process is None or self._process.returncode is not None:
-            path = os.pathsep.join(entry or os.getcwd() for entry in sys.path)
-            self._process = await asyncio.create_subprocess_exec(
-                sys.executable,
-                "-P",
-                "-c",
-                # Not `-m`: the module would be __main__ there, and pickles name its classes.
-                "from service.worker_process import main; main()",
-                *self._modules,
-                stdin=PIPE,
-                stdout=PIPE,
-                env={**os.environ, "PYTHONPATH": path},
-                start_new_session=True,
-            )
+            self._process = await _spawn(*self._modules)
             if self._is_closed:
                 raise WorkerClosedError
         return self._process
+
+
+async def _spawn(*modules: str) -> Process:
+    """Start a process.
+
+    Raises:
+        OutOfMemoryError: There is no memory for it.
+    """
+    path = os.pathsep.join(entry or os.getcwd() for entry in sys.path)
+    try:
+        return await asyncio.create_subprocess_exec(
+            sys.executable,
+            "-P",
+            "-c",
+            # Not `-m`: the module would be __main__ there, and pickles name its classes.
+            "from service.worker_process import main; main()",
+            str(os.getpid()),
+            *modules,
+            stdin=PIPE,
+            stdout=PIPE,
+            # It works on one job at a time, and each further thread takes address space.
+            env={"OPENBLAS_NUM_THREADS": "1", **os.environ, "PYTHONPATH": path},
+            start_new_session=True,
+        )
+    except OSError as error:
+        if error.errno not in (errno.ENOMEM, errno.EAGAIN):
+            raise
+        raise OutOfMemoryError from error
 
 
 async def _ask(process: Process, job: Sequence[bytes | memoryview]) -> Reply:
@@ -224,8 +277,16 @@ async def _ask(process: Process, job: Sequence[bytes | memoryview]) -> Reply:
     return reply
 
 
-async def _end(process: Process) -> None:
-    """Kill a process and wait until it and its pipes are gone."""
+async def _end(process: Process, within_s: float = 0.0) -> None:
+    """Kill a process and wait until it and its pipes are gone.
+
+    Args:
+        process: The process.
+        within_s: How long it may take to end by itself, with an exit code that says why, s.
+    """
+    with suppress(TimeoutError):
+        async with asyncio.timeout(within_s):
+            await process.wait()
     if process.returncode is None:
         process.kill()
     await process.communicate()

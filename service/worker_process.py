@@ -4,19 +4,28 @@ Messages are pickles. Only `service.worker` sends them, with functions of this p
 arguments.
 """
 
+import errno
 import importlib
 import os
 import pickle
+import signal
 import struct
 import sys
 import traceback
 from collections.abc import Sequence
+from pathlib import Path
 from typing import Any, BinaryIO, Literal, NamedTuple
 
 from domain.errors import PilothouseError
 
 MEMORY_LIMIT_BYTES = 2 * 1024**3
-"""Limit of the address space. A job beyond it gets a MemoryError; other processes are safe."""
+"""Address space that jobs may take beyond what the interpreter and its libraries have. A job beyond
+it gets a MemoryError; other processes are safe."""
+OUT_OF_MEMORY = 77
+"""Exit code of a process that needed more memory than it may have."""
+
+_KILL_AT_PARENTS_DEATH = 1
+"""PR_SET_PDEATHSIG of prctl(2)."""
 
 _NICENESS = 5
 _LENGTH = struct.Struct("!Q")
@@ -125,19 +134,72 @@ def do(job: Any) -> Reply:  # noqa: ANN401  # whatever `service.worker` sent
         return Reply("failed", traceback.format_exc())
 
 
-def main() -> None:
-    """Lower the own priority, import the modules named in the arguments, then run jobs."""
-    os.nice(_NICENESS)
-    if sys.platform != "win32":
-        import resource
+def memory_limit(used: int, soft: int, hard: int, infinity: int) -> int:
+    """Return the limit of the address space for a process, in bytes.
 
-        resource.setrlimit(resource.RLIMIT_AS, (MEMORY_LIMIT_BYTES, MEMORY_LIMIT_BYTES))
+    Args:
+        used: What it has already.
+        soft: The limit that it was given, as by `ulimit -v`; `infinity`: none.
+        hard: The most that it may set.
+        infinity: Stands for no limit.
+    """
+    given = [limit for limit in (soft, hard) if limit != infinity]
+    return min([used + MEMORY_LIMIT_BYTES, *given])
+
+
+def _limit_memory() -> None:
+    import resource
+
+    # The first number is the size of the address space in pages; there is none on macOS.
+    try:
+        pages = int(Path("/proc/self/statm").read_text(encoding="ascii").split()[0])
+    except OSError:
+        pages = 0
+    soft, hard = resource.getrlimit(resource.RLIMIT_AS)
+    used = pages * resource.getpagesize()
+    limit = memory_limit(used, soft, hard, resource.RLIM_INFINITY)
+    resource.setrlimit(resource.RLIMIT_AS, (limit, limit))
+
+
+def _end_with(parent: int) -> None:
+    """Let the kernel kill this process when its parent ends, also during a job.
+
+    Without Linux, it ends when it reads the next job.
+    """
+    if sys.platform == "linux":
+        import ctypes
+
+        ctypes.CDLL(None).prctl(_KILL_AT_PARENTS_DEATH, int(signal.SIGKILL))
+        if os.getppid() != parent:
+            sys.exit("the service has ended already")
+
+
+def _is_short_of_memory(error: BaseException) -> bool:
+    """Tell whether an error means that memory is short; the loader of libraries has only words."""
+    if isinstance(error, OSError) and error.errno == errno.ENOMEM:
+        return True
+    words = str(error).lower()
+    return isinstance(error, MemoryError) or "map segment" in words or "allocate" in words
+
+
+def main() -> None:
+    """Lower the own priority, import the modules named in the arguments, then run jobs.
+
+    The first argument is the process that started this one.
+    """
+    _end_with(int(sys.argv[1]))
+    os.nice(_NICENESS)
     replies = os.fdopen(os.dup(sys.stdout.fileno()), "wb")
     # Output of a job must not mix with the replies.
     os.dup2(sys.stderr.fileno(), sys.stdout.fileno())
-    for module in sys.argv[1:]:
-        importlib.import_module(module)
     try:
+        for module in sys.argv[2:]:
+            importlib.import_module(module)
+        if sys.platform != "win32":
+            _limit_memory()
         serve(sys.stdin.buffer, replies)
-    except MemoryError:
-        sys.exit("the worker ran out of memory")
+    except (MemoryError, ImportError, OSError) as error:
+        if not _is_short_of_memory(error):
+            raise
+        # The service logs it.
+        os._exit(OUT_OF_MEMORY)

@@ -18,7 +18,13 @@ import websockets
 from websockets.asyncio.client import ClientConnection
 
 from api.client.address import Address
-from api.client.outcomes import Json, NoAnswerError, ServiceProblemError, token_hint
+from api.client.outcomes import (
+    Json,
+    NoAnswerError,
+    ServiceProblemError,
+    no_connection,
+    token_hint,
+)
 
 SILENCE_S = 5.0
 """A dead peer never closes its connection: after this time without a frame, reconnect."""
@@ -149,7 +155,7 @@ class Link:
             async with self._http() as http:
                 response = await http.get("/system_state")
         except httpx.ConnectError as error:
-            raise NoAnswerError(f"no service answers at {url}: is it running?") from error
+            raise no_connection(url, error) from error
         except httpx.HTTPError as error:
             why = str(error) or f"timed out after {_ANSWER_S:g} s"
             raise NoAnswerError(f"no answer from {url}: {why}") from error

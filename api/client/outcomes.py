@@ -33,6 +33,22 @@ class NoAnswerError(Exception):
     """The service did not answer, or what answered is not Pilothouse."""
 
 
+def no_connection(url: str, error: Exception) -> NoAnswerError:
+    """Return the error for a service that could not be connected to.
+
+    Args:
+        url: Its base URL.
+        error: What the connection failed with.
+    """
+    words = str(error)
+    if "CERTIFICATE_VERIFY_FAILED" in words:
+        return NoAnswerError(f"the certificate of {url} is not trusted: {words}")
+    if url.startswith("https:") and "SSL" in words:
+        plain = url.replace("https:", "http:", 1)
+        return NoAnswerError(f"what answers at {url} does not speak HTTPS; try {plain}")
+    return NoAnswerError(f"no service answers at {url}: is it running?")
+
+
 def token_hint(*, given: bool) -> str:
     """Return a hint for a request without a token, or with a token that was not accepted."""
     return _OTHER_TOKEN if given else _NO_TOKEN

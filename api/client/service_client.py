@@ -10,7 +10,13 @@ from urllib.parse import quote
 import httpx
 
 from api.client.address import Address
-from api.client.outcomes import Json, NoAnswerError, ServiceProblemError, token_hint
+from api.client.outcomes import (
+    Json,
+    NoAnswerError,
+    ServiceProblemError,
+    no_connection,
+    token_hint,
+)
 
 _TIMEOUT = httpx.Timeout(10.0, connect=3.0)
 
@@ -88,7 +94,7 @@ class ServiceClient:
                 method, path, json=body, content=content, headers=headers, params=query or None
             )
         except httpx.ConnectError as error:
-            raise NoAnswerError(f"no service answers at {url}: is it running?") from error
+            raise no_connection(url, error) from error
         except httpx.HTTPError as error:
             raise NoAnswerError(f"no answer from {url}: {error}") from error
         if response.status_code == httpx.codes.NO_CONTENT:

@@ -18,6 +18,7 @@ from fastapi.responses import FileResponse, JSONResponse
 from api.documents.asyncapi import stream_document
 from api.http.gate.headers import CONTENT_SECURITY_POLICY
 from api.http.route_policy import Permission, policy
+from api.http.static_page import PageFile, answer_with
 
 router = APIRouter(include_in_schema=False)
 openapi_router = APIRouter(include_in_schema=False)
@@ -37,7 +38,12 @@ _HEADERS: Mapping[str, str] = MappingProxyType(
 @policy(Permission.READ_PUBLIC)
 async def get_openapi(request: Request) -> Response:
     """Return the description of requests and answers."""
-    return JSONResponse(request.app.openapi())
+    state = request.app.state
+    # Encoding it takes 10 ms: once, and not for each request.
+    if not hasattr(state, "openapi_file"):
+        content = JSONResponse(request.app.openapi()).body
+        state.openapi_file = PageFile.of(bytes(content), "application/json")
+    return answer_with(state.openapi_file, request)
 
 
 @router.get("/docs")
@@ -64,14 +70,19 @@ async def get_style(request: Request) -> Response:
 
 @router.get("/asyncapi.json")
 @policy(Permission.READ_PUBLIC)
-async def get_asyncapi() -> Response:
+async def get_asyncapi(request: Request) -> Response:
     """Return the description of the stream."""
-    return Response(stream_document(), media_type="application/json")
+    return answer_with(_asyncapi_file(), request)
 
 
 @cache
 def _page() -> bytes:
     return (files("web") / "docs" / "index.html").read_bytes()
+
+
+@cache
+def _asyncapi_file() -> PageFile:
+    return PageFile.of(stream_document(), "application/json")
 
 
 def _asset(name: str, media_type: str, request: Request) -> Response:

@@ -5,12 +5,21 @@ The routes and the worker process share this, so it uses no web framework.
 
 import json
 from collections.abc import AsyncIterable, Iterable, Mapping, Sequence
+from itertools import islice
 from typing import Any, TypeVar
 
 from pydantic import BaseModel, ValidationError
 
 from api.http.schemas.problem import BodyFault
-from domain.errors import PilothouseError
+from domain.errors import PilothouseError, shortened
+
+MAX_FAULTS = 20
+"""Faults that an answer lists; whoever sent 24,000 of them needs no answer of 2 MB."""
+
+MAX_MEMBERS = 1_000
+"""Members of all objects in a body that is validated on the event loop, about 5 ms of work."""
+
+_MAX_MESSAGE = 500
 
 AnyBody = TypeVar("AnyBody", bound=BaseModel)
 
@@ -31,18 +40,31 @@ class BodyTooLargeError(PilothouseError):
 
 
 class InvalidBodyError(PilothouseError):
-    """A request that can be parsed and is invalid; `faults` lists everything."""
+    """A request that can be parsed and is invalid; `faults` lists the first of its faults."""
 
     code = "INVALID_BODY"
 
     def __init__(
-        self, faults: Sequence[BodyFault], code: str | None = None, hint: str | None = None
+        self,
+        faults: Sequence[BodyFault],
+        code: str | None = None,
+        hint: str | None = None,
+        count: int | None = None,
     ) -> None:
+        """List at most `MAX_FAULTS` faults.
+
+        Args:
+            faults: The first ones, at least one.
+            code: Of the error; None: `INVALID_BODY`.
+            hint: What to do.
+            count: Number of all faults; None: `faults` has all.
+        """
         first = faults[0]
         place = f"{first.pointer}: " if first.pointer else ""
-        more = f" (and {len(faults) - 1} more)" if len(faults) > 1 else ""
+        others = (len(faults) if count is None else count) - 1
+        more = f" (and {others} more)" if others else ""
         super().__init__(f"{place}{first.message}{more}")
-        self.faults = tuple(faults)
+        self.faults = tuple(faults[:MAX_FAULTS])
         if code is not None:
             self.code = code
         if hint is not None:
@@ -129,13 +151,35 @@ def check_body(kind: type[AnyBody], value: object) -> AnyBody:
     try:
         return kind.model_validate(value)
     except ValidationError as error:
-        raise InvalidBodyError(faults_of(error.errors(include_url=False))) from error
+        faults = faults_of(error.errors(include_url=False))
+        raise InvalidBodyError(faults, count=error.error_count()) from error
+
+
+def require_few_members(value: object) -> None:
+    """Check the size of a parsed body before it is validated.
+
+    Raises:
+        InvalidBodyError: Its objects have more than `MAX_MEMBERS` members.
+    """
+    left = MAX_MEMBERS
+    waiting = [value]
+    while waiting:
+        found = waiting.pop()
+        if isinstance(found, dict):
+            left -= len(found)
+            if left < 0:
+                message = f"the body has more than {MAX_MEMBERS} members"
+                fault = BodyFault(pointer="", code="TOO_MANY_MEMBERS", message=message)
+                raise InvalidBodyError([fault])
+            waiting += found.values()
+        elif isinstance(found, list):
+            waiting += (item for item in found if isinstance(item, dict | list))
 
 
 def faults_of(
     errors: Iterable[Mapping[str, Any]], outside: frozenset[str] = frozenset()
 ) -> list[BodyFault]:
-    """Convert the findings of pydantic.
+    """Convert the first `MAX_FAULTS` findings of pydantic.
 
     Args:
         errors: From `ValidationError.errors()`.
@@ -143,15 +187,20 @@ def faults_of(
             FastAPI.
     """
     faults = []
-    for error in errors:
+    for error in islice(errors, MAX_FAULTS):
         place = tuple(error["loc"])
         message = error["msg"]
         if place and place[0] in outside:
             source, place = place[0], place[1:]
             if source != "body":
                 message, place = f"{source} {'.'.join(map(str, place))}: {message}", ()
-        pointer = pointer_to(*place)
-        faults.append(BodyFault(pointer=pointer, code=error["type"].upper(), message=message))
+        faults.append(
+            BodyFault(
+                pointer=pointer_to(*place),
+                code=error["type"].upper(),
+                message=shortened(message, _MAX_MESSAGE),
+            )
+        )
     return faults
 
 
@@ -161,5 +210,6 @@ def as_pointer(name: str) -> str:
 
 
 def pointer_to(*keys: str | int) -> str:
-    """Return the JSON pointer (RFC 6901) that leads along `keys`."""
-    return "".join(f"/{str(key).replace('~', '~0').replace('/', '~1')}" for key in keys)
+    """Return the JSON pointer (RFC 6901) that leads along `keys`; long keys are cut."""
+    short = (shortened(str(key)) for key in keys)
+    return "".join(f"/{key.replace('~', '~0').replace('/', '~1')}" for key in short)

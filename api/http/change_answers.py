@@ -6,9 +6,9 @@ from http import HTTPStatus
 from typing import Annotated, Any
 
 from fastapi import Depends, Query, Request, Response
-from pydantic import BaseModel
 
-from api.http.schemas.changes import ChangeJson, PlanJson, StepJson, shown_request
+from api.http.change_text import change_text, with_steps
+from api.http.schemas.changes import ChangeJson, PlanJson, shown_request
 from domain.changes.admission import part_of
 from domain.identifiers import ChangeId
 from domain.inputs import ChangeRequest
@@ -76,9 +76,9 @@ async def answer_change(
     """
     clock = supervisor.clock
     if options.dry_run:
-        steps = [StepJson.of(step, clock) for step in supervisor.core.plan(asked)]
-        plan = PlanJson(part=part_of(asked), request=shown_request(asked), steps=steps)
-        return _answer(HTTPStatus.OK, plan)
+        steps = supervisor.core.plan(asked)
+        plan = PlanJson(part=part_of(asked), request=shown_request(asked), steps=[])
+        return _answer(HTTPStatus.OK, await with_steps(plan, steps, clock))
     change = supervisor.submit(asked).change
     if change is None:
         raise RuntimeError(f"{asked} was taken and is no change")
@@ -87,7 +87,8 @@ async def answer_change(
     if options.wait_s is not None:
         view = await _ended(supervisor, view.id, options.wait_s, request)
         status = _STATUS_OF_END[view.status]
-    return _answer(status, ChangeJson.of(view, clock), {"Location": f"/changes/{view.id}"})
+    text = await change_text(view, clock)
+    return _answer(status, text, {"Location": f"/changes/{view.id}"})
 
 
 async def _ended(
@@ -110,7 +111,5 @@ async def _disconnected(request: Request) -> None:
         pass
 
 
-def _answer(
-    status: HTTPStatus, content: BaseModel, headers: dict[str, str] | None = None
-) -> Response:
-    return Response(content.model_dump_json(), status, headers, "application/json")
+def _answer(status: HTTPStatus, text: str, headers: dict[str, str] | None = None) -> Response:
+    return Response(text, status, headers, "application/json")

@@ -3,6 +3,7 @@
 All are coroutines: the framework would call plain functions in a thread.
 """
 
+from itertools import islice
 from typing import Annotated
 
 from fastapi import Depends, Path, Request
@@ -52,11 +53,15 @@ async def _part(
     known = supervisor.model.systems if kind == "system" else supervisor.model.nodes
     if part not in known:
         hint = _hint(supervisor.model, kind, part, request.url.path)
-        raise UnknownPartError(kind, part, tuple(known), hint)
+        raise UnknownPartError(kind, part, tuple(islice(known, 21)), hint)
     return PartName(part)
 
 
 PartDep = Annotated[PartName, Depends(_part)]
+
+
+_MAX_HINTED = 256
+"""Characters of a path in which the name of a part is looked for."""
 
 
 def _hint(model: SmhModel, kind: str, part: str, path: str) -> str | None:
@@ -66,7 +71,8 @@ def _hint(model: SmhModel, kind: str, part: str, path: str) -> str | None:
         if other == "system" and path.endswith("/parameters"):
             return f"{part} is a system, and only nodes have parameters: see /systems/{part}"
         return f"{part} is a {other}: see {path.replace(f'/{kind}s/', f'/{other}s/', 1)}"
-    name = part
+    # Each shorter prefix is looked up: in a long path that would take quadratic time.
+    name = part[:_MAX_HINTED]
     while "/" in name:
         name = name.rpartition("/")[0]
         if name in model:

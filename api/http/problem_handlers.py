@@ -36,9 +36,10 @@ def add_problem_handlers(app: FastAPI, clock: Clock) -> None:
     async def on_invalid_request(request: Request, error: Exception) -> Response:
         if not isinstance(error, RequestValidationError):
             raise error
-        faults = faults_of(error.errors(), _OUTSIDE)
-        code = None if any(found["loc"][0] == "body" for found in error.errors()) else _BAD_QUERY
-        return await on_our_error(request, InvalidBodyError(faults, code))
+        found = error.errors()
+        code = None if any(fault["loc"][0] == "body" for fault in found) else _BAD_QUERY
+        invalid = InvalidBodyError(faults_of(found, _OUTSIDE), code, count=len(found))
+        return await on_our_error(request, invalid)
 
     app.add_exception_handler(PilothouseError, on_our_error)
     app.add_exception_handler(RequestValidationError, on_invalid_request)

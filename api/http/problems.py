@@ -11,6 +11,7 @@ from fastapi.responses import Response
 
 from api.http.access import UnauthorizedError
 from api.http.body_parsing import (
+    MAX_FAULTS,
     BodyTooLargeError,
     InvalidBodyError,
     MalformedBodyError,
@@ -45,7 +46,7 @@ from service.files.robot_file import InvalidRobotFileError
 from service.files.text_file import UnreadableFileError
 from service.files.waypoint_file import InvalidWaypointsError
 from service.start_task import StartTaskError
-from service.worker import TooComplexError, WorkerBusyError, WorkerClosedError
+from service.worker import OutOfMemoryError, TooComplexError, WorkerBusyError, WorkerClosedError
 
 STATUS_OF: Mapping[type[PilothouseError], HTTPStatus] = {
     PilothouseError: HTTPStatus.INTERNAL_SERVER_ERROR,
@@ -68,6 +69,7 @@ STATUS_OF: Mapping[type[PilothouseError], HTTPStatus] = {
     InvalidBodyError: HTTPStatus.UNPROCESSABLE_ENTITY,
     InvalidModelError: HTTPStatus.UNPROCESSABLE_ENTITY,
     TooComplexError: HTTPStatus.UNPROCESSABLE_ENTITY,
+    OutOfMemoryError: HTTPStatus.UNPROCESSABLE_ENTITY,
     RefusedError: HTTPStatus.CONFLICT,
     IllegalTransitionError: HTTPStatus.CONFLICT,
     BlockedError: HTTPStatus.CONFLICT,
@@ -113,7 +115,7 @@ def problem_of(error: PilothouseError, clock: Clock, instance: str = "") -> Prob
     if isinstance(error, IllegalTransitionError):
         more["available"] = [str(transition) for transition in error.available]
     if isinstance(error, InvalidModelError | InvalidWaypointsError):
-        more["findings"] = [FindingJson.of(finding) for finding in error.findings]
+        more["findings"] = [FindingJson.of(finding) for finding in error.findings[:MAX_FAULTS]]
     if isinstance(error, InvalidBodyError):
         more["errors"] = error.faults
     if isinstance(error, InvalidValueError):

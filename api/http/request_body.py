@@ -6,7 +6,7 @@ from typing import Any
 from fastapi import Request, Response
 from fastapi.routing import APIRoute
 
-from api.http.body_parsing import BodyTooLargeError, parse_json, read_limited
+from api.http.body_parsing import BodyTooLargeError, parse_json, read_limited, require_few_members
 from api.http.limits import ServiceLimits
 
 
@@ -70,6 +70,7 @@ class _JsonRequest(Request):
         read = cls({**request.scope, "headers": headers}, request.receive)
         read._raw = await read_body(request, limits_of(request).json_bytes)
         read._parsed = parse_json(read._raw) if read._raw else None
+        require_few_members(read._parsed)
         return read
 
     async def body(self) -> bytes:

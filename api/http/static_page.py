@@ -35,6 +35,11 @@ class PageFile:
     media_type: str
     etag: str
 
+    @classmethod
+    def of(cls, content: bytes, media_type: str) -> "PageFile":
+        """Return a file with the tag of its content."""
+        return cls(content, media_type, f'"{hashlib.sha256(content).hexdigest()[:16]}"')
+
 
 def page_routes() -> APIRouter:
     """Return the routes of the page: `/` and `/web/...`."""
@@ -44,17 +49,17 @@ def page_routes() -> APIRouter:
     @router.get("/")
     @policy(Permission.READ_PUBLIC)
     async def get_index(request: Request) -> Response:
-        return _answer(found.get(_INDEX), request)
+        return answer_with(found.get(_INDEX), request)
 
     @router.get("/web/{path:path}")
     @policy(Permission.READ_PUBLIC)
     async def get_file(path: str, request: Request) -> Response:
-        return _answer(found.get(path), request)
+        return answer_with(found.get(path), request)
 
     return router
 
 
-def _answer(file: PageFile | None, request: Request) -> Response:
+def answer_with(file: PageFile | None, request: Request) -> Response:
     """Answer with the file, or with 304 if the browser has it; it asks again each time."""
     if file is None:
         raise HTTPException(HTTPStatus.NOT_FOUND)
@@ -71,6 +76,4 @@ def _read_all(folder: Traversable, path: str) -> Iterator[tuple[str, PageFile]]:
         if entry.is_dir():
             yield from _read_all(entry, f"{path}{entry.name}/")
         elif media_type is not None:
-            content = entry.read_bytes()
-            etag = f'"{hashlib.sha256(content).hexdigest()[:16]}"'
-            yield f"{path}{entry.name}", PageFile(content, media_type, etag)
+            yield f"{path}{entry.name}", PageFile.of(entry.read_bytes(), media_type)

@@ -15,7 +15,7 @@ from api.rosbridge.clients import RosbridgeClients, RosbridgeClientsDep
 from api.rosbridge.operations import Authenticate, id_of, read_message, read_operation
 from api.rosbridge.replies import status_text
 from api.rosbridge.served_client import ServedClient
-from api.streaming.websocket_frames import connection_of
+from api.streaming.websocket_frames import Connection, connection_of
 from domain.errors import PilothouseError
 
 router = APIRouter()
@@ -36,9 +36,10 @@ async def rosbridge(socket: WebSocket, clients: RosbridgeClientsDep) -> None:
     """Serve one client until it disconnects, stops reading, or the service ends."""
     await socket.accept()
     address = socket.client.host if socket.client else "unknown"
-    if not await _is_let_in(socket, clients, address):
-        return
     connection = connection_of(socket.scope)
+    if not await _is_let_in(socket, connection, clients, address):
+        return
+    connection.let_in()
     if clients.is_full:
         await _close(socket, _TRY_AGAIN_LATER, "too many clients")
     elif not connection.transport.is_closing():
@@ -46,7 +47,9 @@ async def rosbridge(socket: WebSocket, clients: RosbridgeClientsDep) -> None:
             await ServedClient(bridge, connection, address).serve(socket.receive)
 
 
-async def _is_let_in(socket: WebSocket, clients: RosbridgeClients, address: str) -> bool:
+async def _is_let_in(
+    socket: WebSocket, connection: Connection, clients: RosbridgeClients, address: str
+) -> bool:
     """Wait for the token, if one is needed and the handshake did not carry it.
 
     A client that does not send it gets an error status, and its connection is closed.
@@ -54,12 +57,9 @@ async def _is_let_in(socket: WebSocket, clients: RosbridgeClients, address: str)
     lobby = clients.lobby
     if lobby.access.accepts_header(socket.headers):
         return True
-    if lobby.has_many_strangers:
-        await _close(socket, _TRY_AGAIN_LATER, "too many clients")
-        return False
     said: Mapping[str, Any] = {}
     try:
-        with lobby.count_stranger():
+        with lobby.host_stranger(connection.transport):
             async with asyncio.timeout(AUTH_TIMEOUT_S):
                 message = await socket.receive()
         if message["type"] == "websocket.disconnect":

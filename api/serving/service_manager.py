@@ -6,7 +6,8 @@ The protocol is that of `sd_notify`: a datagram of text to the socket that `NOTI
 import logging
 import os
 import socket
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
+from functools import partial
 from typing import Self
 
 from service.supervisor import Supervisor
@@ -27,8 +28,8 @@ class UnknownManagerError(Exception):
 class ServiceManager:
     """The service manager; it is notified that the service is ready, ticks, and stops.
 
-    It is notified from the tick, so the watchdog is not fed if the supervisor or the event loop
-    hangs.
+    It is notified from the tick, and the watchdog is fed only if nothing of the supervision hangs:
+    not the event loop, not the core, and not the publishing of frames.
 
     Args:
         address: Path of its socket, or `@` and an abstract name; None: there is no manager.
@@ -64,20 +65,26 @@ class ServiceManager:
     def watch(self, supervisor: Supervisor) -> None:
         """Notify the manager of ticks from now on; the first means that the service is ready."""
         if self._address is not None:
-            supervisor.publisher.on_tick.append(self._ticked)
+            supervisor.publisher.on_tick.append(partial(self._ticked, supervisor.hanging))
 
     def say_stopping(self) -> None:
         """Notify the manager that the service stops, so that its end is not taken for a failure."""
         self._tell("STOPPING=1")
 
-    def _ticked(self, period_s: float) -> None:
+    def _ticked(self, hanging: Callable[[], str | None], period_s: float) -> None:
         self._silent_for_s += period_s
         if not self._ready:
             self._ready = True
             self._tell("READY=1")
         elif self._feed_every_s is not None and self._silent_for_s >= self._feed_every_s:
+            self._feed(hanging())
+
+    def _feed(self, hanging: str | None) -> None:
+        if hanging is None:
             self._silent_for_s = 0.0
             self._tell("WATCHDOG=1")
+        else:
+            log.error("the watchdog is not fed: %s", hanging)
 
     def _tell(self, message: str) -> None:
         if self._address is None:

@@ -1,13 +1,11 @@
 """`pilothouse serve`: runs supervisor and web server side by side.
 
-Owns the handling of SIGINT and SIGTERM, and every task.
+Owns the handling of signals, and every task.
 """
 
 import asyncio
-import gc
 import logging
 import os
-import signal
 import socket
 import sys
 from collections.abc import Iterator, Sequence
@@ -18,7 +16,10 @@ from api.app import create_app, prepare
 from api.distribution import installed_version
 from api.http.access import MIN_GOOD_CHARACTERS, Access
 from api.serving.composition import EXAMPLE, Composition, MisuseError, ServeOptions, compose
+from api.serving.output import Output
+from api.serving.process_log import log_to
 from api.serving.service_manager import ServiceManager, UnknownManagerError
+from api.serving.stop_signals import StopSignals
 from api.serving.web_server import ListenError, WebServer, is_loopback, listen, url_of, web_server
 from api.terminal_text import complain, counted, finding_line
 from domain.errors import InvalidModelError
@@ -26,6 +27,7 @@ from domain.findings import Finding
 from service.clock import MonotonicClock
 from service.files.robot_file import InvalidRobotFileError
 from service.files.text_file import UnreadableFileError
+from service.garbage import collect_at_rest, settle_heap
 from service.ros.gateway import RosGateway
 from service.ros.graph.graph import GraphFailedError, UnknownFieldError, UnknownTypeError
 from service.running import TaskFailedError
@@ -35,24 +37,36 @@ from service.supervisor import Supervisor
 log = logging.getLogger(__name__)
 
 _NOT_IN_ROS = (UnknownFieldError, UnknownTypeError)
-SUCCEEDED, FAILED, MISUSED, INTERRUPTED = 0, 1, 2, 130
+SUCCEEDED, FAILED, MISUSED = 0, 1, 2
+_STDOUT, _STDERR = 1, 2
 
 
 def serve(options: ServeOptions) -> int:
     """Run the service until a signal ends it, and return the exit code of the process."""
-    _log_to_stderr(options.log_level)
+    output, errors = Output(_STDOUT), Output(_STDERR)
     try:
-        access = access_of(options, take_token())
+        return _serve(options, output, errors)
+    finally:
+        output.close()
+        logging.shutdown()
+        errors.close()
+
+
+def _serve(options: ServeOptions, output: Output, errors: Output) -> int:
+    try:
+        token = take_token()
+        log_to(errors, options.log_level, token)
+        access = access_of(options, token)
         manager = ServiceManager.of(os.environ)
         composition = compose(options, MonotonicClock())
         sockets = listen(options.host, options.port)
-    except (InvalidTokenError, MisuseError, UnknownManagerError) as error:
+    except (InvalidTokenError, MisuseError, UnknownManagerError, UnreadableFileError) as error:
         return _end(str(error), MISUSED)
     except InvalidModelError as error:
         return _complain_of(options.model or EXAMPLE, error.findings)
     except InvalidRobotFileError as error:
         return _complain_of(options.robot, error.findings)
-    except (ListenError, StartTaskError, *_NOT_IN_ROS, UnreadableFileError) as error:
+    except (ListenError, StartTaskError, *_NOT_IN_ROS) as error:
         return _end(str(error), FAILED)
     supervisor, hosts = composition.supervisor, (options.host, *options.allowed_hosts)
     app = create_app(
@@ -65,11 +79,8 @@ def serve(options: ServeOptions) -> int:
     app.state.exposed = options.anonymous and not is_loopback(options.host)
     prepare(app)
     greeting = "\n".join(greet(composition, options, url_of(sockets, options.host), access))
-    server = web_server(app, lambda: _say_serving(greeting, manager, supervisor))
-    # Objects that exist now stay: without this each garbage collection would scan them again, and
-    # delay the tick.
-    gc.collect()
-    gc.freeze()
+    server = web_server(app, lambda: _say_serving(output, greeting, manager, supervisor))
+    settle_heap()
     with asyncio.Runner(loop_factory=_new_event_loop) as runner:
         return runner.run(run_service(composition, server, sockets, manager))
 
@@ -82,8 +93,8 @@ def access_of(options: ServeOptions, token: str | None) -> Access:
         token: Of the environment; None: there is none.
 
     Raises:
-        MisuseError: The network would have access without a token or --anonymous, or both are
-            given.
+        MisuseError: The network would have access without a token, with one that can be guessed,
+            or without --anonymous; or both are given.
         ListenError: There is no such host.
     """
     if token is None:
@@ -100,6 +111,11 @@ def access_of(options: ServeOptions, token: str | None) -> Access:
             "one of them"
         )
     if len(token) < MIN_GOOD_CHARACTERS:
+        if not is_loopback(options.host):
+            raise MisuseError(
+                f"the token can be guessed: with --host {options.host} it needs at least "
+                f"{MIN_GOOD_CHARACTERS} characters, as from: openssl rand -hex 32"
+            )
         log.warning("the token can be guessed: it has less than %d characters", MIN_GOOD_CHARACTERS)
     return Access.with_token(token)
 
@@ -119,22 +135,31 @@ async def run_service(
     """
     supervisor, gateway = composition.supervisor, composition.gateway
     stopping = asyncio.Event()
-    _on_signals(stopping)
+
+    def stop() -> None:
+        # Also if the vehicle cannot be told.
+        stopping.set()
+        # The robot first, and here: a second signal may end the process before a task runs.
+        supervisor.stop_driving()
+
+    StopSignals(stop).install()
     code = SUCCEEDED
     try:
         async with asyncio.TaskGroup() as tasks:
             supervising = tasks.create_task(supervisor.run(), name="supervisor")
             serving = tasks.create_task(_serve_until(stopping, server, sockets), name="web server")
+            collecting = tasks.create_task(
+                collect_at_rest(supervisor.core, supervisor.clock), name="garbage"
+            )
             offering = tasks.create_task(_offer(gateway), name="gateway") if gateway else None
             await stopping.wait()
             manager.say_stopping()
-            # The robot first: the rest may take a moment.
-            supervisor.stop_driving()
             supervisor.change_ends.stop()
             server.should_exit = True
             await serving
             if offering is not None:
                 offering.cancel()
+            collecting.cancel()
             supervising.cancel()
     except* Exception as failures:
         for failure in _leaves(failures):
@@ -175,20 +200,12 @@ def greet(
     yield "Ctrl-C stops the service and the vehicle; nodes stay as they are."
 
 
-def _say_serving(greeting: str, manager: ServiceManager, supervisor: Supervisor) -> None:
+def _say_serving(
+    output: Output, greeting: str, manager: ServiceManager, supervisor: Supervisor
+) -> None:
     """Print that connections are accepted; the next tick notifies the service manager."""
-    print(greeting, flush=True)
+    output.write(f"{greeting}\n")
     manager.watch(supervisor)
-
-
-def _on_signals(stopping: asyncio.Event) -> None:
-    def stop() -> None:
-        if stopping.is_set():
-            os._exit(INTERRUPTED)
-        stopping.set()
-
-    for number in (signal.SIGINT, signal.SIGTERM):
-        asyncio.get_running_loop().add_signal_handler(number, stop)
 
 
 async def _serve_until(
@@ -231,17 +248,6 @@ def _new_event_loop() -> asyncio.AbstractEventLoop:
     except ImportError:  # There is none for Windows.
         return asyncio.new_event_loop()
     return uvloop.new_event_loop()
-
-
-def _log_to_stderr(level: str) -> None:
-    logging.basicConfig(
-        level=level.upper(),
-        stream=sys.stderr,
-        format="%(asctime)s %(levelname)s %(name)s: %(message)s",
-    )
-    # uvicorn logs every connection at INFO; our own modules log what matters.
-    for name in ("uvicorn.error", "uvicorn.access"):
-        logging.getLogger(name).setLevel("DEBUG" if level == "debug" else "WARNING")
 
 
 def _end(message: str, code: int) -> int:

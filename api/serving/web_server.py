@@ -1,23 +1,32 @@
 """Uvicorn within our process: with our signal handling and our limits."""
 
+import asyncio
 import contextlib
 import errno
 import ipaddress
 import socket
-from collections.abc import Callable, Generator, Sequence
+from collections.abc import Awaitable, Callable, Generator, Sequence
+from functools import partial
+from typing import cast
 
 import uvicorn
 from fastapi import FastAPI
-from uvicorn.protocols.http.httptools_impl import HttpToolsProtocol
 
+from api.app import close_workers
 from api.http.limits import ServiceLimits
+from api.serving.closings import Closings, ClosingsCollector
+from api.serving.connections import Connections
+from api.serving.http_protocol import HttpProtocol, is_stop
+from api.serving.intake import Intake
+from api.serving.turns import Turns
 from api.serving.websocket_protocol import WebSocketProtocol
 
-MAX_HEAD_BYTES = 65_536
 _SEND_BUFFER_BYTES = 65_536
 _GRACE_S = 1
-_OTHER_FILES = 500
-"""Beside those of the stream: connections of requests, pipes to workers, files."""
+_REQUESTS = 500
+"""Connections of requests and of rosbridge, beside those of the stream."""
+_OTHER_FILES = 100
+"""Descriptors kept for what are no connections: listeners, pipes to workers, files."""
 
 
 class ListenError(Exception):
@@ -31,42 +40,43 @@ class WebServer(uvicorn.Server):
     rest of it is wound down. The composition root owns the signals.
     """
 
-    def __init__(self, config: uvicorn.Config, on_started: Callable[[], None]) -> None:
+    def __init__(
+        self,
+        config: uvicorn.Config,
+        connections: Connections,
+        closings: Closings,
+        on_started: Callable[[], None],
+        on_stopping: Callable[[], Awaitable[None]],
+    ) -> None:
         super().__init__(config)
+        self._connections = connections
+        self._closings = closings
         self._on_started = on_started
+        self._on_stopping = on_stopping
 
     async def startup(self, sockets: list[socket.socket] | None = None) -> None:
         """Start to accept connections, and call `on_started`."""
-        await super().startup(sockets)
+        await super().startup([])
+        turns = Turns.of(asyncio.get_running_loop())
+
+        def make() -> Intake:
+            state = self.lifespan.state
+            inner = HttpProtocol(self.config, self.server_state, state, self._closings)
+            return Intake(inner, turns, self._connections, is_stop)
+
+        self._connections.start(sockets or [], make)
         self._on_started()
+
+    async def shutdown(self, sockets: list[socket.socket] | None = None) -> None:
+        """Accept no more, await `on_stopping`, and end what there is."""
+        self._connections.stop()
+        await self._on_stopping()
+        await super().shutdown(sockets)
 
     @contextlib.contextmanager
     def capture_signals(self) -> Generator[None, None, None]:
         """Capture nothing."""
         yield
-
-
-class _Http(HttpToolsProtocol):
-    """HTTP/1.1 whose request heads have a limit; the parser in C has none."""
-
-    _in_head = False
-    _head_bytes = 0
-
-    def on_message_begin(self) -> None:
-        super().on_message_begin()
-        self._in_head = True
-        self._head_bytes = 0
-
-    def on_headers_complete(self) -> None:
-        super().on_headers_complete()
-        self._in_head = False
-
-    def data_received(self, data: bytes) -> None:
-        super().data_received(data)
-        if self._in_head and not self.transport.is_closing():
-            self._head_bytes += len(data)
-            if self._head_bytes > MAX_HEAD_BYTES:
-                self.send_400_response("The head of the request is too large.")
 
 
 def web_server(app: FastAPI, on_started: Callable[[], None]) -> WebServer:
@@ -77,11 +87,14 @@ def web_server(app: FastAPI, on_started: Callable[[], None]) -> WebServer:
         on_started: Called once connections are accepted.
     """
     limits: ServiceLimits = app.state.limits
-    _allow_open_files(limits.stream_clients + _OTHER_FILES)
+    wanted = limits.stream_clients + _REQUESTS
+    most = max(_OTHER_FILES, _allow_open_files(wanted + _OTHER_FILES) - _OTHER_FILES)
+    closings = Closings()
+    app.state.metrics.registry.register(ClosingsCollector(closings))
     config = uvicorn.Config(
         app,
-        http=_Http,
-        ws=WebSocketProtocol,
+        http=HttpProtocol,
+        ws=cast("type[WebSocketProtocol]", partial(WebSocketProtocol, closings=closings)),
         ws_max_size=limits.message_bytes,
         ws_per_message_deflate=False,
         # By `api.streaming.fan_out`, to all at once.
@@ -96,7 +109,10 @@ def web_server(app: FastAPI, on_started: Callable[[], None]) -> WebServer:
     )
     # Now and not at the start of the server, when the tick is running already.
     config.load()
-    return WebServer(config, on_started)
+    connections = Connections(min(wanted, most), closings)
+    # The jobs of requests fail first, so that these are answered.
+    stopping = partial(close_workers, app)
+    return WebServer(config, connections, closings, on_started, stopping)
 
 
 def listen(host: str, port: int) -> list[socket.socket]:
@@ -152,16 +168,18 @@ def url_of(sockets: Sequence[socket.socket], host: str) -> str:
     return f"http://[{host}]:{port}" if ":" in host else f"http://{host}:{port}"
 
 
-def _allow_open_files(count: int) -> None:
-    """Raise the limit of open files and connections, as far as this process may do so."""
+def _allow_open_files(count: int) -> int:
+    """Raise the limit of open files and connections as far as this process may; return it."""
     try:
         import resource
     except ImportError:  # There is none for Windows.
-        return
+        return count
     soft, hard = resource.getrlimit(resource.RLIMIT_NOFILE)
     most = count if hard == resource.RLIM_INFINITY else min(count, hard)
-    if soft != resource.RLIM_INFINITY and soft < most:
-        resource.setrlimit(resource.RLIMIT_NOFILE, (most, hard))
+    if soft == resource.RLIM_INFINITY or soft >= most:
+        return count if soft == resource.RLIM_INFINITY else soft
+    resource.setrlimit(resource.RLIMIT_NOFILE, (most, hard))
+    return most
 
 
 def _listener(family: socket.AddressFamily, address: str, port: int) -> socket.socket:

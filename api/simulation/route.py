@@ -47,7 +47,8 @@ async def simulate(
     scenario provides readings, unless `robot` has `mock: true`.
     """
     raw = await read_body(request, limits_of(request).model_bytes)
-    # Only if the body may request it: a copy takes time on the event loop.
+    # A copy takes time on the event loop: only if the job will be taken and may request it.
+    simulator.require_room()
     live = _copy(request.app.state.simulated, supervisor) if b'"live"' in raw else None
     content = await simulator.call(simulate_posted, raw, supervisor.model_text, live)
     return Response(content, media_type="application/json")

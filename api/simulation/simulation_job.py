@@ -97,7 +97,7 @@ def _read(raw: bytes) -> SimulationBody:
     except ValidationError as error:
         faults = error.errors(include_url=False)
         placed = ({**fault, "loc": place_in_body(fault["loc"])} for fault in faults)
-        raise InvalidBodyError(faults_of(placed)) from error
+        raise InvalidBodyError(faults_of(placed), count=error.error_count()) from error
 
 
 def robot_for(body: SimulationBody, model_text: str, live: LiveCopy | None) -> VirtualService:

@@ -2,11 +2,14 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from types import MappingProxyType
 from typing import Any, TypeAlias
 
-from api.http.body_parsing import check_body, parse_json
+from starlette.datastructures import ImmutableMultiDict
+
+from api.http.body_parsing import check_body, parse_json, require_few_members
 from api.http.schemas.stream import AuthMessage, ReadingMessage, ResyncMessage
-from domain.errors import InvalidValueError
+from domain.errors import InvalidValueError, shortened
 
 TOPICS = (
     "system_state",
@@ -23,6 +26,10 @@ TOPICS = (
 STATE_TOPICS = frozenset(TOPICS) - {"events"}
 
 ClientMessage: TypeAlias = ReadingMessage | ResyncMessage | AuthMessage
+
+_MESSAGES: Mapping[str, type[ClientMessage]] = MappingProxyType(
+    {"reading": ReadingMessage, "resync": ResyncMessage, "auth": AuthMessage}
+)
 
 
 @dataclass(frozen=True, slots=True)
@@ -45,22 +52,24 @@ class StreamQuery:
         return "events" in self.topics
 
 
-def read_stream_query(query: Mapping[str, str]) -> StreamQuery:
-    """Read `topics`, `after` and `epoch`.
+def read_stream_query(query: ImmutableMultiDict[str, str]) -> StreamQuery:
+    """Read `topics`, `after` and `epoch`; `topics` may be repeated.
 
     Raises:
         InvalidValueError: There is an unknown topic, no topic, or an `after` that is not an id.
     """
-    return StreamQuery(_topics(query.get("topics")), _after(query.get("after")), query.get("epoch"))
+    return StreamQuery(
+        _topics(query.getlist("topics")), _after(query.get("after")), query.get("epoch")
+    )
 
 
-def _topics(text: str | None) -> frozenset[str]:
-    if text is None:
+def _topics(texts: list[str]) -> frozenset[str]:
+    if not texts:
         return frozenset(TOPICS)
-    named = [name.strip() for name in text.split(",") if name.strip()]
+    named = [name.strip() for text in texts for name in text.split(",") if name.strip()]
     unknown = [name for name in named if name not in TOPICS]
     if unknown:
-        message = f"there is no topic {unknown[0]!r}; topics: {', '.join(TOPICS)}"
+        message = f"there is no topic {shortened(unknown[0])!r}; topics: {', '.join(TOPICS)}"
         raise InvalidValueError(message, "/topics")
     if not named:
         raise InvalidValueError(f"no topic is named; topics: {', '.join(TOPICS)}", "/topics")
@@ -89,9 +98,11 @@ def read_client_message(message: Mapping[str, Any]) -> ClientMessage:
     if text is None:
         raise InvalidValueError("binary messages are not supported; send JSON as text")
     said = parse_json(text.encode())
+    require_few_members(said)
     kind = said.get("type") if isinstance(said, dict) else None
-    if kind == "auth":
-        return check_body(AuthMessage, said)
-    if kind == "resync":
-        return check_body(ResyncMessage, said)
-    return check_body(ReadingMessage, said)
+    # A list is unhashable, so that a lookup would raise.
+    message_class = _MESSAGES.get(kind) if isinstance(kind, str) else None
+    if message_class is None:
+        message_types = ", ".join(map(repr, _MESSAGES))
+        raise InvalidValueError(f"`type` must be one of {message_types}", "/type")
+    return check_body(message_class, said)

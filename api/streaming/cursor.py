@@ -10,7 +10,8 @@ from service.event_log import EventReader, Gap
 from service.frame_feed import Frame, FrameReader
 from service.supervisor import Supervisor
 
-_EVENTS_AT_ONCE = 32
+_EVENTS_AT_ONCE = 256
+"""Written to a client in one turn, some 100 kB: more than fifty busy clients cause in that time."""
 
 
 class FrameBytes:
@@ -45,6 +46,8 @@ class Cursor:
     def __init__(self, supervisor: Supervisor, query: StreamQuery) -> None:
         """Start with a complete frame, and after the event that `query` names."""
         self.topics = query.topics
+        self.took_complete = False
+        """Whether the frame that was taken last is complete."""
         self._frames = FrameReader(supervisor.frames) if query.wants_state else None
         self._events = (
             EventReader(supervisor.events, query.after, query.epoch) if query.wants_events else None
@@ -65,9 +68,11 @@ class Cursor:
         skipped = 0
         if self._events is not None and self._events.is_behind:
             content += map(encoded.event, self._events.take(_EVENTS_AT_ONCE))
+        self.took_complete = False
         taken = self._frames.take() if self._frames is not None else None
         if taken is not None:
             frame, skipped = taken
+            self.took_complete = frame.full
             content.append(encoded.frame(frame, skipped, self.topics))
         return b"".join(content), skipped
 

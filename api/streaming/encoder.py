@@ -13,13 +13,17 @@ from api.streaming.robot_encoder import RobotEncoder
 from domain.errors import PilothouseError
 from domain.events.event import RecordedEvent
 from domain.timebase import to_seconds
-from service.event_log import Gap
-from service.frame_feed import Frame
+from service.event_log import DEFAULT_CAPACITY, Gap
+from service.frame_feed import PARTS_AT_ONCE, Frame
 from service.frame_publisher import PERIOD
 from service.supervisor import Supervisor
 
-_EVENTS_KEPT = 1_000
+_EVENTS_KEPT = DEFAULT_CAPACITY
+"""All that a client can ask for, some 5 MB: two hundred clients that come back at different places
+would otherwise have the same events encoded again and again."""
 _MEMBERS_AT_ONCE = 200
+_PASSES = 3
+"""Over the parts that changed, each for those that changed during the one before."""
 _PATH = "/ws"
 
 _Shape: TypeAlias = tuple[bool, frozenset[str]]
@@ -36,6 +40,8 @@ class StreamEncoder:
         self._texts: dict[_Shape, tuple[Frame, _StateText]] = {}
         """The newest text of each shape, shared by the clients of the same topics."""
         self._events: dict[int, str] = {}
+        self._prepared = 0
+        """Number of the frame up to which parts are encoded."""
 
     def hello(self, topics: frozenset[str]) -> str:
         """Return the `hello` frame."""
@@ -47,17 +53,26 @@ class StreamEncoder:
             version=installed_version(),
         ).model_dump_json()
 
-    async def prepare(self, frame: Frame, topics: frozenset[str]) -> None:
-        """Encode new members a few at a time, and let other tasks run in between.
+    async def prepare(self, topics: frozenset[str]) -> None:
+        """Encode changed parts a few at a time, and let other tasks run in between.
 
-        Encoding the first frame of a robot with 10,000 parts at once would delay the tick.
+        A client may be sent a complete frame next, and parts go on changing meanwhile: what is left
+        for one turn is little, unless parts change faster than they can be encoded.
         """
-        if "parts" in topics and self._known_text(frame, topics) is None:
-            parts = self._robot.parts
-            new = list(parts.new_ones(frame.parts.items()))
+        if "parts" not in topics:
+            return
+        feed, cache = self._supervisor.frames, self._robot.parts
+        for _ in range(_PASSES):
+            if feed.newest is None:
+                return
+            new = list(cache.new_ones(feed.parts_since(self._prepared)))
+            self._prepared = feed.newest.seq
             for start in range(0, len(new), _MEMBERS_AT_ONCE):
-                parts.learn(new[start : start + _MEMBERS_AT_ONCE])
-                await asyncio.sleep(0)
+                cache.learn(new[start : start + _MEMBERS_AT_ONCE])
+                if len(new) > _MEMBERS_AT_ONCE:
+                    await asyncio.sleep(0)
+            if len(new) <= PARTS_AT_ONCE:
+                return
 
     def frame(self, frame: Frame, skipped: int, topics: frozenset[str]) -> str:
         """Return a `state` frame; clients with the same topics that skip nothing share the text."""

@@ -6,8 +6,11 @@ what was written before is passed over: it skips frames, and does not delay the 
 
 import asyncio
 import logging
+from collections import deque
 from collections.abc import Iterator
 from contextlib import contextmanager
+
+from websockets.frames import Close, CloseCode, Frame, Opcode
 
 from api.streaming.client_input import StreamQuery
 from api.streaming.cursor import Cursor, FrameBytes
@@ -23,6 +26,12 @@ PING_EVERY = seconds(2.2)
 """Clients that miss a ping are dropped when the next one is due, 4.4 s after their last sign."""
 _CLIENTS_AT_ONCE = 100
 """Clients written to before other tasks of the event loop run: about 1 ms."""
+_BYTES_AT_ONCE = 131_072
+"""As `_CLIENTS_AT_ONCE`, for long histories of events and large frames."""
+_REFRESH_SHARE = 200
+"""At most one in so many clients gets a complete frame for its age in one turn."""
+_CLOSE = Frame(Opcode.CLOSE, Close(CloseCode.POLICY_VIOLATION, "you do not read").serialize())
+_CLOSING_S = 1.0
 
 
 class FanOut:
@@ -37,6 +46,8 @@ class FanOut:
         self._encoder = encoder
         self._groups: dict[frozenset[str], Group] = {}
         self._ping_at = supervisor.clock.now() + PING_EVERY
+        self._aged: deque[StreamClient] = deque()
+        """Clients that are due for a complete frame; those that left meanwhile stay for a while."""
         self._woken = asyncio.Event()
         self._task: asyncio.Task[None] | None = None
 
@@ -81,10 +92,14 @@ class FanOut:
         self._woken.set()
 
     def drop(self, transport: asyncio.WriteTransport, address: str) -> None:
-        """Disconnect a client that does not read."""
+        """Disconnect a client that does not read; the close frame reaches it if it reads on."""
         self.dropped += 1
         log.info("dropped client %s: it does not read", address)
-        transport.abort()
+        if not transport.is_closing():
+            transport.write(_CLOSE.serialize(mask=False))
+            transport.close()
+        # What waits for a client is only discarded so.
+        asyncio.get_running_loop().call_later(_CLOSING_S, transport.abort)
 
     async def _run(self) -> None:
         frames, events = self._supervisor.frames, self._supervisor.events
@@ -94,8 +109,9 @@ class FanOut:
                 self._woken.clear()
                 encoded = FrameBytes(self._encoder)
                 ping = self._ping()
+                self._refresh_some()
                 for group in tuple(self._groups.values()):
-                    await self._prepare(group.cursor.topics)
+                    await self._encoder.prepare(group.cursor.topics)
                     await self._write_in_step(group, encoded, ping)
                     await self._write_apart(group, encoded, ping)
                 # Writing to a transport with room never suspends, and a long history takes many
@@ -111,13 +127,15 @@ class FanOut:
         for group in self._groups.values():
             for client in group.take_silent():
                 self.drop(client.transport, client.address)
+            if not self._aged:
+                self._aged += group.due_for_complete(now)
         return PING
 
-    async def _prepare(self, topics: frozenset[str]) -> None:
-        """Encode new parts a few at a time, before the whole frame is needed."""
-        frame = self._supervisor.frames.newest
-        if frame is not None:
-            await self._encoder.prepare(frame, topics)
+    def _refresh_some(self) -> None:
+        """Let a few of the clients that are due take a complete frame next."""
+        most = 1 + sum(len(group.clients) for group in self._groups.values()) // _REFRESH_SHARE
+        for _ in range(min(most, len(self._aged))):
+            self._aged.popleft().resync()
 
     async def _write_in_step(self, group: Group, encoded: FrameBytes, ping: bytes) -> None:
         """Write the same bytes to all clients that have read everything before.
@@ -132,8 +150,9 @@ class FanOut:
         self._wake_if_more(group.cursor)
         self.skipped += skipped * len(group.in_step)
         transports = tuple(group.in_step)
-        for start in range(0, len(transports), _CLIENTS_AT_ONCE):
-            batch = transports[start : start + _CLIENTS_AT_ONCE]
+        count = min(_CLIENTS_AT_ONCE, 1 + _BYTES_AT_ONCE // len(content))
+        for start in range(0, len(transports), count):
+            batch = transports[start : start + count]
             if len(group.in_step) < len(transports):
                 batch = tuple(filter(group.in_step.__contains__, batch))
             for transport in batch:
@@ -143,18 +162,23 @@ class FanOut:
     async def _write_apart(self, group: Group, encoded: FrameBytes, ping: bytes) -> None:
         """Write to each of the other clients what it lacks; then it may rejoin the group."""
         now = self._supervisor.clock.now()
+        written = 0
         for number, client in enumerate(tuple(group.apart.values()), 1):
             if client.is_ready(now):
                 content, skipped = client.cursor.take(encoded)
                 self.skipped += skipped
+                written += len(content)
                 if content or ping:
                     client.transport.write(content + ping)
+                if client.cursor.took_complete:
+                    client.note_complete(len(content))
                 self._wake_if_more(client.cursor)
                 group.take_in_if_level(client)
             elif client.is_stuck(now):
                 group.remove(client)
                 self.drop(client.transport, client.address)
-            if number % _CLIENTS_AT_ONCE == 0:
+            if number % _CLIENTS_AT_ONCE == 0 or written >= _BYTES_AT_ONCE:
+                written = 0
                 await asyncio.sleep(0)
 
     def _wake_if_more(self, cursor: Cursor) -> None:

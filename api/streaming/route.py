@@ -80,17 +80,16 @@ class _Client:
         """
         server = self._server
         if server.access.accepts_header(self._socket.headers):
+            self._connection.let_in()
             return True
-        if server.has_many_strangers:
-            await self.send_away()
-            return False
         try:
-            with server.count_stranger():
+            with server.host_stranger(self._connection.transport):
                 await self._hear_token()
         except UnauthorizedError as error:
             server.refusals.note(HTTPStatus.UNAUTHORIZED, self._address)
             await self._refuse(error, _UNAUTHORIZED)
             return False
+        self._connection.let_in()
         return True
 
     async def send_away(self) -> None:
@@ -112,9 +111,7 @@ class _Client:
             raise _GoneError
         encoder = self._server.encoder
         self._connection.transport.write(text_frame(encoder.hello(query.topics)))
-        complete = self._server.supervisor.frames.complete()
-        if complete is not None:
-            await encoder.prepare(complete, query.topics)
+        await encoder.prepare(query.topics)
         with self._server.fan_out.serve(self._connection, query, self._address) as client:
             await self._listen(client)
 

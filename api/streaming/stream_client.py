@@ -3,11 +3,21 @@
 import asyncio
 
 from api.streaming.cursor import Cursor
+from api.streaming.send_buffer import unacknowledged_bytes
 from domain.timebase import Instant, seconds
 from service.clock import Clock
 
 PATIENCE = seconds(4.5)
 """A client with waiting data that shows no sign of reading for this long is dropped."""
+
+COMPLETE_EVERY = seconds(30)
+"""Time between two complete frames for a client that skips none."""
+_COMPLETE_BYTES_PER_S = 1_000
+"""Of large robots complete frames come less often, so that an idle stream stays small."""
+
+_IN_FLIGHT_BYTES = 4_096
+"""What a slow client may have to read yet when the next frame is written to it. More would only
+grow old in the kernel, which takes 100 kB and more before it says that a client does not read."""
 
 
 class Group:
@@ -48,6 +58,8 @@ class Group:
 
     def take_in_if_level(self, client: "StreamClient") -> None:
         """Let a client that has received and read everything rejoin the others."""
+        if client.is_slow:
+            return
         has_all = client.cursor.position == self.cursor.position
         has_taken = not client.transport.get_write_buffer_size()
         # It may have disconnected during the write.
@@ -58,14 +70,22 @@ class Group:
         """Remove and return the clients that missed a ping; the others must answer the next one.
 
         Clients with waiting data may not have received the ping yet; see `StreamClient.is_stuck`.
+        The same holds if the kernel has data for them: these are slow from now on.
         """
         free = [c for c in self.clients if not c.transport.get_write_buffer_size()]
-        silent = tuple(client for client in free if client.owes_answer)
+        late = [client for client in free if client.owes_answer]
+        silent = tuple(client for client in late if not client.still_reads())
         for client in silent:
             self.remove(client)
+        for client in late:
+            self.part_from(client)
         for client in free:
             client.owes_answer = True
         return silent
+
+    def due_for_complete(self, now: Instant) -> list["StreamClient"]:
+        """Return the clients whose last complete frame is too long ago."""
+        return [client for client in self.clients if now >= client.complete_at]
 
 
 class StreamClient:
@@ -85,6 +105,11 @@ class StreamClient:
         self.address = address
         self.owes_answer = False
         """Whether it has not answered the last ping."""
+        self.is_slow = False
+        """Whether it reads less than is published: it then gets a frame when it has read most."""
+        self.complete_at = clock.now() + COMPLETE_EVERY
+        """When it gets a complete frame, unless it gets one before."""
+        self._unacknowledged = 0
         self._group = group
         self._clock = clock
         self._waiting = 0
@@ -112,10 +137,42 @@ class StreamClient:
     def is_ready(self, now: Instant) -> bool:
         """Tell whether all earlier data was sent, and more can be written."""
         waiting = self.transport.get_write_buffer_size()
+        if self.is_slow:
+            return self._has_read_most(waiting, now) and not self.transport.is_closing()
         if waiting == 0 or waiting < self._waiting:
             self._read_at = now
         self._waiting = waiting
         return waiting == 0 and not self.transport.is_closing()
+
+    def still_reads(self) -> bool:
+        """Tell whether a client that owes an answer may only be slow.
+
+        If the kernel has data for it, the ping may be behind that: the client has `PATIENCE` from
+        now on to read some of it.
+        """
+        if self.is_slow:
+            return True
+        self._unacknowledged = unacknowledged_bytes(self.transport)
+        self.is_slow = self._unacknowledged > 0
+        self._read_at = self._clock.now()
+        return self.is_slow
+
+    def note_complete(self, size: int) -> None:
+        """Note that a complete frame was written; the next one is due after some time.
+
+        Args:
+            size: Of what was written, bytes.
+        """
+        pause = max(COMPLETE_EVERY, seconds(size / _COMPLETE_BYTES_PER_S))
+        self.complete_at = self._clock.now() + pause
+
+    def _has_read_most(self, waiting: int, now: Instant) -> bool:
+        """Tell whether little is left to read; note it if that became less."""
+        left = waiting + unacknowledged_bytes(self.transport)
+        if left < self._unacknowledged:
+            self._read_at = now
+        self._unacknowledged = left
+        return waiting == 0 and left <= _IN_FLIGHT_BYTES
 
     def is_stuck(self, now: Instant) -> bool:
         """Tell whether it has neither read waiting data nor answered a ping for `PATIENCE`."""

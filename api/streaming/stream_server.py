@@ -1,7 +1,10 @@
 """The parts that all stream clients share: encoder, fan-out, limits and access."""
 
+import asyncio
+from collections import OrderedDict
 from collections.abc import Iterator
 from contextlib import contextmanager
+from http import HTTPStatus
 from typing import Annotated
 
 from fastapi import Depends, FastAPI
@@ -14,8 +17,8 @@ from api.streaming.fan_out import FanOut
 from service.supervisor import Supervisor
 
 MAX_STRANGERS = 100
-"""Clients that have not sent the token yet; counted apart, so that they take no places of others.
-"""
+"""Clients that have not sent the token yet; the oldest is closed for a new one, so that nobody can
+keep others out by just connecting."""
 
 
 class StreamServer:
@@ -30,8 +33,8 @@ class StreamServer:
         self.encoder = StreamEncoder(supervisor)
         self.fan_out = FanOut(supervisor, self.encoder)
         self.clients = 0
-        self.strangers = 0
-        """Connections that need the token and have not sent it yet."""
+        self._strangers: OrderedDict[asyncio.WriteTransport, None] = OrderedDict()
+        """Connections that need the token and have not sent it yet, the oldest first."""
         self._max_clients = max_clients
 
     @property
@@ -40,9 +43,9 @@ class StreamServer:
         return self.clients >= self._max_clients
 
     @property
-    def has_many_strangers(self) -> bool:
-        """Tell whether the maximum number of clients without a token is reached."""
-        return self.strangers >= MAX_STRANGERS
+    def strangers(self) -> int:
+        """Return the number of clients that have not sent the token yet."""
+        return len(self._strangers)
 
     @contextmanager
     def count_client(self) -> Iterator[None]:
@@ -54,13 +57,21 @@ class StreamServer:
             self.clients -= 1
 
     @contextmanager
-    def count_stranger(self) -> Iterator[None]:
-        """Count one more client without a token while the context is open."""
-        self.strangers += 1
+    def host_stranger(self, transport: asyncio.WriteTransport) -> Iterator[None]:
+        """Count a client without a token while the context is open; the oldest makes room for it.
+
+        Args:
+            transport: Of the client; closed if it is the one that makes room.
+        """
+        if len(self._strangers) >= MAX_STRANGERS:
+            oldest, _ = self._strangers.popitem(last=False)
+            self.refusals.note(HTTPStatus.SERVICE_UNAVAILABLE, "a client without a token")
+            oldest.abort()
+        self._strangers[transport] = None
         try:
             yield
         finally:
-            self.strangers -= 1
+            self._strangers.pop(transport, None)
 
 
 def stream_server(app: FastAPI) -> StreamServer:

@@ -42,6 +42,8 @@ class Connection:
     """For whole frames, once the client is accepted."""
     listen: Callable[[Listener | None], None]
     """Sets the listener from now on; None: none."""
+    let_in: Callable[[], None]
+    """Tells that the client has shown that it has access, and may send whatever frames it likes."""
 
 
 def connection_of(scope: Scope) -> Connection:

@@ -43,7 +43,8 @@ reason says why the robot is in ERROR (`GET /system_state`). Both have the same 
 | `path` | from the requested part down to the node that causes it; for an error, the signal |
 | `value`, `threshold` | the current value, and what it is compared with; `null` if there is none |
 | `since_at` | since when |
-| `root_cause` | whether it is a cause itself rather than the effect of another one |"""
+| `root_cause` | whether it is a cause itself rather than the effect of another one |
+| `refuses` | whether a request is rejected because of it; false: it is only shown |"""
 
 _SIGNALS = """\
 `error_code` is the sum of the bits of all active errors. An error clears when its cause does, but

@@ -6,6 +6,7 @@ from prometheus_client.metrics_core import Metric
 
 from api.http.schemas.simulation import SimulationBody
 from api.robot_app import create_robot_app
+from api.serving.closings import Closings, ClosingsCollector
 from api.simulation.simulation import Simulation
 from api.simulation.simulation_job import robot_for
 from docs.generate.markdown import code, page, table
@@ -54,6 +55,8 @@ def _collected() -> list[Metric]:
     robot = robot_for(body, _MODEL.read_text(encoding="utf-8"), None)
     Simulation(body, robot).run()
     app = create_robot_app(robot.supervisor, InlineJobs())
+    # By the server in a live service.
+    app.state.metrics.registry.register(ClosingsCollector(Closings()))
     return [
         family
         for family in app.state.metrics.registry.collect()

@@ -17,6 +17,7 @@ _ONLY_HTTP = {
     "NO_MOCK": (404, "Signals are not mocked."),
     "TOO_MANY_REQUESTS": (429, "More requests per second than one address may send."),
     "UNKNOWN_PATH": (404, "Nothing exists at this path."),
+    "URI_TOO_LONG": (414, "The path and its query are too long."),
     "UNSUPPORTED_TYPE": (415, "A page sent a body that is not JSON, YAML or CSV."),
 }
 # Where the docstring of a class is meant for readers of the source.

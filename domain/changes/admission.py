@@ -53,7 +53,7 @@ class ChangeAdmission:
             self._check_legal(request, estop)
         goal = goal_of(self._model, request, self._facts)
         blockers = self._blockers(request, goal, estop)
-        if _refuse(blockers):
+        if refuse(blockers):
             raise BlockedError(part_of(request), blockers)
         return goal
 
@@ -79,7 +79,7 @@ class ChangeAdmission:
             # Nothing blocks a legal transition towards rest, so nodes need not be checked.
             and (
                 transition in TOWARDS_REST
-                or not _refuse(self.blockers(TransitionRequest(part, transition), estop))
+                or not refuse(self.blockers(TransitionRequest(part, transition), estop))
             )
         )
 
@@ -155,7 +155,14 @@ class ChangeAdmission:
         value = None if code in ADVISORY else str(known)
         words = facts.why_unknown if code in ADVISORY else _WORDS[known]
         path = self._path(part, node)
-        return Blocker(code, f"{node} {words}", path, value, since=facts.state_since)
+        return Blocker(
+            code,
+            f"{node} {words}",
+            path,
+            value,
+            since=facts.state_since,
+            refuses=code not in ADVISORY,
+        )
 
     def _path(self, part: PartName, node: PartName) -> tuple[str, ...]:
         """Return one path down from the requested part to the node."""
@@ -169,8 +176,9 @@ class ChangeAdmission:
         return (part, node)
 
 
-def _refuse(blockers: Iterable[Blocker]) -> bool:
-    return any(blocker.code not in ADVISORY for blocker in blockers)
+def refuse(blockers: Iterable[Blocker]) -> bool:
+    """Tell whether a request with these blockers is rejected."""
+    return any(blocker.refuses for blocker in blockers)
 
 
 def part_of(request: ChangeRequest) -> PartName:

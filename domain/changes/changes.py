@@ -3,7 +3,9 @@
 What a change wants of its nodes is the work of `node_steps.py`.
 """
 
+from collections import deque
 from collections.abc import Mapping, Sequence
+from itertools import islice
 
 from domain.changes.node_steps import NodeSteps
 from domain.changes.plan import ChangeGoal
@@ -23,6 +25,8 @@ from domain.timebase import Instant
 KEPT_CHANGES = 1_000
 KEPT_PURSUITS = 50_000
 """Pursuits of all changes together; bounds the memory of large changes."""
+STARTS_AT_ONCE = 200
+"""Nodes that one turn starts. A large change goes on in later ones, and others come in between."""
 _TOLD_ERRORS = 20
 """Largest number of errors in the reason of one change; more would not be read."""
 
@@ -43,6 +47,7 @@ class Changes:
         self._steps = NodeSteps(parts, settings, outbox, health, self._take_end)
         self._changes: dict[ChangeId, Change] = {}
         self._running: dict[ChangeId, Change] = {}
+        self._to_start: deque[Pursuit] = deque()
         self._count = 0
 
     # --- what can be seen ------------------------------------------------------------------------
@@ -66,6 +71,11 @@ class Changes:
     def wake_at(self) -> Instant | None:
         """Return the next deadline; None: there is none."""
         return self._steps.wake_at()
+
+    @property
+    def has_more(self) -> bool:
+        """Tell whether nodes are still to be started."""
+        return bool(self._to_start)
 
     def step_in_flight(self, node: PartName) -> Step | None:
         """Return the step that a node is executing."""
@@ -97,8 +107,10 @@ class Changes:
             change.pursuits[node] = Pursuit(identity, node, node_goal)
             change.open.add(node)
             self._steps.add(change.pursuits[node])
-        for node in goal.nodes:
-            self._steps.start(node, now)
+        to_start = iter(list(change.pursuits.values()))
+        for pursuit in islice(to_start, STARTS_AT_ONCE):
+            self._steps.start(pursuit, now)
+        self._to_start.extend(to_start)
         self._conclude(change, now)
         self._forget_old()
         return identity
@@ -130,6 +142,18 @@ class Changes:
     def pass_time(self, now: Instant) -> None:
         """Handle all deadlines up to `now`."""
         self._steps.pass_time(now)
+
+    def go_on(self, now: Instant) -> None:
+        """Start some more nodes of the change that began first."""
+        if not self._to_start:
+            return
+        identity = self._to_start[0].change
+        if (change := self._changes.get(identity)) is not None:
+            self._outbox.resume(now, change.cause, change.request.actor)
+        for _ in range(STARTS_AT_ONCE):
+            if not self._to_start or self._to_start[0].change != identity:
+                return
+            self._steps.start(self._to_start.popleft(), now)
 
     # --- inside ----------------------------------------------------------------------------------
 

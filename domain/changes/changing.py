@@ -2,7 +2,7 @@
 
 from itertools import islice
 
-from domain.changes.admission import ChangeAdmission
+from domain.changes.admission import ChangeAdmission, refuse
 from domain.changes.changes import Changes
 from domain.changes.plan import ChangeGoal, next_steps, presumed_steps
 from domain.changes.record import Step
@@ -75,6 +75,15 @@ class Changing(Concern):
         """Handle all deadlines up to `now`."""
         self._changes.pass_time(now)
 
+    @property
+    def has_more(self) -> bool:
+        """Tell whether nodes of a large change are still to be started."""
+        return self._changes.has_more
+
+    def go_on(self, now: Instant) -> None:
+        """Start some more nodes of large changes."""
+        self._changes.go_on(now)
+
     def settle(self, now: Instant) -> bool:
         """Begin the next change that restores a node; return whether one began."""
         return self._restoring.begin_next(now)
@@ -124,7 +133,8 @@ class Changing(Concern):
         views = []
         for mode in self._parts.model.modes_of(part):
             blockers = self._admission.blockers(ModeRequest(part, mode), stop)
-            views.append(ModeView(mode, not blockers, blockers))
+            can_enter = self._backend.available and not refuse(blockers)
+            views.append(ModeView(mode, can_enter, blockers))
         return tuple(views)
 
     def available_transitions(self, part: PartName) -> tuple[Transition, ...]:

@@ -82,10 +82,15 @@ class NodeSteps:
         """Take over a node, whose earlier pursuit was dropped; `start` lets it move."""
         self._pursuits[pursuit.node] = pursuit
 
-    def start(self, node: PartName, now: Instant) -> None:
-        """Plan the steps of an added pursuit, and start the first unless one is in flight."""
-        self._foresee(self._pursuits[node])
-        self._advance(node, now)
+    def start(self, pursuit: Pursuit, now: Instant) -> None:
+        """Plan the steps of an added pursuit, and start the first unless one is in flight.
+
+        It may have been dropped since it was added, or a report may have started it.
+        """
+        if pursuit.steps or pursuit.waiting or self._pursuits.get(pursuit.node) is not pursuit:
+            return
+        self._foresee(pursuit)
+        self._advance(pursuit.node, now)
 
     def drop(self, pursuit: Pursuit, status: StepStatus, now: Instant) -> None:
         """Start no further step of a node; one in flight ends by itself.
@@ -204,7 +209,8 @@ class NodeSteps:
         facts = self._facts[step.node]
         after = f"within {to_seconds(self._allowed(step)):g} s"
         if facts.reachable is False:
-            self._end_step(step, StepStatus.FAILED, f"the node {facts.why_unknown}", now)
+            # Whether it still did what was asked of it is not known.
+            self._end_step(step, StepStatus.TIMED_OUT, f"the node {facts.why_unknown}", now)
         elif step.facts_asked:
             error = f"not done {after}, and the node did not answer a query of its state"
             self._end_step(step, StepStatus.TIMED_OUT, error, now)
@@ -228,7 +234,10 @@ class NodeSteps:
         facts, node = self._facts[pursuit.node], pursuit.node
         state = facts.known_state
         if state is LifecycleState.UNKNOWN:
-            self._finish(pursuit, StepStatus.FAILED, f"{node} {facts.why_unknown}", now)
+            # An absent node was asked for nothing: that fails. What became of one that had begun is
+            # not known.
+            outcome = StepStatus.TIMED_OUT if pursuit.has_begun else StepStatus.FAILED
+            self._finish(pursuit, outcome, f"{node} {facts.why_unknown}", now)
         elif pursuit.facts_asked:
             why = f"{node} is still {state}; no step was started"
             self._finish(pursuit, StepStatus.FAILED, why, now)

@@ -67,6 +67,11 @@ class Pursuit:
     outcome: StepStatus = StepStatus.RUNNING
     error: str | None = None
 
+    @property
+    def has_begun(self) -> bool:
+        """Tell whether the node was asked for a step of this change."""
+        return any(step.started_at is not None for step in self.steps)
+
     def plan(self, actions: tuple[Action, ...]) -> None:
         """Replace the pending steps, if the path to the goal has changed."""
         done = [step for step in self.steps if step.status is not StepStatus.PENDING]

@@ -7,7 +7,14 @@ from domain.findings import Blocker, Fact
 from domain.health.error_slot import ErrorSlot
 from domain.health.held_readings import HeldReadings
 from domain.health.signal_reasons import kept_reason, pressed_reason, stale_reason, value_reason
-from domain.health.signals import STALE_DATA, STALE_DATA_BIT, Condition, Recovery, SignalSettings
+from domain.health.signals import (
+    ESTOP,
+    STALE_DATA,
+    STALE_DATA_BIT,
+    Condition,
+    Recovery,
+    SignalSettings,
+)
 from domain.inputs import Reading
 from domain.snapshot import SignalView
 from domain.timebase import Duration, Instant, to_seconds
@@ -148,6 +155,7 @@ class SignalMonitor:
             value=value,
             threshold=threshold,
             since=slot.since if since is None else since,
+            refuses=slot.error == ESTOP,
         )
 
     def _make_view(self, now: Instant) -> SignalView:

@@ -7,6 +7,7 @@ Source: micro-ROS system_modes, `mode.cpp` (`StateAndMode::from_string`), `mode_
 import difflib
 from collections.abc import Collection
 
+from domain.errors import shortened
 from domain.lifecycle import LifecycleState
 from domain.parameters import ParameterValue
 from domain.parts.system_model import Rule
@@ -16,6 +17,8 @@ from service.files.smh_block import SmhBlock
 from service.files.yaml_tree import Node
 
 _LABELS = [str(state) for state in LifecycleState]
+_MAX_LABEL = 40
+"""Characters compared with the known states: the comparison takes quadratic time."""
 _RULE_KEYS = ("if_target", "if_part", "new_target")
 
 
@@ -131,9 +134,10 @@ def _pair(
 ) -> StateAndMode | None:
     """Combine state and mode; only active has a mode."""
     if label not in _LABELS:
-        near = difflib.get_close_matches(str(label).lower(), _LABELS, n=1)
+        near = difflib.get_close_matches(str(label)[:_MAX_LABEL].lower(), _LABELS, n=1)
         hint = f"did you mean {near[0]}?" if near else "known: active, inactive, unconfigured, ..."
-        message = f"{where}: unknown state {label!r}; {hint}"
+        shown = shortened(label) if isinstance(label, str) else label
+        message = f"{where}: unknown state {shown!r}; {hint}"
         block.complain(place, "UNKNOWN_STATE", message)
         return None
     state = LifecycleState(str(label))

@@ -29,13 +29,13 @@ async def start_anew(robot: HttpRobot) -> None:
     await robot.pass_time(2)
 
 
-async def test_the_change_fails_naming_the_node_and_the_system_says_why_it_deviates() -> None:
+async def test_the_change_times_out_naming_the_node_and_the_system_says_why_it_deviates() -> None:
     async with http_robot(settings=RESTORED) as robot:
         change = await robot.get(await kill_during_a_mode_change(robot))
         system = await robot.get("/systems/actuation")
 
     assert (change["status"], change["reason"]) == (
-        "failed",
+        "timed_out",
         "drive_base: activate: the node is unreachable",
     )
     assert (system["converged"], system["target"]["mode"]) == (False, "PERFORMANCE")

@@ -103,9 +103,12 @@ def test_a_track_is_seen_before_it_is_driven_and_drives_pauses_and_ends_as_asked
 
     button(desktop, "Pause").click()
     expect(sentence(desktop)).to_have_text(
-        re.compile(r"^RUNNING: task t\d+ at \d+ % is paused: operator \(page\)$"), timeout=15_000
+        re.compile(r"^PAUSED: task t\d+ at \d+ %, held by operator \(paused on the page\)$"),
+        timeout=15_000,
     )
-    expect(desktop.get_by_role("list", name="Holds")).to_contain_text("operator: operator (page)")
+    expect(desktop.get_by_role("list", name="Holds")).to_contain_text(
+        "operator: paused on the page"
+    )
     button(desktop, "Resume").click()
     expect(sentence(desktop)).to_contain_text("RUNNING")
 

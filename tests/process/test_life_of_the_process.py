@@ -205,6 +205,6 @@ def test_an_invalid_model_is_told_with_its_places_and_nothing_is_started(
 def test_a_model_that_is_not_there_is_told_in_one_line(tmp_path: Path) -> None:
     code, _, errors = run("serve", str(tmp_path / "robot.yaml"), "--port", "0")
 
-    assert code == 1
+    assert code == 2
     assert errors.count("\n") == 1
     assert "Traceback" not in errors

@@ -77,8 +77,9 @@ class Sequences(RuleBasedStateMachine):
         mode = data.draw(st.sampled_from([*modes, ModeName("NO_SUCH")]))
         enterable = {view.mode: view for view in self.robot.core.modes(part)}.get(mode)
         begun = self.ask(ModeRequest(part, mode)).change
-        if enterable is not None and enterable.can_enter:
-            assert begun is not None, "can_enter, and yet refused"
+        taken = begun is not None
+        assert taken is (enterable is not None and enterable.can_enter)
+        if begun is not None:
             assert self.robot.change(begun).request == ModeRequest(part, mode)
 
     @rule(part=PARTS, transition=st.sampled_from(Transition))

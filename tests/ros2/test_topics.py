@@ -1,5 +1,6 @@
 """Signals and vehicle over real topics: somebody else publishes, and hears what we publish."""
 
+import asyncio
 import math
 from collections.abc import AsyncIterator, Callable
 from typing import TYPE_CHECKING, Any
@@ -186,11 +187,14 @@ async def test_a_command_to_drive_is_heard_as_a_twist(
     somebody.subscribe("/cmd_vel", command, Qos.EVENTS, lambda message: message, heard.append)
     robot = vehicle(link, command={"topic": "/cmd_vel", "type": command})
     robot.start(lambda _: None)
+    running = asyncio.create_task(robot.run())
 
     def drive() -> None:
         robot.send(Drive(DriveCommand(1.5, 0.3)))
 
     await until(every_time(drive, until_it_is=lambda: bool(heard)), PAUSE_S)
+    running.cancel()
+    await asyncio.wait([running])
 
     twist = inner(heard[0])
     assert (twist.linear.x, twist.linear.y) == (1.5, 0.0)

@@ -14,6 +14,10 @@ from typing import Any, TypeAlias
 
 from domain.errors import InvalidValueError
 from domain.timebase import seconds, to_seconds
+from domain.vehicle import DriveCommand
+from service.clock import since_epoch
+from service.pacing import Alarm
+from service.ros.graph.drive import Deadman, drive_message
 from service.ros.graph.graph import (
     Fields,
     GraphFailedError,
@@ -97,6 +101,8 @@ class FakeGraph:
         """How topics are carried, as the last of us who named one asked for."""
         self.servers: Counter[str] = Counter()
         """How many servers of each service are known."""
+        self.drive_outputs: list[FakeDriveOutput] = []
+        """Every output for drive commands."""
         self.closed = False
         self._published: defaultdict[str, list[Fields]] = defaultdict(list)
         self._latched: dict[str, Fields] = {}
@@ -123,6 +129,13 @@ class FakeGraph:
         """Know every field but one."""
         if "no_such_field" in path:
             raise UnknownFieldError(type_name, "no_such_field", ["data"])
+
+    def drive_output(self, topic: str, type_name: str, wheelbase_m: float) -> "FakeDriveOutput":
+        """Return an output that publishes in this graph."""
+        self._note(topic, type_name, Qos.COMMANDS)
+        output = FakeDriveOutput(self, topic, type_name, wheelbase_m)
+        self.drive_outputs.append(output)
+        return output
 
     async def wait_failed(self) -> None:
         """Wait until the test calls `fail`."""
@@ -326,6 +339,44 @@ class FakeClient:
             InvalidValueError: A number is beyond what ROS carries.
         """
         return await self._graph._ask(self._service, request, within_s)  # noqa: SLF001
+
+
+class FakeDriveOutput:
+    """An output for drive commands in a `FakeGraph`; a `DriveOutput`."""
+
+    def __init__(self, graph: FakeGraph, topic: str, type_name: str, wheelbase_m: float) -> None:
+        self._graph = graph
+        self._topic = topic
+        self._type_name = type_name
+        self._wheelbase_m = wheelbase_m
+        self._deadman = Deadman()
+        self.works = True
+        self._alarm = Alarm(self._deadman.wake_at, self._advance, graph.clock)
+
+    def send(self, command: DriveCommand) -> None:
+        """Publish a command."""
+        self._publish(command)
+        self._deadman.take(command, self._graph.clock.now())
+        self._alarm.check()
+
+    async def run(self) -> None:
+        """Command speed 0 when a command expires, until cancelled."""
+        try:
+            await self._alarm.run()
+        finally:
+            if self._deadman.wake_at() is not None:
+                self._publish(self._deadman.stop())
+
+    def _advance(self) -> None:
+        stop = self._deadman.advance(self._graph.clock.now())
+        if stop is not None:
+            self._publish(stop)
+
+    def _publish(self, command: DriveCommand) -> None:
+        clock = self._graph.clock
+        now = since_epoch(clock.wall_time(clock.now()))
+        message = drive_message(command, self._type_name, self._wheelbase_m, now)
+        self._graph._publish(self._topic, message, latched=False)  # noqa: SLF001
 
 
 class FakePublisher:

@@ -132,7 +132,7 @@ class Pipe(asyncio.WriteTransport):
     @property
     def connection(self) -> Connection:
         """Return it as a server offers it."""
-        return Connection(self, lambda _: None)
+        return Connection(self, lambda _: None, lambda: None)
 
     def write(self, data: bytes | bytearray | memoryview) -> None:
         """Keep what is written."""

@@ -61,7 +61,7 @@ class WebSocketClient(asyncio.WriteTransport):
             "server": ("127.0.0.1", 8000),
             "subprotocols": [],
             "state": {},
-            "extensions": {EXTENSION: {"connection": Connection(self, self._listen)}},
+            "extensions": {EXTENSION: {"connection": Connection(self, self._listen, lambda: None)}},
         }
         self._to_app: asyncio.Queue[Message] = asyncio.Queue()
         self._from_app: asyncio.Queue[Message] = asyncio.Queue()
@@ -162,6 +162,9 @@ class WebSocketClient(asyncio.WriteTransport):
     def is_closing(self) -> bool:
         """Tell whether nothing can be sent to this client any more."""
         return self.cut_off or self.closed is not None
+
+    def close(self) -> None:
+        self.abort()
 
     def abort(self) -> None:
         """Cut this client off."""

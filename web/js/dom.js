@@ -34,7 +34,9 @@ export function renderOnce(node, key, build) {
 }
 
 const PATHS = {
-  idle: "M9 7v10M15 7v10",
+  idle: "M7 7h10v10H7z",
+  paused: "M9 7v10M15 7v10",
+  stopping: "M9 7v10M15 7v10M3 21h18",
   running: "M8 6l10 6-10 6z",
   error: "M12 3.5L22 20.5H2zM12 10v5M12 17.6v.4",
   lost: "M3 3l18 18M5 12a10 10 0 0 1 4-2.6M19 12a10 10 0 0 0-5-3M8.5 15.5a5 5 0 0 1 5-1.3M12 19v.2",

@@ -4,6 +4,7 @@ import { request } from "/web/js/api.js";
 import { localNow, ServerClock } from "/web/js/clock.js";
 import { Connection } from "/web/js/connection.js";
 import { PathWatch } from "/web/js/path_watch.js";
+import { robotSentence } from "/web/js/state_sentence.js";
 import { emptyState, fold } from "/web/js/store.js";
 import "/web/js/elements/token_form.js";
 import "/web/js/elements/pills.js";
@@ -66,14 +67,18 @@ function draw() {
   };
   document.body.dataset.contact = contact.level;
   selected ??= Object.values(state.parts).find((part) => part.kind === "system")?.name ?? null;
-  const view = { state, contact, mock, selected, preview, serverNow: clock.now() };
+  const serverNow = clock.now();
+  // Without contact nobody knows whether what began before still lasts.
+  const isLost = contact.level === "lost" && state.at !== null;
+  const knownAt = isLost ? Date.parse(state.at) : serverNow;
+  const view = { state, contact, mock, selected, preview, serverNow, knownAt };
   for (const element of elements) element.update(view);
 }
 
 /** The title is also visible for a hidden page, so it does not wait for an animation frame. */
 function title() {
   const level = connection.level();
-  const known = level === "lost" ? "No contact" : (state.systemState?.state ?? "Connecting");
+  const known = level === "lost" ? "No contact" : (robotSentence(state)?.word ?? "Connecting");
   const text = `${tokenForm.isOpen ? "Token needed" : known} · Pilothouse`;
   if (document.title !== text) document.title = text;
 }

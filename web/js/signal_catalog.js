@@ -1,6 +1,19 @@
 /** How the signals of a robot are named, shown and, with the mock, set. */
 
-const percent = (value) => [String(Number((value * 100).toFixed(1))), "%"];
+// Five digits that count, and never fewer than whole units.
+const FIGURE = new Intl.NumberFormat("en", {
+  useGrouping: false,
+  maximumSignificantDigits: 5,
+  maximumFractionDigits: 0,
+  roundingPriority: "morePrecision",
+});
+
+/** A number with as many digits as one can use: 1800.1, 0.012346, 123456. */
+export function figure(value) {
+  return FIGURE.format(value);
+}
+
+const percent = (value) => [figure(value * 100), "%"];
 const fixed = (digits, unit) => (value) => [value.toFixed(digits), unit];
 const words = (value) => [String(value).toLowerCase().replaceAll("_", " "), ""];
 
@@ -12,7 +25,7 @@ const CATALOG = {
   },
   estop: {
     label: "E-stop signal",
-    show: (value) => [value ? "pressed" : "released", ""],
+    show: (value) => [value ? "pressed" : "not pressed", ""],
     control: { kind: "switch", label: "Pressed" },
   },
   gps_accuracy: {
@@ -32,8 +45,14 @@ const CATALOG = {
   },
 };
 
-/** Return label, `show(value) -> [text, unit]` and control; unknown signals are shown plainly. */
+/** Return label, `show(value) -> [text, unit]` and control; unknown signals have no control. */
 export function describe(name, unit) {
   const label = name.replaceAll("_", " ");
-  return CATALOG[name] ?? { label, show: (value) => [String(value), unit ?? ""], control: null };
+  return CATALOG[name] ?? { label, show: (value) => plainly(value, unit), control: null };
+}
+
+function plainly(value, unit) {
+  if (typeof value === "boolean") return [value ? "yes" : "no", ""];
+  if (typeof value !== "number") return words(value);
+  return unit === "ratio" ? percent(value) : [figure(value), unit ?? ""];
 }

@@ -1,27 +1,67 @@
-/** The sentence that summarizes the state of the robot. */
+/** The sentences that tell the state of the robot: pure functions.
+ *
+ * `api/cli/monitor/sentence.py` has the same rules; one test runs both over the same cases.
+ */
 
 import { currentTask } from "/web/js/store.js";
-import { taskWords } from "/web/js/task_words.js";
-import { timeOfDay, wholeSeconds } from "/web/js/words.js";
+import { percent, speed, TASK_STATUS, waypointWords } from "/web/js/task_words.js";
+import { label, timeOfDay, wholeSeconds } from "/web/js/words.js";
 
-/** The sentence at the top: `{level, word, text, more}`, the most important reason first. */
+/** Below this a vehicle stands, m/s; the service uses the same limit. */
+const STANDSTILL_MPS = 0.05;
+const NAMED = 3;
+/** Words for a vehicle that should stand and does not, or of which it is not known. */
+const ALARMS = { STILL_MOVING: "STILL MOVING", STANDSTILL_UNKNOWN: "STANDSTILL UNKNOWN" };
+const NO_CONTACT = ["lost", "lost"];
+
+/** The sentence at the top of the page: `{level, sign, word, text, more}`.
+ *
+ * `level` is calm, attention, error, late or lost; `sign` names the icon; `more` has further lines.
+ */
 export function stateSentence(state, contact) {
-  const { systemState } = state;
   if (contact.level === "lost") {
-    const since = state.at
+    const text = state.at
       ? `values shown are from ${timeOfDay(state.at)}`
       : "no values received yet";
-    return sentence("lost", `No contact for ${wholeSeconds(contact.silenceMs)}`, since);
+    const [word, last] = [`No contact for ${wholeSeconds(contact.silenceMs)}`, robotSentence(state)];
+    const was = last ? [`it was ${last.word}: ${last.text}`, ...last.more] : [];
+    return sentence(NO_CONTACT, word, text, was);
   }
-  if (systemState === null) return sentence("late", "Connecting", "waiting for the first values");
-  const { state: word, reasons, errors, task_status } = systemState;
-  const current = currentTask(state);
-  const task = current ? taskWords(current) : TASKS[task_status];
-  if (word !== "ERROR") return sentence(word.toLowerCase(), word, task);
-  const [first = errors.join(", "), ...more] = reasons.map((reason) => reason.message);
-  // The sentence starts with the reason for the pause.
-  const paused = current ? `, task ${current.id} is paused` : "";
-  return sentence("error", "ERROR", first + paused, more);
+  const waiting = sentence(["late", "late"], "Connecting", "waiting for the first values");
+  return robotSentence(state) ?? waiting;
+}
+
+/** The sentence on the robot as it was in the last frame; null before the first. */
+export function robotSentence(state) {
+  if (state.systemState === null) return null;
+  const { state: name, errors, reasons } = state.systemState;
+  const task = currentTask(state);
+  const reasonTexts = reasons.map(({ message }) => message);
+  const found = [...movement(state, name), ...partProblems(state.parts)];
+  const alarm = ALARMS[reasons[0]?.code];
+  if (name === "ERROR") {
+    const [first = errors.join(", "), ...others] = reasonTexts;
+    const text = task ? `${first}, task ${task.id} is ${STANDS[task.status]}` : first;
+    const more = [...others, ...found, ...otherHolds(state), ...aborted(state)];
+    return sentence(["error", "error"], alarm ?? "ERROR", text, more);
+  }
+  const { word, text } = activity(state, task);
+  const [first, ...more] = [...reasonTexts, ...found];
+  const isCalm = !first && !aborted(state).length && !state.holds.vehicle;
+  const level = alarm ? "error" : isCalm ? "calm" : "attention";
+  const sign = alarm ? "error" : word.toLowerCase();
+  return sentence([level, sign], alarm ?? word, first ? `${first}; ${text}` : text, more);
+}
+
+/** Whether the vehicle stands under the emergency stop. */
+export function standstillWords(state) {
+  const moves = movingAt(state);
+  if (moves !== null) return `the vehicle moves at ${speed(moves)}`;
+  const isKnown = typeof state.vehicle?.speed_mps === "number" && !state.holds.vehicle;
+  if (!isKnown) return "it is not known whether the vehicle stands";
+  return state.emergencyStop?.standstill_at
+    ? "the vehicle is at a standstill"
+    : "no standstill yet";
 }
 
 /** What was lost in a restart of the service; empty without one. */
@@ -30,12 +70,107 @@ export function restartWords({ restartedAt }) {
   return `Service restarted at ${timeOfDay(restartedAt)}: earlier tasks and holds are gone.`;
 }
 
-function sentence(level, word, text, more = []) {
-  return { level, word, text, more };
+function sentence([level, sign], word, text, more = []) {
+  return { level, sign, word, text, more };
 }
 
-const TASKS = {
-  NO_TASK: "no task",
-  PAUSED_TASK: "the task is paused",
-  RUNNING_TASK: "the task is running",
-};
+/** What the robot does apart from what is wrong; a task with a hold is never called running. */
+function activity(state, task) {
+  const { task_status } = state.systemState;
+  const held = heldBy(Object.values(state.holds));
+  if (task === null) {
+    if (task_status === "RUNNING_TASK") return { word: "RUNNING", text: "the task is running" };
+    if (task_status === "PAUSED_TASK") return { word: "PAUSED", text: "the task is paused" };
+    const [text = "no task"] = aborted(state);
+    return { word: "IDLE", text: held ? `${text}; a new one would be ${held}` : text };
+  }
+  const at = `task ${task.id} at ${percent(task.progress)}`;
+  const why = held || task.reason;
+  const text = why ? `${at}, ${why}` : at;
+  const moves = movingAt(state);
+  if (task.status === "PAUSING")
+    return { word: "STOPPING", text: moves === null ? text : `${text}, still at ${speed(moves)}` };
+  if (task.status === "PAUSED" || held) return { word: "PAUSED", text };
+  return {
+    word: "RUNNING",
+    text: `task ${task.id} ${percent(task.progress)}, ${waypointWords(task)}`,
+  };
+}
+
+/** "held by gate (the gate is shut), operator and loading"; empty without holds. */
+function heldBy(holds) {
+  const named = holds.slice(0, NAMED).map(({ owner, reason }) => owner + (reason ? ` (${reason})` : ""));
+  if (holds.length > NAMED) named.push(`${holds.length - NAMED} more`);
+  const last = named.pop();
+  if (last === undefined) return "";
+  return `held by ${named.length ? `${named.join(", ")} and ${last}` : last}`;
+}
+
+/** In ERROR: the holds that stay when the error is gone. */
+function otherHolds({ holds }) {
+  const held = heldBy(Object.values(holds).filter(({ owner }) => owner !== "error"));
+  return held ? [`also ${held}`] : [];
+}
+
+function aborted({ task }) {
+  if (!task?.ended_at || task.status !== "ABORTED") return [];
+  const why = task.reason ? `: ${task.reason}` : "";
+  return [`task ${task.id} was ${TASK_STATUS.ABORTED.toLowerCase()} at ${timeOfDay(task.ended_at)}${why}`];
+}
+
+/** A vehicle that moves though no task drives or stops it. */
+function movement(state, name) {
+  const moves = movingAt(state);
+  const status = currentTask(state)?.status;
+  const isHeld = Object.keys(state.holds).length > 0;
+  const drives = status === "PAUSING" || (status === "RUNNING" && !isHeld);
+  if (moves === null || (drives && name !== "ERROR")) return [];
+  return [`the vehicle moves at ${speed(moves)}`];
+}
+
+/** Speed of a vehicle that is known to move, m/s; null: it stands, or it is not known. */
+function movingAt({ vehicle, holds }) {
+  const moves = vehicle?.speed_mps;
+  // The hold is set while there is no pose that is recent enough.
+  if (typeof moves !== "number" || holds.vehicle || Math.abs(moves) < STANDSTILL_MPS) return null;
+  return Math.abs(moves);
+}
+
+const problemsOf = new WeakMap();
+
+/** What is not as it should be with parts, the first few; a frame without parts costs nothing. */
+function partProblems(parts) {
+  if (!problemsOf.has(parts)) problemsOf.set(parts, findProblems(parts));
+  return problemsOf.get(parts);
+}
+
+function findProblems(parts) {
+  const found = new Map();
+  const isExplained = (part) =>
+    (part.parts ?? []).some((name) => found.has(name) || (parts[name] && isExplained(parts[name])));
+  // Nodes first: they explain why their systems deviate.
+  const nodesFirst = Object.values(parts).sort((a, b) => isSystem(a) - isSystem(b));
+  for (const part of nodesFirst) {
+    const words = problemOf(part);
+    if (words && !(isSystem(part) && isExplained(part))) found.set(part.name, words);
+  }
+  const all = [...new Set(found.values())];
+  const left = all.length - NAMED;
+  return left > 0 ? [...all.slice(0, NAMED), `${left} more such parts`] : all;
+}
+
+function isSystem({ kind }) {
+  return kind === "system" ? 1 : 0;
+}
+
+function problemOf(part) {
+  const { name, actual, change, converged } = part;
+  if (part.reachable === false && !isSystem(part)) return `${name} is unreachable`;
+  if (actual.state === "errorprocessing") return `${name} is in errorprocessing`;
+  const target = part.effective_target ?? part.target;
+  if (converged || change || !target) return null;
+  const is = actual.state === "unknown" ? "in an unknown state" : label(actual);
+  return part.deviation_reason ?? `${name} is ${is}, target ${label(target)}`;
+}
+
+const STANDS = { RUNNING: "running", PAUSING: "stopping", PAUSED: "paused" };

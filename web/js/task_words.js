@@ -2,9 +2,6 @@
 
 import { duration, timeOfDay } from "/web/js/words.js";
 
-// Frames carry a vehicle at rest only once a second, so a pose of 1 s is not old yet.
-const OLD_POSE_MS = 1500;
-
 /** "Pure Pursuit" for pure_pursuit. */
 export function controllerName(name) {
   return name.replace(/(^|_)([a-z])/g, (_, before, letter) => (before && " ") + letter.toUpperCase());
@@ -34,15 +31,6 @@ export function waypointWords({ target_index, waypoint_count }) {
   return `waypoint ${Math.min(target_index + 1, waypoint_count)} of ${waypoint_count}`;
 }
 
-/** State of the task, for the sentence at the top. */
-export function taskWords(task) {
-  const { id, status, progress, reason } = task;
-  const why = reason ? `: ${reason}` : "";
-  if (status === "PAUSING") return `task ${id} is stopping${why}`;
-  if (status === "PAUSED") return `task ${id} at ${percent(progress)} is paused${why}`;
-  return `task ${id} ${percent(progress)}, ${waypointWords(task)}`;
-}
-
 /** How a task ended. */
 export function endWords({ id, status, reason, created_at, ended_at, distance_m, length_m }) {
   const took = duration(Date.parse(ended_at) - Date.parse(created_at));
@@ -60,8 +48,13 @@ export function driveWords(task, vehicle) {
   return typeof error === "number" ? `${speed}, ${besidePath(error)}` : speed;
 }
 
+/** "2.8 m/s"; with a second decimal below 1 m/s. */
+export function speed(value_mps) {
+  return `${value_mps.toFixed(Math.abs(value_mps) < 1 ? 2 : 1)} m/s`.replace("-", "−");
+}
+
 export function speedWords(speed_mps) {
-  return typeof speed_mps === "number" ? `${speed_mps.toFixed(1)} m/s`.replace("-", "−") : "?";
+  return typeof speed_mps === "number" ? speed(speed_mps) : "?";
 }
 
 /** "0.03 m left": on which side of the path the vehicle is. */
@@ -76,12 +69,15 @@ function besidePath(error_m) {
   return Math.abs(error_m) < 0.005 ? "on the path" : `${offPath(error_m)} of the path`;
 }
 
-/** Age of a pose that is not current; empty for a current one, or for none. */
-export function poseAge(vehicle, contact, now) {
+/** Since when there is no newer pose; empty for a current one, or for none.
+ *
+ * A vehicle at rest is in few frames, so the time of its pose says nothing: the service tells of a
+ * pose that is too old by its hold `vehicle`.
+ */
+export function poseAge({ vehicle, holds }, contact) {
   if (!vehicle?.at || !vehicle.pose) return "";
   if (contact.level === "lost") return `pose of ${timeOfDay(vehicle.at)}`;
-  const age = now - Date.parse(vehicle.at);
-  return age > OLD_POSE_MS ? `pose ${duration(age)} old` : "";
+  return holds.vehicle ? `no pose since ${timeOfDay(holds.vehicle.since_at)}` : "";
 }
 
 /** The map in a sentence or two, for screen readers. */

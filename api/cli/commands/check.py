@@ -11,13 +11,14 @@ from api.terminal_text import complain, counted, finding_line
 if TYPE_CHECKING:
     from domain.findings import Finding
 
-VALID, INVALID = 0, 1
+VALID, INVALID, UNREADABLE = 0, 1, 2
 
 _STANDARD_INPUT = Path("/dev/stdin")
 _TEXT = """\
 Check a model file: report all errors and warnings, with line and column.
 
-exit code: 0 valid, possibly with warnings; 1 invalid
+exit code: 0 valid, possibly with warnings; 1 invalid;
+           2 the file cannot be read
 """
 
 
@@ -45,7 +46,7 @@ def check(name: str, form: Literal["text", "json"]) -> int:
         text = read_text_file(_STANDARD_INPUT if name == "-" else Path(name))
     except UnreadableFileError as error:
         complain(str(error))
-        return INVALID
+        return UNREADABLE
     findings = check_model(text)
     shown = ModelCheckJson.of(findings)
     if form == "json":

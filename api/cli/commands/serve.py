@@ -6,8 +6,8 @@ from pathlib import Path
 from api.cli.commands.command import Command
 
 _TEXT = """\
-Run the service until Ctrl-C or SIGTERM; then the vehicle is stopped, and nodes
-keep their states.
+Run the service until Ctrl-C, SIGTERM or SIGHUP (an ssh session that closes);
+then the vehicle is stopped, and nodes keep their states. nohup is respected.
 
 By default it listens on this machine only. To make it reachable with --host,
 set a token with PILOTHOUSE_TOKEN, or a file with the token with
@@ -18,6 +18,10 @@ machine with --allowed-host.
 With --backend ros2, the nodes are the ROS 2 nodes of the domain ROS_DOMAIN_ID.
 Source setup.bash of the ROS 2 distribution first. ROS 2 participants in that
 domain need no token.
+
+exit code: 0 ended by a signal; 1 failed, or a file is invalid;
+           2 invalid options or environment, or a file cannot be read;
+           130 ended by a second Ctrl-C
 """
 
 

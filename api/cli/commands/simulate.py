@@ -29,7 +29,7 @@ or {at_least: 1, at_most: 2}; a state with its mode is active.FAST.
 A rejected step fails the scenario, unless it has refused: true.
 
 exit code: 0 as expected; 1 not as expected, or a step was rejected;
-           2 invalid file
+           2 a file is invalid or cannot be read
 """
 
 

@@ -26,7 +26,7 @@ While there are holds, such as during an error, the task waits. After Ctrl-C
 the task continues; --cancel cancels it.
 
 exit code: 0 succeeded, or done; 1 rejected, canceled or aborted;
-           2 unknown: no answer
+           2 unknown: no answer; or the file cannot be read
 """
 
 _STANDARD_INPUT = Path("/dev/stdin")
@@ -133,7 +133,8 @@ def run_task(
     err: TextIO = complaints or sys.stderr
     text = _text_of(asked.file, err)
     if text is None:
-        return Outcome.FAILED
+        # The exit code of all commands for this.
+        return Outcome.UNKNOWN
     try:
         found = client.call("POST", "/tasks/preview", csv=text, query=asked.query)
         for line in preview_lines(asked.file, found):

@@ -30,8 +30,8 @@ from api.cli.monitor.view import Level, View, seconds_of
 LEGEND = "(*) inferred   ! deviation or error   > changing or pending   x unreachable"
 
 _MARK_STYLES = {UNREACHABLE: "bold red", WRONG: "bold yellow", CHANGES: "cyan", CALM: ""}
-_WORD_STYLES = {"IDLE": "bold", "RUNNING": "bold green", "CONNECTING": "bold", "RESTARTED": "bold"}
-_ALARM = "bold red"
+_LEVEL_STYLES = {"calm": "bold", "attention": "bold yellow", "error": "bold red"}
+_DRIVING = "bold green"
 _TITLES = "underline"
 _LEAST_LINES = 2
 """Of a table: the titles, and how many rows there would be."""
@@ -80,7 +80,9 @@ def sentences(view: View, console: Console) -> list[Text]:
 
 def _sentence_lines(said: Sentence, console: Console) -> list[Text]:
     lines = _wrapped(f"{said.word}  {said.text}".rstrip(), console, indent=2)
-    lines[0].stylize(_WORD_STYLES.get(said.word, _ALARM), 0, len(said.word))
+    is_driving = said.word == "RUNNING" and said.level == "calm"
+    style = _DRIVING if is_driving else _LEVEL_STYLES[said.level]
+    lines[0].stylize(style, 0, len(said.word))
     for text in said.more:
         lines.extend(_wrapped(f"  {text}", console, indent=4))
     return lines
@@ -131,7 +133,7 @@ def _part_note(view: View, row: PartRow) -> str:
     part, since = row.part, row.part["deviation_since_at"]
     if row.mark == UNREACHABLE:
         return "unreachable"
-    for_time = "" if since is None else f" {words.duration(view.age_s(since))}"
+    for_time = "" if since is None else f" {words.duration(view.known_for_s(since))}"
     if row.mark == CHANGES:
         return f"changing{for_time}"
     reason = part["actual"]["reason"]
@@ -159,8 +161,10 @@ def signals(view: View, every: Sequence[SignalRow], width: int, room: int | None
 def _signal_cells(view: View, row: SignalRow) -> tuple[str, ...]:
     signal, pending = row.signal, row.signal["pending"]
     pending_s = None if pending is None else view.age_s(pending["since_at"])
-    verdict = words.verdict_words(signal, pending_s)
-    return (f"{row.mark} {row.name}", words.value_words(signal), _age(view, row), verdict)
+    stop = view.robot.emergency_stop
+    value = words.value_words(signal, is_stop_engaged=stop is not None and stop["engaged"])
+    verdict = words.verdict_words(signal, pending_s, is_live=view.contact.level is Level.LIVE)
+    return (f"{row.mark} {row.name}", value, _age(view, row), verdict)
 
 
 def _age(view: View, row: SignalRow) -> str:
@@ -190,7 +194,7 @@ def task(view: View, console: Console) -> list[Text]:
     for hold in (robot.holds or {}).values():
         why = f": {hold['reason']}" if hold["reason"] else ""
         by = f", by {hold['by']}" if hold["by"] not in ("", hold["owner"]) else ""
-        since = words.duration(view.age_s(hold["since_at"]))
+        since = words.duration(view.known_for_s(hold["since_at"]))
         lines += _wrapped(f"  held by {hold['owner']}{why}, for {since}{by}", console, indent=4)
     return lines
 

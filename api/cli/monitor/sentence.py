@@ -1,22 +1,26 @@
-"""The sentences at the top: state of the robot, emergency stop, connection, restart."""
+"""The sentences at the top: state of the robot, emergency stop, connection, restart.
 
-from collections.abc import Mapping
+`web/js/state_sentence.js` has the same rules; one test runs both over the same cases.
+"""
+
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, Literal
 
 from api.cli.monitor import words
+from api.cli.monitor.part_problems import part_problems
+from api.cli.monitor.store import Robot
 from api.cli.monitor.view import Level, View, seconds_of
 
 Json = Mapping[str, Any]
 
-_TASKS = {
-    "NO_TASK": "no task",
-    "PAUSED_TASK": "the task is paused",
-    "RUNNING_TASK": "the task is running",
-}
-
+STANDSTILL_MPS = 0.05
+"""Below this a vehicle stands; the service uses the same limit."""
 
 _RESTART_TOLD_S = 600.0
+_NAMED = 3
+_ALARMS = {"STILL_MOVING": "STILL MOVING", "STANDSTILL_UNKNOWN": "STANDSTILL UNKNOWN"}
+"""Words for a vehicle that should stand and does not, or of which it is not known."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -24,10 +28,11 @@ class Sentence:
     """A state and its reasons, the most important one first."""
 
     word: str
-    """IDLE, RUNNING, ERROR, WAS ERROR, or the state of the connection."""
+    """IDLE, RUNNING, STOPPING, PAUSED, ERROR, WAS ERROR, or the state of the connection."""
     text: str
     more: tuple[str, ...] = ()
     """Further reasons."""
+    level: Literal["calm", "attention", "error"] = "calm"
 
 
 def contact_sentence(view: View) -> Sentence | None:
@@ -41,23 +46,18 @@ def contact_sentence(view: View) -> Sentence | None:
     since = f"since {began} ({words.duration(contact.silence_s)}), reconnecting"
     old = "" if at is None else f"values shown are from {words.time_of_day(seconds_of(at))}"
     more = tuple(text for text in (contact.why, old) if text)
-    return Sentence("NO CONTACT", since, more)
+    return Sentence("NO CONTACT", since, more, "error")
 
 
 def state_sentence(view: View) -> Sentence | None:
     """Return the current or last known state of the robot; None: no state was received."""
-    state, task = view.robot.system_state, view.robot.current_task
-    if state is None:
+    robot = view.robot
+    if robot.system_state is None:
         return None
-    word = state["state"] if view.contact.level is Level.LIVE else f"WAS {state['state']}"
-    if state["state"] != "ERROR":
-        text = _TASKS.get(state["task_status"], "") if task is None else _task_words(task)
-        return Sentence(word, text)
-    first, *more = [reason["message"] for reason in state["reasons"]] or [
-        ", ".join(state["errors"])
-    ]
-    paused = "" if task is None else f"; task {task['id']} is {_STANDS[task['status']]}"
-    return Sentence(word, first + paused, tuple(more))
+    said = _error_sentence(robot) if _is_error(robot) else _calm_sentence(robot)
+    if view.contact.level is Level.LIVE:
+        return said
+    return Sentence(f"WAS {said.word}", said.text, said.more, said.level)
 
 
 def stop_sentence(view: View) -> Sentence | None:
@@ -65,11 +65,26 @@ def stop_sentence(view: View) -> Sentence | None:
     stop = view.robot.emergency_stop
     if stop is None or not stop["engaged"]:
         return None
+    is_live = view.contact.level is Level.LIVE
     by = f", by {stop['by']}" if stop["by"] else ""
     why = f": {stop['reason']}" if stop["reason"] else ""
-    since = f"for {words.duration(view.age_s(stop['since_at']))}"
-    stands = "the vehicle is at a standstill" if stop["standstill_at"] else "no standstill yet"
-    return Sentence("EMERGENCY STOP", f"engaged{why}, {since}{by}, {stands}")
+    since = f"for {words.duration(view.known_for_s(stop['since_at']))}"
+    engaged = "engaged" if is_live else "was engaged"
+    text = f"{engaged}{why}, {since}{by}, {standstill_words(view.robot)}"
+    return Sentence("EMERGENCY STOP", text, level="error")
+
+
+def standstill_words(robot: Robot) -> str:
+    """Return whether the vehicle stands under the emergency stop."""
+    moves = _moving_at(robot)
+    if moves is not None:
+        return f"the vehicle moves at {words.speed(moves)}"
+    is_known = robot.vehicle is not None and robot.vehicle["speed_mps"] is not None
+    if not is_known or "vehicle" in _holds(robot):
+        return "it is not known whether the vehicle stands"
+    stop = robot.emergency_stop
+    stands = stop is not None and stop["standstill_at"]
+    return "the vehicle is at a standstill" if stands else "no standstill yet"
 
 
 def restart_sentence(view: View) -> Sentence | None:
@@ -81,13 +96,106 @@ def restart_sentence(view: View) -> Sentence | None:
     return Sentence("RESTARTED", f"at {when}; earlier tasks and holds are gone")
 
 
-def _task_words(task: Json) -> str:
-    name, why = f"task {task['id']}", f": {task['reason']}" if task["reason"] else ""
+def _is_error(robot: Robot) -> bool:
+    return robot.system_state is not None and robot.system_state["state"] == "ERROR"
+
+
+def _error_sentence(robot: Robot) -> Sentence:
+    state, task = robot.system_state or {}, robot.current_task
+    texts = [reason["message"] for reason in state["reasons"]] or [", ".join(state["errors"])]
+    first, *others = texts
+    text = first if task is None else f"{first}, task {task['id']} is {_STANDS[task['status']]}"
+    kept = _held_by([hold for hold in _holds(robot).values() if hold["owner"] != "error"])
+    also = (f"also {kept}",) if kept else ()
+    more = (*others, *_movement(robot), *part_problems(robot.parts or {}), *also, *_aborted(robot))
+    return Sentence(_alarm(state) or "ERROR", text, more, "error")
+
+
+def _calm_sentence(robot: Robot) -> Sentence:
+    state = robot.system_state or {}
+    word, text = _activity(robot)
+    reasons = [reason["message"] for reason in state["reasons"]]
+    found = [*reasons, *_movement(robot), *part_problems(robot.parts or {})]
+    text = "; ".join([*found[:1], text])
+    more = tuple(found[1:])
+    if alarm := _alarm(state):
+        return Sentence(alarm, text, more, "error")
+    is_calm = not found and not [*_aborted(robot)] and "vehicle" not in _holds(robot)
+    return Sentence(word, text, more, "calm" if is_calm else "attention")
+
+
+def _alarm(state: Json) -> str | None:
+    reasons = state["reasons"]
+    return _ALARMS.get(reasons[0].get("code", "")) if reasons else None
+
+
+def _activity(robot: Robot) -> tuple[str, str]:
+    """Return what the robot does apart from what is wrong; a held task is never called running."""
+    task, held = robot.current_task, _held_by(list(_holds(robot).values()))
+    if task is None:
+        status = (robot.system_state or {})["task_status"]
+        if status in _UNKNOWN_TASKS:
+            return _UNKNOWN_TASKS[status]
+        text = next(_aborted(robot), "no task")
+        return "IDLE", f"{text}; a new one would be {held}" if held else text
+    at, why = f"task {task['id']} at {words.percent(task['progress'])}", held or task["reason"]
+    text = f"{at}, {why}" if why else at
     if task["status"] == "PAUSING":
-        return f"{name} is stopping{why}"
-    if task["status"] == "PAUSED":
-        return f"{name} at {words.percent(task['progress'])} is paused{why}"
-    return f"{name} {words.percent(task['progress'])}, {words.waypoint_words(task)}"
+        moves = _moving_at(robot)
+        return "STOPPING", text if moves is None else f"{text}, still at {words.speed(moves)}"
+    if task["status"] == "PAUSED" or held:
+        return "PAUSED", text
+    far = f"{words.percent(task['progress'])}, {words.waypoint_words(task)}"
+    return "RUNNING", f"task {task['id']} {far}"
+
+
+def _held_by(holds: Sequence[Json]) -> str:
+    """Return "held by gate (the gate is shut), operator and loading"; nothing without holds."""
+    named = [
+        hold["owner"] + (f" ({hold['reason']})" if hold["reason"] else "")
+        for hold in holds[:_NAMED]
+    ]
+    if len(holds) > _NAMED:
+        named.append(f"{len(holds) - _NAMED} more")
+    if not named:
+        return ""
+    *others, last = named
+    return f"held by {', '.join(others)} and {last}" if others else f"held by {last}"
+
+
+def _aborted(robot: Robot) -> Iterator[str]:
+    task = robot.task
+    if task is not None and task["ended_at"] and task["status"] == "ABORTED":
+        why = f": {task['reason']}" if task["reason"] else ""
+        at = words.time_of_day(seconds_of(task["ended_at"]))
+        yield f"task {task['id']} was aborted at {at}{why}"
+
+
+def _movement(robot: Robot) -> Iterator[str]:
+    """Yield that the vehicle moves though no task drives or stops it."""
+    moves, task = _moving_at(robot), robot.current_task
+    status = None if task is None else task["status"]
+    drives = status == "PAUSING" or (status == "RUNNING" and not _holds(robot))
+    if moves is not None and (not drives or _is_error(robot)):
+        yield f"the vehicle moves at {words.speed(moves)}"
+
+
+def _moving_at(robot: Robot) -> float | None:
+    """Return the speed of a vehicle that is known to move, m/s; None: it stands, or unknown."""
+    speed = None if robot.vehicle is None else robot.vehicle["speed_mps"]
+    # The hold is set while there is no pose that is recent enough.
+    if speed is None or "vehicle" in _holds(robot) or abs(speed) < STANDSTILL_MPS:
+        return None
+    return abs(float(speed))
+
+
+def _holds(robot: Robot) -> Mapping[str, Json]:
+    return robot.holds or {}
 
 
 _STANDS = {"RUNNING": "running", "PAUSING": "stopping", "PAUSED": "paused"}
+_UNKNOWN_TASKS = {
+    "RUNNING_TASK": ("RUNNING", "the task is running"),
+    "PAUSED_TASK": ("PAUSED", "the task is paused"),
+}
+"""Of a task that no frame has told yet."""

@@ -41,6 +41,16 @@ class View:
         """Return the seconds since a time of the service; never negative."""
         return max(0.0, self.now_s - seconds_of(at))
 
+    def known_for_s(self, at: str) -> float:
+        """Return the seconds from a time of the service until now, or until the last frame.
+
+        Without contact nobody knows whether what began then still lasts.
+        """
+        newest = self.robot.at
+        if self.contact.level is Level.LIVE or newest is None:
+            return self.age_s(at)
+        return max(0.0, seconds_of(newest) - seconds_of(at))
+
 
 def seconds_of(at: str) -> float:
     """Return a time in RFC 3339 as seconds since 1970."""

@@ -8,6 +8,8 @@ Json = Mapping[str, Any]
 
 UNKNOWN = "?"
 
+_FIVE_DIGITS = 1e4
+
 
 def duration(seconds: float) -> str:
     """Return "12 s", "3 min 5 s" or "2 h 4 min", in whole seconds for easy reading."""
@@ -42,41 +44,66 @@ def starred(text: str, *, inferred: bool) -> str:
     return f"{text}(*)" if text and inferred else text
 
 
-def value_words(signal: Json) -> str:
-    """Return the value of a signal with its unit."""
+def value_words(signal: Json, *, is_stop_engaged: bool = False) -> str:
+    """Return the value of a signal with its unit; the stop is engaged whatever its signal says.
+
+    Args:
+        signal: As in frames.
+        is_stop_engaged: Whether the emergency stop is engaged.
+    """
+    said = _plain_value(signal)
+    is_stop = signal["signal"] == "estop"
+    return f"stop engaged (signal: {said})" if is_stop and is_stop_engaged else said
+
+
+def _plain_value(signal: Json) -> str:
     value, unit = signal["value"], signal["unit"]
     if value is None:
         return UNKNOWN
     if isinstance(value, bool):
         if signal["signal"] == "estop":
-            return "pressed" if value else "released"
+            return "pressed" if value else "not pressed"
         return "yes" if value else "no"
     if isinstance(value, str):
         return value.lower().replace("_", " ")
     if unit == "ratio":
-        return f"{value * 100:.4g} %"
-    return f"{value:.6g} {unit}".rstrip()
+        return f"{figure(value * 100)} %"
+    return f"{figure(value)} {unit}".rstrip()
 
 
-def verdict_words(signal: Json, pending_s: float | None) -> str:
-    """Return the errors of a signal, or "ok".
+def figure(value: float) -> str:
+    """Return a number with as many digits as one can use: 1800.1, 0.012346, 123456."""
+    whole = f"{value:.0f}"
+    return whole if abs(value) >= _FIVE_DIGITS else f"{value:.5g}"
+
+
+def verdict_words(signal: Json, pending_s: float | None, *, is_live: bool = True) -> str:
+    """Return the errors of a signal, or "ok"; nothing is ok that was never received.
 
     Args:
         signal: As in frames.
         pending_s: How long an error has been pending, s; None: none is.
+        is_live: Whether there is contact with the service.
     """
     error, pending = signal["error"], signal["pending"]
     said = [error] if error else []
     if signal["stale"] and error != "STALE_DATA":
         said.append("stale")
+    if not is_live:
+        return f"was {', '.join(said)}" if said else "no contact"
     if pending is not None and pending_s is not None:
         said.append(f"{pending['error']} in {duration(pending['needs_s'] - pending_s + 0.999)}")
-    return ", ".join(said) or "ok"
+    return ", ".join(said) or ("ok" if signal["received_at"] else "no data")
 
 
 def metres(value: float) -> str:
     """Return "412 m"; with a decimal below 10 m."""
     return f"{value:.1f} m" if abs(value) < 10 else f"{value:.0f} m"
+
+
+def speed(value_mps: float) -> str:
+    """Return "2.8 m/s"; with a second decimal below 1 m/s."""
+    return f"{value_mps:.2f} m/s" if abs(value_mps) < 1 else f"{value_mps:.1f} m/s"
 
 
 def percent(share: float) -> str:

@@ -3,8 +3,10 @@
 import logging
 from http import HTTPStatus
 
+from starlette.requests import ClientDisconnect
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
+from api.http.gate.refusals import address_of
 from api.http.problems import make_problem, problem_response
 
 log = logging.getLogger(__name__)
@@ -30,6 +32,8 @@ class UnexpectedErrors:
 
         try:
             await self._app(scope, receive, send_and_note)
+        except ClientDisconnect:
+            log.info("%s went before its request was complete", address_of(scope))
         except Exception:
             log.exception("%s %s failed", scope["method"], scope["path"])
             if has_begun:

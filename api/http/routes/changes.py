@@ -1,10 +1,11 @@
 """Changes: the requested ones, their steps and how they ended."""
 
-from collections.abc import Iterator
+import asyncio
 from typing import Annotated
 
 from fastapi import APIRouter, Path, Query, Response
 
+from api.http.change_text import change_text
 from api.http.dependencies import ActorDep, SupervisorDep
 from api.http.list_answers import json_list
 from api.http.route_policy import Permission, policy
@@ -13,6 +14,7 @@ from domain.errors import UnknownPartError
 from domain.identifiers import ChangeId
 from domain.inputs import CancelRequest
 from domain.state_and_mode import PartName
+from service.supervisor import Supervisor
 
 router = APIRouter(prefix="/changes", tags=["changes"])
 
@@ -38,25 +40,31 @@ async def list_changes(
         raise UnknownPartError("part", part, supervisor.model.parts)
     clock = supervisor.clock
     views = supervisor.core.changes(limit, None if part is None else PartName(part))
-    texts: Iterator[str] = (ChangeJson.of(view, clock).model_dump_json() for view in views)
+    texts = []
+    for view in views:
+        texts.append(await change_text(view, clock))
+        await asyncio.sleep(0)
     return await json_list(texts)
 
 
-@router.get("/{change}")
+@router.get("/{change}", response_model=ChangeJson)
 @policy(Permission.OBSERVE)
-async def get_change(change: ChangePath, supervisor: SupervisorDep) -> ChangeJson:
+async def get_change(change: ChangePath, supervisor: SupervisorDep) -> Response:
     """Show one change with its steps."""
-    return ChangeJson.of(supervisor.core.change(change), supervisor.clock)
+    return await _shown(supervisor, change)
 
 
-@router.delete("/{change}")
+@router.delete("/{change}", response_model=ChangeJson)
 @policy(Permission.OPERATE)
-async def cancel_change(
-    change: ChangePath, supervisor: SupervisorDep, actor: ActorDep
-) -> ChangeJson:
+async def cancel_change(change: ChangePath, supervisor: SupervisorDep, actor: ActorDep) -> Response:
     """Cancel a change: no further step is started; steps in progress are not recalled.
 
     A change that has ended keeps its status.
     """
     supervisor.submit(CancelRequest(ChangeId(change), actor))
-    return ChangeJson.of(supervisor.core.change(change), supervisor.clock)
+    return await _shown(supervisor, change)
+
+
+async def _shown(supervisor: Supervisor, change: str) -> Response:
+    text = await change_text(supervisor.core.change(change), supervisor.clock)
+    return Response(text, media_type="application/json")

@@ -13,12 +13,10 @@ from api.http.problems import make_problem, problem_response
 from api.http.route_policy import Permission, policy
 from api.http.schemas.base import Json
 from domain.tasks.holds import VEHICLE_HOLD
-from domain.timebase import Duration, seconds, to_seconds
+from domain.timebase import to_seconds
 from service.supervisor import Supervisor
 
 router = APIRouter(tags=["service"])
-
-MAX_TICK_AGE: Duration = seconds(1.0)
 
 
 class LiveJson(Json):
@@ -110,13 +108,12 @@ async def get_metrics(known: Annotated[Metrics, Depends(_metrics)]) -> Response:
 def _checks(supervisor: Supervisor) -> list[CheckJson]:
     model = supervisor.model
     loaded = f"{len(model.systems)} systems, {len(model.nodes)} nodes"
-    last = supervisor.publisher.last_tick_at
-    if last is None:
-        ticking = CheckJson(name="core", ok=False, message="has not ticked yet")
+    hanging, last = supervisor.hanging(), supervisor.publisher.last_tick_at
+    if hanging is not None or last is None:
+        ticking = CheckJson(name="core", ok=False, message=hanging or "has not ticked yet")
     else:
-        age = supervisor.clock.now() - last
-        message = f"last tick {to_seconds(age):.2f} s ago"
-        ticking = CheckJson(name="core", ok=age < MAX_TICK_AGE, message=message)
+        message = f"last tick {to_seconds(supervisor.clock.now() - last):.2f} s ago"
+        ticking = CheckJson(name="core", ok=True, message=message)
     return [CheckJson(name="model", ok=True, message=loaded), ticking]
 
 

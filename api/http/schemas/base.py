@@ -75,6 +75,9 @@ class BlockerJson(Json):
     threshold: Fact
     since_at: Timestamp | None
     root_cause: bool
+    refuses: bool = Field(
+        description="Whether a request is rejected because of it; false: it is only shown"
+    )
 
     @classmethod
     def of(cls, blocker: Blocker, clock: Clock) -> "BlockerJson":
@@ -87,6 +90,7 @@ class BlockerJson(Json):
             threshold=blocker.threshold,
             since_at=timestamp_or_none(clock, blocker.since),
             root_cause=blocker.root_cause,
+            refuses=blocker.refuses,
         )
 
 

@@ -1,5 +1,6 @@
 """The vehicle: odometry from one ROS topic, drive commands on another."""
 
+import asyncio
 import logging
 import math
 from collections.abc import Callable
@@ -7,12 +8,11 @@ from dataclasses import dataclass, replace
 
 from domain.commands import Drive
 from domain.inputs import VehicleReport
-from domain.timebase import NANOSECONDS_PER_SECOND, Duration, Instant, seconds
-from domain.vehicle import COMMAND_VALID_FOR, DriveCommand, Pose, VehicleLimits, VehicleState
-from service.clock import Clock, since_epoch
-from service.files.ros2_block import CommandType, Ros2Block
-from service.pacing import Alarm
-from service.ros.graph.graph import Fields, Lane, Message, Publisher, Qos, RosGraph
+from domain.timebase import Duration, Instant, seconds
+from domain.vehicle import DriveCommand, Pose, VehicleLimits, VehicleState
+from service.clock import Clock
+from service.files.ros2_block import Ros2Block
+from service.ros.graph.graph import DriveOutput, Lane, Message, Qos, RosGraph
 
 log = logging.getLogger(__name__)
 
@@ -31,11 +31,10 @@ _AT_REST = DriveCommand(0.0, 0.0)
 
 
 class RosVehicle:
-    """Reports the motion of the vehicle, and publishes drive commands.
+    """Reports the motion of the vehicle, and passes drive commands to the output of the graph.
 
-    0.5 s after the last command with a speed, speed 0 is commanded once, and then nothing, so that
-    another program can drive. If this process dies, no speed 0 is published: the vehicle needs its
-    own timeout for commands.
+    While commands do not reach the vehicle, its motion is not reported either: a vehicle that
+    cannot be commanded must not be driven on, and the core holds the task as without a pose.
     """
 
     def __init__(
@@ -44,12 +43,9 @@ class RosVehicle:
         self._settings = settings
         self._limits = limits
         self._graph = graph
-        self._clock = clock
         self._odometry = _Odometry(clock, settings.odometry.topic if settings.odometry else "")
-        self._publisher: Publisher | None = None
+        self._output: DriveOutput | None = None
         self._told = _AT_REST
-        self._void_at: Instant | None = None
-        self._alarm = Alarm(lambda: self._void_at, self._stop, clock)
 
     def start(self, deliver: Callable[[VehicleReport], None]) -> None:
         """Subscribe, and deliver the motion of the vehicle at 25 Hz at most until the graph closes.
@@ -60,45 +56,31 @@ class RosVehicle:
         odometry, command = self._settings.odometry, self._settings.command
         if odometry is None and command is None:
             return
-        node = self._graph.node(NODE, Lane.SENSORS)
         if command is not None:
-            self._publisher = node.publisher(command.topic, command.type, Qos.COMMANDS)
+            self._output = self._graph.drive_output(
+                command.topic, command.type, self._limits.wheelbase_m
+            )
         if odometry is not None:
 
             def take(motion: _Motion) -> None:
-                deliver(VehicleReport(self._state(motion)))
+                if self._output is None or self._output.works:
+                    deliver(VehicleReport(self._state(motion)))
 
+            node = self._graph.node(NODE, Lane.SENSORS)
             node.subscribe(odometry.topic, ODOMETRY, Qos.SENSOR, self._odometry.pick, take)
 
     async def run(self) -> None:
-        """Command speed 0 when the last command expires, until cancelled."""
-        try:
-            await self._alarm.run()
-        finally:
-            if self._void_at is not None:
-                self._stop()
+        """Run the output for commands, if there is one, until cancelled."""
+        if self._output is None:
+            await asyncio.Event().wait()
+        else:
+            await self._output.run()
 
     def send(self, drive: Drive) -> None:
         """Publish a drive command, clipped to the limits; a value that is not finite is a stop."""
-        command = self._possible(drive.command)
-        self._tell(command)
-        moves = command.speed_mps != 0.0
-        self._void_at = self._clock.now() + COMMAND_VALID_FOR if moves else None
-        self._alarm.check()
-
-    def _stop(self) -> None:
-        self._void_at = None
-        self._tell(replace(self._told, speed_mps=0.0))
-
-    def _tell(self, command: DriveCommand) -> None:
-        self._told = command
-        if self._publisher is None or self._settings.command is None:
-            return
-        body = _BODIES[self._settings.command.type]
-        since = since_epoch(self._clock.wall_time(self._clock.now()))
-        sec, nanosec = divmod(since, NANOSECONDS_PER_SECOND)
-        stamp = {"sec": sec, "nanosec": nanosec}
-        self._publisher.publish(body(command, self._limits.wheelbase_m, stamp))
+        self._told = self._possible(drive.command)
+        if self._output is not None:
+            self._output.send(self._told)
 
     def _possible(self, command: DriveCommand) -> DriveCommand:
         """Return a command clipped to the limits of the vehicle."""
@@ -168,31 +150,6 @@ def _yaw(turn: Message) -> float:
         2.0 * (turn.w * turn.z + turn.x * turn.y),
         turn.w**2 + turn.x**2 - turn.y**2 - turn.z**2,
     )
-
-
-def _twist(command: DriveCommand, wheelbase_m: float, _: Fields) -> Fields:
-    yaw_rate = command.speed_mps * math.tan(command.steering_angle_rad) / wheelbase_m
-    return {"linear": {"x": command.speed_mps}, "angular": {"z": yaw_rate}}
-
-
-def _twist_stamped(command: DriveCommand, wheelbase_m: float, stamp: Fields) -> Fields:
-    return {"header": {"stamp": stamp}, "twist": _twist(command, wheelbase_m, stamp)}
-
-
-def _ackermann(command: DriveCommand, _wheelbase_m: float, _: Fields) -> Fields:
-    return {"speed": command.speed_mps, "steering_angle": command.steering_angle_rad}
-
-
-def _ackermann_stamped(command: DriveCommand, wheelbase_m: float, stamp: Fields) -> Fields:
-    return {"header": {"stamp": stamp}, "drive": _ackermann(command, wheelbase_m, stamp)}
-
-
-_BODIES: dict[CommandType, Callable[[DriveCommand, float, Fields], Fields]] = {
-    "geometry_msgs/msg/Twist": _twist,
-    "geometry_msgs/msg/TwistStamped": _twist_stamped,
-    "ackermann_msgs/msg/AckermannDrive": _ackermann,
-    "ackermann_msgs/msg/AckermannDriveStamped": _ackermann_stamped,
-}
 
 
 def _clipped(value: float, limit: float) -> float:

@@ -8,6 +8,8 @@ from collections.abc import Awaitable, Callable, Mapping, Sequence
 from enum import Enum
 from typing import Any, Protocol, TypeAlias, TypeVar
 
+from domain.vehicle import DriveCommand
+
 PickedT = TypeVar("PickedT")
 
 Fields: TypeAlias = Mapping[str, Any]
@@ -107,6 +109,28 @@ class Publisher(Protocol):
         ...
 
 
+class DriveOutput(Protocol):
+    """Publishes drive commands.
+
+    A command is valid for 0.5 s: without a new one, speed 0 is commanded then, also while the event
+    loop of the service is blocked or its process is dead. That is repeated for 2 s; afterwards, as
+    after a command with speed 0, nothing is published, so that another program can drive.
+    """
+
+    def send(self, command: DriveCommand) -> None:
+        """Publish a command, and return at once."""
+        ...
+
+    @property
+    def works(self) -> bool:
+        """Tell whether commands reach the topic; else they are lost."""
+        ...
+
+    async def run(self) -> None:
+        """Work until cancelled; then command speed 0, unless the vehicle was told to stop."""
+        ...
+
+
 class RosNode(Protocol):
     """One of our own nodes in the graph."""
 
@@ -203,6 +227,19 @@ class RosGraph(Protocol):
         Raises:
             UnknownTypeError: There is no such type.
             UnknownFieldError: It has no such field.
+        """
+        ...
+
+    def drive_output(self, topic: str, type_name: str, wheelbase_m: float) -> DriveOutput:
+        """Return the output for drive commands.
+
+        Args:
+            topic: Full name.
+            type_name: As `geometry_msgs/msg/Twist`.
+            wheelbase_m: Of the vehicle, m.
+
+        Raises:
+            UnknownTypeError: The type is not installed.
         """
         ...
 

@@ -1,8 +1,8 @@
 """The ROS 2 graph through rclpy; the only module that imports it.
 
 Each lane has an rclpy executor that spins in a thread of its own. Received messages reach the event
-loop through a `Crossing`. In the other direction, requests and drive commands are sent directly
-from the loop, which rclpy allows. Responses are sent by the lane, since the middleware may block
+loop through a `Crossing`. In the other direction, requests are sent directly from the loop, which
+rclpy allows. Responses are sent by the lane, since the middleware may block
 while a client is joining or leaving; all other messages are published by a `Sender`.
 """
 
@@ -32,8 +32,11 @@ from rosidl_generator_py.import_type_support_impl import (
     UnsupportedTypeSupport,
 )
 
+from domain.vehicle import DriveCommand
 from service.ros.graph.conversion import fill, find_type, require_field
 from service.ros.graph.crossing import MAX_UNANSWERED, Crossing, Inbox, Server
+from service.ros.graph.drive import drive_message
+from service.ros.graph.drive_process import DriveProcess
 from service.ros.graph.graph import (
     Fields,
     GraphFailedError,
@@ -60,6 +63,8 @@ _NO_PUBLISHER_EVENTS = PublisherEventCallbacks(use_default_callbacks=False)
 _LIVELINESS_DEPTH = 8
 _DOMAINS = range(233)
 _JOIN_S = 1.0
+_STOP_NODE = "pilothouse_stop"
+"""Commands speed 0 if the process that commands the vehicle ends."""
 _REQUESTS_AT_ONCE = 2
 """Per pass of the event loop; one request takes 0.1 to 0.5 ms."""
 
@@ -122,6 +127,16 @@ class RosLink:
     def require_field(self, type_name: str, path: Sequence[str | int]) -> None:
         """Check that messages of a type have a field."""
         require_field(type_name, path)
+
+    def drive_output(self, topic: str, type_name: str, wheelbase_m: float) -> DriveProcess:
+        """Return the output for drive commands: a process of its own."""
+        node = self.node(_STOP_NODE, Lane.SENSORS)
+        publisher = node.publisher(topic, type_name, Qos.COMMANDS)
+
+        def publish(command: DriveCommand) -> None:
+            publisher.publish(drive_message(command, type_name, wheelbase_m))
+
+        return DriveProcess(topic, type_name, wheelbase_m, publish)
 
     async def wait_failed(self) -> None:
         """Wait until a lane fails.

@@ -16,7 +16,9 @@ _clients: dict[asyncio.WriteTransport, None] = {}
 async def _app(scope: Scope, receive: ASGIReceiveCallable, send: ASGISendCallable) -> None:
     await receive()
     await send({"type": "websocket.accept", "subprotocol": None, "headers": []})
-    transport = connection_of(dict(scope)).transport
+    connection = connection_of(dict(scope))
+    connection.let_in()
+    transport = connection.transport
     _clients[transport] = None
     while (await receive())["type"] != "websocket.disconnect":
         pass

@@ -106,8 +106,18 @@ async def test_the_worker_is_there_as_long_as_the_application_is_served(
 
 
 async def test_nothing_of_what_is_answered_may_be_kept_by_a_browser(robot: HttpRobot) -> None:
-    for path in ("/systems", "/nope", "/openapi.json"):
+    for path in ("/systems", "/nope"):
         assert (await robot.http.get(path)).headers["cache-control"] == "no-store"
+
+
+async def test_a_browser_asks_again_whether_the_documents_it_keeps_are_the_newest(
+    robot: HttpRobot,
+) -> None:
+    first = await robot.http.get("/openapi.json")
+    again = await robot.http.get("/openapi.json", headers={"If-None-Match": first.headers["etag"]})
+
+    assert first.headers["cache-control"] == "no-cache"
+    assert (again.status_code, again.content) == (304, b"")
 
 
 def calls(dependant: Dependant) -> Iterator[Callable[..., Any] | None]:

@@ -19,7 +19,9 @@ from domain.errors import (
     ReservedHoldError,
     TooManyHoldsError,
     UnknownModeError,
+    UnknownNameError,
     UnknownPartError,
+    near_match,
 )
 from domain.findings import Blocker, Finding
 from domain.lifecycle import LifecycleState, Transition
@@ -171,3 +173,13 @@ def test_a_reserved_hold_tells_its_owner_and_what_to_do_instead() -> None:
 
 def test_too_many_holds_tell_how_many_there_are() -> None:
     assert TooManyHoldsError(64).message == "there are 64 holds already"
+
+
+def test_what_was_probably_meant_is_named() -> None:
+    error = UnknownNameError("mode", "PERFORMNCE", ["FAST", "PERFORMANCE"])
+
+    assert error.hint == "known: FAST, PERFORMANCE; did you mean PERFORMANCE?"
+
+
+def test_a_long_name_is_compared_with_nothing() -> None:
+    assert near_match("a/" * 30_000, ["a/a/a"] * 10_000) is None

@@ -787,8 +787,9 @@ def test_changes_are_shown_newest_first(robot: CoreRobot) -> None:
 def test_an_absent_node_is_shown_among_the_blockers_and_refuses_nothing() -> None:
     core = _core()
     (view, *_) = core.modes(BASE)
-    assert not view.can_enter
+    assert view.can_enter
     assert {blocker.code for blocker in view.blockers} <= ADVISORY
+    assert not any(blocker.refuses for blocker in view.blockers)
     assert core.handle(ModeRequest(BASE, view.mode), 0).change is not None
 
 

@@ -1,3 +1,6 @@
+import hypothesis.strategies as st
+from hypothesis import given
+
 from domain.actor import Actor
 from domain.inputs import (
     CancelTaskRequest,
@@ -6,8 +9,9 @@ from domain.inputs import (
     ReleaseRequest,
     TaskRequest,
 )
-from domain.snapshot import TaskPhase
-from service.frame_feed import Frame, FrameFeed, FrameReader
+from domain.snapshot import PartView, TaskPhase
+from domain.state_and_mode import PartName
+from service.frame_feed import PARTS_AT_ONCE, Frame, FrameFeed, FrameReader
 from tests.support.frames import frame, part_view, signal_view
 from tests.support.live_robot import make_supervisor, running
 from tests.support.manual_clock import ManualClock
@@ -234,3 +238,48 @@ async def test_a_task_that_ended_stays_until_the_next_one() -> None:
     assert following is not None
     assert following.task is not None
     assert (following.task.id, following.task.ended_at) == ("t2", None)
+
+
+def test_of_a_large_robot_a_reader_that_missed_frames_gets_what_changed_since() -> None:
+    """A complete frame would take so long that the next ones are missed as well."""
+    names = [PartName(f"node_{number}") for number in range(PARTS_AT_ONCE + 1)]
+    feed = FrameFeed()
+    feed.publish(frame(1, [part_view(name) for name in names], [BATTERY], full=True))
+    reader, moved = FrameReader(feed), [part_view(name, "FAST") for name in names[:4]]
+    reader.take()
+    feed.publish(frame(2, moved[:2]))
+    taken(reader)
+    feed.publish(frame(3, [moved[2]]))
+    # A complete frame that was missed changes a part, too.
+    feed.publish(frame(4, [*moved, *(feed.parts[name] for name in names[4:])], full=True))
+    feed.publish(frame(5))
+
+    newest, skipped = taken(reader)
+
+    assert (newest.seq, newest.full, skipped) == (5, False, 2)
+    assert set(newest.parts.values()) == set(moved[2:])
+    assert newest.signals == {"battery_level": BATTERY}
+    assert newest.task_changed
+    assert newest.vehicle_changed
+    assert newest.holds_changed
+    assert newest.emergency_stop_changed
+    assert taken(FrameReader(feed))[0].parts.keys() == set(names)
+
+
+@given(st.data())
+def test_who_merges_what_it_is_told_has_all_parts_whatever_it_missed(data: st.DataObject) -> None:
+    names = [PartName(f"node_{number}") for number in range(PARTS_AT_ONCE + 5)]
+    feed, held = FrameFeed(), dict[PartName, PartView]()
+    now = {name: part_view(name) for name in names}
+    feed.publish(frame(1, list(now.values()), full=True))
+    reader = FrameReader(feed)
+    held.update(taken(reader)[0].parts)
+    for seq in range(2, 12):
+        changed = data.draw(st.sets(st.sampled_from(names[:6])))
+        now |= {name: part_view(name, f"MODE_{seq}") for name in changed}
+        full = data.draw(st.booleans())
+        told = now if full else {name: now[name] for name in changed}
+        feed.publish(frame(seq, list(told.values()), full=full))
+        if data.draw(st.booleans()):
+            held.update(taken(reader)[0].parts)
+            assert held == now

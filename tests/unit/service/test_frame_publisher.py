@@ -7,8 +7,9 @@ import pytest
 
 from domain.inputs import ModeRequest, Reading
 from domain.snapshot import SystemState
-from service.frame_feed import Frame
+from service.frame_feed import PARTS_AT_ONCE, Frame
 from service.supervisor import Supervisor
+from tests.support.big_model import FAST, big_model
 from tests.support.live_robot import make_supervisor, running
 from tests.support.manual_clock import ManualClock
 from tests.support.models import ACTUATION, BASE
@@ -50,13 +51,16 @@ async def test_ten_seconds_are_200_frames_without_a_gap(
     assert supervisor.publisher.late_ticks == 0
 
 
-async def test_one_frame_a_second_is_complete(clock: ManualClock, supervisor: Supervisor) -> None:
+async def test_the_first_frame_is_complete_and_later_ones_hold_changes(
+    clock: ManualClock, supervisor: Supervisor
+) -> None:
+    first = supervisor.frames.newest
+    assert first is not None
+    assert set(first.parts) == set(supervisor.model.parts)
     recorded = Recorded(supervisor)
     with supervisor.frames.watch(recorded):
         await clock.advance(3)
-    full = [frame for frame in recorded.frames if frame.full]
-    assert len(full) == 3
-    assert all(set(frame.parts) == set(supervisor.model.parts) for frame in full)
+    assert not any(frame.full or frame.parts for frame in recorded.frames)
 
 
 async def test_a_frame_in_between_holds_what_changed_and_nothing_else(
@@ -99,7 +103,6 @@ async def test_changing_reasons_make_no_more_frames_and_errors_do(
             supervisor.readings.submit([Reading("temperature", 60.0 + number)])
             await clock.advance(0.0125)
     assert len(recorded.frames) == 20
-    assert [frame.full for frame in recorded.frames].count(True) == 1
 
 
 async def test_a_late_tick_is_skipped_counted_and_not_made_up_for(
@@ -115,3 +118,22 @@ async def test_a_late_tick_is_skipped_counted_and_not_made_up_for(
     assert supervisor.publisher.seq == before + 1
     await clock.advance(0.03)
     assert periods == pytest.approx([0.32, 0.03])
+
+
+async def test_the_parts_of_a_large_robot_are_told_in_several_frames_in_the_order_of_change() -> (
+    None
+):
+    clock = ManualClock()
+    supervisor = make_supervisor(clock, model=big_model(2 * PARTS_AT_ONCE))
+    async with running(supervisor):
+        await clock.advance(1)
+        recorded = Recorded(supervisor)
+        with supervisor.frames.watch(recorded):
+            supervisor.submit(ModeRequest(supervisor.model.parts[0], FAST))
+            await clock.advance(3)
+    told = [part for f in recorded.frames if not f.full for part in f.parts]
+    assert set(told) == set(supervisor.model.parts)
+    assert all(len(f.parts) <= PARTS_AT_ONCE for f in recorded.frames if not f.full)
+    newest = supervisor.frames.complete()
+    assert newest is not None
+    assert newest.parts == supervisor.core.parts()

@@ -4,7 +4,8 @@ import signal
 import sys
 import time
 from asyncio.subprocess import PIPE, Process
-from collections.abc import AsyncIterator
+from collections.abc import AsyncIterator, Callable
+from pathlib import Path
 from typing import Any
 
 import pytest
@@ -20,6 +21,7 @@ from service.worker import (
     WorkerBusyError,
     WorkerClosedError,
 )
+from tests.support.waiting import until
 
 HOLDER = """
 import asyncio, os
@@ -28,6 +30,29 @@ from service.worker import Worker
 async def main():
     print(await Worker().call(os.getpid), flush=True)
     await asyncio.sleep(60)
+
+asyncio.run(main())
+"""
+
+BUSY_HOLDER = """
+import asyncio, time
+from service.worker import Worker
+
+asyncio.run(Worker().call(exec, "import os, time; open({path!r}, 'w').write(str(os.getpid()));"
+    "time.sleep(60)"))
+"""
+LIMITED = """
+import asyncio
+from service.worker import TooComplexError, Worker
+
+async def main():
+    worker = Worker(["domain.paths.path"])
+    first = await worker.call(abs, -1)
+    try:
+        await worker.call(bytearray, 3 << 30)
+    except TooComplexError as error:
+        print(first, error.code, await worker.call(abs, -2))
+    await worker.close()
 
 asyncio.run(main())
 """
@@ -122,10 +147,13 @@ async def test_a_job_that_takes_too_long_is_ended_and_the_next_one_is_done() -> 
         await worker.close()
 
 
-@pytest.mark.parametrize("job", [die, take_all_memory])
-async def test_a_job_that_ends_its_process_harms_only_itself(worker: Worker, job: object) -> None:
-    with pytest.raises(TooComplexError, match="ended the process"):
-        await worker.call(job)  # type: ignore[arg-type]
+@pytest.mark.parametrize(("job", "code"), [(die, "TOO_COMPLEX"), (take_all_memory, "MEMORY")])
+async def test_a_job_that_ends_its_process_harms_only_itself(
+    worker: Worker, job: Callable[[], object], code: str
+) -> None:
+    with pytest.raises(TooComplexError) as raised:
+        await worker.call(job)
+    assert raised.value.code == code
 
     assert await worker.call(abs, -1) == 1
 
@@ -228,6 +256,30 @@ async def test_the_process_ends_also_when_ours_is_killed() -> None:
     await ours.communicate()
 
     await asyncio.to_thread(wait_until_gone, worker)
+
+
+async def test_the_process_ends_in_the_middle_of_a_job_when_ours_is_killed(tmp_path: Path) -> None:
+    told = tmp_path / "pid"
+    code = BUSY_HOLDER.format(path=str(told))
+    ours = await asyncio.create_subprocess_exec(sys.executable, "-c", code)
+    await until(lambda: told.exists() and told.read_text() != "", pause_s=0.02)
+    worker = int(told.read_text())
+
+    ours.kill()
+    await ours.wait()
+
+    await asyncio.to_thread(wait_until_gone, worker)
+
+
+@pytest.mark.parametrize("limit_mb", [1_500, 800, 400])
+async def test_jobs_are_done_where_the_environment_limits_memory(limit_mb: int) -> None:
+    code = f"import resource; resource.setrlimit(resource.RLIMIT_AS, ({limit_mb} << 20,) * 2)"
+    ours = await asyncio.create_subprocess_exec(
+        sys.executable, "-c", f"{code}\n{LIMITED}", stdout=PIPE
+    )
+    said, _ = await ours.communicate()
+
+    assert said == b"1 MEMORY 2\n"
 
 
 async def test_ctrl_c_in_the_terminal_does_not_reach_the_process(worker: Worker) -> None:

@@ -8,7 +8,17 @@ import pytest
 from domain.errors import BlockedError, InvalidValueError
 from domain.findings import Blocker
 from domain.paths.path import Path
-from service.worker_process import ErrorParcel, Reply, do, large, pack, read, serve
+from service.worker_process import (
+    MEMORY_LIMIT_BYTES,
+    ErrorParcel,
+    Reply,
+    do,
+    large,
+    memory_limit,
+    pack,
+    read,
+    serve,
+)
 from tests.support.paths import straight
 
 
@@ -88,3 +98,19 @@ def test_an_error_arrives_with_its_facts() -> None:
     assert isinstance(error, BlockedError)
     assert error.blockers == (blocker,)
     assert str(error) == "actuation cannot be changed: stopped"
+
+
+@pytest.mark.parametrize(
+    ("soft", "hard", "limit"),
+    [
+        (-1, -1, 100 + MEMORY_LIMIT_BYTES),
+        (1 << 30, -1, 1 << 30),
+        (-1, 1 << 30, 1 << 30),
+        (1 << 29, 1 << 30, 1 << 29),
+        (1 << 40, 1 << 40, 100 + MEMORY_LIMIT_BYTES),
+    ],
+)
+def test_a_job_may_take_memory_beyond_what_is_used_but_no_more_than_the_environment_allows(
+    soft: int, hard: int, limit: int
+) -> None:
+    assert memory_limit(100, soft, hard, infinity=-1) == limit

@@ -30,7 +30,7 @@ class Change extends HTMLElement {
     this.append(this.problem, this.result);
   }
 
-  show({ part, change, problem, serverNow }) {
+  show({ part, change, problem, knownAt }) {
     setAttribute(this.problem, "hidden", !problem);
     renderOnce(this.problem, JSON.stringify(problem), () => (problem ? problemLines(problem) : []));
     setAttribute(this.result, "hidden", !change);
@@ -43,13 +43,13 @@ class Change extends HTMLElement {
     );
     setText(
       this.status,
-      changeWords(change, serverNow) + (change.reason ? `: ${change.reason}` : ""),
+      changeWords(change, knownAt) + (change.reason ? `: ${change.reason}` : ""),
     );
     setAttribute(this.status, "data-status", change.status);
     setAttribute(this.cancel, "hidden", change.status !== "running");
-    const running = change.status === "running" ? Math.floor(serverNow / 250) : 0;
+    const running = change.status === "running" ? Math.floor(knownAt / 250) : 0;
     renderOnce(this.steps, JSON.stringify([change.steps, running]), () =>
-      change.steps.map((step) => stepLine(step, serverNow)),
+      change.steps.map((step) => stepLine(step, knownAt)),
     );
   }
 

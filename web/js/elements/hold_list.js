@@ -13,11 +13,11 @@ class HoldList extends HTMLElement {
     this.append(el("h3", {}, "Held by"), this.list);
   }
 
-  show({ holds, enabled, serverNow }) {
+  show({ holds, enabled, knownAt }) {
     setAttribute(this, "hidden", holds.length === 0);
     renderOnce(this.list, JSON.stringify(holds), () => holds.map((hold) => this.#line(hold)));
     for (const line of this.list.children) {
-      setText(line.since, `for ${wholeSeconds(serverNow - Date.parse(line.hold.since_at))}`);
+      setText(line.since, `for ${wholeSeconds(knownAt - Date.parse(line.hold.since_at))}`);
       if (line.release) setAttribute(line.release, "disabled", !enabled);
     }
   }

@@ -60,7 +60,7 @@ class TrackMap extends HTMLElement {
   update({ state, contact, preview, serverNow }) {
     const { vehicle } = state;
     const task = currentTask(state);
-    const age = poseAge(vehicle, contact, serverNow);
+    const age = poseAge(state, contact);
     const known = state.task && state.task.id === state.path?.task ? state.task : null;
     const path = this.#shape("path", known ? state.path : null);
     this.#scene = {

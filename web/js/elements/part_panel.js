@@ -71,10 +71,10 @@ class PartPanel extends HTMLElement {
   #show() {
     const { part, transitions, modes, change } = this.watch;
     if (part === null) return;
-    const { state, contact, serverNow } = this.view;
+    const { state, contact, knownAt } = this.view;
     const now = state.parts[part.name] ?? part;
     this.commands.show({ part: now, transitions, modes, enabled: contact.level !== "lost" });
-    this.result.show({ part: now, change, problem: this.problem, serverNow });
+    this.result.show({ part: now, change, problem: this.problem, knownAt });
   }
 }
 

@@ -48,12 +48,13 @@ class PartTree extends HTMLElement {
     setAttribute(item, "aria-expanded", open === null ? null : String(open));
     setAttribute(item, "aria-selected", String(part.name === this.#view.selected));
     setAttribute(item, "tabindex", path === this.#focused ? 0 : -1);
-    setAttribute(dot, "data-reachable", String(part.reachable !== false));
-    setText(dotText, part.reachable === false ? "unreachable" : "reachable");
+    const contact = this.#view.contact.level === "lost" ? "unknown" : reachability(part);
+    setAttribute(dot, "data-reachable", contact);
+    setText(dotText, REACHABLE[contact]);
     setText(name, part.name);
     setText(kind, part.kind ?? "");
     pills.show(part);
-    const said = noteWords(part, this.#view.serverNow);
+    const said = noteWords(part, this.#view.knownAt);
     setAttribute(note, "hidden", said === "");
     setText(note, said);
   }
@@ -166,6 +167,16 @@ function makeRow({ path, level }) {
   );
   item.dataset.path = path;
   return { ...row, item };
+}
+
+const REACHABLE = {
+  true: "reachable",
+  false: "unreachable",
+  unknown: "not known whether it is reachable",
+};
+
+function reachability({ reachable }) {
+  return String(reachable !== false);
 }
 
 function noteWords(part, now) {

@@ -2,7 +2,7 @@
 
 import { el, setAttribute, setText } from "/web/js/dom.js";
 import { describe } from "/web/js/signal_catalog.js";
-import { duration } from "/web/js/words.js";
+import { ageWords, pendingFor, valueWords, verdict } from "/web/js/signal_words.js";
 
 class SignalList extends HTMLElement {
   #cards = new Map();
@@ -34,46 +34,32 @@ class SignalCard extends HTMLElement {
     );
   }
 
-  show(name, signal, { serverNow, contact, mock }) {
-    const about = describe(name, signal.unit);
-    const seen = signal.value !== null;
-    const [value, unit] = seen ? about.show(signal.value) : ["?", ""];
-    setText(this.name, about.label);
+  show(name, signal, { state, serverNow, contact, mock }) {
+    const isLive = contact.level !== "lost";
+    const [value, unit] = valueWords(name, signal, state.emergencyStop);
+    setText(this.name, describe(name, signal.unit).label);
     setText(this.value, value);
     setText(this.unit, unit);
-    setText(this.age, ageWords(signal, serverNow));
-    this.#judge(signal, serverNow);
+    setText(this.age, ageWords(signal, isLive, serverNow));
+    this.#judge(signal, isLive, serverNow);
     if (mock[name] && !this.control) {
       this.control = el("ph-mock-control");
       this.append(this.control);
-      this.control.open(name, about);
+      this.control.open(name, describe(name, signal.unit));
     }
-    this.control?.show(signal, mock[name], contact.level !== "lost");
+    this.control?.show(signal, mock[name], isLive);
   }
 
-  #judge({ error, stale, pending }, now) {
-    const level = error || stale ? "error" : pending ? "pending" : "ok";
+  #judge(signal, isLive, now) {
+    const { level, text } = verdict(signal, isLive, now);
     setAttribute(this, "data-level", level);
+    setText(this.verdict, text);
     setAttribute(this.bar, "hidden", level !== "pending");
-    const words = [error, stale && error !== "STALE_DATA" ? "STALE" : null]
-      .filter(Boolean)
-      .join(", ");
-    if (level !== "pending") {
-      setText(this.verdict, words ? `⚠ ${words}` : "OK");
-      return;
-    }
-    const done = Math.min((now - Date.parse(pending.since_at)) / 1000, pending.needs_s);
-    this.bar.max = pending.needs_s;
-    this.bar.value = done;
-    setAttribute(this.bar, "aria-label", `${pending.error} is pending`);
-    setText(this.verdict, `${pending.error} in ${Math.ceil(pending.needs_s - done)} s`);
+    if (level !== "pending") return;
+    this.bar.max = signal.pending.needs_s;
+    this.bar.value = pendingFor(signal.pending, now);
+    setAttribute(this.bar, "aria-label", `${signal.pending.error} is pending`);
   }
-}
-
-function ageWords({ received_at, stale }, now) {
-  if (!received_at) return "never received";
-  const age = now - Date.parse(received_at);
-  return age < 1000 && !stale ? "now" : `${duration(age)} old`;
 }
 
 customElements.define("ph-signal-list", SignalList);

@@ -41,7 +41,7 @@ class StateBar extends HTMLElement {
   update({ state, contact }) {
     const said = stateSentence(state, contact);
     setAttribute(this, "data-level", said.level);
-    renderOnce(this.symbol, said.level, () => [icon(said.level)]);
+    renderOnce(this.symbol, said.sign, () => [icon(said.sign)]);
     setText(this.word, `${said.word}: `);
     setText(this.text, said.text);
     renderOnce(this.more, said.more.join("\n"), () => said.more.map((text) => el("li", {}, text)));
@@ -64,8 +64,7 @@ class StateBar extends HTMLElement {
   #speak(state, said) {
     const errors = state.systemState?.errors ?? [];
     const { id, status, reason } = currentTask(state) ?? {};
-    const what = said.level === "error" ? errors : [id, status, reason];
-    const key = [said.level, what, state.restartedAt].join();
+    const key = [said.level, said.sign, errors, id, status, reason, state.restartedAt].join();
     if (this.spokenKey === key) return;
     this.spokenKey = key;
     const word = said.level === "lost" ? "No contact" : said.word;

@@ -61,7 +61,7 @@ class TaskPanel extends HTMLElement {
     this.form.tracks = items;
   }
 
-  update({ state, contact, serverNow }) {
+  update({ state, contact, knownAt }) {
     const { vehicle } = state;
     const task = currentTask(state);
     const holds = Object.values(state.holds);
@@ -71,7 +71,7 @@ class TaskPanel extends HTMLElement {
     const ended = task ? null : state.task;
     setText(this.last, ended ? words.endWords(ended) : "");
     setAttribute(this.last, "data-status", ended?.status);
-    this.holds.show({ holds, enabled, serverNow });
+    this.holds.show({ holds, enabled, knownAt });
     this.#foldForm(task);
     this.form.show({ task, vehicle, enabled });
   }
@@ -106,7 +106,7 @@ class TaskPanel extends HTMLElement {
   }
 
   #pause() {
-    this.#ask("PUT", `/holds/${OPERATOR}`, { reason: "operator (page)" });
+    this.#ask("PUT", `/holds/${OPERATOR}`, { reason: "paused on the page" });
   }
 
   #release(owner) {

@@ -1,5 +1,7 @@
+import errno
 import subprocess
 import sys
+from pathlib import Path
 
 import pytest
 
@@ -107,3 +109,53 @@ def test_a_foreign_package_is_told_before_anything_is_done(
     told = capsys.readouterr().err
     assert "'domain'" in told
     assert "environment of its own" in told
+
+
+@pytest.mark.parametrize(
+    ("typed", "meant"),
+    [
+        (("chek", "x"), "check"),
+        (("serve", "--prot", "1"), "--port"),
+        (("monitor", "--onec"), "--once"),
+        (("state", "drive_base", "activat"), "activate"),
+        (("serve", "--log-level", "debg"), "debug"),
+    ],
+)
+def test_what_is_mistyped_is_answered_with_what_was_meant(
+    typed: tuple[str, ...], meant: str, capsys: Output
+) -> None:
+    assert exit_code(*typed) == 2
+    assert capsys.readouterr().err.endswith(f"; did you mean {meant}?\n")
+
+
+@pytest.mark.parametrize(
+    "command",
+    [
+        ("serve", "no.yaml", "--port", "0"),
+        ("serve", "--robot", "no.yaml", "--port", "0"),
+        ("check", "no.yaml"),
+        ("simulate", "no.yaml"),
+        ("task", "no.csv"),
+    ],
+)
+def test_a_file_that_is_not_there_has_one_exit_code_everywhere(
+    command: tuple[str, ...], capsys: Output, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+
+    assert main(command) == 2
+    assert "cannot be read: No such file" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize("number", [errno.ENOSPC, errno.EIO])
+def test_an_output_that_takes_nothing_is_told_in_one_line(
+    number: int, capsys: Output, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def fail(_: object) -> int:
+        raise OSError(number, "it is full")
+
+    monkeypatch.setattr(command_line, "_run", fail)
+    monkeypatch.setattr(command_line, "give_up_output", lambda: None)
+
+    assert main(["check", "x"]) == 1
+    assert capsys.readouterr().err == "pilothouse: cannot write to standard output: it is full\n"

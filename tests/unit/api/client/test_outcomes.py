@@ -1,4 +1,4 @@
-from api.client.outcomes import refusal_lines
+from api.client.outcomes import no_connection, refusal_lines
 
 
 def test_a_refusal_is_told_with_what_stands_against_it_and_what_helps() -> None:
@@ -27,3 +27,23 @@ def test_faults_of_a_body_are_told_with_their_place() -> None:
         "  /mode: too long",
         "  body: no object",
     ]
+
+
+def test_https_on_a_service_that_speaks_http_is_told_without_the_words_of_tls() -> None:
+    error = no_connection("https://robot:8000", OSError("[SSL: WRONG_VERSION_NUMBER] wrong"))
+
+    assert str(error) == (
+        "what answers at https://robot:8000 does not speak HTTPS; try http://robot:8000"
+    )
+
+
+def test_a_certificate_that_is_not_trusted_is_told_as_such() -> None:
+    error = no_connection("https://robot", OSError("[SSL: CERTIFICATE_VERIFY_FAILED] self-signed"))
+
+    assert "is not trusted" in str(error)
+
+
+def test_a_service_that_does_not_listen_is_told_as_such() -> None:
+    error = no_connection("https://robot", OSError("Connection refused"))
+
+    assert str(error) == "no service answers at https://robot: is it running?"

@@ -61,3 +61,20 @@ async def test_nothing_else_is_there(path: str, robot: HttpRobot) -> None:
     answer = await robot.http.get(path)
 
     assert answer.status_code == httpx.codes.NOT_FOUND
+
+
+@pytest.mark.parametrize("path", ["/openapi.json", "/asyncapi.json"])
+async def test_a_document_is_encoded_once_and_sent_once(path: str, robot: HttpRobot) -> None:
+    first = await robot.http.get(path)
+    again = await robot.http.get(path, headers={"if-none-match": first.headers["etag"]})
+
+    assert (again.status_code, again.content) == (304, b"")
+
+
+async def test_the_description_is_the_same_bytes_for_all(
+    robot: HttpRobot, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    first = await robot.http.get("/openapi.json")
+    monkeypatch.setattr(robot.app, "openapi", None)
+
+    assert (await robot.http.get("/openapi.json")).content == first.content

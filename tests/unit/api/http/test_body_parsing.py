@@ -3,18 +3,24 @@
 from collections.abc import AsyncIterator
 
 import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
 
 from api.http.body_parsing import (
+    MAX_FAULTS,
     BodyTooLargeError,
     InvalidBodyError,
     MalformedBodyError,
     as_pointer,
+    check_body,
     parse_body,
     parse_json,
     parse_text,
     pointer_to,
     read_limited,
+    require_few_members,
 )
+from api.http.schemas.health import EmergencyStopBody
 from api.http.schemas.parts import ModeBody
 from domain.errors import UnknownSignalError
 
@@ -104,3 +110,37 @@ def test_keys_are_escaped_in_a_pointer(keys: tuple[str | int, ...], pointer: str
 
 def test_a_pointer_is_kept_and_a_name_becomes_one() -> None:
     assert (as_pointer("/stamp"), as_pointer("stamp"), as_pointer("")) == ("/stamp", "/stamp", "")
+
+
+# --- how much an answer says --------------------------------------------------------------------
+
+
+@given(
+    count=st.integers(1, 999),
+    name=st.text(st.characters(exclude_categories=["Cs"]), min_size=1, max_size=3_000),
+)
+@settings(max_examples=25)
+def test_an_answer_about_a_bad_body_is_short_whatever_was_sent(count: int, name: str) -> None:
+    sent = {f"{name}{number}": number for number in range(count)}
+
+    with pytest.raises(InvalidBodyError) as refused:
+        # The required member is missing too.
+        check_body(EmergencyStopBody, sent)
+
+    faults = refused.value.faults
+    assert len(faults) <= MAX_FAULTS
+    assert all(len(fault.pointer) <= 410 and len(fault.message) <= 510 for fault in faults)
+    assert f"and {count} more" in refused.value.message
+
+
+def test_members_are_counted_at_every_depth() -> None:
+    few = {"a": [{"b": number} for number in range(900)]}
+    many = {"a": [{"b": {"c": number}} for number in range(900)]}
+
+    require_few_members(few)
+    with pytest.raises(InvalidBodyError, match="more than 1000 members"):
+        require_few_members(many)
+
+
+def test_long_lists_of_numbers_are_no_members() -> None:
+    require_few_members({"gains": [1.0] * 100_000})

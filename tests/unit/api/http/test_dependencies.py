@@ -37,3 +37,21 @@ async def test_parameters_of_a_system_lead_to_the_system_and_to_no_dead_end(
 
     assert hint.endswith("see /systems/actuation")
     assert (await robot.http.get("/systems/actuation")).status_code == 200
+
+
+async def test_a_hint_looks_up_few_prefixes_however_long_the_path_is(robot: HttpRobot) -> None:
+    """Counted without any header: a page on the robot's network sends none that tells."""
+    looked_up = 0
+
+    class Counting(dict[str, object]):
+        def __contains__(self, name: object) -> bool:
+            nonlocal looked_up
+            looked_up += 1
+            return super().__contains__(name)
+
+    model = robot.supervisor.model
+    nodes = Counting({str(name): node for name, node in model.nodes.items()})
+    object.__setattr__(model, "nodes", nodes)
+    await robot.http.get("/nodes/" + "a/" * 4_000)
+
+    assert looked_up < 300

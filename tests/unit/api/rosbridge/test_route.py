@@ -236,18 +236,19 @@ async def test_a_stranger_that_goes_is_no_refusal(closed_app: FastAPI) -> None:
     assert closed_app.state.refusals.counts == {}
 
 
-async def test_strangers_keep_out_other_strangers_only(
+async def test_the_oldest_client_without_a_token_makes_room(
     closed_app: FastAPI, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(stream_server_module, "MAX_STRANGERS", 1)
     headers = {"authorization": f"Bearer {TOKEN}"}
-    async with RosbridgeClient(closed_app):
+    async with RosbridgeClient(closed_app) as oldest:
         await settle()
-        async with RosbridgeClient(closed_app) as stranger:
-            assert await stranger.end() == 1013
-        async with RosbridgeClient(closed_app, headers=headers) as known:
-            known.ask("call_service", service="/rosapi/nodes")
-            assert (await known.next("service_response"))["result"] is True
+        async with RosbridgeClient(closed_app):
+            await settle()
+            assert oldest.cut_off
+            async with RosbridgeClient(closed_app, headers=headers) as known:
+                known.ask("call_service", service="/rosapi/nodes")
+                assert (await known.next("service_response"))["result"] is True
 
 
 async def test_calls_may_come_as_often_as_requests(supervisor: Supervisor) -> None:

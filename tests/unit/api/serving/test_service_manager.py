@@ -1,3 +1,4 @@
+import asyncio
 import logging
 import os
 import socket
@@ -7,6 +8,8 @@ from pathlib import Path
 import pytest
 
 from api.serving.service_manager import ServiceManager, UnknownManagerError
+from domain.onboard import Onboard
+from service.simulation.simulated import SimulatedBackend
 from service.supervisor import Supervisor
 from tests.support.live_robot import running
 from tests.support.manual_clock import ManualClock
@@ -84,6 +87,55 @@ async def test_a_supervisor_that_no_longer_ticks_feeds_no_watchdog(
     await clock.advance(10)
 
     assert manager_socket.heard() == []
+
+
+async def test_a_core_that_misses_its_deadlines_feeds_no_watchdog(
+    manager_socket: Socket,
+    clock: ManualClock,
+    supervisor: Supervisor,
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    manager_of(manager_socket, WATCHDOG_USEC="2000000").watch(supervisor)
+    missed = clock.now()
+    monkeypatch.setattr(Onboard, "wake_at", lambda _: missed)
+    ticking = asyncio.create_task(supervisor.publisher.run())
+    await clock.advance(10)
+
+    assert manager_socket.heard() == ["READY=1"]
+    ticking.cancel()
+    await asyncio.wait([ticking])
+
+
+async def test_publishing_that_hangs_feeds_no_watchdog(
+    manager_socket: Socket,
+    clock: ManualClock,
+    supervisor: Supervisor,
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    manager_of(manager_socket, WATCHDOG_USEC="2000000").watch(supervisor)
+    async with running(supervisor):
+        await clock.advance(3)
+        manager_socket.heard()
+        monkeypatch.setattr(supervisor.publisher, "_publish", lambda **_: None)
+
+        await clock.advance(10)
+
+        assert manager_socket.heard().count("WATCHDOG=1") <= 1
+
+
+async def test_a_silent_robot_is_an_error_and_does_not_end_its_supervision(
+    manager_socket: Socket,
+    clock: ManualClock,
+    supervisor: Supervisor,
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    monkeypatch.setattr(SimulatedBackend, "run", lambda *_: asyncio.Event().wait())
+    manager_of(manager_socket, WATCHDOG_USEC="2000000").watch(supervisor)
+    async with running(supervisor):
+        await clock.advance(10)
+
+        assert "STALE_DATA" in supervisor.core.system_state().errors
+    assert manager_socket.heard() == ["READY=1", *["WATCHDOG=1"] * 10]
 
 
 async def test_the_watchdog_of_another_process_is_not_fed(

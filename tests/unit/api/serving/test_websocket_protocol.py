@@ -71,7 +71,8 @@ class Recorder:
 class Link:
     """A client that is connected to an application behind the protocol."""
 
-    def __init__(self, monkeypatch: pytest.MonkeyPatch) -> None:
+    def __init__(self, monkeypatch: pytest.MonkeyPatch, *, lets_in: bool = True) -> None:
+        self.lets_in = lets_in
         self.scope: Scope = {}
         self.heard: list[Any] = []
         self.parsed = 0
@@ -127,6 +128,8 @@ class Link:
             self.heard.append(message)
             if message["type"] == "websocket.connect":
                 await send({"type": "websocket.accept"})
+                if self.lets_in:
+                    self.connection.let_in()
             elif message["type"] == "websocket.disconnect":
                 return
 
@@ -268,3 +271,46 @@ async def test_when_the_application_ends_so_does_the_connection(
     link.flush()
 
     await until(lambda: link.wire.aborted)
+
+
+@pytest.mark.parametrize(
+    "frames",
+    [
+        b"\x89\x80\0\0\0\0",  # ping
+        b"\x8a\x80\0\0\0\0",  # pong
+        b"\x81\x80\0\0\0\0",  # empty text
+        b"\x01\x80\0\0\0\0",  # empty first fragment
+        b"\x81\xfe\x20\x00\0\0\0\0" + bytes(0x2000),  # a long message
+    ],
+)
+async def test_a_client_without_a_token_may_send_only_one_short_message(
+    frames: bytes, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    link = Link(monkeypatch, lets_in=False)
+    await link.connect()
+
+    link.server.data_received(frames)
+    await until(lambda: link.heard[-1]["type"] == "websocket.disconnect")
+
+    assert link.heard[-1]["code"] == 1008
+    assert link.wire.is_closing()
+    await link.end()
+
+
+async def test_a_message_of_endless_fragments_is_ended(link: Link) -> None:
+    link.server.data_received(b"\x01\x80\0\0\0\0")
+
+    link.server.data_received(b"\x00\x80\0\0\0\0" * 1_000)
+    await until(lambda: link.heard[-1]["type"] == "websocket.disconnect")
+
+    assert link.wire.is_closing()
+
+
+async def test_invalid_utf_8_is_refused_without_a_traceback(
+    link: Link, caplog: pytest.LogCaptureFixture
+) -> None:
+    link.server.data_received(b"\x81\x81\0\0\0\0\xff")
+    await until(lambda: link.heard[-1]["type"] == "websocket.disconnect")
+
+    assert link.heard[-1]["code"] == 1007
+    assert "Traceback" not in caplog.text

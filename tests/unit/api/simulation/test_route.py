@@ -2,7 +2,11 @@
 
 from typing import Any
 
+import pytest
+
+from api.simulation import route
 from domain.simulation.node_settings import Fault
+from service.worker import WorkerBusyError
 from tests.support.http_robot import HttpRobot
 from tests.support.scenarios import ALL_GOOD, NEVER_STALE, STRAIGHT
 
@@ -164,3 +168,30 @@ async def test_a_refused_step_is_told_with_the_document_of_the_interface(
     (refused,) = told["refusals"]
     assert (refused["step"], refused["t_s"], refused["problem"]["status"]) == (1, 1.0, 409)
     assert refused["problem"]["blockers"][0]["code"] == "ESTOP"
+
+
+async def test_the_live_robot_is_not_copied_for_a_queue_that_is_full(
+    robot: HttpRobot, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    copies: list[object] = []
+
+    def refuse() -> None:
+        raise WorkerBusyError
+
+    monkeypatch.setattr(route, "copy_of", lambda *parts: copies.append(parts))
+    monkeypatch.setattr(robot.app.state.simulator, "require_room", refuse)
+
+    answer = await robot.http.post("/simulations", json={"from": "live", "until_s": 1})
+
+    assert answer.status_code == 429
+    assert not copies
+
+
+async def test_an_answer_about_thousands_of_faults_is_short(robot: HttpRobot) -> None:
+    steps = [{"t_s": 1, f"unknown {number}": "x" * 100} for number in range(3_000)]
+
+    answer = await robot.http.post("/simulations", json={"until_s": 1, "steps": steps})
+
+    assert answer.status_code == 422
+    assert len(answer.json()["errors"]) <= 20
+    assert len(answer.content) < 10_000

@@ -77,12 +77,12 @@ def test_frames_that_were_replaced_meanwhile_are_skipped_and_counted(
 
 def test_many_events_are_taken_some_at_a_time(supervisor: Supervisor, encoded: FrameBytes) -> None:
     cursor = Cursor(supervisor, StreamQuery(frozenset({"events"}), 0, None))
-    for number in range(1, 41):
+    for number in range(1, 301):
         supervisor.events.append(event(number))
 
     first, second = cursor.take(encoded)[0], cursor.take(encoded)[0]
 
-    assert (len(read(first)), len(read(second))) == (32, 8)
+    assert (len(read(first)), len(read(second))) == (256, 44)
     assert not cursor.has_events
 
 

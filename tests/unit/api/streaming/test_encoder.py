@@ -216,7 +216,7 @@ def test_a_view_that_did_not_change_is_not_encoded_again(
 
 
 async def test_a_large_frame_is_made_in_pieces_between_which_others_run(
-    encoder: StreamEncoder,
+    encoder: StreamEncoder, supervisor: Supervisor
 ) -> None:
     views = [part_view(f"node_{number}") for number in range(2_000)]
     turns: list[None] = []
@@ -228,17 +228,59 @@ async def test_a_large_frame_is_made_in_pieces_between_which_others_run(
 
     other = asyncio.create_task(take_turns())
     published = frame(1, views, full=True)
-    await encoder.prepare(published, ALL)
+    supervisor.frames.publish(published)
+    await encoder.prepare(ALL)
     other.cancel()
 
     assert len(turns) >= 10
     assert len(read(encoder.frame(published, 0, ALL))["parts"]) == 2_000
 
 
-async def test_a_large_frame_of_known_parts_is_made_at_once(encoder: StreamEncoder) -> None:
+async def test_parts_that_change_while_others_are_encoded_are_encoded_as_well(
+    encoder: StreamEncoder, supervisor: Supervisor, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """A client that skipped frames meanwhile is sent all parts, and none is left for that turn."""
+    names = [f"node_{number}" for number in range(2_000)]
+    supervisor.frames.publish(frame(1, [part_view(name) for name in names], full=True))
+    preparing = asyncio.create_task(encoder.prepare(ALL))
+    await asyncio.sleep(0)
+    supervisor.frames.publish(frame(2, [part_view(name) for name in names]))
+    supervisor.frames.publish(frame(3, [part_view(name) for name in names[:10]]))
+    await preparing
+    encoded: list[str] = []
+
+    def encode(view: PartView) -> str:
+        encoded.append(view.name)
+        return "{}"
+
+    monkeypatch.setattr(encoder._robot.parts, "_encode", encode)  # noqa: SLF001 - as above
+    complete = supervisor.frames.complete()
+
+    assert complete is not None
+    assert len(read(encoder.frame(complete, 1, ALL))["parts"]) == 2_000
+    assert encoded == []
+
+
+async def test_parts_that_change_faster_than_they_are_encoded_hold_nobody_up(
+    encoder: StreamEncoder, supervisor: Supervisor
+) -> None:
+    names = [f"node_{number}" for number in range(1_000)]
+    supervisor.frames.publish(frame(1, [part_view(name) for name in names], full=True))
+    preparing = asyncio.create_task(encoder.prepare(ALL))
+    for seq in range(2, 40):
+        supervisor.frames.publish(frame(seq, [part_view(name) for name in names]))
+        await asyncio.sleep(0)
+
+    assert preparing.done()
+
+
+async def test_a_large_frame_of_known_parts_is_made_at_once(
+    encoder: StreamEncoder, supervisor: Supervisor
+) -> None:
     views = [part_view(f"node_{number}") for number in range(2_000)]
     encoder.frame(frame(1, views, full=True), 0, ALL)
-    preparing = encoder.prepare(frame(2, views, full=True), ALL)
+    supervisor.frames.publish(frame(2, views, full=True))
+    preparing = encoder.prepare(ALL)
 
     with pytest.raises(StopIteration):
         preparing.send(None)
@@ -267,7 +309,7 @@ def test_an_event_is_encoded_once(encoder: StreamEncoder) -> None:
 
 def test_old_events_are_not_kept_for_ever(encoder: StreamEncoder) -> None:
     first = encoder.event(event(1))
-    for number in range(2, 1_500):
+    for number in range(2, 10_002):
         encoder.event(event(number))
 
     assert encoder.event(event(1)) is not first

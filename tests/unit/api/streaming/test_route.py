@@ -17,7 +17,7 @@ from domain.inputs import EmergencyStopRequest, ModeRequest
 from domain.state_and_mode import PartName
 from service.supervisor import Supervisor
 from tests.support.live_robot import make_supervisor, running
-from tests.support.manual_clock import ManualClock
+from tests.support.manual_clock import ManualClock, settle
 from tests.support.waiting import until
 from tests.support.websocket import WebSocketClient
 
@@ -76,10 +76,10 @@ async def test_frames_come_at_twenty_a_second_without_a_gap(
     assert {frame["skipped"] for frame in states} == {0}
 
 
-async def test_once_a_second_everything_is_told_again(app: FastAPI, clock: ManualClock) -> None:
+async def test_every_30_seconds_everything_is_told_again(app: FastAPI, clock: ManualClock) -> None:
     async with WebSocketClient(app, topics="parts") as client:
         await in_step(client)
-        await clock.advance(3)
+        await clock.advance(100)
         complete = [frame for frame in client.frames() if len(frame.get("parts", ())) == 3]
 
     assert len(complete) == 3
@@ -440,18 +440,20 @@ async def test_a_client_that_says_nothing_is_closed_in_the_end(
     assert "no token was sent" in problem["detail"]
 
 
-async def test_strangers_keep_out_other_strangers_only(
+async def test_the_oldest_client_without_a_token_makes_room(
     closed_app: FastAPI, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(stream_server_module, "MAX_STRANGERS", 1)
     headers = {"authorization": f"Bearer {TOKEN}"}
-    async with WebSocketClient(closed_app) as waits:
-        async with WebSocketClient(closed_app) as stranger:
-            assert await stranger.end() == 1013
-        async with WebSocketClient(closed_app, headers=headers) as known:
-            assert (await known.frame())["type"] == "hello"
-        waits.send({"type": "auth", "token": TOKEN})
-        assert (await waits.frame())["type"] == "hello"
+    async with WebSocketClient(closed_app) as oldest:
+        await settle()
+        async with WebSocketClient(closed_app) as owner:
+            await settle()
+            assert oldest.cut_off
+            async with WebSocketClient(closed_app, headers=headers) as known:
+                assert (await known.frame())["type"] == "hello"
+            owner.send({"type": "auth", "token": TOKEN})
+            assert (await owner.frame())["type"] == "hello"
 
 
 async def test_a_token_that_nobody_asked_for_is_passed_over(

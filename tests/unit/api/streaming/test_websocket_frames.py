@@ -35,7 +35,7 @@ def test_a_client_answers_the_ping_with_the_same_bytes() -> None:
 
 
 def test_the_connection_is_that_of_the_scope() -> None:
-    connection = Connection(asyncio.WriteTransport(), lambda _: None)
+    connection = Connection(asyncio.WriteTransport(), lambda _: None, lambda: None)
 
     assert connection_of({"extensions": {EXTENSION: {"connection": connection}}}) is connection
 

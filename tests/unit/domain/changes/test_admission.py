@@ -2,7 +2,7 @@
 
 import pytest
 
-from domain.changes.admission import ChangeAdmission
+from domain.changes.admission import ADVISORY, ChangeAdmission
 from domain.errors import BlockedError, IllegalTransitionError
 from domain.findings import Blocker
 from domain.inputs import ChangeRequest, ModeRequest, ParametersRequest, TransitionRequest
@@ -191,7 +191,8 @@ def test_a_node_that_stands_against_a_mode_is_named_with_the_way_to_it(
     base: NodeFacts, code: str, message: str, value: str | None
 ) -> None:
     (blocker,) = _admission(base).blockers(PERFORMANCE, ())
-    assert blocker == Blocker(code, message, ("actuation", "drive_base"), value)
+    refuses = code not in ADVISORY
+    assert blocker == Blocker(code, message, ("actuation", "drive_base"), value, refuses=refuses)
 
 
 @pytest.mark.parametrize("state", [S.FINALIZED, S.ERROR_PROCESSING])

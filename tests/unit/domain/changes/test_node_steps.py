@@ -220,14 +220,23 @@ def test_a_step_that_times_out_ends_when_its_deadline_passes_and_is_told() -> No
     }
 
 
-def test_a_step_of_a_node_that_is_gone_fails_at_its_deadline() -> None:
+def test_a_step_of_a_node_that_is_gone_times_out_at_its_deadline() -> None:
     core = _core()
     _configure(core)
     core.handle(NodeReport(BASE, reachable=False), seconds(1))
     core.handle(TimePassed(), seconds(60))
     (step,) = core.change("c1").steps
-    assert (step.status, step.ended_at) == (StepStatus.FAILED, seconds(10))
+    assert (step.status, step.ended_at) == (StepStatus.TIMED_OUT, seconds(10))
     assert step.error == "the node is unreachable"
+
+
+def test_what_became_of_a_node_that_fell_silent_between_two_steps_is_not_known() -> None:
+    core = _core()
+    core.handle(TransitionRequest(BASE, Transition.ACTIVATE), 0)
+    core.handle(NodeReport(BASE, state=LifecycleState.INACTIVE, reachable=False), seconds(1))
+    core.handle(TimePassed(), seconds(60))
+    change = core.change("c1")
+    assert (change.status, change.reason) == (ChangeStatus.TIMED_OUT, f"{BASE} is unreachable")
 
 
 def test_after_a_step_of_an_older_change_timed_out_the_newer_one_goes_on() -> None:

@@ -188,7 +188,7 @@ def test_a_parameter_that_there_is_not_is_told_with_those_that_there_are() -> No
     with pytest.raises(UnknownParameterError) as unknown:
         _check(ParametersRequest(BASE, {"speed": 1.0}), {"max_speed": 0.5, "retries": 3})
     assert unknown.value.message == "there is no parameter of drive_base 'speed'"
-    assert unknown.value.hint == "known: max_speed, retries"
+    assert unknown.value.hint == "known: max_speed, retries; did you mean max_speed?"
 
 
 @pytest.mark.parametrize(

@@ -41,6 +41,6 @@ def test_the_words_fit_all_that_really_happens() -> None:
     words = {item.kind: item.event.words for item in simulation.events}
 
     assert simulation.refusals == []
-    assert {"task.succeeded", "task.canceled", "node.unreachable", "change.failed"} <= set(words)
+    assert {"task.succeeded", "task.canceled", "node.unreachable", "change.timed_out"} <= set(words)
     assert words["task.succeeded"].startswith("task t3 succeeded at 100%")
     assert all(words.values())

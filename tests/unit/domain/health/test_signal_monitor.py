@@ -268,6 +268,7 @@ def test_a_bad_value_is_told_with_its_threshold_and_since_when_it_is_an_error() 
             value=0.42,
             threshold=0.5,
             since=START + seconds(3),
+            refuses=False,
         )
     ]
     assert battery.monitor.errors == battery.monitor.present == {"BATTERY_LOW"}

@@ -72,7 +72,7 @@ def test_a_program_gets_the_findings_as_json(
 def test_a_file_that_is_not_there_is_told_in_one_line(
     model: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    assert check(str(model), "text") == 1
+    assert check(str(model), "text") == 2
     assert capsys.readouterr() == (
         "",
         f"pilothouse: {model} cannot be read: No such file or directory\n",

@@ -130,7 +130,7 @@ def test_a_file_that_is_not_there_is_told_before_anything_is_asked(
 ) -> None:
     driven = Driven(service, tmp_path / "no.csv")
 
-    assert driven.outcome is Outcome.FAILED
+    assert driven.outcome is Outcome.UNKNOWN
     assert "no.csv cannot be read" in driven.complaints.getvalue()
     assert service.asked == []
 

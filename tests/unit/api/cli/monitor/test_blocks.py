@@ -23,6 +23,7 @@ from tests.support.monitor import (
     task,
     view,
 )
+from tests.support.sentence_cases import moving
 
 
 def plain(lines: list[Text]) -> list[str]:
@@ -220,7 +221,8 @@ def test_reasons_wrap_and_stay_behind_their_beginning() -> None:
 def test_the_stop_is_told_before_the_state() -> None:
     engaged = stop(engaged=True, reason="smoke", since_at=AT)
 
-    lines = blocks.sentences(view(robot(frame(emergency_stop=engaged))), console(80))
+    known = robot(frame(emergency_stop=engaged, vehicle=moving(0.0)))
+    lines = blocks.sentences(view(known), console(80))
 
     assert plain(lines) == [
         "EMERGENCY STOP  engaged: smoke, for 0 s, no standstill yet",

@@ -1,3 +1,5 @@
+import pytest
+
 from api.cli.monitor.sentence import (
     Sentence,
     contact_sentence,
@@ -5,47 +7,63 @@ from api.cli.monitor.sentence import (
     state_sentence,
     stop_sentence,
 )
-from api.cli.monitor.store import Json, Robot
-from api.cli.monitor.view import Contact, Level
-from tests.support.monitor import AT, after, frame, hello, robot, stop, system_state, task, view
+from api.cli.monitor.store import Robot
+from api.cli.monitor.view import Contact, Level, seconds_of
+from api.cli.monitor.words import time_of_day
+from tests.support.monitor import AT, after, frame, hello, robot, stop, system_state, view
+from tests.support.sentence_cases import CASES, Case, combinations, moving
 
 
-def test_idle_without_a_task_says_so() -> None:
-    assert state_sentence(view(robot())) == Sentence("IDLE", "no task")
+@pytest.mark.parametrize("case", CASES, ids=lambda case: case.name)
+def test_what_is_said_of_a_state_is_true(case: Case) -> None:
+    text = case.text.format(ended=time_of_day(seconds_of(AT)))
+
+    said = state_sentence(view(robot(frame(**case.members))))
+
+    assert said == Sentence(case.word, text, case.more, case.level)
 
 
-def test_before_the_task_is_known_its_status_is_told() -> None:
-    known = robot(frame(system_state=system_state("RUNNING", task_status="RUNNING_TASK")))
+@pytest.mark.parametrize("case", CASES, ids=lambda case: case.name)
+def test_without_contact_the_same_is_told_of_the_past(case: Case) -> None:
+    said = state_sentence(view(robot(frame(**case.members)), Contact(Level.LOST, 14.0)))
 
-    assert state_sentence(view(known)) == Sentence("RUNNING", "the task is running")
-
-
-def told_of(drives: Json) -> str:
-    sentence = state_sentence(view(robot(frame(task=drives))))
-    assert sentence is not None
-    return sentence.text
+    assert said is not None
+    assert said.word == f"WAS {case.word}"
 
 
-def test_a_task_is_told_with_how_far_it_is_or_why_it_is_not_driven() -> None:
-    assert told_of(task()) == "task t1 42 %, waypoint 41 of 66"
-    assert told_of(task("PAUSING", reason="loading")) == "task t1 is stopping: loading"
-    assert told_of(task("PAUSED", reason="loading")) == "task t1 at 42 % is paused: loading"
-
-
-def test_an_error_begins_with_its_first_reason_and_goes_on_with_the_others() -> None:
-    state = system_state("ERROR", "battery 42 % is below 50 %", "e-stop is pressed")
-    known = robot(frame(system_state=state, task=task("PAUSED")))
-
-    assert state_sentence(view(known)) == Sentence(
-        "ERROR", "battery 42 % is below 50 %; task t1 is paused", ("e-stop is pressed",)
-    )
+def test_no_combination_is_told_better_than_it_is() -> None:
+    for members in combinations():
+        known = robot(frame(**members))
+        said = state_sentence(view(known))
+        assert said is not None
+        task, holds, parts = known.current_task, known.holds, known.parts or {}
+        whole = "; ".join([said.text, *said.more])
+        if said.word == "RUNNING":
+            assert task is not None, members
+            assert (task["status"], holds) == ("RUNNING", {}), members
+        if said.word == "IDLE":
+            assert task is None, members
+        if said.level == "calm" and said.word in ("IDLE", "PAUSED"):
+            assert known.vehicle is not None, members
+            assert known.vehicle["speed_mps"] in (None, 0.0, 0.049), members
+        if said.text == "no task":
+            assert (holds, said.level) == ({}, "calm"), members
+            off = [part for part in parts.values() if not part["converged"] and not part["change"]]
+            assert off == [], members
+            assert known.task is None or known.task["status"] != "ABORTED", members
+        if known.system_state is not None and known.system_state["state"] == "ERROR":
+            assert said.level == "error", members
+            assert said.word in ("ERROR", "STILL MOVING"), members
+        for part in parts.values():
+            if not part["reachable"]:
+                assert f"{part['name']} is unreachable" in whole, members
 
 
 def test_an_error_without_a_reason_tells_its_codes() -> None:
     state = {**system_state("ERROR"), "errors": ["BATTERY_LOW", "EMERGENCY_STOP"]}
 
     assert state_sentence(view(robot(frame(system_state=state)))) == Sentence(
-        "ERROR", "BATTERY_LOW, EMERGENCY_STOP"
+        "ERROR", "BATTERY_LOW, EMERGENCY_STOP", level="error"
     )
 
 
@@ -91,15 +109,30 @@ def test_a_released_stop_is_not_worth_a_word() -> None:
 
 def test_an_engaged_stop_says_why_since_when_by_whom_and_whether_the_vehicle_stands() -> None:
     engaged = stop(engaged=True, by="anna", reason="smoke", since_at=AT)
-    moving = view(robot(frame(emergency_stop=engaged)), later_s=3.0)
-    standing = view(robot(frame(emergency_stop={**engaged, "standstill_at": AT})))
 
-    assert stop_sentence(moving) == Sentence(
-        "EMERGENCY STOP", "engaged: smoke, for 3 s, by anna, no standstill yet"
-    )
-    assert stop_sentence(standing) == Sentence(
-        "EMERGENCY STOP", "engaged: smoke, for 0 s, by anna, the vehicle is at a standstill"
-    )
+    def told(speed: float | None, **more: object) -> str:
+        known = robot(frame(emergency_stop={**engaged, **more}, vehicle=moving(speed)))
+        said = stop_sentence(view(known, later_s=3.0))
+        assert said is not None
+        assert said.word == "EMERGENCY STOP"
+        assert said.text.startswith("engaged: smoke, for 3 s, by anna, ")
+        return said.text.removeprefix("engaged: smoke, for 3 s, by anna, ")
+
+    assert told(1.25) == "the vehicle moves at 1.2 m/s"
+    assert told(0.0) == "no standstill yet"
+    assert told(0.0, standstill_at=AT) == "the vehicle is at a standstill"
+    assert told(None) == "it is not known whether the vehicle stands"
+    # It stood once, and somebody pushes it.
+    assert told(0.3, standstill_at=AT) == "the vehicle moves at 0.30 m/s"
+
+
+def test_without_contact_a_stop_was_engaged_and_its_time_does_not_run_on() -> None:
+    engaged = robot(frame(after(2), emergency_stop=stop(engaged=True, since_at=AT)))
+
+    said = stop_sentence(view(engaged, Contact(Level.LOST, 30.0), 32.0))
+
+    assert said is not None
+    assert said.text.startswith("was engaged, for 2 s")
 
 
 def test_a_restart_is_told_for_ten_minutes() -> None:
@@ -112,9 +145,3 @@ def test_a_restart_is_told_for_ten_minutes() -> None:
     assert told.text.endswith("earlier tasks and holds are gone")
     assert restart_sentence(view(restarted, later_s=700.0)) is None
     assert restart_sentence(view(robot())) is None
-
-
-def test_a_task_that_ended_is_no_task_any_more() -> None:
-    ended = view(robot(frame(task=task("SUCCEEDED", ended_at=AT))))
-
-    assert state_sentence(ended) == Sentence("IDLE", "no task")

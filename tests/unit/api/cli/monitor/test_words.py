@@ -44,7 +44,7 @@ def test_only_something_that_is_inferred_has_a_star() -> None:
         (signal("battery_level", 0.4257, "ratio"), "42.57 %"),
         (signal("temperature", 30.0, "°C"), "30 °C"),
         (signal("estop", value=True), "pressed"),
-        (signal("estop", value=False), "released"),
+        (signal("estop", value=False), "not pressed"),
         (signal("lights", value=True), "yes"),
         (signal("lights", value=False), "no"),
         (signal("signal_strength", "NOT_CONNECTED"), "not connected"),

@@ -1,4 +1,5 @@
 import pytest
+from starlette.requests import ClientDisconnect
 from starlette.types import Receive, Scope, Send
 
 from api.http.gate.faults import UnexpectedErrors
@@ -34,3 +35,17 @@ async def fail(scope: Scope, receive: Receive, send: Send) -> None:
 async def fail_late(scope: Scope, receive: Receive, send: Send) -> None:
     await send({"type": "http.response.start", "status": 200, "headers": []})
     raise ValueError("secret")
+
+
+async def test_a_client_that_goes_in_the_middle_of_its_upload_is_no_fault(
+    caplog: pytest.LogCaptureFixture,
+) -> None:
+    async def read(scope: Scope, receive: Receive, send: Send) -> None:
+        raise ClientDisconnect
+
+    with caplog.at_level("INFO"):
+        assert await messages_of(UnexpectedErrors(read), http_scope("POST", "/tasks")) == []
+
+    (record,) = caplog.records
+    assert record.exc_info is None
+    assert "10.0.0.1" in record.getMessage()

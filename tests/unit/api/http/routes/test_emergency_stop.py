@@ -78,3 +78,15 @@ async def test_what_is_not_clearly_a_stop_is_refused(body: object, robot: HttpRo
 
     assert answer.status_code == 422
     assert (await robot.get(PATH))["engaged"] is False
+
+
+@pytest.mark.parametrize("count", [30, 900, 24_000])
+async def test_a_body_with_many_unknown_members_gets_a_short_answer(
+    count: int, robot: HttpRobot
+) -> None:
+    body = {f"unknown {number}": 1 for number in range(count)}
+
+    answer = await robot.http.patch("/mock/temperature", json=body)
+
+    assert answer.status_code in (413, 422)
+    assert len(answer.content) < 5_000

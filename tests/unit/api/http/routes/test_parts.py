@@ -138,13 +138,17 @@ async def test_every_mode_tells_whether_it_can_be_entered(robot: HttpRobot) -> N
     assert all(item["can_enter"] and item["blockers"] == [] for item in modes["items"])
 
 
-async def test_a_mode_that_cannot_be_entered_says_why_down_to_the_node(robot: HttpRobot) -> None:
+async def test_a_mode_with_a_node_that_is_gone_names_the_node_and_can_be_asked_for(
+    robot: HttpRobot,
+) -> None:
     robot.break_node("manipulator", Fault.DIE)
     await robot.pass_time(2)
 
     modes = (await robot.get("/systems/actuation/modes"))["items"]
 
-    (blocker,) = next(item for item in modes if item["mode"] == "PERFORMANCE")["blockers"]
+    shown = next(item for item in modes if item["mode"] == "PERFORMANCE")
+    (blocker,) = shown["blockers"]
+    assert (shown["can_enter"], blocker["refuses"]) == (True, False)
     assert set(blocker) == {
         "code",
         "message",
@@ -153,9 +157,12 @@ async def test_a_mode_that_cannot_be_entered_says_why_down_to_the_node(robot: Ht
         "threshold",
         "since_at",
         "root_cause",
+        "refuses",
     }
     assert blocker["code"].startswith("UNREACHABLE")
     assert blocker["path"] == ["actuation", "manipulator"]
+    answer = await robot.http.post("/systems/actuation/mode", json={"mode": "PERFORMANCE"})
+    assert answer.status_code == 202
 
 
 # --- names --------------------------------------------------------------------------------------

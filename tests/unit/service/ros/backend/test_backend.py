@@ -90,7 +90,7 @@ async def test_the_vehicle_is_told_to_drive_and_after_half_a_second_to_stand(
     robot: Listening,
 ) -> None:
     robot.backend.send(Drive(DriveCommand(1.5, 0.0)))
-    await robot.clock.advance(1.0)
+    await robot.clock.advance(0.55)
 
     speeds = [message["linear"]["x"] for message in robot.graph.published("/cmd_vel")]
     assert speeds == [1.5, 0.0]

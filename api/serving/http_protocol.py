@@ -1,0 +1,188 @@
+"""Uvicorn's HTTP/1.1 protocol, with limits that the parser in C does not have."""
+
+from http import HTTPStatus
+from typing import Any
+
+import httptools
+from uvicorn.config import Config
+from uvicorn.protocols.http.httptools_impl import HttpToolsProtocol
+from uvicorn.server import ServerState
+
+from api.serving.closings import Closings
+from api.serving.intake import Dispensable
+from api.serving.pieces import HANDSHAKE_COST, HEAD_COST, INCOMPLETE, Piece, cost_of_bytes
+
+MAX_HEAD_BYTES = 65_536
+MAX_HEADERS = 100
+HEAD_TIMEOUT_S = 10.0
+"""For a complete head, from the connection or the previous answer on, s."""
+BODY_TIMEOUT_S = 10.0
+"""For a body, beside the time that it takes at `MIN_BODY_BYTES_PER_S`, s."""
+MIN_BODY_BYTES_PER_S = 1_024
+UNREAD_TIMEOUT_S = 10.0
+"""For a client that reads nothing of its answer, s."""
+_BODY_PIECE = 16_384
+_CHUNKED_PIECE = 1_024
+"""Small, since further requests may follow in it, and cost as heads do."""
+_CHUNK_OVERHEAD = 8
+"""Bytes that a byte of a body may take on the wire, if each is a chunk of its own."""
+_END_OF_HEAD = b"\r\n\r\n"
+_UPGRADE = b"\r\nupgrade:"
+
+
+class HttpProtocol(HttpToolsProtocol):
+    """One connection.
+
+    Heads are handed to the parser whole, one at a time; trailers are ignored.
+    """
+
+    def __init__(
+        self,
+        config: Config,
+        server_state: ServerState,
+        app_state: dict[str, Any],
+        closings: Closings,
+    ) -> None:
+        """Prepare; all but `closings`, which counts rejected connections, is uvicorn's."""
+        super().__init__(config, server_state, app_state)
+        self._closings = closings
+        self._searched = 0
+        self.in_message = False
+        """Whether a request has begun whose body is incomplete."""
+        self._in_head = False
+        self._body_left: int | None = 0
+        """Bytes of the body still to come; None: it is chunked."""
+        self._taken = self._body_bytes = 0
+        self._since = self.loop.time()
+        """When the service began to wait for the head or the body."""
+        self._unsent = 0
+        self._unsent_since = self._since
+
+    # --- pieces ----------------------------------------------------------------------------------
+
+    def next_piece(self, waiting: bytearray) -> Piece:
+        """Return the next head, or a part of a body."""
+        if not self.in_message:
+            return self._next_head(waiting)
+        if self._body_left is None:
+            return Piece(min(len(waiting), _CHUNKED_PIECE), HEAD_COST)
+        length = min(len(waiting), max(self._body_left, 1), _BODY_PIECE)
+        return Piece(length, cost_of_bytes(length))
+
+    def _next_head(self, waiting: bytearray) -> Piece:
+        if not (65 <= waiting[0] <= 90 or waiting[0] in b"\r\n"):
+            self._reject(HTTPStatus.BAD_REQUEST)
+            return INCOMPLETE
+        end = waiting.find(_END_OF_HEAD, self._searched)
+        if end > MAX_HEAD_BYTES or (end < 0 and len(waiting) > MAX_HEAD_BYTES):
+            self._reject(HTTPStatus.REQUEST_HEADER_FIELDS_TOO_LARGE)
+            return INCOMPLETE
+        if end < 0:
+            self._searched = max(0, len(waiting) - len(_END_OF_HEAD) + 1)
+            return INCOMPLETE
+        self._searched = 0
+        if waiting.count(b"\r\n", 0, end) > MAX_HEADERS:
+            self._reject(HTTPStatus.REQUEST_HEADER_FIELDS_TOO_LARGE)
+            return INCOMPLETE
+        upgrades = _UPGRADE in waiting[:end].lower()
+        cost = HANDSHAKE_COST if upgrades else HEAD_COST
+        return Piece(end + len(_END_OF_HEAD), cost + cost_of_bytes(end))
+
+    def data_received(self, data: bytes) -> None:
+        """Parse a piece; what is left of a lost connection is dropped."""
+        if self.parser is None:
+            return
+        self._unset_keepalive_if_required()
+        self._taken += len(data)
+        try:
+            self.parser.feed_data(data)
+        except httptools.HttpParserUpgrade:
+            if self._should_upgrade():
+                self.handle_websocket_upgrade()
+        except httptools.HttpParserError:
+            self._reject(HTTPStatus.BAD_REQUEST)
+        if self.in_message and self._body_left is None:
+            overhead = self._taken - _CHUNK_OVERHEAD * self._body_bytes
+            if overhead > MAX_HEAD_BYTES:
+                self._reject(HTTPStatus.BAD_REQUEST)
+
+    def on_message_begin(self) -> None:
+        """Begin a request."""
+        super().on_message_begin()
+        self.in_message = self._in_head = True
+
+    def on_header(self, name: bytes, value: bytes) -> None:
+        """Take a header; trailers are of no use, and without a limit."""
+        if self._in_head:
+            super().on_header(name, value)
+
+    def on_headers_complete(self) -> None:
+        """Begin to wait for the body."""
+        self._in_head = False
+        headers = dict(self.headers)
+        chunked = b"transfer-encoding" in headers
+        self._body_left = None if chunked else int(headers.get(b"content-length", b"0"))
+        self._taken = self._body_bytes = 0
+        self._since = self.loop.time()
+        super().on_headers_complete()
+
+    def on_body(self, body: bytes) -> None:
+        """Take a part of the body."""
+        self._body_bytes += len(body)
+        if self._body_left is not None:
+            self._body_left -= len(body)
+        super().on_body(body)
+
+    def on_message_complete(self) -> None:
+        """Begin to wait for the next head."""
+        self.in_message = False
+        super().on_message_complete()
+
+    def on_response_complete(self) -> None:
+        """Begin to wait for the next head."""
+        self._since = self.loop.time()
+        super().on_response_complete()
+
+    # --- limits ----------------------------------------------------------------------------------
+
+    @property
+    def dispensable(self) -> Dispensable:
+        """Return whether it may be closed for a new one."""
+        if self.cycle is None or self.cycle.response_complete:
+            return Dispensable.AT_ONCE
+        return Dispensable.IF_NEEDED if self.in_message else Dispensable.NOT
+
+    def overdue(self, now: float) -> str | None:
+        """Return for what the client took too long; None: for nothing."""
+        unsent = self.transport.get_write_buffer_size()
+        if not unsent or unsent < self._unsent:
+            self._unsent_since = now
+        self._unsent = unsent
+        if unsent:
+            return "unread" if now - self._unsent_since > UNREAD_TIMEOUT_S else None
+        waited = now - self._since
+        if self.in_message:
+            allowed = BODY_TIMEOUT_S + self._body_bytes / MIN_BODY_BYTES_PER_S
+            # What the service itself makes wait is not the client's fault.
+            return "body" if waited > allowed and not self.flow.read_paused else None
+        waits = self.dispensable is Dispensable.AT_ONCE
+        return "head" if waits and waited > HEAD_TIMEOUT_S else None
+
+    def _reject(self, status: HTTPStatus) -> None:
+        """Answer what is no acceptable request, and close."""
+        if self.transport.is_closing():
+            return
+        address = self.client[0] if self.client else "unknown"
+        self._closings.note("malformed", address, self.loop.time())
+        body = f'{{"type":"about:blank","title":"{status.phrase}","status":{status.value}}}'
+        head = (
+            f"HTTP/1.1 {status.value} {status.phrase}\r\ncontent-type: application/problem+json\r\n"
+            f"content-length: {len(body)}\r\nconnection: close\r\n\r\n"
+        )
+        self.transport.write((head + body).encode())
+        self.transport.close()
+
+
+def is_stop(head: bytes | bytearray) -> bool:
+    """Tell whether a request may make the robot safe, or is a reading that does."""
+    return head.startswith((b"PUT /emergency_stop", b"PUT /holds/", b"POST /signals/"))

@@ -1,0 +1,33 @@
+"""How a protocol takes what waits in its connection: in pieces whose cost is known beforehand."""
+
+from dataclasses import dataclass
+
+HEAD_COST = 500
+"""Of a request with its answer, in nominal microseconds."""
+HANDSHAKE_COST = 2_000
+"""Of a handshake, with all that is made for the new client."""
+MESSAGE_COST = 200
+"""Of a WebSocket message with what it makes the service do."""
+FRAME_COST = 30
+"""Of a frame that is no whole message."""
+KIB_COST = 20
+READ_COST = 5
+"""Of the least that can be done."""
+
+
+@dataclass(frozen=True, slots=True)
+class Piece:
+    """The next bytes that are handled together."""
+
+    length: int
+    """0: what waits is incomplete."""
+    cost: int
+    """In nominal microseconds; at least `READ_COST`."""
+
+
+INCOMPLETE = Piece(0, 0)
+
+
+def cost_of_bytes(count: int) -> int:
+    """Return what plain bytes cost."""
+    return READ_COST + count * KIB_COST // 1_024

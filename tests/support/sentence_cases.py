@@ -1,0 +1,331 @@
+"""What page and terminal say of the state of the robot: cases that both are tried with."""
+
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+from itertools import product
+from typing import Any, Literal
+
+from api.cli.monitor.store import Json
+from tests.support import monitor as told
+
+ABORTED = "task t1 was aborted at {ended}: left the path"
+
+
+@dataclass(frozen=True, slots=True)
+class Case:
+    """A state of the robot, as members of a frame, and what is said of it."""
+
+    name: str
+    word: str
+    level: Literal["calm", "attention", "error"]
+    text: str
+    more: tuple[str, ...] = ()
+    members: Json = field(default_factory=dict)
+
+
+def members(
+    state: Json | None = None,
+    task: Json | None = None,
+    holds: tuple[Json, ...] = (),
+    parts: tuple[Json, ...] = (),
+    stop: Json | None = None,
+    vehicle: Json | None = None,
+) -> dict[str, Any]:
+    """Return the members of a complete frame."""
+    return {
+        "system_state": state or told.system_state(),
+        "task": task,
+        "holds": told.named("owner", *holds),
+        "parts": told.named("name", *parts),
+        "signals": {},
+        "emergency_stop": stop or told.stop(),
+        "vehicle": vehicle or moving(0.0),
+    }
+
+
+def moving(speed_mps: float | None, **more: object) -> Json:
+    """Return a vehicle of that speed; None: it never reported."""
+    return {"speed_mps": speed_mps, "pose": None, "at": told.AT, **more}
+
+
+def running() -> Json:
+    """Return the system state of a robot with a task that is driven."""
+    return told.system_state("RUNNING", task_status="RUNNING_TASK")
+
+
+def paused() -> Json:
+    """Return the system state of a robot with a task that is held; it counts as running."""
+    return told.system_state("RUNNING", task_status="PAUSED_TASK")
+
+
+def reason(code: str, message: str, state: str = "ERROR") -> Json:
+    """Return a system state with one reason."""
+    return {**told.system_state(state), "reasons": [{"code": code, "message": message}]}
+
+
+GATE = told.hold("gate", "the gate is shut", by="anna")
+LOW = told.system_state("ERROR", "battery 10 % is below 50 %")
+PRESSED = told.system_state("ERROR", "emergency stop is engaged")
+DEAD = told.off_target("manipulator", reachable=False)
+OFF = told.off_target("drive_base")
+SYSTEM = told.system(
+    "actuation",
+    "drive_base",
+    "manipulator",
+    state="inactive",
+    converged=False,
+    target={"state": "active", "mode": "FAST"},
+)
+OFF_TEXT = "drive_base is inactive, target active.FAST"
+
+CASES = (
+    Case("idle", "IDLE", "calm", "no task", members=members()),
+    Case(
+        "a task that drives",
+        "RUNNING",
+        "calm",
+        "task t1 42 %, waypoint 41 of 66",
+        members=members(running(), told.task(), vehicle=moving(2.8)),
+    ),
+    Case(
+        "three holds",
+        "PAUSED",
+        "calm",
+        "task t1 at 42 %, held by gate (the gate is shut), operator and loading",
+        members=members(
+            paused(), told.task("PAUSED"), (GATE, told.hold("operator"), told.hold("loading"))
+        ),
+    ),
+    Case(
+        "five holds",
+        "PAUSED",
+        "calm",
+        "task t1 at 42 %, held by a, b, c and 2 more",
+        members=members(paused(), told.task("PAUSED"), tuple(told.hold(name) for name in "abcde")),
+    ),
+    Case(
+        "a held task that still rolls",
+        "STOPPING",
+        "calm",
+        "task t1 at 42 %, held by gate (the gate is shut), still at 1.5 m/s",
+        members=members(paused(), told.task("PAUSING"), (GATE,), vehicle=moving(1.5)),
+    ),
+    Case(
+        "a paused task whose vehicle is pushed",
+        "PAUSED",
+        "attention",
+        "the vehicle moves at 0.40 m/s; task t1 at 42 %, held by gate (the gate is shut)",
+        members=members(paused(), told.task("PAUSED"), (GATE,), vehicle=moving(-0.4)),
+    ),
+    Case(
+        "no pose",
+        "PAUSED",
+        "attention",
+        "task t1 at 42 %, held by vehicle (no pose of the vehicle for 0.3 s)",
+        members=members(
+            paused(),
+            told.task("PAUSED"),
+            (told.hold("vehicle", "no pose of the vehicle for 0.3 s"),),
+            vehicle=moving(2.0),
+        ),
+    ),
+    Case(
+        "a hold without a task",
+        "IDLE",
+        "calm",
+        "no task; a new one would be held by gate (the gate is shut)",
+        members=members(holds=(GATE,)),
+    ),
+    Case(
+        "a dead node whose change failed",
+        "IDLE",
+        "attention",
+        "manipulator is unreachable; no task",
+        members=members(parts=(SYSTEM, told.part("drive_base"), DEAD)),
+    ),
+    Case(
+        "a node off its target after a failed change",
+        "IDLE",
+        "attention",
+        f"{OFF_TEXT}; no task",
+        members=members(parts=(SYSTEM, OFF, told.part("manipulator"))),
+    ),
+    Case(
+        "a part that is being changed",
+        "IDLE",
+        "calm",
+        "no task",
+        members=members(parts=(told.off_target("drive_base", change="c1"),)),
+    ),
+    Case(
+        "a system that deviates by itself, with a reason",
+        "IDLE",
+        "attention",
+        "actuation: nothing fits; no task",
+        members=members(
+            parts=(
+                {**SYSTEM, "deviation_reason": "actuation: nothing fits"},
+                told.part("drive_base"),
+                told.part("manipulator"),
+            )
+        ),
+    ),
+    Case(
+        "many nodes off their target",
+        "IDLE",
+        "attention",
+        "n0 is unreachable; no task",
+        ("n1 is unreachable", "n2 is unreachable", "7 more such parts"),
+        members=members(parts=tuple(told.part(f"n{n}", reachable=False) for n in range(10))),
+    ),
+    Case(
+        "a node in errorprocessing",
+        "IDLE",
+        "attention",
+        "lidar is in errorprocessing; no task",
+        members=members(parts=(told.part("lidar", "errorprocessing"),)),
+    ),
+    Case(
+        "a node in a state that nobody knows",
+        "IDLE",
+        "attention",
+        "lidar is in an unknown state, target active.FAST; no task",
+        members=members(
+            parts=({**told.off_target("lidar"), "actual": told.part("lidar", "unknown")["actual"]},)
+        ),
+    ),
+    Case(
+        "a driven task beside a dead node",
+        "RUNNING",
+        "attention",
+        "manipulator is unreachable; task t1 42 %, waypoint 41 of 66",
+        members=members(running(), told.task(), parts=(DEAD,), vehicle=moving(2.8)),
+    ),
+    Case(
+        "after an aborted task",
+        "IDLE",
+        "attention",
+        ABORTED,
+        members=members(
+            task=told.task("ABORTED", reason="left the path", ended_at=told.AT),
+        ),
+    ),
+    Case(
+        "after a task that succeeded",
+        "IDLE",
+        "calm",
+        "no task",
+        members=members(task=told.task("SUCCEEDED", ended_at=told.AT)),
+    ),
+    Case(
+        "a canceled task of a vehicle that still rolls",
+        "IDLE",
+        "attention",
+        "the vehicle moves at 2.0 m/s; no task",
+        members=members(task=told.task("CANCELED", ended_at=told.AT), vehicle=moving(2.0)),
+    ),
+    Case(
+        "an error with a task and another hold",
+        "ERROR",
+        "error",
+        "battery 10 % is below 50 %, task t1 is paused",
+        ("also held by gate (the gate is shut)",),
+        members=members(LOW, told.task("PAUSED"), (told.hold("error"), GATE)),
+    ),
+    Case(
+        "an error while the vehicle brakes",
+        "ERROR",
+        "error",
+        "emergency stop is engaged, task t1 is stopping",
+        ("the vehicle moves at 1.1 m/s",),
+        members=members(
+            PRESSED,
+            told.task("PAUSING"),
+            (told.hold("error"),),
+            stop=told.stop(engaged=True),
+            vehicle=moving(1.1),
+        ),
+    ),
+    Case(
+        "an error and a dead node",
+        "ERROR",
+        "error",
+        "battery 10 % is below 50 %",
+        ("manipulator is unreachable",),
+        members=members(LOW, parts=(DEAD,)),
+    ),
+    Case(
+        "a vehicle that should stand and does not",
+        "STILL MOVING",
+        "error",
+        "still moving at 1.1 m/s, 34 s after the stop",
+        ("the vehicle moves at 1.1 m/s",),
+        members=members(
+            reason("STILL_MOVING", "still moving at 1.1 m/s, 34 s after the stop"),
+            vehicle=moving(1.1),
+        ),
+    ),
+    Case(
+        "a held vehicle that rolls on",
+        "STILL MOVING",
+        "error",
+        "still moving at 0.5 m/s; no task",
+        ("the vehicle moves at 0.50 m/s",),
+        members=members(
+            reason("STILL_MOVING", "still moving at 0.5 m/s", "IDLE"), vehicle=moving(0.5)
+        ),
+    ),
+    Case(
+        "a stop of a vehicle without a pose",
+        "STANDSTILL UNKNOWN",
+        "error",
+        "no pose since the stop",
+        members=members(reason("STANDSTILL_UNKNOWN", "no pose since the stop")),
+    ),
+    Case(
+        "a task that no frame has told yet",
+        "RUNNING",
+        "calm",
+        "the task is running",
+        members=members(running(), vehicle=moving(0.0)),
+    ),
+    Case(
+        "a held task that no frame has told yet",
+        "PAUSED",
+        "calm",
+        "the task is paused",
+        members=members(paused()),
+    ),
+)
+
+
+def combinations() -> Iterator[dict[str, Any]]:
+    """Yield the members of a frame for each combination of what a robot can be in."""
+    tasks = (
+        None,
+        told.task("RUNNING"),
+        told.task("PAUSING"),
+        told.task("PAUSED"),
+        told.task("ABORTED", reason="left the path", ended_at=told.AT),
+        told.task("SUCCEEDED", ended_at=told.AT),
+    )
+    holds: tuple[tuple[Json, ...], ...] = (
+        (),
+        (GATE,),
+        (told.hold("vehicle", "no pose"),),
+        (told.hold("error", "low"), GATE, told.hold("b"), told.hold("c")),
+    )
+    errors = (None, LOW, reason("STILL_MOVING", "still moving"))
+    parts: tuple[tuple[Json, ...], ...] = (
+        (),
+        (SYSTEM, OFF, told.part("manipulator")),
+        (SYSTEM, OFF, DEAD),
+        (told.off_target("drive_base", change="c1"),),
+    )
+    stops = (None, told.stop(engaged=True), told.stop(engaged=True, standstill_at=told.AT))
+    speeds = (None, 0.0, 0.049, 2.0, -0.4)
+    for task, held, error, part, stop, speed in product(tasks, holds, errors, parts, stops, speeds):
+        current = task is not None and not task["ended_at"]
+        status = "NO_TASK" if not current else "PAUSED_TASK" if held else "RUNNING_TASK"
+        state = error or told.system_state("RUNNING" if current else "IDLE", task_status=status)
+        yield members(state, task, held, part, stop, moving(speed))

@@ -1,0 +1,31 @@
+from typing import Any
+
+from api.cli.monitor.part_problems import part_problems
+from tests.support.monitor import named, off_target, part, system
+
+OFF: dict[str, Any] = {"converged": False, "target": {"state": "active", "mode": "FAST"}}
+
+
+def test_a_robot_as_it_should_be_has_no_problems() -> None:
+    assert part_problems(named("name", system("robot", "a"), part("a"))) == []
+
+
+def test_a_node_explains_why_its_system_deviates_however_deep_it_is() -> None:
+    parts = named(
+        "name", system("robot", "arm", **OFF), system("arm", "joint", **OFF), off_target("joint")
+    )
+
+    assert part_problems(parts) == ["joint is inactive, target active.FAST"]
+
+
+def test_a_system_that_nothing_below_explains_is_named() -> None:
+    parts = named("name", system("robot", "a", **OFF), part("a"))
+
+    assert part_problems(parts) == ["robot is active, target active.FAST"]
+
+
+def test_only_the_first_three_are_named_and_the_others_counted() -> None:
+    parts = named("name", *(part(f"n{number}", reachable=False) for number in range(9)))
+
+    assert part_problems(parts)[-1] == "6 more such parts"
+    assert len(part_problems(parts)) == 4

@@ -1,0 +1,92 @@
+"""A change of very many nodes is started in portions, so that no turn takes long."""
+
+import pytest
+
+from domain.actor import Actor
+from domain.changes.changes import STARTS_AT_ONCE
+from domain.commands import AskParameters, AskTransition
+from domain.events.changes import StepStarted
+from domain.identifiers import ChangeId
+from domain.inputs import CancelRequest, ModeRequest, Reading, Readings, TimePassed
+from domain.outbox import Outputs
+from domain.snapshot import ChangeStatus
+from tests.support.big_model import FAST, SLOW, big_model
+from tests.support.core_robot import CoreRobot
+from tests.support.good import GOOD
+
+NODES = 10 * STARTS_AT_ONCE
+PILOT = Actor("pilot")
+
+
+@pytest.fixture
+def robot() -> CoreRobot:
+    robot = CoreRobot(big_model(NODES))
+    robot.read(**GOOD)
+    return robot
+
+
+def asked(outputs: Outputs) -> int:
+    """Return how many nodes are asked for something."""
+    return sum(isinstance(c, AskTransition | AskParameters) for c in outputs.commands)
+
+
+def request(robot: CoreRobot, mode: str) -> Outputs:
+    """Ask the core for a mode of the whole robot, and let nothing follow yet."""
+    return robot.give(ModeRequest(robot.model.parts[0], mode, PILOT))
+
+
+def test_each_turn_starts_a_bounded_number_of_nodes(robot: CoreRobot) -> None:
+    turns = [asked(request(robot, FAST))]
+    while robot.core.wake_at() == robot.now:
+        turns.append(asked(robot.give(TimePassed())))
+    assert turns == [STARTS_AT_ONCE] * 10
+
+
+def test_all_targets_are_in_force_before_the_first_node_moves(robot: CoreRobot) -> None:
+    request(robot, FAST)
+    for part in robot.core.parts().values():
+        assert part.target is not None
+        assert not part.converged
+        assert part.change == "c1"
+
+
+def test_an_input_in_between_is_not_delayed_by_the_rest(robot: CoreRobot) -> None:
+    request(robot, FAST)
+    outputs = robot.give(Readings((Reading("estop", value=True),), "button"))
+    assert outputs.system_state
+    assert asked(outputs) == 0
+
+
+def test_later_portions_are_consequences_of_the_request(robot: CoreRobot) -> None:
+    request(robot, FAST)
+    events = robot.give(TimePassed()).events
+    cause = robot.core.change("c1").cause
+    started = [e for e in events if isinstance(e.event, StepStarted)]
+    assert len(started) == STARTS_AT_ONCE
+    assert {(e.cause, e.actor) for e in started} == {(cause, PILOT)}
+
+
+def test_a_node_that_was_not_started_yet_is_left_alone_once_the_change_is_canceled(
+    robot: CoreRobot,
+) -> None:
+    request(robot, FAST)
+    robot.give(CancelRequest(ChangeId("c1")))
+    while robot.core.wake_at() == robot.now:
+        assert asked(robot.give(TimePassed())) == 0
+
+
+def test_a_newer_change_begins_while_nodes_of_the_older_one_wait(robot: CoreRobot) -> None:
+    request(robot, FAST)
+    request(robot, SLOW)
+    robot.advance(5)
+    assert robot.change(ChangeId("c1")).status is ChangeStatus.SUPERSEDED
+    assert robot.change(ChangeId("c2")).status is ChangeStatus.SUCCEEDED
+    assert robot.actual("node_1999") == f"active.{SLOW}"
+
+
+def test_a_large_change_succeeds(robot: CoreRobot) -> None:
+    change = robot.ask_mode(robot.model.parts[0], FAST)
+    robot.advance(5)
+    assert robot.change(change).status is ChangeStatus.SUCCEEDED
+    assert len(robot.change(change).steps) == 3 * NODES
+    assert {part.actual.mode for part in robot.core.parts().values()} == {FAST}
