@@ -32,6 +32,7 @@ from domain.timebase import Duration, Instant, seconds, to_seconds
 from domain.tracking.coverage import Coverage
 from domain.tracking.leg import GivenUpError, Leg, LegLimits
 from domain.tracking.pace import PERIOD, Pace
+from domain.tracking.pure_pursuit import PurePursuit
 from domain.tracking.tracker import ControlStep, PathTracker
 from domain.tracking.trackers import TRACKERS
 from domain.vehicle import VehicleLimits, VehicleState
@@ -83,9 +84,7 @@ class _Run:
     coverage: Coverage
     next_at: Instant
     target_index: int
-    """First waypoint not yet passed."""
-    beside_index: int
-    """First waypoint not yet passed by a vehicle that may still be beside the path."""
+    """First waypoint not yet passed, also beside the path."""
     distance_m: float
     """Distance of the vehicle along the path, m."""
     leg: Leg | None = None
@@ -158,7 +157,6 @@ class Navigation:
             coverage=coverage,
             next_at=now,
             target_index=goal.start_index,
-            beside_index=goal.start_index,
             distance_m=reached_m,
         )
 
@@ -260,18 +258,19 @@ class Navigation:
         if run.leg is None:
             run.approach = self._plan(run, state)
             if run.approach is not None:
-                run.leg = self._new_leg(run, run.approach.way, "its way onto the path", 0, now)
+                run.leg = self._leg_onto_the_path(run.approach, now)
         elif run.approach is not None and self._is_there(run, run.approach, run.leg, state):
-            run.target_index = run.beside_index
             run.leg = run.approach = None
         if run.leg is None:
-            run.leg = self._new_leg(run, run.path, "the path", run.target_index, now)
+            name = run.goal.controller
+            tracker = self._trackers[name](self._limits)
+            run.leg = Leg(run.path, "the path", name, tracker, run.target_index, now)
         return run.leg
 
-    def _new_leg(self, run: _Run, path: Path, name: str, target_index: int, now: Instant) -> Leg:
-        controller = run.goal.controller
-        tracker = self._trackers[controller](self._limits)
-        return Leg(path, name, controller, tracker, target_index, now)
+    def _leg_onto_the_path(self, approach: Approach, now: Instant) -> Leg:
+        # Whatever tracker the task has: this one also follows tight curves with slow wheels.
+        tracker = PurePursuit(self._limits)
+        return Leg(approach.way, "its way onto the path", "pure_pursuit", tracker, 0, now)
 
     def _plan(self, run: _Run, state: VehicleState) -> Approach | None:
         goal, path = run.goal, run.path
@@ -302,7 +301,7 @@ class Navigation:
         if leg.distance_m < approach.length_m:
             return False
         pose = state.pose
-        here = run.path.project(pose.x_m, pose.y_m, run.beside_index)
+        here = run.path.project(pose.x_m, pose.y_m, run.target_index)
         is_there = is_on_path(here, pose, self._limits, ALIGNED_RAD)
         return is_there or leg.distance_m >= leg.path.length_m
 
@@ -315,12 +314,12 @@ class Navigation:
             run.coverage.note(state.pose, step.distance_m)
             return step.cross_track_error_m
         run.coverage.note(state.pose, None)
-        here = run.path.project(state.pose.x_m, state.pose.y_m, run.beside_index)
+        here = run.path.project(state.pose.x_m, state.pose.y_m, run.target_index)
         # A loop of the way may come near to the path further on than where it meets it.
         along_m = max(step.distance_m - run.approach.length_m, 0.0)
         most_m = run.approach.meets_m + along_m
         run.distance_m = max(run.distance_m, min(here.distance_m, most_m))
-        run.beside_index = run.path.index_after(run.distance_m)
+        run.target_index = run.path.index_after(run.distance_m)
         return here.cross_track_error_m
 
     def _has_arrived(self, run: _Run, state: VehicleState) -> bool:

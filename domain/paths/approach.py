@@ -34,6 +34,8 @@ _MEETS_EVERY = 0.5
 """Distance between places where the path could be met, in radii."""
 _MEETS_WITHIN = 4.0
 """How far ahead of the vehicle the path is met at most, in radii."""
+_TURN_RADII = 2.0
+"""What a radian of turning costs, in radii: wheels need time to turn."""
 _EARLY = 0.5
 """What a metre further along the path is worth, in metres of way: the way is driven slowly."""
 _NEAR_SHARE = 0.95
@@ -158,7 +160,7 @@ def _best(
         end = Pose(place.x_m, place.y_m, path.heading_at(met_m))
         curve = shortest_curve(pose, end, radius_m)
         missed_m, barely_m = _missed_m(path, curve, begin_m, met_m, near_m)
-        length_m = curve.length_m + _BARELY * barely_m
+        length_m = curve.length_m + _BARELY * barely_m + _TURN_RADII * radius_m * curve.turned_rad
         cost = (max(missed_m - may_miss_m, 0.0), length_m - _EARLY * met_m)
         if found is None or cost < best:
             found, best = (curve, met_m), cost

@@ -34,6 +34,12 @@ class DubinsCurve:
         """Return the length of the curve, m."""
         return sum(self.lengths_m)
 
+    @property
+    def turned_rad(self) -> float:
+        """Return by how much it turns, to either side together, rad."""
+        pieces = zip(self.turns, self.lengths_m, strict=True)
+        return sum(length for turn, length in pieces if turn) / self.radius_m
+
     def places(self, spacing_m: float) -> NDArray[np.float64]:
         """Return positions along the curve, from its start to its end.
 

@@ -108,9 +108,10 @@ class Pace:
 
     def _slow_enough(self, steering_rad: float, speed_mps: float) -> float:
         """Return an angle cut to what is possible at a speed, rad."""
-        if speed_mps <= 0:
+        square = speed_mps * speed_mps
+        if square == 0.0:
             return steering_rad
-        most = atan(self._lateral_mps2 * self._vehicle.wheelbase_m / speed_mps**2)
+        most = atan(self._lateral_mps2 * self._vehicle.wheelbase_m / square)
         return min(max(steering_rad, -most), most)
 
     def _widest(self, actual_rad: float, steering_rad: float, now: Instant) -> float:
