@@ -171,6 +171,8 @@ class SignalView:
     pending_needs: Duration | None
     skewed: bool
     """The sender's clock differs from ours by more than a second."""
+    needs_acknowledgement: bool
+    """`error` ends only after an operator has acknowledged it, and nobody has yet."""
     settings: Mapping[str, Fact]
 
 

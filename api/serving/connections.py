@@ -90,7 +90,7 @@ class Connections:
                 self._cannot_accept(listener, error)
                 return
             if len(self._open) + len(self._tasks) >= self._most and not self.make_room():
-                self._closings.note("full", str(address[0]), self._loop.time())
+                self._closings.note("full", str(address[0]))
                 client.close()
                 continue
             connecting = self._loop.create_task(self._connect(client))
@@ -110,7 +110,7 @@ class Connections:
         """Wait a moment instead of trying in each turn, and make room meanwhile."""
         if error.errno in _OUT_OF_DESCRIPTORS:
             self.make_room()
-        self._closings.note("full", error.strerror or str(error), self._loop.time())
+        self._closings.note("full", error.strerror or str(error))
         self._loop.remove_reader(listener)
         self._loop.call_later(_RETRY_S, self._listen_again, listener)
 
@@ -129,8 +129,7 @@ class Connections:
 
     def _close(self, intake: Intake, reason: str) -> None:
         peer = intake.raw.get_extra_info("peername")
-        now = asyncio.get_running_loop().time()
-        self._closings.note(reason, str(peer[0]) if peer else "unknown", now)
+        self._closings.note(reason, str(peer[0]) if peer else "unknown")
         # Not by `close`, which waits until everything was read.
         self._open.pop(intake, None)
         intake.raw.abort()

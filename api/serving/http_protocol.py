@@ -8,6 +8,8 @@ from uvicorn.config import Config
 from uvicorn.protocols.http.httptools_impl import HttpToolsProtocol
 from uvicorn.server import ServerState
 
+from api.http.problems import MEDIA_TYPE, make_problem
+from api.http.schemas.problem import Problem
 from api.serving.closings import Closings
 from api.serving.intake import Dispensable
 from api.serving.pieces import HANDSHAKE_COST, HEAD_COST, INCOMPLETE, Piece, cost_of_bytes
@@ -26,8 +28,19 @@ _CHUNKED_PIECE = 1_024
 """Small, since further requests may follow in it, and cost as heads do."""
 _CHUNK_OVERHEAD = 8
 """Bytes that a byte of a body may take on the wire, if each is a chunk of its own."""
+_STOPS = (b"PUT /emergency_stop", b"PUT /holds/", b"DELETE /tasks/current", b"POST /signals")
 _END_OF_HEAD = b"\r\n\r\n"
 _UPGRADE = b"\r\nupgrade:"
+# Their path is not known: they could not be parsed, or were not.
+_MALFORMED = make_problem(
+    HTTPStatus.BAD_REQUEST, "MALFORMED_REQUEST", "this is not a valid HTTP/1.1 request", "/"
+)
+_HEAD_TOO_LARGE = make_problem(
+    HTTPStatus.REQUEST_HEADER_FIELDS_TOO_LARGE,
+    "HEAD_TOO_LARGE",
+    f"a request has at most {MAX_HEADERS} headers and {MAX_HEAD_BYTES} bytes before its body",
+    "/",
+)
 
 
 class HttpProtocol(HttpToolsProtocol):
@@ -71,18 +84,18 @@ class HttpProtocol(HttpToolsProtocol):
 
     def _next_head(self, waiting: bytearray) -> Piece:
         if not (65 <= waiting[0] <= 90 or waiting[0] in b"\r\n"):
-            self._reject(HTTPStatus.BAD_REQUEST)
+            self._reject(_MALFORMED)
             return INCOMPLETE
         end = waiting.find(_END_OF_HEAD, self._searched)
         if end > MAX_HEAD_BYTES or (end < 0 and len(waiting) > MAX_HEAD_BYTES):
-            self._reject(HTTPStatus.REQUEST_HEADER_FIELDS_TOO_LARGE)
+            self._reject(_HEAD_TOO_LARGE)
             return INCOMPLETE
         if end < 0:
             self._searched = max(0, len(waiting) - len(_END_OF_HEAD) + 1)
             return INCOMPLETE
         self._searched = 0
         if waiting.count(b"\r\n", 0, end) > MAX_HEADERS:
-            self._reject(HTTPStatus.REQUEST_HEADER_FIELDS_TOO_LARGE)
+            self._reject(_HEAD_TOO_LARGE)
             return INCOMPLETE
         upgrades = _UPGRADE in waiting[:end].lower()
         cost = HANDSHAKE_COST if upgrades else HEAD_COST
@@ -100,11 +113,11 @@ class HttpProtocol(HttpToolsProtocol):
             if self._should_upgrade():
                 self.handle_websocket_upgrade()
         except httptools.HttpParserError:
-            self._reject(HTTPStatus.BAD_REQUEST)
+            self._reject(_MALFORMED)
         if self.in_message and self._body_left is None:
             overhead = self._taken - _CHUNK_OVERHEAD * self._body_bytes
             if overhead > MAX_HEAD_BYTES:
-                self._reject(HTTPStatus.BAD_REQUEST)
+                self._reject(_MALFORMED)
 
     def on_message_begin(self) -> None:
         """Begin a request."""
@@ -168,21 +181,22 @@ class HttpProtocol(HttpToolsProtocol):
         waits = self.dispensable is Dispensable.AT_ONCE
         return "head" if waits and waited > HEAD_TIMEOUT_S else None
 
-    def _reject(self, status: HTTPStatus) -> None:
+    def _reject(self, problem: Problem) -> None:
         """Answer what is no acceptable request, and close."""
         if self.transport.is_closing():
             return
         address = self.client[0] if self.client else "unknown"
-        self._closings.note("malformed", address, self.loop.time())
-        body = f'{{"type":"about:blank","title":"{status.phrase}","status":{status.value}}}'
+        self._closings.note("malformed", address)
+        body = problem.as_json().encode()
+        phrase = HTTPStatus(problem.status).phrase
         head = (
-            f"HTTP/1.1 {status.value} {status.phrase}\r\ncontent-type: application/problem+json\r\n"
+            f"HTTP/1.1 {problem.status} {phrase}\r\ncontent-type: {MEDIA_TYPE}\r\n"
             f"content-length: {len(body)}\r\nconnection: close\r\n\r\n"
         )
-        self.transport.write((head + body).encode())
+        self.transport.write(head.encode() + body)
         self.transport.close()
 
 
 def is_stop(head: bytes | bytearray) -> bool:
     """Tell whether a request may make the robot safe, or is a reading that does."""
-    return head.startswith((b"PUT /emergency_stop", b"PUT /holds/", b"POST /signals/"))
+    return head.startswith(_STOPS)

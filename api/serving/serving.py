@@ -4,6 +4,7 @@ Owns the handling of signals, and every task.
 """
 
 import asyncio
+import gc
 import logging
 import os
 import socket
@@ -27,7 +28,6 @@ from domain.findings import Finding
 from service.clock import MonotonicClock
 from service.files.robot_file import InvalidRobotFileError
 from service.files.text_file import UnreadableFileError
-from service.garbage import collect_at_rest, settle_heap
 from service.ros.gateway import RosGateway
 from service.ros.graph.graph import GraphFailedError, UnknownFieldError, UnknownTypeError
 from service.running import TaskFailedError
@@ -80,7 +80,10 @@ def _serve(options: ServeOptions, output: Output, errors: Output) -> int:
     prepare(app)
     greeting = "\n".join(greet(composition, options, url_of(sockets, options.host), access))
     server = web_server(app, lambda: _say_serving(output, greeting, manager, supervisor))
-    settle_heap()
+    # Objects that exist now stay: without this each garbage collection would scan them again, and
+    # delay the tick.
+    gc.collect()
+    gc.freeze()
     with asyncio.Runner(loop_factory=_new_event_loop) as runner:
         return runner.run(run_service(composition, server, sockets, manager))
 
@@ -148,9 +151,6 @@ async def run_service(
         async with asyncio.TaskGroup() as tasks:
             supervising = tasks.create_task(supervisor.run(), name="supervisor")
             serving = tasks.create_task(_serve_until(stopping, server, sockets), name="web server")
-            collecting = tasks.create_task(
-                collect_at_rest(supervisor.core, supervisor.clock), name="garbage"
-            )
             offering = tasks.create_task(_offer(gateway), name="gateway") if gateway else None
             await stopping.wait()
             manager.say_stopping()
@@ -159,7 +159,6 @@ async def run_service(
             await serving
             if offering is not None:
                 offering.cancel()
-            collecting.cancel()
             supervising.cancel()
     except* Exception as failures:
         for failure in _leaves(failures):

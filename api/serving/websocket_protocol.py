@@ -170,7 +170,7 @@ class WebSocketProtocol(WebSocketsSansIOProtocol):
         if self.transport.is_closing():
             return
         address = self.client[0] if self.client else "unknown"
-        self._closings.note("frames", address, self.loop.time())
+        self._closings.note("frames", address)
         self.queue.put_nowait({"type": "websocket.disconnect", "code": code, "reason": ""})
         if self.handshake_complete and not self.close_sent:
             self.conn.send_close(code)

@@ -10,8 +10,10 @@ from docs.generate.source_scan import codes_given_to, require_described
 _ONLY_HTTP = {
     "FAILED": (409, "A request of a scenario: the operation that it started failed."),
     "FOREIGN_ORIGIN": (403, "A write request or a WebSocket from a page of another origin."),
+    "HEAD_TOO_LARGE": (431, "A request with too many headers, or too long ones."),
     "HOST_NOT_ALLOWED": (403, "The name in `Host` is not allowed."),
     "INVALID_QUERY": (422, "A query parameter with an invalid value."),
+    "MALFORMED_REQUEST": (400, "Not a valid HTTP/1.1 request; the connection is closed."),
     "METHOD_NOT_ALLOWED": (405, "`Allow` lists the allowed methods."),
     "NOT_READY": (503, "`/readyz`: no model, or the core does not tick."),
     "NO_MOCK": (404, "Signals are not mocked."),

@@ -175,6 +175,7 @@ class SignalMonitor:
             pending_since=self._last_good if coming else None,
             pending_needs=coming.for_ if coming else None,
             skewed=newest.skewed if newest else False,
+            needs_acknowledgement=self._value_slot.waits_for_acknowledgement,
             settings=self._facts,
         )
 

@@ -1,35 +1,19 @@
 """A real Chromium, and a real service as a process of its own that a test may kill."""
 
-import os
-import socket
 from collections.abc import Iterator
-from contextlib import suppress
-from pathlib import Path
 from typing import TYPE_CHECKING
 
 import pytest
 
-from tests.browser.station import Complaints, Service
+from tests.browser.station import CHROMIUM, CHROMIUM_ARGUMENTS, Complaints, Service, free_port
 
 if TYPE_CHECKING:
     from playwright.sync_api import Browser, Page
 
-CHROMIUM = Path("/usr/bin/chromium")
-CHROMIUM_ARGUMENTS = [
-    "--headless",
-    "--no-sandbox",
-    "--disable-gpu",
-    "--disable-quic",
-    "--no-first-run",
-    "--disable-background-networking",
-    "--disable-component-update",
-    "--disable-sync",
-]
-
 
 @pytest.fixture(scope="module")
 def running_service(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Service]:
-    port = _free_port()
+    port = free_port()
     with (tmp_path_factory.mktemp("service") / "output").open("w+b") as output:
         service = Service(port, output)
         try:
@@ -37,23 +21,6 @@ def running_service(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Servic
             yield service
         finally:
             service.kill()
-
-
-def _free_port() -> int:
-    """Return a port that stays free while the service is down.
-
-    Those from 32768 on the kernel gives to whoever asks for any; each process has its own range,
-    of this run and of another one on the same machine.
-    """
-    begin = 20_000 + 100 * (os.getpid() % 120)
-    for port in range(begin, begin + 100):
-        with socket.socket() as probe:
-            # As the service does, which may follow another one on the same port.
-            probe.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
-            with suppress(OSError):
-                probe.bind(("127.0.0.1", port))
-                return port
-    pytest.fail("no port is free")
 
 
 @pytest.fixture

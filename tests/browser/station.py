@@ -2,11 +2,14 @@
 
 import json
 import math
+import os
+import socket
 import subprocess
 import sys
 import time
 import urllib.error
 import urllib.request
+from contextlib import suppress
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import IO, TYPE_CHECKING, Any
@@ -17,6 +20,17 @@ if TYPE_CHECKING:
     from playwright.sync_api import ConsoleMessage, Page
 
 START_WITHIN_S = 40.0
+CHROMIUM = Path("/usr/bin/chromium")
+CHROMIUM_ARGUMENTS = [
+    "--headless",
+    "--no-sandbox",
+    "--disable-gpu",
+    "--disable-quic",
+    "--no-first-run",
+    "--disable-background-networking",
+    "--disable-component-update",
+    "--disable-sync",
+]
 HEALTHY = {
     "battery_level": 0.9,
     "estop": False,
@@ -28,10 +42,12 @@ HEALTHY = {
 
 @dataclass
 class Service:
-    """`pilothouse serve` with its built-in robot, on a port that stays the same over restarts."""
+    """`pilothouse serve` on a port that stays the same over restarts."""
 
     port: int
     output: IO[bytes]
+    arguments: tuple[str, ...] = ()
+    """Further ones of `pilothouse serve`: a model, a robot file."""
     _process: subprocess.Popen[bytes] | None = field(default=None, init=False)
 
     @property
@@ -40,7 +56,7 @@ class Service:
 
     def start(self) -> None:
         command = Path(sys.executable).with_name("pilothouse")
-        arguments = [str(command), "serve", "--port", str(self.port)]
+        arguments = [str(command), "serve", "--port", str(self.port), *self.arguments]
         self._process = subprocess.Popen(arguments, stdout=self.output, stderr=self.output)
         end = time.monotonic() + START_WITHIN_S
         while not self._is_ready():
@@ -117,3 +133,20 @@ class Complaints:
     def _note(self, message: "ConsoleMessage") -> None:
         if message.type in ("error", "warning"):
             self.messages.append(message.text)
+
+
+def free_port() -> int:
+    """Return a port that stays free while the service is down.
+
+    Those from 32768 on the kernel gives to whoever asks for any; each process has its own range,
+    of this run and of another one on the same machine.
+    """
+    begin = 20_000 + 100 * (os.getpid() % 120)
+    for port in range(begin, begin + 100):
+        with socket.socket() as probe:
+            # As the service does, which may follow another one on the same port.
+            probe.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
+            with suppress(OSError):
+                probe.bind(("127.0.0.1", port))
+                return port
+    pytest.fail("no port is free")

@@ -198,3 +198,59 @@ def test_the_map_is_told_in_words_to_those_who_do_not_see_it(page: Page) -> None
         "Vehicle at x 12.3 m, y -4.5 m, heading 90 degrees, 2.8 m/s. "
         "Task t1, 62 % done, waypoint 41 of 66, 0.03 m left of the path."
     )
+
+
+UTM = {"x_m": 303_000.0, "y_m": 3_900_000.0}
+
+DRAW = """
+const { drawScene } = await import("/web/js/map/draw.js");
+const { PathShape } = await import("/web/js/map/path_shape.js");
+const { Trail } = await import("/web/js/map/trail.js");
+const looks = await import("/web/js/map/view.js");
+// The figures of the grid differ, so that they are drawn in the colour of the ground.
+const hidden = Object.fromEntries(["grid", "axis", "quiet", "text"].map((name) => [name, "#fff"]));
+const seen = { ahead: "#333", done: "#9cf", trail: "#00f", aim: "#808", vehicle: "#fa0" };
+const ink = { ground: "#fff", outline: "#000", accent: "#06c", font: "11px sans-serif" };
+const draw = (dx, dy, drift) => {
+    const canvas = new OffscreenCanvas(600, 400);
+    const at = (x, y) => ({ x_m: dx + x, y_m: dy + y, yaw_rad: 0.3 });
+    const items = Array.from({ length: 80 }, (_, n) => at(n / 4, 3 * Math.sin(n / 8)));
+    const path = new PathShape(items);
+    const trail = new Trail();
+    for (let n = 0; n < 20; n += 1) trail.add(at(n / 4, 0.2 + n / 16), 100 * n, "RUNNING");
+    const pose = at(5.125, 1.5);
+    const limits = { wheelbase_m: 1.75 };
+    const vehicle = { pose, lookahead: at(8, 2), steering_angle_rad: 0.1, limits };
+    const [split, target] = [path.split(21, pose), path.waypoint(21)];
+    const scene = { path, split, target, preview: null, runs: trail.runs, vehicle, isOld: false };
+    const view = { ...looks.emptyView(), width: 600, height: 400, scale: 25 };
+    const place = { x_m: dx + 8 + drift, y_m: dy + 1 };
+    const context = canvas.getContext("2d");
+    drawScene(context, looks.centred(view, place), { ...ink, ...seen, ...hidden }, 1, scene);
+    return context.getImageData(0, 0, 600, 400).data;
+};
+const unlike = (one, other) => one.filter((value, at) => Math.abs(value - other[at]) > 24).length;
+"""
+
+
+@pytest.mark.parametrize("drift", [0.0, 0.013, 0.371])
+def test_at_coordinates_of_utm_the_picture_is_the_same_as_at_the_origin(
+    page: Page, drift: float
+) -> None:
+    script = f"""
+        const [here, there] = [draw(0, 0, {drift}), draw({UTM["x_m"]}, {UTM["y_m"]}, {drift})];
+        const blank = new Uint8ClampedArray(here.length).fill(255);
+        return [unlike(here, there), unlike(here, blank)];
+    """
+    different, drawn = run(page, DRAW + script)
+    assert drawn > 1000
+    assert different == 0
+
+
+def test_a_track_far_from_the_vehicle_is_shown_alone(page: Page) -> None:
+    script = """
+        const bounds = { minX: 303000, minY: 3900000, maxX: 303200, maxY: 3900100 };
+        return [{ x_m: 0, y_m: 0 }, { x_m: 302500, y_m: 3900000 }].map((pose) =>
+            looks.isFar(bounds, pose));
+    """
+    assert run(page, VIEW + script) == [True, False]

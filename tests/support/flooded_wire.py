@@ -31,6 +31,11 @@ class CountedLoop:
         for function in soon:
             function()
 
+    @property
+    def is_idle(self) -> bool:
+        """Tell whether nothing is to be called."""
+        return not self._soon
+
 
 class RawTransport(asyncio.Transport):
     """Keeps what is written, and reads what a client has sent while it may."""

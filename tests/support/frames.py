@@ -62,6 +62,7 @@ def signal_view(name: str, value: float = 1.0) -> SignalView:
         pending_since=None,
         pending_needs=None,
         skewed=False,
+        needs_acknowledgement=False,
         settings=MappingProxyType({}),
     )
 

@@ -259,7 +259,6 @@ CASES = (
         "STILL MOVING",
         "error",
         "still moving at 1.1 m/s, 34 s after the stop",
-        ("the vehicle moves at 1.1 m/s",),
         members=members(
             reason("STILL_MOVING", "still moving at 1.1 m/s, 34 s after the stop"),
             vehicle=moving(1.1),
@@ -270,7 +269,6 @@ CASES = (
         "STILL MOVING",
         "error",
         "still moving at 0.5 m/s; no task",
-        ("the vehicle moves at 0.50 m/s",),
         members=members(
             reason("STILL_MOVING", "still moving at 0.5 m/s", "IDLE"), vehicle=moving(0.5)
         ),

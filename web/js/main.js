@@ -9,6 +9,7 @@ import { emptyState, fold } from "/web/js/store.js";
 import "/web/js/elements/token_form.js";
 import "/web/js/elements/pills.js";
 import "/web/js/elements/hold_button.js";
+import "/web/js/elements/acknowledge.js";
 import "/web/js/elements/state_bar.js";
 import "/web/js/elements/stop_button.js";
 import "/web/js/elements/map.js";
@@ -149,13 +150,18 @@ connection.addEventListener("frame", ({ detail: frame }) => {
 
 document.addEventListener("ph-select", ({ detail }) => {
   selected = detail;
-  askToDraw();
+  draw();
+  panel.bringIntoView();
 });
+document.addEventListener("ph-back", () => document.querySelector("ph-part-tree").focusRow());
 document.addEventListener("ph-preview", ({ detail }) => {
   preview = detail;
   askToDraw();
 });
-document.addEventListener("ph-try-now", () => connection.tryNow());
+document.addEventListener("ph-try-now", () => {
+  connection.tryNow();
+  askToDraw();
+});
 document.addEventListener("ph-restart-read", () => take({ type: "restart_read" }));
 document.addEventListener("ph-latch", ({ detail }) => take({ type: "latch", latch: detail }));
 setInterval(askToDraw, REDRAW_MS);

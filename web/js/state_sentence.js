@@ -37,8 +37,9 @@ export function robotSentence(state) {
   const { state: name, errors, reasons } = state.systemState;
   const task = currentTask(state);
   const reasonTexts = reasons.map(({ message }) => message);
-  const found = [...movement(state, name), ...partProblems(state.parts)];
   const alarm = ALARMS[reasons[0]?.code];
+  // An alarm tells already how fast the vehicle moves.
+  const found = [...(alarm ? [] : movement(state, name)), ...partProblems(state.parts)];
   if (name === "ERROR") {
     const [first = errors.join(", "), ...others] = reasonTexts;
     const text = task ? `${first}, task ${task.id} is ${STANDS[task.status]}` : first;
@@ -56,12 +57,21 @@ export function robotSentence(state) {
 /** Whether the vehicle stands under the emergency stop. */
 export function standstillWords(state) {
   const moves = movingAt(state);
+  if (ALARMS[state.systemState?.reasons[0]?.code])
+    return moves === null
+      ? "the vehicle may be moving: use the hardware stop"
+      : `the vehicle still moves at ${speed(moves)}: use the hardware stop`;
   if (moves !== null) return `the vehicle moves at ${speed(moves)}`;
   const isKnown = typeof state.vehicle?.speed_mps === "number" && !state.holds.vehicle;
   if (!isKnown) return "it is not known whether the vehicle stands";
   return state.emergencyStop?.standstill_at
     ? "the vehicle is at a standstill"
     : "no standstill yet";
+}
+
+/** Whether the vehicle moves, or should stand and may not. */
+export function mayMove(state) {
+  return movingAt(state) !== null || Boolean(ALARMS[state.systemState?.reasons[0]?.code]);
 }
 
 /** What was lost in a restart of the service; empty without one. */

@@ -26,9 +26,14 @@ export function percent(share) {
   return `${Math.floor(share * 100 + 1e-9)} %`;
 }
 
+/** "waypoint 41" for the index 40: the page counts from 1, as people do. */
+export function waypointName(index) {
+  return `waypoint ${index + 1}`;
+}
+
 /** "waypoint 41 of 66", counted from 1. */
 export function waypointWords({ target_index, waypoint_count }) {
-  return `waypoint ${Math.min(target_index + 1, waypoint_count)} of ${waypoint_count}`;
+  return `${waypointName(Math.min(target_index, waypoint_count - 1))} of ${waypoint_count}`;
 }
 
 /** How a task ended. */

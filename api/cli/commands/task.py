@@ -141,24 +141,34 @@ def run_task(
             say(line)
         if asked.preview:
             return Outcome.SUCCEEDED
-        task = client.call("POST", "/tasks", csv=text, query=asked.query)
+        return _drive(client, asked, text, say, err)
     except ServiceProblemError as error:
         if not error.problem.get("findings"):
             raise ServiceProblemError(_in_options(error.problem)) from error
         for line in fault_lines(asked.file, text, error.problem):
             print(line, file=err)
         return Outcome.FAILED
-    if not asked.wait:
-        say(f"task {task['id']} is started: {status_text(task)}")
-        return Outcome.SUCCEEDED
-    # Loaded late for a quick `--help`: it needs asyncio and websockets.
+
+
+def _drive(
+    client: "ServiceClient", asked: TaskOptions, text: str, say: Say, complaints: TextIO
+) -> Outcome:
+    """Submit a task and follow it to its end; Ctrl-C leaves it, and says so."""
+    # Loaded late for a quick `--help`, since it needs asyncio and websockets; and before the task
+    # is submitted, so that Ctrl-C in between is not missed.
     from api.cli.task_follower import REDRAW_S, follow_task
 
+    name = "the task, if it was submitted,"
     try:
-        with TerminalLine(err, REDRAW_S) as progress:
+        task = client.call("POST", "/tasks", csv=text, query=asked.query)
+        name = f"task {task['id']}"
+        if not asked.wait:
+            say(f"{name} is started: {status_text(task)}")
+            return Outcome.SUCCEEDED
+        with TerminalLine(complaints, REDRAW_S) as progress:
             return follow_task(client, task, say, progress)
     except KeyboardInterrupt:
-        say(f"task {task['id']} goes on; to cancel it: {_cancel_command(client)}")
+        say(f"{name} goes on; to cancel it: {_cancel_command(client)}")
         raise
 
 

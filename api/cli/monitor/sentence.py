@@ -77,6 +77,9 @@ def stop_sentence(view: View) -> Sentence | None:
 def standstill_words(robot: Robot) -> str:
     """Return whether the vehicle stands under the emergency stop."""
     moves = _moving_at(robot)
+    if robot.system_state is not None and _alarm(robot.system_state):
+        at = "may be moving" if moves is None else f"still moves at {words.speed(moves)}"
+        return f"the vehicle {at}: use the hardware stop"
     if moves is not None:
         return f"the vehicle moves at {words.speed(moves)}"
     is_known = robot.vehicle is not None and robot.vehicle["speed_mps"] is not None
@@ -107,7 +110,8 @@ def _error_sentence(robot: Robot) -> Sentence:
     text = first if task is None else f"{first}, task {task['id']} is {_STANDS[task['status']]}"
     kept = _held_by([hold for hold in _holds(robot).values() if hold["owner"] != "error"])
     also = (f"also {kept}",) if kept else ()
-    more = (*others, *_movement(robot), *part_problems(robot.parts or {}), *also, *_aborted(robot))
+    found = (*_movement(robot), *part_problems(robot.parts or {}))
+    more = (*others, *found, *also, *_aborted(robot))
     return Sentence(_alarm(state) or "ERROR", text, more, "error")
 
 
@@ -173,7 +177,9 @@ def _aborted(robot: Robot) -> Iterator[str]:
 
 def _movement(robot: Robot) -> Iterator[str]:
     """Yield that the vehicle moves though no task drives or stops it."""
-    moves, task = _moving_at(robot), robot.current_task
+    # An alarm tells already how fast it moves.
+    moves = None if _alarm(robot.system_state or {"reasons": ()}) else _moving_at(robot)
+    task = robot.current_task
     status = None if task is None else task["status"]
     drives = status == "PAUSING" or (status == "RUNNING" and not _holds(robot))
     if moves is not None and (not drives or _is_error(robot)):

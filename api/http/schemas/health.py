@@ -50,6 +50,9 @@ class StreamedSignalJson(Json):
     skewed: bool = Field(description="The sender's clock differs from ours by more than 1 s")
     stale: bool
     error: str | None
+    needs_acknowledgement: bool = Field(
+        description="`error` ends only after an operator has acknowledged it, and nobody has yet"
+    )
     pending: PendingJson | None
     settings: dict[str, Fact]
 
@@ -66,6 +69,7 @@ class StreamedSignalJson(Json):
             skewed=view.skewed,
             stale=view.stale,
             error=view.error,
+            needs_acknowledgement=view.needs_acknowledgement,
             pending=_pending(view, clock),
             settings=dict(view.settings),
         )

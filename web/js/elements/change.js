@@ -3,6 +3,7 @@
 import { request } from "/web/js/api.js";
 import { el, renderOnce, setAttribute, setText } from "/web/js/dom.js";
 import { problemLines } from "/web/js/problem.js";
+import { whileSending } from "/web/js/sending.js";
 import { changeWords, duration, requestWords, timeOfDay } from "/web/js/words.js";
 
 const MARKS = { pending: "·", running: "…", succeeded: "✓", failed: "✕", timed_out: "✕" };
@@ -53,12 +54,14 @@ class Change extends HTMLElement {
     );
   }
 
-  async #cancel() {
-    try {
-      await request("DELETE", `/changes/${this.change.id}`);
-    } catch (error) {
-      this.dispatchEvent(new CustomEvent("ph-problem", { bubbles: true, detail: error.problem }));
-    }
+  #cancel() {
+    return whileSending(this.cancel, async () => {
+      try {
+        await request("DELETE", `/changes/${this.change.id}`);
+      } catch (error) {
+        this.dispatchEvent(new CustomEvent("ph-problem", { bubbles: true, detail: error.problem }));
+      }
+    });
   }
 }
 

@@ -1,53 +1,105 @@
-/** <ph-hold-button label="...">: dispatches `ph-held` after a press of 1.5 s, by pointer or key. */
+/** <ph-hold-button label="...">: dispatches `ph-held` after a press of 1 s, by pointer or key.
+ *
+ * Screen readers and switches can only click: for them a second click within 5 s confirms.
+ */
 
-import { el, setAttribute } from "/web/js/dom.js";
+import { el, setAttribute, setText } from "/web/js/dom.js";
 
-const HOLD_MS = 1500;
+const HOLD_MS = 1000;
+const TOLD_MS = 2500;
+const CONFIRM_MS = 5000;
 
 class HoldButton extends HTMLElement {
+  #label = "";
+  #timer = null;
+  #clearing = null;
+  #clickedAt = -Infinity;
+
   connectedCallback() {
     if (this.button) return;
-    const label = this.getAttribute("label");
+    this.#label = this.getAttribute("label") ?? "";
+    this.text = el("span", {}, this.#label);
+    this.told = el("span", { class: "visually-hidden", role: "status" });
     this.button = el(
       "button",
-      { type: "button" },
+      { type: "button", "aria-description": "Press and hold for 1 s" },
       el("span", { class: "fill" }),
-      el("span", {}, label),
+      this.text,
     );
-    this.append(this.button);
-    this.button.addEventListener("pointerdown", () => this.#start());
-    for (const end of ["pointerup", "pointerleave", "pointercancel", "blur", "keyup"]) {
-      this.button.addEventListener(end, () => this.#cancel());
-    }
-    this.button.addEventListener("keydown", (event) => {
-      if (event.key !== " " && event.key !== "Enter") return;
-      event.preventDefault();
-      if (!event.repeat) this.#start();
-    });
-    this.button.addEventListener("contextmenu", (event) => event.preventDefault());
+    this.append(this.button, this.told);
+    this.#listen();
   }
 
   disconnectedCallback() {
-    this.#cancel();
+    this.#end();
+  }
+
+  set label(text) {
+    this.#label = text;
+    if (this.#clearing === null) setText(this.text, text);
   }
 
   set disabled(value) {
     setAttribute(this.button, "disabled", value);
-    if (value) this.#cancel();
+    if (value) this.#end();
+  }
+
+  #listen() {
+    const { button } = this;
+    button.addEventListener("pointerdown", ({ button: which }) => which === 0 && this.#start());
+    for (const end of ["pointerup", "pointerleave", "pointercancel", "blur", "keyup"]) {
+      button.addEventListener(end, () => this.#letGo());
+    }
+    for (const kind of ["keydown", "keyup"]) {
+      button.addEventListener(kind, (event) => {
+        if (event.key !== " " && event.key !== "Enter") return;
+        event.preventDefault();
+        if (kind === "keydown" && !event.repeat) this.#start();
+      });
+    }
+    button.addEventListener("click", (event) => this.#click(event));
+    button.addEventListener("contextmenu", (event) => event.preventDefault());
   }
 
   #start() {
-    this.#cancel();
+    this.#end();
     setAttribute(this, "holding", true);
-    this.timer = setTimeout(() => {
-      this.#cancel();
-      this.dispatchEvent(new CustomEvent("ph-held", { bubbles: true }));
-    }, HOLD_MS);
+    this.#timer = setTimeout(() => this.#held(), HOLD_MS);
   }
 
-  #cancel() {
-    clearTimeout(this.timer);
+  #held() {
+    this.#end();
+    this.#say(null);
+    this.dispatchEvent(new CustomEvent("ph-held", { bubbles: true }));
+  }
+
+  #letGo() {
+    if (this.#timer === null) return;
+    this.#end();
+    this.#say("Keep it pressed for 1 s", TOLD_MS);
+  }
+
+  #end() {
+    clearTimeout(this.#timer);
+    this.#timer = null;
     setAttribute(this, "holding", false);
+  }
+
+  /** A click that no pointer made: what pointer and keys do is handled before it. */
+  #click({ detail, pointerType }) {
+    if (detail > 0 || pointerType) return;
+    const isSecond = performance.now() - this.#clickedAt < CONFIRM_MS;
+    this.#clickedAt = isSecond ? -Infinity : performance.now();
+    if (isSecond) this.#held();
+    else this.#say(`${this.#label}: press again to confirm`, CONFIRM_MS);
+  }
+
+  /** Say something in place of the label for a while; null: the label. */
+  #say(text, forMs) {
+    clearTimeout(this.#clearing);
+    this.#clearing = text === null ? null : setTimeout(() => this.#say(null), forMs);
+    setText(this.text, text ?? this.#label);
+    setText(this.told, text ?? "");
   }
 }
 

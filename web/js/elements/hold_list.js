@@ -1,12 +1,15 @@
 /** <ph-hold-list>: the holds that keep the vehicle from driving, with buttons to release them.
  *
- * Dispatches `ph-release` with the owner.
+ * Without the last one the robot drives, so releasing needs a long press. Dispatches `ph-release`
+ * with `{owner, button}`.
  */
 
-import { el, renderOnce, setAttribute, setText } from "/web/js/dom.js";
+import { el, setAttribute, setText } from "/web/js/dom.js";
 import { wholeSeconds } from "/web/js/words.js";
 
 class HoldList extends HTMLElement {
+  #lines = new Map();
+
   connectedCallback() {
     if (this.list) return;
     this.list = el("ul", { class: "holds", "aria-label": "Holds" });
@@ -15,38 +18,44 @@ class HoldList extends HTMLElement {
 
   show({ holds, enabled, knownAt }) {
     setAttribute(this, "hidden", holds.length === 0);
-    renderOnce(this.list, JSON.stringify(holds), () => holds.map((hold) => this.#line(hold)));
-    for (const line of this.list.children) {
-      setText(line.since, `for ${wholeSeconds(knownAt - Date.parse(line.hold.since_at))}`);
-      if (line.release) setAttribute(line.release, "disabled", !enabled);
+    const wanted = new Set(holds.map(keyOf));
+    for (const [key, line] of this.#lines) {
+      if (wanted.has(key)) continue;
+      line.item.remove();
+      this.#lines.delete(key);
+    }
+    // A line stays as it is while only its reason changes, so that a press on it goes on.
+    for (const hold of holds) {
+      if (!this.#lines.has(keyOf(hold))) this.#add(hold);
+      const { reason, since, release } = this.#lines.get(keyOf(hold));
+      setText(reason, hold.reason ? `: ${hold.reason}` : "");
+      setText(since, `for ${wholeSeconds(knownAt - Date.parse(hold.since_at))}`);
+      if (release) release.disabled = !enabled;
     }
   }
 
-  #line(hold) {
-    const { owner, reason, by } = hold;
-    const since = el("span", { class: "quiet" });
-    const ask = () =>
-      this.dispatchEvent(new CustomEvent("ph-release", { bubbles: true, detail: owner }));
-    const name = `Release the hold ${owner}`;
+  #add(hold) {
+    const { owner, by } = hold;
+    const [reason, since] = [el("span"), el("span", { class: "quiet" })];
     // Pilothouse clears its own holds when their cause is gone.
-    const release = by
-      ? el("button", { type: "button", "aria-label": name, onclick: ask }, "Release")
-      : null;
-    const whose = by ? (by === owner ? "" : `, by ${by}`) : ", cleared automatically";
-    const line = el(
-      "li",
-      {},
-      el(
-        "div",
-        {},
-        el("strong", {}, owner),
-        el("span", {}, reason ? `: ${reason}` : ""),
-        el("p", { class: "quiet" }, since, whose),
-      ),
-      release,
-    );
-    return Object.assign(line, { hold, since, release });
+    const release = by ? el("ph-hold-button", { label: `Release ${owner} (hold)` }) : null;
+    release?.addEventListener("ph-held", () => {
+      const detail = { owner, button: release.button };
+      this.dispatchEvent(new CustomEvent("ph-release", { bubbles: true, detail }));
+    });
+    const whose = by ? (by === owner ? "" : `, by ${by}`) : (UNTIL[owner] ?? "");
+    const words = el("div", {}, el("strong", {}, owner), reason, el("p", { class: "quiet" }, since, whose));
+    const item = el("li", {}, words, release);
+    this.list.append(item);
+    this.#lines.set(keyOf(hold), { item, reason, since, release });
   }
+}
+
+/** What ends the holds of Pilothouse itself. */
+const UNTIL = { error: ", until the errors end", vehicle: ", until there is a pose" };
+
+function keyOf({ owner, by, since_at }) {
+  return JSON.stringify([owner, by, since_at]);
 }
 
 customElements.define("ph-hold-list", HoldList);

@@ -150,7 +150,9 @@ class TrackMap extends HTMLElement {
     const ids = [this.#shapes.preview?.id, this.#shapes.path?.id, pose !== null];
     const isNew = String(ids) !== this.shown;
     this.shown = String(ids);
-    const isLost = pose !== null && !looks.isWithin(this.#view, pose, 0);
+    const shown = (preview ?? this.#scene.path)?.bounds;
+    const isFar = pose !== null && Boolean(shown) && looks.isFar(shown, pose);
+    const isLost = pose !== null && !isFar && !looks.isWithin(this.#view, pose, 0);
     if (preview && isNew) this.#setMode("fit");
     else if (this.#mode === "fit" && (isNew || isLost)) this.#fit();
     // With reduced motion the ground stays still until the vehicle approaches an edge.
@@ -161,7 +163,9 @@ class TrackMap extends HTMLElement {
     const { preview, path, vehicle } = this.#scene;
     const bounds = (preview ?? path)?.bounds ?? null;
     const pose = vehicle?.pose;
-    this.#view = looks.fit(this.#view, pose ? include(bounds, pose) : bounds);
+    // A track of another place, as in coordinates of a map, is shown alone.
+    const isTogether = pose && !(bounds && looks.isFar(bounds, pose));
+    this.#view = looks.fit(this.#view, isTogether ? include(bounds, pose) : bounds);
   }
 
   #centre(margin) {

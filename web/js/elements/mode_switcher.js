@@ -1,10 +1,13 @@
-/** <ph-mode-switcher>: buttons for lifecycle and mode; a disabled one shows its first blocker.
+/** <ph-mode-switcher>: buttons for lifecycle and mode, each mode with its first blocker.
+ *
+ * A mode that cannot be entered is disabled; a blocker that does not refuse is only a warning.
  *
  * Dispatches `ph-change` with the change that the server started, or `ph-problem`.
  */
 
 import { partPath, request } from "/web/js/api.js";
 import { el, setAttribute, setText } from "/web/js/dom.js";
+import { whileSending } from "/web/js/sending.js";
 
 const TRANSITIONS = ["configure", "activate", "deactivate", "cleanup", "shutdown"];
 
@@ -34,6 +37,7 @@ class ModeSwitcher extends HTMLElement {
 
   show({ part, transitions, modes, enabled }) {
     this.subject = part;
+    this.isLive = enabled;
     setAttribute(this.fields, "disabled", !enabled);
     for (const [name, button] of this.transitions) {
       const off = !transitions.includes(name);
@@ -48,10 +52,16 @@ class ModeSwitcher extends HTMLElement {
 
   /** A finalized part cannot be restarted, so shutdown needs a long press. */
   #transitionButton(name) {
-    const ask = () => this.#ask("state", { transition: name });
-    if (name === "shutdown")
-      return el("ph-hold-button", { label: "shutdown (hold)", "onph-held": ask });
-    return el("button", { type: "button", onclick: ask }, name);
+    if (name === "shutdown") {
+      const shutdown = el("ph-hold-button", { label: "shutdown (hold)" });
+      shutdown.addEventListener("ph-held", () =>
+        this.#ask(shutdown.button, "state", { transition: name }),
+      );
+      return shutdown;
+    }
+    const button = el("button", { type: "button" }, name);
+    button.addEventListener("click", () => this.#ask(button, "state", { transition: name }));
+    return button;
   }
 
   #build(key, modes) {
@@ -60,8 +70,8 @@ class ModeSwitcher extends HTMLElement {
     for (const { mode } of modes) {
       const blocker = el("p", { class: "blocker", id: `blocker-${mode}` });
       const mark = el("span", { class: "mark" });
-      const ask = () => this.#ask("mode", { mode });
-      const button = el("button", { type: "button", onclick: ask }, el("span", {}, mode), mark);
+      const button = el("button", { type: "button" }, el("span", {}, mode), mark);
+      button.addEventListener("click", () => this.#ask(button, "mode", { mode }));
       this.modes.set(mode, {
         button,
         mark,
@@ -79,24 +89,34 @@ class ModeSwitcher extends HTMLElement {
     const isTarget = target?.mode === mode;
     setAttribute(button, "disabled", !can_enter);
     setAttribute(button, "aria-pressed", String(isActual));
-    setAttribute(button, "aria-describedby", can_enter ? null : blocker.id);
-    setText(mark, isActual ? "actual" : isTarget ? "target" : "");
-    const [first, ...others] = can_enter ? [] : blockers;
+    setAttribute(button, "aria-describedby", blockers.length ? blocker.id : null);
+    setText(mark, isActual ? (this.isLive ? "actual" : "was actual") : isTarget ? "target" : "");
+    // What refuses comes first: it is why the button is disabled.
+    const sorted = [...blockers].sort((a, b) => refuses(b) - refuses(a));
+    const [first, ...others] = sorted;
     const more = others.length ? ` (and ${others.length} more)` : "";
-    setText(blocker, first ? first.message + more : "");
+    setText(blocker, first ? `${can_enter ? "⚠ " : ""}${first.message}${more}` : "");
+    setAttribute(blocker, "data-advisory", can_enter);
   }
 
-  async #ask(what, body) {
-    try {
-      this.#emit("ph-change", await request("POST", `${partPath(this.subject)}/${what}`, body));
-    } catch (error) {
-      this.#emit("ph-problem", error.problem);
-    }
+  #ask(button, what, body) {
+    const path = `${partPath(this.subject)}/${what}`;
+    return whileSending(button, async () => {
+      try {
+        this.#emit("ph-change", await request("POST", path, body));
+      } catch (error) {
+        this.#emit("ph-problem", error.problem);
+      }
+    });
   }
 
   #emit(name, detail) {
     this.dispatchEvent(new CustomEvent(name, { bubbles: true, detail }));
   }
+}
+
+function refuses(blocker) {
+  return blocker.refuses === false ? 0 : 1;
 }
 
 customElements.define("ph-mode-switcher", ModeSwitcher);

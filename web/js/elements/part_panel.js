@@ -3,10 +3,17 @@
 import { el, setAttribute, setText } from "/web/js/dom.js";
 import { PartWatch } from "/web/js/part_watch.js";
 
+const SPACE_PX = 12;
+
 class PartPanel extends HTMLElement {
   connectedCallback() {
     this.watch = new PartWatch(() => this.#show());
-    this.heading = el("h2");
+    this.heading = el("h2", { tabindex: -1 });
+    this.back = el(
+      "button",
+      { type: "button", class: "small narrow-only", onclick: () => this.#goBack() },
+      "Back to the list",
+    );
     this.kind = el("span", { class: "kind" });
     this.pills = el("ph-pills");
     this.reason = el("p", { class: "note" });
@@ -16,7 +23,7 @@ class PartPanel extends HTMLElement {
     this.whole = el(
       "div",
       { hidden: true },
-      el("div", { class: "panel-head" }, this.heading, this.kind),
+      el("div", { class: "panel-head" }, this.heading, this.kind, this.back),
       this.pills,
       this.reason,
       this.commands,
@@ -30,6 +37,20 @@ class PartPanel extends HTMLElement {
   /** Reload what the stream does not carry. */
   refresh() {
     this.watch.refresh();
+  }
+
+  /** Scroll to the panel if it is out of view: else a tap far down the list would show nothing. */
+  bringIntoView() {
+    const header = document.querySelector("header").getBoundingClientRect().bottom;
+    const { top } = this.getBoundingClientRect();
+    const isNarrow = matchMedia("(max-width: 1023px)").matches;
+    if (top >= header && top < innerHeight / 2) return;
+    if (!isNarrow) {
+      this.scrollIntoView({ block: "nearest" });
+      return;
+    }
+    scrollTo({ top: scrollY + top - header - SPACE_PX });
+    this.heading.focus({ preventScroll: true });
   }
 
   /** Take a frame of the stream, which may hold news of the part and its changes. */
@@ -47,14 +68,18 @@ class PartPanel extends HTMLElement {
       this.problem = null;
       this.watch.select(part);
     }
-    const seen = JSON.stringify([part, view.state.systemState?.errors]);
-    if (this.seen !== seen) this.watch.refresh();
+    const seen = whatDecides(part, view.state);
+    if (!isSame(seen, this.seen)) this.watch.refresh();
     this.seen = seen;
     setText(this.heading, part.name);
     setText(this.kind, part.kind ?? "");
     this.pills.show(part);
     setText(this.reason, part.actual.reason ?? "");
     this.#show();
+  }
+
+  #goBack() {
+    this.dispatchEvent(new CustomEvent("ph-back", { bubbles: true }));
   }
 
   #began(change) {
@@ -76,6 +101,26 @@ class PartPanel extends HTMLElement {
     this.commands.show({ part: now, transitions, modes, enabled: contact.level !== "lost" });
     this.result.show({ part: now, change, problem: this.problem, knownAt });
   }
+}
+
+/** What blockers are made of: the part and all below it, the errors with their reasons, the stop.
+ *
+ * Parts that a frame leaves out stay the same objects, so this is cheap to compare.
+ */
+function whatDecides(part, { parts, systemState, emergencyStop }) {
+  const reasons = (systemState?.reasons ?? []).map(({ code, message }) => `${code}: ${message}`);
+  const below = new Set();
+  const add = (one) => {
+    if (!one || below.has(one)) return;
+    below.add(one);
+    for (const name of one.parts ?? []) add(parts[name]);
+  };
+  add(part);
+  return [...below, reasons.join("\n"), Boolean(emergencyStop?.engaged)];
+}
+
+function isSame(one, other) {
+  return one.length === other?.length && one.every((item, index) => item === other[index]);
 }
 
 customElements.define("ph-part-panel", PartPanel);

@@ -29,6 +29,13 @@ class PartTree extends HTMLElement {
     for (const line of lines) this.#fill(line);
   }
 
+  /** Go to the row that has the focus when one comes back to the tree. */
+  focusRow() {
+    const row = this.#rows.get(this.#focused)?.item;
+    row?.scrollIntoView({ block: "center" });
+    row?.focus({ preventScroll: true });
+  }
+
   #build(key, lines) {
     this.key = key;
     const held = this.list.contains(document.activeElement);

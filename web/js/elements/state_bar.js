@@ -11,6 +11,7 @@ class StateBar extends HTMLElement {
     this.text = el("span");
     this.symbol = el("span", { class: "symbol" });
     this.more = el("ul", { class: "reasons" });
+    this.acknowledge = el("ph-acknowledge");
     this.simulated = el("span", { class: "badge", hidden: true });
     this.contact = el("span", { class: "contact" });
     this.tryNow = el("button", { type: "button", class: "small", hidden: true }, "Try now");
@@ -27,6 +28,7 @@ class StateBar extends HTMLElement {
         { class: "said" },
         el("h1", { class: "sentence" }, this.word, this.text),
         this.more,
+        this.acknowledge,
         this.notice,
         el("p", { class: "facts" }, this.contact, this.tryNow, this.simulated),
       ),
@@ -45,6 +47,7 @@ class StateBar extends HTMLElement {
     setText(this.word, `${said.word}: `);
     setText(this.text, said.text);
     renderOnce(this.more, said.more.join("\n"), () => said.more.map((text) => el("li", {}, text)));
+    this.acknowledge.show(state.signals, contact.level !== "lost");
     const restart = restartWords(state);
     setAttribute(this.notice, "hidden", restart === "");
     setText(this.restart, restart);

@@ -5,6 +5,8 @@
 
 import { request } from "/web/js/api.js";
 import { el, setAttribute, setText } from "/web/js/dom.js";
+import { whileSending } from "/web/js/sending.js";
+import { mayMove, standstillWords } from "/web/js/state_sentence.js";
 import { timeOfDay } from "/web/js/words.js";
 
 const ANSWER_MS = 2000;
@@ -15,6 +17,8 @@ class StopButton extends HTMLElement {
   #undelivered = false;
   #problem = null;
   #latch = null;
+  #stands = "";
+  #moves = false;
 
   connectedCallback() {
     this.word = el("span", { class: "octagon" }, "STOP");
@@ -25,9 +29,18 @@ class StopButton extends HTMLElement {
     );
     this.status = el("p", { class: "stop-status", "aria-live": "assertive" });
     this.note = el("p", { id: "stop-note", class: "quiet" }, "Software stop, not safety-rated");
-    this.release = el("ph-hold-button", { label: "Hold to release", hidden: true });
+    this.release = el("ph-hold-button", { label: "Release the stop (hold)", hidden: true });
     this.by = el("p", { class: "quiet" });
-    const text = el("div", { class: "stop-text" }, this.status, this.by, this.release, this.note);
+    this.standstill = el("p", { class: "standstill" });
+    const text = el(
+      "div",
+      { class: "stop-text" },
+      this.status,
+      this.standstill,
+      this.by,
+      this.release,
+      this.note,
+    );
     this.append(text, this.button);
     // On pointerdown and not on click: a finger that slides off must still stop the robot.
     this.button.addEventListener("pointerdown", ({ button }) => button === 0 && this.#engage());
@@ -37,6 +50,8 @@ class StopButton extends HTMLElement {
 
   update({ state, contact }) {
     this.#latch = state.emergencyStop;
+    this.#moves = mayMove(state);
+    this.#stands = contact.level === "lost" ? "" : standstillWords(state);
     this.release.disabled = contact.level === "lost";
     this.#render();
   }
@@ -56,7 +71,7 @@ class StopButton extends HTMLElement {
   }
 
   async #release() {
-    await this.#put(false, "released on the monitor page");
+    await whileSending(this.release.button, () => this.#put(false, "released on the monitor page"));
     this.#render();
   }
 
@@ -87,6 +102,8 @@ class StopButton extends HTMLElement {
     setAttribute(this.release, "hidden", !engaged || this.#sending);
     setText(this.status, this.#statusWords(engaged));
     setText(this.by, phase === "engaged" ? byWords(this.#latch) : "");
+    setAttribute(this.standstill, "data-moving", this.#moves);
+    setText(this.standstill, phase === "engaged" ? this.#stands : "");
   }
 
   #statusWords(engaged) {

@@ -7,7 +7,8 @@
 import { ProblemError, request, requestText } from "/web/js/api.js";
 import { el, renderOnce, setAttribute, setText } from "/web/js/dom.js";
 import { problemLines } from "/web/js/problem.js";
-import { controllerName, previewLines } from "/web/js/task_words.js";
+import { whileSending } from "/web/js/sending.js";
+import { controllerName, previewLines, waypointName } from "/web/js/task_words.js";
 
 const UPLOAD_MS = 30_000;
 // More than the largest valid track; a video dropped by mistake is not even read.
@@ -33,8 +34,12 @@ class TaskForm extends HTMLElement {
     this.speed = el("input", { type: "number", min: 0.1, max: 11.2, step: 0.1, value: 2.8 });
     this.speed.addEventListener("change", () => this.#look());
     this.headingField = field("Headings in", this.heading);
-    this.example = el("button", { type: "button", class: "primary", onclick: () => this.#drive() });
-    this.start = el("button", { type: "button", class: "primary", onclick: () => this.#start() });
+    this.columns = el("input", { type: "text", placeholder: "x,y,yaw", autocapitalize: "off" });
+    this.columns.addEventListener("change", () => this.#look());
+    this.columnsField = field("Columns", this.columns);
+    this.example = primary(() => this.#drive());
+    this.start = primary(() => this.#start());
+    this.looking = el("p", { class: "quiet", role: "status" });
     this.away = el("button", { type: "button", onclick: () => this.#discard() }, "Discard");
     this.found = el("div", { class: "preview", hidden: true });
     this.refused = el("div", { class: "problem", role: "alert", hidden: true });
@@ -49,6 +54,8 @@ class TaskForm extends HTMLElement {
       this.#zone(),
       el("div", { class: "fields" }, controller, speed),
       this.headingField,
+      this.columnsField,
+      this.looking,
       this.refused,
       this.found,
       el("div", { class: "buttons" }, this.start, this.away),
@@ -74,12 +81,15 @@ class TaskForm extends HTMLElement {
     if (vehicle?.limits) setAttribute(this.speed, "max", vehicle.limits.max_speed_mps);
     const track = this.#track();
     setAttribute(this.example, "hidden", !track || task !== null || this.#file !== null);
-    setText(this.example, `Drive the example ${track?.name ?? ""}`);
-    const asksHeading = /heading/.test(this.#problem?.hint ?? "") || this.heading.value !== "rad";
+    setText(this.example.firstChild, `Drive the example ${track?.name ?? ""}`);
+    const hint = this.#problem?.hint ?? "";
+    const asksHeading = hint.includes("?heading=") || this.heading.value !== "rad";
     setAttribute(this.headingField, "hidden", !asksHeading);
+    const asksColumns = hint.includes("?columns=") || this.columns.value !== "";
+    setAttribute(this.columnsField, "hidden", !asksColumns);
     setAttribute(this.start, "hidden", this.#preview === null);
     setAttribute(this.away, "hidden", this.#file === null);
-    setText(this.start, task ? `Replace task ${task.id}` : "Start");
+    setText(this.start.firstChild, task ? `Replace task ${task.id}` : "Start");
     setAttribute(this.refused, "hidden", this.#problem === null);
     renderOnce(this.refused, this.#problem, () => this.#refusal());
     setAttribute(this.found, "hidden", this.#preview === null);
@@ -136,6 +146,7 @@ class TaskForm extends HTMLElement {
   async #take(file) {
     this.#discard();
     this.heading.value = "rad";
+    this.columns.value = "";
     const taken = { name: file.name, text: null };
     this.#file = taken;
     this.dispatchEvent(new CustomEvent("ph-file", { bubbles: true }));
@@ -153,25 +164,37 @@ class TaskForm extends HTMLElement {
   async #look() {
     if (!this.#file || this.#file.text === null) return;
     const asked = ++this.#asked;
+    if (!this.speed.checkValidity()) return this.#refuse(this.#speedWords());
+    setText(this.looking, `Checking ${this.#file.name} …`);
     const { answer, problem } = await this.#work(() =>
       this.#post("/tasks/preview", this.#file.text),
     );
     if (asked !== this.#asked) return;
+    setText(this.looking, "");
     this.#problem = problem;
     this.#show(answer);
   }
 
-  async #start(startIndex = null) {
-    const text = async () => this.#file.text;
-    const { answer, problem } = await this.#work(() => this.#submit(text, startIndex));
-    if (answer) this.#discard();
-    this.#problem = problem;
+  #start(startIndex = null, button = this.start) {
+    return whileSending(button, async () => {
+      const text = async () => this.#file.text;
+      const { answer, problem } = await this.#work(() => this.#submit(text, startIndex));
+      if (answer) this.#discard();
+      this.#problem = problem;
+    });
   }
 
-  async #drive(startIndex = null) {
-    const path = `/examples/tracks/${encodeURIComponent(this.#track().name)}`;
-    const drive = () => this.#submit(() => requestText(path), startIndex);
-    this.#problem = (await this.#work(drive)).problem;
+  #drive(startIndex = null, button = this.example) {
+    if (!this.speed.checkValidity()) return this.#refuse(this.#speedWords());
+    return whileSending(button, async () => {
+      const path = `/examples/tracks/${encodeURIComponent(this.#track().name)}`;
+      const drive = () => this.#submit(() => requestText(path), startIndex);
+      this.#problem = (await this.#work(drive)).problem;
+    });
+  }
+
+  #speedWords() {
+    return `The speed must be a number from ${this.speed.min} to ${this.speed.max} m/s.`;
   }
 
   async #submit(text, startIndex) {
@@ -182,12 +205,17 @@ class TaskForm extends HTMLElement {
   #elsewhere() {
     const { code, available = [] } = this.#problem;
     if (code !== "FAR_START" || available.length === 0) return null;
-    const begin = () => (this.#file ? this.#start(available[0]) : this.#drive(available[0]));
-    return el("button", { type: "button", onclick: begin }, `Start at waypoint ${available[0]}`);
+    const index = available[0];
+    const button = el("button", { type: "button" }, `Start at ${waypointName(Number(index))}`);
+    button.addEventListener("click", () =>
+      this.#file ? this.#start(index, button) : this.#drive(index, button),
+    );
+    return button;
   }
 
   #discard() {
     this.#asked += 1;
+    setText(this.looking, "");
     this.#file = null;
     this.#problem = null;
     this.#show(null);
@@ -199,7 +227,7 @@ class TaskForm extends HTMLElement {
   }
 
   #refuse(detail) {
-    this.#problem = { title: "Rejected", detail };
+    this.#problem = { title: "Rejected", detail, status: 400 };
     this.#show(null);
   }
 
@@ -208,6 +236,7 @@ class TaskForm extends HTMLElement {
       controller: this.controller.value,
       speed_mps: this.speed.value,
       heading: this.heading.value,
+      ...(this.columns.value ? { columns: this.columns.value } : {}),
       ...more,
     });
     return request("POST", `${path}?${query}`, text, { type: "text/csv", timeoutMs: UPLOAD_MS });
@@ -243,14 +272,19 @@ class TaskForm extends HTMLElement {
   #findings() {
     if (this.#preview === null) return [];
     const lines = previewLines(this.#preview, this.speed.value);
-    const warnings = this.#preview.warnings.map(({ message }) =>
-      el("li", { class: "warning" }, `⚠ ${message}`),
-    );
+    const warnings = this.#preview.warnings.map(({ message, index }) => {
+      const place = typeof index === "number" ? ` (${waypointName(index)})` : "";
+      return el("li", { class: "warning" }, `⚠ ${message}${place}`);
+    });
     return [
       el("h3", {}, `Preview of ${this.#file.name}`),
       el("ul", {}, ...lines.map((line) => el("li", {}, line)), ...warnings),
     ];
   }
+}
+
+function primary(act) {
+  return el("button", { type: "button", class: "primary", onclick: act }, el("span"));
 }
 
 function field(label, input) {

@@ -6,6 +6,7 @@
 import { request } from "/web/js/api.js";
 import { el, renderOnce, setAttribute, setText } from "/web/js/dom.js";
 import { problemLines } from "/web/js/problem.js";
+import { whileSending } from "/web/js/sending.js";
 import { currentTask } from "/web/js/store.js";
 import * as words from "/web/js/task_words.js";
 import { timeOfDay } from "/web/js/words.js";
@@ -22,14 +23,13 @@ class TaskPanel extends HTMLElement {
     this.facts = el("p", { class: "quiet" });
     this.reason = el("p", { class: "note" });
     this.pause = el("button", { type: "button", onclick: () => this.#pause() }, "Pause");
-    this.resume = el(
-      "button",
-      { type: "button", onclick: () => this.#release(OPERATOR) },
-      "Resume",
-    );
+    this.resume = el("ph-hold-button", {
+      label: "Resume (hold)",
+      "onph-held": () => this.#release(OPERATOR, this.resume.button),
+    });
     this.cancel = el("ph-hold-button", {
       label: "Cancel (hold)",
-      "onph-held": () => this.#ask("DELETE", "/tasks/current"),
+      "onph-held": () => this.#ask(this.cancel.button, "DELETE", "/tasks/current"),
     });
     this.current = el(
       "div",
@@ -44,7 +44,9 @@ class TaskPanel extends HTMLElement {
     );
     this.last = el("p", { class: "task-end", role: "status" });
     this.problem = el("div", { class: "problem", role: "alert", hidden: true });
-    this.holds = el("ph-hold-list", { "onph-release": ({ detail }) => this.#release(detail) });
+    this.holds = el("ph-hold-list", {
+      "onph-release": ({ detail: { owner, button } }) => this.#release(owner, button),
+    });
     this.form = el("ph-task-form");
     this.fold = el("details", { class: "new-task" }, el("summary", {}, "New task"), this.form);
     this.append(this.current, this.last, this.problem, this.holds, this.fold);
@@ -91,8 +93,7 @@ class TaskPanel extends HTMLElement {
     const isHeld = holds.some(({ owner }) => owner === OPERATOR);
     setAttribute(this.pause, "hidden", isHeld);
     setAttribute(this.resume, "hidden", !isHeld);
-    for (const button of [this.pause, this.resume]) setAttribute(button, "disabled", !enabled);
-    this.cancel.disabled = !enabled;
+    for (const button of [this.pause, this.resume, this.cancel]) button.disabled = !enabled;
   }
 
   /** Folded when a task starts and unfolded when it ends; in between the user decides. */
@@ -106,22 +107,24 @@ class TaskPanel extends HTMLElement {
   }
 
   #pause() {
-    this.#ask("PUT", `/holds/${OPERATOR}`, { reason: "paused on the page" });
+    this.#ask(this.pause, "PUT", `/holds/${OPERATOR}`, { reason: "paused on the page" });
   }
 
-  #release(owner) {
-    this.#ask("DELETE", `/holds/${encodeURIComponent(owner)}`);
+  #release(owner, button) {
+    this.#ask(button, "DELETE", `/holds/${encodeURIComponent(owner)}`);
   }
 
-  async #ask(method, path, body) {
-    let problem = null;
-    try {
-      await request(method, path, body);
-    } catch (error) {
-      ({ problem } = error);
-    }
-    renderOnce(this.problem, JSON.stringify(problem), () => (problem ? problemLines(problem) : []));
-    setAttribute(this.problem, "hidden", problem === null);
+  #ask(button, method, path, body) {
+    return whileSending(button, async () => {
+      let problem = null;
+      try {
+        await request(method, path, body);
+      } catch (error) {
+        ({ problem } = error);
+      }
+      renderOnce(this.problem, JSON.stringify(problem), () => (problem ? problemLines(problem) : []));
+      setAttribute(this.problem, "hidden", problem === null);
+    });
   }
 }
 

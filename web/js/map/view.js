@@ -9,6 +9,7 @@ const MAX_SCALE = 200;
 const MARGIN_PX = 42;
 // A vehicle alone is shown in as much ground as this, m.
 const LEAST_EXTENT_M = 24;
+const FAR_SIZES = 10;
 
 /** What is looked at before anything is known. */
 export function emptyView() {
@@ -55,6 +56,13 @@ export function panBy(view, dx, dy) {
 
 export function centred(view, { x_m, y_m }) {
   return { ...view, x_m, y_m };
+}
+
+/** Whether a place is so far from `bounds` that a view of both would show neither. */
+export function isFar(bounds, { x_m, y_m }) {
+  const { minX, minY, maxX, maxY } = bounds;
+  const away = Math.max(minX - x_m, x_m - maxX, minY - y_m, y_m - maxY);
+  return away > FAR_SIZES * Math.max(LEAST_EXTENT_M, maxX - minX, maxY - minY);
 }
 
 /** Look at all of `bounds`; without any, at the origin. */

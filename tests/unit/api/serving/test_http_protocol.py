@@ -1,4 +1,5 @@
 import asyncio
+import json
 
 import pytest
 
@@ -27,19 +28,24 @@ def sent(data: bytes) -> tuple[FloodedService, Client]:
 
 
 @pytest.mark.parametrize(
-    ("data", "status"),
+    ("data", "status", "code"),
     [
-        (b"\x16\x03\x01\x02\x00\x01\x00", 400),
-        (b"PRI * HTTP/2.0\r\n\r\nSM\r\n\r\n", 400),
-        (b"GET /x HTTP/1.1\r\nHost: a\r\nContent-Length: -1\r\n\r\n", 400),
-        (LINE + b"a: b\r\n" * 101 + b"\r\n", 431),
-        (LINE + b"a: " + b"b" * MAX_HEAD_BYTES, 431),
+        (b"\x16\x03\x01\x02\x00\x01\x00", 400, "MALFORMED_REQUEST"),
+        (b"PRI * HTTP/2.0\r\n\r\nSM\r\n\r\n", 400, "MALFORMED_REQUEST"),
+        (b"GET /x HTTP/1.1\r\nHost: a\r\nContent-Length: -1\r\n\r\n", 400, "MALFORMED_REQUEST"),
+        (LINE + b"a: b\r\n" * 101 + b"\r\n", 431, "HEAD_TOO_LARGE"),
+        (LINE + b"a: " + b"b" * MAX_HEAD_BYTES, 431, "HEAD_TOO_LARGE"),
     ],
 )
-async def test_what_is_no_acceptable_head_is_answered_and_counted(data: bytes, status: int) -> None:
+async def test_what_is_no_acceptable_head_is_answered_and_counted(
+    data: bytes, status: int, code: str
+) -> None:
     service, client = sent(data)
 
-    assert client.raw.written.startswith(b"HTTP/1.1 %d" % status)
+    head, _, body = bytes(client.raw.written).partition(b"\r\n\r\n")
+    problem = json.loads(body)
+    assert head.startswith(b"HTTP/1.1 %d" % status)
+    assert (problem["status"], problem["code"]) == (status, code)
     assert client.raw.is_closing()
     assert service.closings.counts == {"malformed": 1}
     client.lose()
@@ -90,6 +96,20 @@ async def test_a_connection_is_dispensable_between_its_requests() -> None:
     client.lose()
 
 
-def test_these_come_first() -> None:
-    assert is_stop(b"PUT /emergency_stop HTTP/1.1\r\n")
-    assert not is_stop(b"GET /emergency_stop HTTP/1.1\r\n")
+@pytest.mark.parametrize(
+    "request_line",
+    [
+        "PUT /emergency_stop",
+        "PUT /holds/operator",
+        "DELETE /tasks/current",
+        "POST /signals",
+        "POST /signals/estop",
+    ],
+)
+def test_what_may_make_the_robot_safe_comes_first(request_line: str) -> None:
+    assert is_stop(f"{request_line} HTTP/1.1\r\n".encode())
+
+
+@pytest.mark.parametrize("request_line", ["GET /emergency_stop", "GET /signals", "POST /tasks"])
+def test_what_only_asks_waits_its_turn(request_line: str) -> None:
+    assert not is_stop(f"{request_line} HTTP/1.1\r\n".encode())

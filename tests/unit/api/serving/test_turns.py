@@ -1,27 +1,7 @@
-from collections.abc import Callable
-
 from api.serving.turns import BUDGET, Turns
+from tests.support.flooded_wire import CountedLoop
 
 COST = 500
-
-
-class Loop:
-    """Calls what it is given in the next turn."""
-
-    def __init__(self) -> None:
-        self._soon: list[Callable[[], None]] = []
-
-    def call_soon(self, function: Callable[[], None]) -> None:
-        self._soon.append(function)
-
-    def turn(self) -> None:
-        soon, self._soon = self._soon, []
-        for function in soon:
-            function()
-
-    @property
-    def is_idle(self) -> bool:
-        return not self._soon
 
 
 class Client:
@@ -41,7 +21,7 @@ class Client:
 
 
 def test_all_connections_together_get_one_budget_per_turn() -> None:
-    loop = Loop()
+    loop = CountedLoop()
     turns = Turns(loop.call_soon)
     clients = [Client(1_000) for _ in range(110)]
     for client in clients:
@@ -56,7 +36,7 @@ def test_all_connections_together_get_one_budget_per_turn() -> None:
 
 
 def test_a_single_request_does_not_wait_behind_those_that_send_without_end() -> None:
-    loop = Loop()
+    loop = CountedLoop()
     turns = Turns(loop.call_soon)
     for _ in range(110):
         turns.wait(Client(1_000))
@@ -71,7 +51,7 @@ def test_a_single_request_does_not_wait_behind_those_that_send_without_end() -> 
 
 
 def test_a_stop_comes_before_all_who_have_just_come() -> None:
-    loop = Loop()
+    loop = CountedLoop()
     turns = Turns(loop.call_soon)
     for _ in range(110):
         turns.wait(Client(1))
@@ -84,7 +64,7 @@ def test_a_stop_comes_before_all_who_have_just_come() -> None:
 
 
 def test_what_is_done_at_once_counts_in_the_same_turn() -> None:
-    loop = Loop()
+    loop = CountedLoop()
     turns = Turns(loop.call_soon)
 
     turns.spend(BUDGET)

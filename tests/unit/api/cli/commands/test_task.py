@@ -194,6 +194,29 @@ def test_another_refusal_is_handed_on_with_a_hint_in_options(service: Service, t
     assert refused.value.problem["hint"] == "begin at another waypoint with --start-index"
 
 
+def test_ctrl_c_while_a_task_is_submitted_says_that_it_may_go_on(
+    service: Service, track: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    call = service.client.call
+
+    def interrupted(method: str, path: str, **rest: Any) -> Any:  # noqa: ANN401
+        if (method, path) == ("POST", "/tasks"):
+            raise KeyboardInterrupt
+        return call(method, path, **rest)
+
+    monkeypatch.setattr(
+        ServiceClient, "call", lambda _, *given, **rest: interrupted(*given, **rest)
+    )
+
+    driven = Driven(service, track)
+
+    assert driven.said[-2:] == [
+        "the task, if it was submitted, goes on; to cancel it: "
+        f"pilothouse task --cancel --url {URL}",
+        "interrupted",
+    ]
+
+
 def test_ctrl_c_ends_only_the_following_and_says_how_to_cancel(
     service: Service, track: Path
 ) -> None:

@@ -1,0 +1,241 @@
+"""Pictures of the page in each state of a robot, to be looked at.
+
+Run `python -m tests.browser.states FOLDER [NAME ...]`: for each state (or those named) four
+pictures, desktop and phone, light and dark. `python -m tests.browser.states --page FILE` renews
+the picture of the README.
+"""
+
+import argparse
+import json
+import sys
+import tempfile
+import time
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Any, Literal
+
+from playwright.sync_api import Browser, Page, WebSocketRoute, sync_playwright
+
+from tests.browser.robots import large_robot, troubled_robot
+from tests.browser.station import CHROMIUM, CHROMIUM_ARGUMENTS, Service, free_port
+
+SCREENS = {"desktop": (1440, 900), "phone": (360, 640)}
+SCHEMES: tuple[Literal["light", "dark"], ...] = ("light", "dark")
+UTM = (303_628.48, 3_900_696.88)
+LOST_MS = 3600
+
+Act = Callable[[Page, Service], None]
+Robot = Literal["example", "troubled", "large"]
+
+
+def post(service: Service, path: str, body: object) -> None:
+    service.request("POST", path, body)
+
+
+def drive(service: Service, speed_mps: float = 2.8) -> None:
+    """Start a long task where the vehicle stands, and let it come up to speed."""
+    pose = service.pose()
+    waypoints = [{**pose, "x_m": pose["x_m"] + 2.0 * n, "yaw_rad": 0.0} for n in range(60)]
+    post(service, "/tasks", {"waypoints": waypoints, "speed_mps": speed_mps})
+    time.sleep(4)
+
+
+def running(_: Page, service: Service) -> None:
+    drive(service)
+
+
+def three_holds(_: Page, service: Service) -> None:
+    drive(service)
+    for owner, why in (("gate", "the gate is shut"), ("operator", ""), ("loading", "a pallet")):
+        service.request("PUT", f"/holds/{owner}", {"reason": why})
+    time.sleep(3)
+
+
+def dead_node(page: Page, service: Service) -> None:
+    post(service, "/systems/actuation/mode", {"mode": "PERFORMANCE"})
+    page.wait_for_timeout(5000)
+    select(page, "manipulator")
+
+
+def stopped(_: Page, service: Service) -> None:
+    drive(service)
+    stop = {"engaged": True, "reason": "smoke in hall 3"}
+    service.request("PUT", "/emergency_stop", stop)
+    time.sleep(1)
+
+
+def acknowledge(_: Page, service: Service) -> None:
+    for pressed in (True, False):
+        post(service, "/signals/estop", {"value": pressed})
+        time.sleep(0.5)
+
+
+def low_battery(_: Page, service: Service) -> None:
+    service.request("PATCH", "/mock/battery_level", {"value": 0.314})
+    service.request("PATCH", "/mock/gps_accuracy", {"value": 250})
+
+
+def no_contact(page: Page, service: Service) -> None:
+    drive(service)
+    service.kill()
+    page.wait_for_timeout(LOST_MS)
+
+
+def rejected(page: Page, _: Service) -> None:
+    table = b"x;y;yaw\n0;0;0\n1;2;zwei\n"
+    file: Any = {"name": "field.csv", "mimeType": "text/csv", "buffer": table}
+    page.get_by_label("Choose a CSV").set_input_files(file)
+    page.locator("ph-task-form").get_by_role("alert").scroll_into_view_if_needed()
+
+
+def sending(page: Page, _: Service) -> None:
+    page.route("**/mode", lambda _: None)
+    page.get_by_role("button", name="PERFORMANCE").click()
+
+
+def far_down(page: Page, _: Service) -> None:
+    select(page, "node_090")
+
+
+def select(page: Page, part: str) -> None:
+    row = page.get_by_role("treeitem").filter(has_text=part).last
+    row.scroll_into_view_if_needed()
+    row.click()
+
+
+def patched(change: Callable[[dict[str, Any]], None]) -> Act:
+    """Return what shows a state that is hard to bring about: its frames are changed on the way."""
+
+    def act(page: Page, _: Service) -> None:
+        def between(browser: WebSocketRoute) -> None:
+            server = browser.connect_to_server()
+
+            def pass_on(message: str | bytes) -> None:
+                frame = json.loads(message)
+                if frame["type"] == "state":
+                    change(frame)
+                browser.send(json.dumps(frame))
+
+            server.on_message(pass_on)
+
+        page.route_web_socket("**/ws*", between)
+        page.reload()
+
+    return act
+
+
+def aborted(frame: dict[str, Any]) -> None:
+    at = frame["at"]
+    ended = {"status": "ABORTED", "reason": "3.2 m from the path for 1 s", "ended_at": at}
+    whole = {"id": "t7", "controller": "stanley", "speed_mps": 2.8, "waypoint_count": 66}
+    way = {"length_m": 799.0, "target_index": 40, "progress": 0.42, "distance_m": 336.0}
+    frame["task"] = {**whole, **way, **ended, "cross_track_error_m": 3.2, "created_at": at}
+
+
+def still_moving(frame: dict[str, Any]) -> None:
+    message = "the vehicle still moves at 1.1 m/s, 34 s after the stop"
+    reasons = [{"code": "STILL_MOVING", "message": message, "path": ["vehicle"]}]
+    reasons.append({"code": "ESTOP", "message": "emergency stop is engaged", "path": ["estop"]})
+    frame["system_state"] |= {"state": "ERROR", "errors": ["ESTOP"], "reasons": reasons}
+    why = {"by": "anna", "reason": "smoke in hall 3", "since_at": frame["at"]}
+    frame["emergency_stop"] = {"engaged": True, **why, "standstill_at": None}
+    if "vehicle" in frame:
+        frame["vehicle"]["speed_mps"] = 1.1
+
+
+def in_utm(frame: dict[str, Any]) -> None:
+    if "vehicle" in frame and frame["vehicle"]["pose"]:
+        frame["vehicle"]["pose"] |= {"x_m": UTM[0], "y_m": UTM[1], "yaw_rad": 0.6}
+
+
+STATES: dict[str, tuple[Robot, Act]] = {
+    "idle": ("example", lambda *_: None),
+    "running": ("example", running),
+    "three_holds": ("example", three_holds),
+    "dead_node": ("troubled", dead_node),
+    "aborted": ("example", patched(aborted)),
+    "stopped": ("example", stopped),
+    "still_moving": ("example", patched(still_moving)),
+    "acknowledge": ("troubled", acknowledge),
+    "low_battery": ("example", low_battery),
+    "rejected": ("example", rejected),
+    "sending": ("example", sending),
+    "far_down": ("large", far_down),
+    "utm": ("example", patched(in_utm)),
+    "forced_colors": ("example", stopped),
+    "no_contact": ("example", no_contact),
+}
+
+
+@contextmanager
+def running_robot(kind: Robot) -> Iterator[Service]:
+    with tempfile.TemporaryDirectory() as name:
+        folder = Path(name)
+        files: dict[Robot, tuple[str, ...]] = {
+            "example": (),
+            "troubled": troubled_robot(folder),
+            "large": large_robot(folder),
+        }
+        with (folder / "output").open("w+b") as output:
+            service = Service(free_port(), output, files[kind])
+            try:
+                service.start()
+                yield service
+            finally:
+                service.kill()
+
+
+def shoot(browser: Browser, folder: Path, name: str, screen: str) -> None:
+    """Bring the state about on a robot of its own, and take its pictures in both schemes."""
+    kind, act = STATES[name]
+    width, height = SCREENS[screen]
+    with running_robot(kind) as service:
+        page = browser.new_page(
+            viewport={"width": width, "height": height},
+            has_touch=screen == "phone",
+            forced_colors="active" if name == "forced_colors" else "none",
+        )
+        page.goto(service.url)
+        page.locator("ph-part-panel h2").wait_for()
+        act(page, service)
+        for scheme in SCHEMES:
+            page.emulate_media(color_scheme=scheme)
+            page.wait_for_timeout(900)
+            page.screenshot(path=folder / f"{name}-{screen}-{scheme}.png")
+        page.close()
+
+
+def shoot_page(browser: Browser, file: Path) -> None:
+    """Take the picture of the README: the example robot on its loop."""
+    with running_robot("example") as service:
+        page = browser.new_page(viewport={"width": 1440, "height": 900})
+        page.goto(service.url)
+        post(service, "/systems/actuation/mode?wait=15", {"mode": "MODERATE"})
+        page.get_by_role("button", name="Drive the example loop").click()
+        page.wait_for_timeout(100_000)
+        page.screenshot(path=file)
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("folder", type=Path, nargs="?")
+    parser.add_argument("names", nargs="*", metavar="NAME", help=", ".join(STATES))
+    parser.add_argument("--page", type=Path, metavar="FILE")
+    arguments = parser.parse_args()
+    if (arguments.folder is None) == (arguments.page is None):
+        sys.exit("either a folder, or --page FILE")
+    with sync_playwright() as playwright:
+        chromium = playwright.chromium
+        browser = chromium.launch(executable_path=str(CHROMIUM), args=CHROMIUM_ARGUMENTS)
+        if arguments.page:
+            shoot_page(browser, arguments.page)
+            return
+        arguments.folder.mkdir(parents=True, exist_ok=True)
+        for name in arguments.names or STATES:
+            for screen in SCREENS:
+                shoot(browser, arguments.folder, name, screen)
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,56 @@
+/** <ph-acknowledge>: a button for each error that ends only after somebody acknowledged it.
+ *
+ * A held task goes on when its last error ends, so this needs a long press.
+ */
+
+import { request } from "/web/js/api.js";
+import { el, setAttribute, setText } from "/web/js/dom.js";
+import { whileSending } from "/web/js/sending.js";
+
+class Acknowledge extends HTMLElement {
+  #buttons = new Map();
+
+  connectedCallback() {
+    if (this.problem) return;
+    this.problem = el("p", { class: "problem", role: "alert", hidden: true });
+    this.list = el("div", { class: "buttons" });
+    this.append(this.list, this.problem);
+  }
+
+  show(signals, enabled) {
+    const waiting = Object.values(signals).filter((signal) => signal.needs_acknowledgement);
+    const errors = new Set(waiting.map(({ error }) => error));
+    setAttribute(this, "hidden", errors.size === 0);
+    for (const [error, button] of this.#buttons) {
+      if (errors.has(error)) continue;
+      button.remove();
+      this.#buttons.delete(error);
+    }
+    for (const error of errors) {
+      if (!this.#buttons.has(error)) this.#add(error);
+      this.#buttons.get(error).disabled = !enabled;
+    }
+  }
+
+  #add(error) {
+    const button = el("ph-hold-button", { label: `Acknowledge ${error} (hold)` });
+    button.addEventListener("ph-held", () => this.#acknowledge(error, button));
+    this.#buttons.set(error, button);
+    this.list.append(button);
+  }
+
+  #acknowledge(error, { button }) {
+    return whileSending(button, async () => {
+      let said = "";
+      try {
+        await request("POST", `/errors/${encodeURIComponent(error)}/acknowledge`);
+      } catch ({ message }) {
+        said = `Not acknowledged: ${message}`;
+      }
+      setText(this.problem, said);
+      setAttribute(this.problem, "hidden", said === "");
+    });
+  }
+}
+
+customElements.define("ph-acknowledge", Acknowledge);
