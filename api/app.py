@@ -10,9 +10,11 @@ from api.documents.asyncapi import stream_document
 from api.http import model_jobs, task_jobs
 from api.http.access import Access
 from api.http.gate.audit import Audit
+from api.http.gate.cors import CorsHeaders
 from api.http.gate.ending import Ending
 from api.http.gate.headers import SecurityHeaders
 from api.http.gate.origin import OriginGate
+from api.http.gate.origins import AllowedOrigins
 from api.http.gate.policies import RoutePolicies
 from api.http.gate.rate import RateGate
 from api.http.gate.target import TargetGate
@@ -33,6 +35,7 @@ def create_app(
     supervisor: Supervisor,
     *,
     allowed_hosts: Sequence[str],
+    allowed_origins: AllowedOrigins | None = None,
     access: Access | None = None,
     limits: ServiceLimits = USUAL_LIMITS,
     simulated: SimulatedParts | None = None,
@@ -47,6 +50,7 @@ def create_app(
     Args:
         supervisor: What is served.
         allowed_hosts: Names by which this service may be asked, beside those of loopback.
+        allowed_origins: Whose pages may use it, beside its own; None: no others.
         access: Whom it lets in; None: everybody.
         limits: How much may be asked of it.
         simulated: What a simulation can go on with a copy of; None: the robot is real.
@@ -61,11 +65,13 @@ def create_app(
     app.include_router(simulations.router)
     app.include_router(documents.router)
     app.include_router(rosbridge.router)
-    _guard(app, supervisor, allowed_hosts)
+    _guard(app, supervisor, allowed_hosts, allowed_origins or AllowedOrigins())
     return app
 
 
-def _guard(app: FastAPI, supervisor: Supervisor, allowed_hosts: Sequence[str]) -> None:
+def _guard(
+    app: FastAPI, supervisor: Supervisor, allowed_hosts: Sequence[str], origins: AllowedOrigins
+) -> None:
     """Put the gates before the application; of these lines, the last is what a request meets first.
 
     Who asks too often is turned away before anything is done for it, and before tokens are tried.
@@ -75,9 +81,17 @@ def _guard(app: FastAPI, supervisor: Supervisor, allowed_hosts: Sequence[str]) -
     policies = RoutePolicies(app.routes)
     app.add_middleware(Audit, record=supervisor.submit, policies=policies)
     app.add_middleware(TokenGate, access=state.access, policies=policies, refusals=refusals)
-    app.add_middleware(OriginGate, allowed_hosts=allowed_hosts, refusals=refusals)
+    app.add_middleware(
+        OriginGate,
+        allowed_hosts=allowed_hosts,
+        refusals=refusals,
+        origins=origins,
+        policies=policies,
+        access=state.access,
+    )
     app.add_middleware(RateGate, per_s=per_s, clock=clock, policies=policies, refusals=refusals)
     app.add_middleware(TargetGate, refusals=refusals)
+    app.add_middleware(CorsHeaders, allowed=origins)
     app.add_middleware(SecurityHeaders)
     app.add_middleware(Ending)
 

@@ -81,6 +81,11 @@ class FrameFeed(Watched):
         return self._parts
 
     @property
+    def signals(self) -> Mapping[str, SignalView]:
+        """The newest view of every signal; read only."""
+        return self._signals
+
+    @property
     def wants_full(self) -> bool:
         """Tell whether a full frame is needed first: until then readers get nothing."""
         return not self._has_all

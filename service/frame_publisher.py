@@ -2,10 +2,11 @@
 
 import logging
 from collections.abc import Callable, Mapping
+from dataclasses import replace
 from itertools import islice
 
 from domain.outbox import Outputs
-from domain.snapshot import PartView
+from domain.snapshot import PartView, SignalView
 from domain.state_and_mode import PartName
 from domain.supervision import Supervision
 from domain.timebase import Instant, seconds, to_seconds
@@ -15,6 +16,10 @@ from service.frame_feed import PARTS_AT_ONCE, Frame, FrameFeed
 log = logging.getLogger(__name__)
 
 PERIOD = seconds(0.05)
+
+REPEATS_EVERY = seconds(0.5)
+"""How often a signal is told whose value stays, and that is only received again: at 10 Hz, such
+signals would be three quarters of what a client of an idle robot gets."""
 
 
 class FramePublisher:
@@ -44,6 +49,7 @@ class FramePublisher:
         self._changed_parts: dict[PartName, None] = {}
         """In the order in which they changed."""
         self._changed_signals: set[str] = set()
+        self._signals_told_at: dict[str, Instant] = {}
         self._task_changed = False
         self._vehicle_changed = False
 
@@ -86,11 +92,7 @@ class FramePublisher:
             at=self._clock.now(),
             system_state=core.system_state(),
             parts=self._take_parts(full=full),
-            signals=(
-                core.signals()
-                if full
-                else {s: core.signal(s) for s in sorted(self._changed_signals)}
-            ),
+            signals=self._take_signals(full=full),
             task=core.driving.latest_task if last is None or self._task_changed else last.task,
             task_changed=full or self._task_changed,
             vehicle=core.driving.vehicle,
@@ -105,21 +107,33 @@ class FramePublisher:
             full=full,
             simulated=self._simulated,
         )
-        self._changed_signals.clear()
         self._task_changed = self._vehicle_changed = False
         self.frames.publish(frame)
         self.published_at = frame.at
 
     def _take_parts(self, *, full: bool) -> Mapping[PartName, PartView]:
-        """Return the parts that changed first; for a full frame, all as they were published."""
-        if self.frames.wants_full:
+        """Return all parts for a full frame, or else those that changed first."""
+        if full:
             self._changed_parts.clear()
             return self._core.parts()
         taken = list(islice(self._changed_parts, PARTS_AT_ONCE))
         for part in taken:
             del self._changed_parts[part]
-        changed = {part: self._core.part(part) for part in taken}
-        return {**self.frames.parts, **changed} if full else changed
+        return {part: self._core.part(part) for part in taken}
+
+    def _take_signals(self, *, full: bool) -> Mapping[str, SignalView]:
+        """Return the signals that changed; one that was only received again waits its turn."""
+        now = self._clock.now()
+        taken = self._core.signals() if full else {}
+        for name in sorted(self._changed_signals):
+            view, told = self._core.signal(name), self.frames.signals.get(name)
+            is_due = now - self._signals_told_at.get(name, now - REPEATS_EVERY) >= REPEATS_EVERY
+            if full or told is None or is_due or not _only_repeats(view, told):
+                taken = {**taken, name: view}
+        for name in taken:
+            self._changed_signals.discard(name)
+            self._signals_told_at[name] = now
+        return taken
 
     def _tick(self) -> None:
         now = self._clock.now()
@@ -128,3 +142,8 @@ class FramePublisher:
                 observe(to_seconds(now - self.last_tick_at))
         self.last_tick_at = now
         self._publish()
+
+
+def _only_repeats(view: SignalView, told: SignalView) -> bool:
+    """Tell whether a signal is as it was told, and was only received again."""
+    return view == replace(told, received_at=view.received_at, stamp=view.stamp)

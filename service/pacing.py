@@ -26,7 +26,7 @@ class Paced(Protocol[MessageT_co]):
         ...
 
 
-_AT_ONCE = 100
+_AT_ONCE = 25
 
 
 class Pacer(Generic[MessageT]):

@@ -12,6 +12,9 @@ from domain.errors import PilothouseError
 MIN_GOOD_CHARACTERS = 16
 """A shorter token can be guessed by brute force."""
 
+READS_ONLY = "pilothouse.reads_only"
+"""In the scope of a WebSocket: whether its client may only read."""
+
 _SCHEME = "bearer"
 
 
@@ -19,6 +22,16 @@ class UnauthorizedError(PilothouseError):
     """A client that has not sent the token of the service."""
 
     code = "UNAUTHORIZED"
+
+
+class ReadsOnlyError(PilothouseError):
+    """A write over a WebSocket from a page of an allowed origin, to a service without a token."""
+
+    code = "READS_ONLY"
+
+    def __init__(self) -> None:
+        super().__init__("a page of another origin may only read: the service has no token")
+        self.hint = "start the service with a token, PILOTHOUSE_TOKEN, and send it"
 
 
 @dataclass(frozen=True, slots=True)

@@ -9,7 +9,7 @@ from http import HTTPStatus
 from fastapi import HTTPException
 from fastapi.responses import Response
 
-from api.http.access import UnauthorizedError
+from api.http.access import ReadsOnlyError, UnauthorizedError
 from api.http.body_parsing import (
     MAX_FAULTS,
     BodyTooLargeError,
@@ -52,6 +52,7 @@ STATUS_OF: Mapping[type[PilothouseError], HTTPStatus] = {
     PilothouseError: HTTPStatus.INTERNAL_SERVER_ERROR,
     MalformedBodyError: HTTPStatus.BAD_REQUEST,
     UnauthorizedError: HTTPStatus.UNAUTHORIZED,
+    ReadsOnlyError: HTTPStatus.FORBIDDEN,
     BodyTooLargeError: HTTPStatus.REQUEST_ENTITY_TOO_LARGE,
     UnknownNameError: HTTPStatus.NOT_FOUND,
     UnknownPartError: HTTPStatus.NOT_FOUND,

@@ -37,6 +37,11 @@ class Permission(Enum):
         return self not in (Permission.READ_PUBLIC, Permission.PROBE)
 
     @property
+    def writes(self) -> bool:
+        """Tell whether requests may change something."""
+        return self in (Permission.REPORT, Permission.OPERATE, Permission.STOP)
+
+    @property
     def is_limited(self) -> bool:
         """Tell whether requests are rate-limited."""
         return self not in (Permission.PROBE, Permission.REPORT, Permission.STOP)

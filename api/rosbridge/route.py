@@ -9,7 +9,7 @@ from typing import Any
 
 from fastapi import APIRouter, WebSocket, WebSocketDisconnect
 
-from api.http.access import UnauthorizedError
+from api.http.access import READS_ONLY, UnauthorizedError
 from api.http.route_policy import AuditClass, Permission, policy
 from api.rosbridge.clients import RosbridgeClients, RosbridgeClientsDep
 from api.rosbridge.operations import Authenticate, id_of, read_message, read_operation
@@ -44,7 +44,9 @@ async def rosbridge(socket: WebSocket, clients: RosbridgeClientsDep) -> None:
         await _close(socket, _TRY_AGAIN_LATER, "too many clients")
     elif not connection.transport.is_closing():
         async with clients.serve(connection.transport) as bridge:
-            await ServedClient(bridge, connection, address).serve(socket.receive)
+            reads_only = bool(socket.scope.get(READS_ONLY))
+            client = ServedClient(bridge, connection, address, reads_only=reads_only)
+            await client.serve(socket.receive)
 
 
 async def _is_let_in(

@@ -19,14 +19,18 @@ log = logging.getLogger(__name__)
 class ServedClient:
     """Reads the messages of a client, and writes those to it."""
 
-    def __init__(self, bridge: Bridge, connection: Connection, address: str) -> None:
+    def __init__(
+        self, bridge: Bridge, connection: Connection, address: str, *, reads_only: bool = False
+    ) -> None:
         """Prepare.
 
         Args:
             bridge: Shared by all clients.
             connection: An accepted connection.
             address: Of the client, without a port.
+            reads_only: Whether it may only read.
         """
+        self._reads_only = reads_only
         self._bridge = bridge
         self._connection = connection
         self._address = address
@@ -45,7 +49,13 @@ class ServedClient:
             async with asyncio.TaskGroup() as tasks:
                 writing = tasks.create_task(self._write(), name="rosbridge writer")
                 caller = Actor(way="rosbridge", address=self._address)
-                session = Session(self._bridge, self._queue, caller, tasks.create_task)
+                session = Session(
+                    self._bridge,
+                    self._queue,
+                    caller,
+                    tasks.create_task,
+                    reads_only=self._reads_only,
+                )
                 ahead = ReadAhead()
                 reading = tasks.create_task(self._read(session, ahead, receive))
                 try:

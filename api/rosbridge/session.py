@@ -5,6 +5,7 @@ from collections.abc import Callable, Coroutine, Mapping
 from types import MappingProxyType
 from typing import Any, TypeAlias
 
+from api.http.access import ReadsOnlyError
 from api.rosbridge.bridge import Bridge, request_of
 from api.rosbridge.operations import (
     Advertise,
@@ -45,7 +46,15 @@ Spawn: TypeAlias = Callable[[Coroutine[Any, Any, None]], asyncio.Task[None]]
 class Session:
     """One client."""
 
-    def __init__(self, bridge: Bridge, queue: SendQueue, caller: Actor, spawn: Spawn) -> None:
+    def __init__(
+        self,
+        bridge: Bridge,
+        queue: SendQueue,
+        caller: Actor,
+        spawn: Spawn,
+        *,
+        reads_only: bool = False,
+    ) -> None:
         """Prepare.
 
         Args:
@@ -53,7 +62,9 @@ class Session:
             queue: Takes messages to the client.
             caller: The client, as recorded in events.
             spawn: Runs a call as a task, and owns it.
+            reads_only: Whether it may only subscribe, and ask what there is.
         """
+        self._reads_only = reads_only
         self._bridge = bridge
         self._queue = queue
         self._caller = caller
@@ -100,6 +111,8 @@ class Session:
             call.cancel()
 
     def _do(self, operation: Operation) -> None:
+        if self._reads_only and _writes(operation):
+            raise ReadsOnlyError
         match operation:
             case Subscribe():
                 self._subscribe(operation)
@@ -241,3 +254,10 @@ class Session:
 def _unheard(name: str) -> UnknownNameError:
     hint = "messages on it are discarded; only topics of signals have a subscriber"
     return UnknownNameError("subscriber of", name, (), hint)
+
+
+def _writes(operation: Operation) -> bool:
+    """Tell whether an operation may change something: all but subscribing and `/rosapi`."""
+    if isinstance(operation, CallService):
+        return not full_name(operation.service).startswith("/rosapi/")
+    return isinstance(operation, Publish | Advertise)

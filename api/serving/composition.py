@@ -52,6 +52,7 @@ class ServeOptions:
     anonymous: bool = False
     mock_signals: bool = False
     allowed_hosts: tuple[str, ...] = ()
+    allowed_origins: tuple[str, ...] = ()
     log_level: str = "info"
 
 

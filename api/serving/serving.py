@@ -16,6 +16,7 @@ from api.access_token import FILE_VARIABLE, TOKEN_VARIABLE, InvalidTokenError, t
 from api.app import create_app, prepare
 from api.distribution import installed_version
 from api.http.access import MIN_GOOD_CHARACTERS, Access
+from api.http.gate.origins import AllowedOrigins, InvalidOriginError
 from api.serving.composition import EXAMPLE, Composition, MisuseError, ServeOptions, compose
 from api.serving.output import Output
 from api.serving.process_log import log_to
@@ -38,6 +39,13 @@ log = logging.getLogger(__name__)
 
 _NOT_IN_ROS = (UnknownFieldError, UnknownTypeError)
 SUCCEEDED, FAILED, MISUSED = 0, 1, 2
+_MISUSES = (
+    InvalidOriginError,
+    InvalidTokenError,
+    MisuseError,
+    UnknownManagerError,
+    UnreadableFileError,
+)
 _STDOUT, _STDERR = 1, 2
 
 
@@ -57,10 +65,11 @@ def _serve(options: ServeOptions, output: Output, errors: Output) -> int:
         token = take_token()
         log_to(errors, options.log_level, token)
         access = access_of(options, token)
+        origins = AllowedOrigins(options.allowed_origins)
         manager = ServiceManager.of(os.environ)
         composition = compose(options, MonotonicClock())
         sockets = listen(options.host, options.port)
-    except (InvalidTokenError, MisuseError, UnknownManagerError, UnreadableFileError) as error:
+    except _MISUSES as error:
         return _end(str(error), MISUSED)
     except InvalidModelError as error:
         return _complain_of(options.model or EXAMPLE, error.findings)
@@ -72,6 +81,7 @@ def _serve(options: ServeOptions, output: Output, errors: Output) -> int:
     app = create_app(
         supervisor,
         allowed_hosts=hosts,
+        allowed_origins=origins,
         access=access,
         limits=composition.limits,
         simulated=composition.simulated,

@@ -162,10 +162,24 @@ def is_loopback(host: str) -> bool:
 
 def url_of(sockets: Sequence[socket.socket], host: str) -> str:
     """Return the address to open in a browser."""
-    port = sockets[0].getsockname()[1]
-    if host in ("0.0.0.0", "::"):
-        host = "127.0.0.1"
+    address, port = sockets[0].getsockname()[:2]
+    if ipaddress.ip_address(address).is_unspecified:
+        host = _own_address(sockets[0].family) or "127.0.0.1"
     return f"http://[{host}]:{port}" if ":" in host else f"http://{host}:{port}"
+
+
+def _own_address(family: socket.AddressFamily) -> str | None:
+    """Return the address by which this machine is reached from elsewhere; None: it has none.
+
+    Connecting a socket for datagrams sends nothing: it only looks up the route.
+    """
+    outside = "2001:db8::1" if family == socket.AF_INET6 else "192.0.2.1"
+    try:
+        with socket.socket(family, socket.SOCK_DGRAM) as probe:
+            probe.connect((outside, 9))
+            return str(probe.getsockname()[0])
+    except OSError:
+        return None
 
 
 def _allow_open_files(count: int) -> int:

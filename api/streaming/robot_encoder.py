@@ -41,6 +41,8 @@ class RobotEncoder:
             lambda view: StreamedSignalJson.of(view, clock).model_dump_json()
         )
         self._holds = LatestCache[Mapping[str, HoldView]](self._encode_holds)
+        self._moments = LatestCache[Instant](lambda at: timestamp(clock, at))
+        """An input and what follows from it are at the same moment."""
         self._emergency_stop = LatestCache[EmergencyStopView](
             lambda view: EmergencyStopJson.of(view, clock).model_dump_json()
         )
@@ -81,7 +83,7 @@ class RobotEncoder:
             "type": "event",
             "epoch": self._supervisor.epoch,
             "id": event.id,
-            "at": timestamp(self._clock, event.at),
+            "at": self._moments.text(event.at),
             "kind": event.kind,
             "cause": event.cause,
             "actor": event.actor.label,

@@ -13,7 +13,7 @@ from typing import Any
 
 from fastapi import APIRouter, WebSocket, WebSocketDisconnect
 
-from api.http.access import UnauthorizedError
+from api.http.access import READS_ONLY, ReadsOnlyError, UnauthorizedError
 from api.http.route_policy import Permission, policy
 from api.http.schemas.stream import AuthMessage, ResyncMessage
 from api.streaming.client_input import read_client_message, read_stream_query
@@ -161,6 +161,8 @@ class _Client:
         if isinstance(given, ResyncMessage):
             self._server.fan_out.resync(client)
             return
+        if self._socket.scope.get(READS_ONLY):
+            raise ReadsOnlyError
         reading = given.reading(given.signal, supervisor.clock)
         actor = Actor(way="websocket", address=self._address)
         supervisor.readings.submit([reading], given.source, actor)

@@ -8,6 +8,7 @@ messages and prepared frames may follow each other in any order.
 """
 
 import asyncio
+import struct
 from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Protocol
@@ -61,8 +62,19 @@ def connection_of(scope: Scope) -> Connection:
 
 def text_frame(text: str) -> bytes:
     """Return a text as the bytes of one WebSocket frame."""
-    return Frame(Opcode.TEXT, text.encode()).serialize(mask=False)
+    data = text.encode()
+    size = len(data)
+    if size < _LENGTH_16:
+        return bytes((_TEXT, size)) + data
+    if size < _SIZES_OF_16:
+        return _HEAD_16.pack(_TEXT, _LENGTH_16, size) + data
+    return _HEAD_64.pack(_TEXT, _LENGTH_64, size) + data
 
+
+_TEXT = 0x81
+_LENGTH_16, _LENGTH_64 = 126, 127
+_SIZES_OF_16 = 2**16
+_HEAD_16, _HEAD_64 = struct.Struct("!BBH"), struct.Struct("!BBQ")
 
 PING = Frame(Opcode.PING, b"ping").serialize(mask=False)
 """The bytes of a ping; the answer holds the same four."""

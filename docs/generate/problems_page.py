@@ -9,7 +9,7 @@ from docs.generate.source_scan import codes_given_to, require_described
 # These errors occur only in HTTP and have no class of their own.
 _ONLY_HTTP = {
     "FAILED": (409, "A request of a scenario: the operation that it started failed."),
-    "FOREIGN_ORIGIN": (403, "A write request or a WebSocket from a page of another origin."),
+    "FOREIGN_ORIGIN": (403, "A request from a page of another origin that is not allowed."),
     "HEAD_TOO_LARGE": (431, "A request with too many headers, or too long ones."),
     "HOST_NOT_ALLOWED": (403, "The name in `Host` is not allowed."),
     "INVALID_QUERY": (422, "A query parameter with an invalid value."),
@@ -18,6 +18,7 @@ _ONLY_HTTP = {
     "NOT_READY": (503, "`/readyz`: no model, or the core does not tick."),
     "NO_MOCK": (404, "Signals are not mocked."),
     "TOO_MANY_REQUESTS": (429, "More requests per second than one address may send."),
+    "REPEATED_HEADER": (400, "A header that may occur once is there more than once."),
     "UNKNOWN_PATH": (404, "Nothing exists at this path."),
     "URI_TOO_LONG": (414, "The path and its query are too long."),
     "UNSUPPORTED_TYPE": (415, "A page sent a body that is not JSON, YAML or CSV."),

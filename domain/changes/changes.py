@@ -25,8 +25,12 @@ from domain.timebase import Instant
 KEPT_CHANGES = 1_000
 KEPT_PURSUITS = 50_000
 """Pursuits of all changes together; bounds the memory of large changes."""
-STARTS_AT_ONCE = 200
+STARTS_AT_ONCE = 100
 """Nodes that one turn starts. A large change goes on in later ones, and others come in between."""
+MAX_IN_FLIGHT = 2_500
+"""Steps in flight, above which no further node of a large change is started. Their reports come all
+at once, and are taken in long before a step is late: being busy must not look like a late node."""
+_ENOUGH_IN_FLIGHT = MAX_IN_FLIGHT - STARTS_AT_ONCE
 _TOLD_ERRORS = 20
 """Largest number of errors in the reason of one change; more would not be read."""
 
@@ -74,8 +78,8 @@ class Changes:
 
     @property
     def has_more(self) -> bool:
-        """Tell whether nodes are still to be started."""
-        return bool(self._to_start)
+        """Tell whether nodes are still to be started, and may be."""
+        return bool(self._to_start) and self._steps.count_in_flight <= _ENOUGH_IN_FLIGHT
 
     def step_in_flight(self, node: PartName) -> Step | None:
         """Return the step that a node is executing."""
@@ -145,7 +149,7 @@ class Changes:
 
     def go_on(self, now: Instant) -> None:
         """Start some more nodes of the change that began first."""
-        if not self._to_start:
+        if not self.has_more:
             return
         identity = self._to_start[0].change
         if (change := self._changes.get(identity)) is not None:

@@ -72,6 +72,11 @@ class NodeSteps:
         """Return the step that a node is executing."""
         return self._in_flight.get(node)
 
+    @property
+    def count_in_flight(self) -> int:
+        """Return how many nodes are executing a step."""
+        return len(self._in_flight)
+
     def wake_at(self) -> Instant | None:
         """Return the next deadline; None: there is none."""
         return self._deadlines.next()

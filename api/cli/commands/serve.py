@@ -55,6 +55,14 @@ def _add_options(parser: argparse.ArgumentParser) -> None:
         help="further host name under which the service is reached; can be repeated",
     )
     parser.add_argument(
+        "--allowed-origin",
+        action="append",
+        default=[],
+        metavar="ORIGIN",
+        help="page of another origin, such as https://grafana.example, that may read and, with the "
+        "token, write; can be repeated",
+    )
+    parser.add_argument(
         "--log-level", default="info", choices=("debug", "info", "warning", "error")
     )
 
@@ -80,6 +88,7 @@ def _run(options: argparse.Namespace) -> int:
             anonymous=options.anonymous,
             mock_signals=options.mock_signals,
             allowed_hosts=tuple(options.allowed_host),
+            allowed_origins=tuple(options.allowed_origin),
             log_level=options.log_level,
         )
     )

@@ -106,7 +106,7 @@ async def test_the_worker_is_there_as_long_as_the_application_is_served(
 
 
 async def test_nothing_of_what_is_answered_may_be_kept_by_a_browser(robot: HttpRobot) -> None:
-    for path in ("/systems", "/nope"):
+    for path in ("/systems", "/nope", "/metrics"):
         assert (await robot.http.get(path)).headers["cache-control"] == "no-store"
 
 

@@ -7,6 +7,7 @@ import pytest
 
 from domain.inputs import ModeRequest, Reading
 from domain.snapshot import SystemState
+from domain.timebase import seconds
 from service.frame_feed import PARTS_AT_ONCE, Frame
 from service.supervisor import Supervisor
 from tests.support.big_model import FAST, big_model
@@ -137,3 +138,25 @@ async def test_the_parts_of_a_large_robot_are_told_in_several_frames_in_the_orde
     newest = supervisor.frames.complete()
     assert newest is not None
     assert newest.parts == supervisor.core.parts()
+
+
+async def test_a_value_that_stays_is_told_twice_a_second_and_one_that_changes_at_once(
+    clock: ManualClock, supervisor: Supervisor
+) -> None:
+    """The mock repeats its values at 10 Hz."""
+    await clock.advance(2)
+    recorded = Recorded(supervisor)
+    with supervisor.frames.watch(recorded):
+        await clock.advance(3)
+        repeats = [f for f in recorded.frames if "temperature" in f.signals]
+        assert 5 <= len(repeats) <= 8
+        supervisor.readings.submit([Reading("temperature", 31.0)])
+        await clock.advance(0.05)
+    assert recorded.frames[-1].signals["temperature"].value == 31.0
+    await clock.advance(0.5)
+    newest = supervisor.frames.complete()
+    assert newest is not None
+    held, now = newest.signals["temperature"], supervisor.core.signal("temperature")
+    assert held.received_at is not None
+    assert now.received_at is not None
+    assert now.received_at - held.received_at <= seconds(0.6)

@@ -24,7 +24,7 @@ from tests.support.rosbridge import (
 class Talk:
     """One session, and what it was told."""
 
-    def __init__(self, calls_per_s: int = 1_000) -> None:
+    def __init__(self, calls_per_s: int = 1_000, *, reads_only: bool = False) -> None:
         self.interface = SmallInterface()
         self.calls: list[asyncio.Task[None]] = []
         self._queue = SendQueue(lambda: None)
@@ -33,6 +33,7 @@ class Talk:
             self._queue,
             Actor(way="rosbridge", address="test"),
             self._spawn,
+            reads_only=reads_only,
         )
 
     def say(self, op: str, **members: object) -> None:
@@ -387,3 +388,21 @@ async def test_a_token_that_nobody_asked_for_is_passed_over(talk: Talk) -> None:
     talk.say("auth", token="secret")
 
     assert talk.heard() == []
+
+
+# --- a page of another origin, without a token ---------------------------------------------------
+
+
+async def test_who_may_only_read_subscribes_and_changes_nothing() -> None:
+    talk = Talk(reads_only=True)
+
+    talk.say("subscribe", topic=SYSTEM_STATE.name)
+    assert not [said for said in talk.heard() if said["op"] == "status"]
+    for op, members in (
+        ("publish", {"topic": "/estop", "msg": {"enabled": True}}),
+        ("call_service", {"service": MODE_REQUEST.name, "args": {}}),
+    ):
+        talk.say(op, **members)
+        assert "may only read" in talk.only()["msg"]
+    assert not talk.calls
+    talk.session.end()

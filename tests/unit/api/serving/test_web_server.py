@@ -3,6 +3,7 @@ from collections.abc import Iterator
 
 import pytest
 
+from api.serving import web_server
 from api.serving.web_server import ListenError, is_loopback, listen, url_of
 
 
@@ -61,7 +62,6 @@ def test_who_can_reach_an_unknown_host_cannot_be_told() -> None:
 @pytest.mark.parametrize(
     ("host", "url"),
     [
-        ("0.0.0.0", "http://127.0.0.1:"),
         ("::1", "http://[::1]:"),
         ("robot.local", "http://robot.local:"),
     ],
@@ -69,3 +69,12 @@ def test_who_can_reach_an_unknown_host_cannot_be_told() -> None:
 def test_the_address_can_be_typed_into_a_browser(host: str, url: str) -> None:
     with socket.create_server(("127.0.0.1", 0)) as listener:
         assert url_of([listener], host).startswith(url)
+
+
+@pytest.mark.parametrize(("own", "shown"), [("192.168.7.2", "192.168.7.2"), (None, "127.0.0.1")])
+def test_a_service_on_all_addresses_shows_the_one_by_which_others_reach_it(
+    own: str | None, shown: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(web_server, "_own_address", lambda _: own)
+    with socket.create_server(("0.0.0.0", 0)) as listener:
+        assert url_of([listener], "0.0.0.0").startswith(f"http://{shown}:")

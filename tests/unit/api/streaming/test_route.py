@@ -8,6 +8,7 @@ from fastapi import FastAPI
 
 from api.app import create_app
 from api.http.access import Access
+from api.http.gate.origins import AllowedOrigins
 from api.http.limits import ServiceLimits
 from api.streaming import route as stream
 from api.streaming import stream_server as stream_server_module
@@ -465,3 +466,18 @@ async def test_a_token_that_nobody_asked_for_is_passed_over(
         supervisor.submit(EmergencyStopRequest(True, "test", Actor("operator")))
 
         assert (await client.frame())["type"] == "event"
+
+
+async def test_a_page_of_another_origin_reads_and_sends_no_reading_without_a_token(
+    supervisor: Supervisor,
+) -> None:
+    allowed = AllowedOrigins(["http://grafana:3000"])
+    app = create_app(supervisor, allowed_hosts=["robot"], allowed_origins=allowed)
+    headers = {"host": "robot", "origin": "http://grafana:3000"}
+    async with WebSocketClient(app, headers=headers) as client:
+        await settle()
+        client.send({"type": "reading", "signal": "estop", "value": True})
+        await settle()
+        problems = [frame for frame in client.frames() if frame["type"] == "problem"]
+
+    assert [problem["code"] for problem in problems] == ["READS_ONLY"]

@@ -3,13 +3,13 @@
 import pytest
 
 from domain.actor import Actor
-from domain.changes.changes import STARTS_AT_ONCE
+from domain.changes.changes import MAX_IN_FLIGHT, STARTS_AT_ONCE
 from domain.commands import AskParameters, AskTransition
 from domain.events.changes import StepStarted
 from domain.identifiers import ChangeId
 from domain.inputs import CancelRequest, ModeRequest, Reading, Readings, TimePassed
 from domain.outbox import Outputs
-from domain.snapshot import ChangeStatus
+from domain.snapshot import ChangeStatus, StepStatus
 from tests.support.big_model import FAST, SLOW, big_model
 from tests.support.core_robot import CoreRobot
 from tests.support.good import GOOD
@@ -81,7 +81,7 @@ def test_a_newer_change_begins_while_nodes_of_the_older_one_wait(robot: CoreRobo
     robot.advance(5)
     assert robot.change(ChangeId("c1")).status is ChangeStatus.SUPERSEDED
     assert robot.change(ChangeId("c2")).status is ChangeStatus.SUCCEEDED
-    assert robot.actual("node_1999") == f"active.{SLOW}"
+    assert robot.actual("node_999") == f"active.{SLOW}"
 
 
 def test_a_large_change_succeeds(robot: CoreRobot) -> None:
@@ -90,3 +90,15 @@ def test_a_large_change_succeeds(robot: CoreRobot) -> None:
     assert robot.change(change).status is ChangeStatus.SUCCEEDED
     assert len(robot.change(change).steps) == 3 * NODES
     assert {part.actual.mode for part in robot.core.parts().values()} == {FAST}
+
+
+def test_no_more_nodes_are_under_way_at_once_than_can_be_heard_in_time() -> None:
+    robot = CoreRobot(big_model(2 * MAX_IN_FLIGHT))
+    change = robot.ask_mode(robot.model.parts[0], FAST)
+    most = 0
+    while robot.change(change).status is ChangeStatus.RUNNING:
+        robot.advance(0.05)
+        running = [s for s in robot.change(change).steps if s.status is StepStatus.RUNNING]
+        most = max(most, len(running))
+    assert robot.change(change).status is ChangeStatus.SUCCEEDED
+    assert MAX_IN_FLIGHT - STARTS_AT_ONCE <= most <= MAX_IN_FLIGHT

@@ -4,7 +4,8 @@ from typing import NamedTuple
 
 import pytest
 
-from api.http.gate.origin import OriginGate, is_same_origin
+from api.http.gate.origin import OriginGate
+from api.http.gate.origins import is_same_origin
 from api.http.gate.refusals import Refusals
 from tests.support.asgi import answer_200, messages_of, status_of, websocket_scope
 from tests.support.http_robot import HttpRobot, http_scope
