@@ -10,7 +10,7 @@ Source: smart_polaris, `controller_action_interface.py`; limits: docs/explanatio
 
 import math
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import TypeAlias
 
 from domain.commands import Drive, PreemptGoal, SendGoal
@@ -18,8 +18,12 @@ from domain.inputs import GoalFeedback, GoalResult
 from domain.paths.approach import (
     ALIGNED_RAD,
     MAY_MISS_SHARE,
+    TURNED_RAD,
     Approach,
+    ApproachLimits,
+    FarFromPathError,
     approach_mps,
+    approach_radius_m,
     is_on_path,
     near_path_m,
     on_path_m,
@@ -35,7 +39,7 @@ from domain.tracking.pace import PERIOD, Pace
 from domain.tracking.pure_pursuit import PurePursuit
 from domain.tracking.tracker import ControlStep, PathTracker
 from domain.tracking.trackers import TRACKERS
-from domain.vehicle import VehicleLimits, VehicleState
+from domain.vehicle import DriveCommand, VehicleLimits, VehicleState
 
 COVERED_SHARE = 0.95
 """A goal succeeds only if more than this share of the length is covered."""
@@ -68,8 +72,9 @@ class NavigationSettings:
 
 
 _LEAST_END_TOLERANCE_M = 0.05
-_LOOP_RADII = 6.0
-"""An approach turns within this multiple of the tightest radius of the vehicle."""
+_LOOP_RADII = 4.0
+"""An approach turns within this multiple of the radius of its arcs."""
+_ROUNDING_M = 1e-6
 
 
 @dataclass(slots=True)
@@ -93,6 +98,8 @@ class _Run:
     """The way onto the path; None: the vehicle is on it."""
     is_preempted: bool = False
     """Whether it only stops."""
+    was_approaching: bool = False
+    """Whether the goal that it takes up was preempted on the way onto the path."""
 
 
 class Navigation:
@@ -120,9 +127,13 @@ class Navigation:
         self.settings = settings
         self._vehicle = vehicle
         self._trackers = trackers
-        self._near_m = settings.cross_track_m(limits)
+        near_m = settings.cross_track_m(limits)
+        self.approach_limits = ApproachLimits(
+            limits, settings.speed, near_m, vehicle.settings.max_start_distance_m
+        )
+        """From where paths are approached, and how."""
         self._leg_limits = LegLimits(
-            self._near_m,
+            near_m,
             settings.max_cross_track_for,
             settings.no_progress_for,
             settings.least_progress_m,
@@ -142,23 +153,26 @@ class Navigation:
         state = self._vehicle.state
         speed = 0.0 if state is None else max(state.speed_mps, 0.0)
         before = self._preempted
-        if before is not None and before.goal.path is not goal.path:
+        if before is not None and not _goes_on(goal, before):
             before = self._preempted = None
         path = goal.path.for_vehicle(self._limits)
         reached_m = max(goal.reached_m, path.distance_of(goal.first_index))
-        coverage = Coverage(path, reached_m, goal.left_out_m, self._near_m)
-        if before is not None:
-            coverage = before.coverage
         self._run = _Run(
             goal=goal,
             path=path,
             profile=SpeedProfile(path, goal.speed_mps, self.settings.speed, self._limits),
             pace=Pace(self.settings.speed, self._limits, speed),
-            coverage=coverage,
+            coverage=self._coverage(goal, path, reached_m) if before is None else before.coverage,
             next_at=now,
             target_index=goal.start_index,
             distance_m=reached_m,
+            was_approaching=before is not None and before.approach is not None,
         )
+
+    def _coverage(self, goal: SendGoal, path: Path, reached_m: float) -> Coverage:
+        braking = min(self.settings.speed.braking_mps2, self._limits.braking_mps2 or math.inf)
+        near_m = self.approach_limits.near_m
+        return Coverage(path, reached_m, goal.left_out_m, near_m, braking)
 
     def _preempt(self, run: _Run) -> None:
         self._preempted, run.is_preempted = run, True
@@ -202,15 +216,7 @@ class Navigation:
         command = run.pace.command(
             limit_mps, step.steering_angle_rad, step.cross_track_error_m, state, now
         )
-        feedback = GoalFeedback(
-            run.goal.goal,
-            run.target_index,
-            run.distance_m,
-            error_m,
-            step.lookahead,
-            command,
-            run.coverage.left_out_m,
-        )
+        feedback = _feedback(run, step, error_m, command)
         if run.approach is None and self._has_arrived(run, state):
             self._run = None
             return feedback, GoalResult(run.goal.goal, succeeded=True)
@@ -229,16 +235,7 @@ class Navigation:
         step = run.leg.follow(state)
         error_m = self._locate(run, step, state)
         command = run.pace.stop(step.steering_angle_rad, state)
-        feedback = GoalFeedback(
-            run.goal.goal,
-            run.target_index,
-            run.distance_m,
-            error_m,
-            step.lookahead,
-            command,
-            run.coverage.left_out_m,
-        )
-        return Drive(command), feedback
+        return Drive(command), _feedback(run, step, error_m, command)
 
     def _fresh_state(self, now: Instant) -> VehicleState:
         state = self._vehicle.fresh_state(now)
@@ -256,6 +253,7 @@ class Navigation:
             GivenUpError: The vehicle is too far from the path.
         """
         if run.leg is None:
+            self._take_up(run, state)
             run.approach = self._plan(run, state)
             if run.approach is not None:
                 run.leg = self._leg_onto_the_path(run.approach, now)
@@ -272,29 +270,40 @@ class Navigation:
         tracker = PurePursuit(self._limits)
         return Leg(approach.way, "its way onto the path", "pure_pursuit", tracker, 0, now)
 
+    def _take_up(self, run: _Run, state: VehicleState) -> None:
+        """Find a vehicle that rolled on along its path while its pose was unknown."""
+        if run.was_approaching or not run.coverage.may_have_rolled(state):
+            return
+        pose, index = state.pose, run.target_index
+        here = run.path.project(pose.x_m, pose.y_m, index)
+        # A projection searches ahead within a window.
+        while (ahead := run.path.index_after(here.distance_m)) > index:
+            index = ahead
+            here = run.path.project(pose.x_m, pose.y_m, index)
+        if is_on_path(here, pose, self._limits, TURNED_RAD):
+            run.coverage.note(state, here.distance_m)
+            run.target_index, run.distance_m = index, max(run.distance_m, here.distance_m)
+
     def _plan(self, run: _Run, state: VehicleState) -> Approach | None:
-        goal, path = run.goal, run.path
+        """Return the way onto the path; None: the vehicle is on it.
+
+        Raises:
+            GivenUpError: The vehicle is too far from the path.
+        """
+        goal, path, limits = run.goal, run.path, self.approach_limits
+        if run.was_approaching:
+            loop_m = _LOOP_RADII * approach_radius_m(self._limits)
+            limits = replace(limits, from_m=limits.from_m + loop_m)
         whole_m = path.length_m - path.distance_of(goal.first_index)
-        approach = plan_approach(
-            path,
-            state.pose,
-            goal.start_index,
-            run.coverage.reached_m,
-            goal.speed_mps,
-            self._limits,
-            self.settings.speed,
-            self._near_m,
-            max(MAY_MISS_SHARE * whole_m - goal.left_out_m, 0.0),
-        )
-        limit_m = self._vehicle.settings.max_start_distance_m
-        if self._preempted is not None and self._preempted.approach is not None:
-            limit_m += _LOOP_RADII * self._limits.min_radius_m
-        if approach is not None and approach.distance_m > limit_m:
-            away_m = approach.distance_m
-            raise GivenUpError(
-                f"{away_m:.1f} m from the path, which is approached from at most {limit_m:g} m"
+        may_miss_m = max(MAY_MISS_SHARE * whole_m - run.coverage.left_out_m, 0.0)
+        begin_m, index = run.coverage.reached_m, run.target_index
+        try:
+            return plan_approach(
+                path, state.pose, index, begin_m, goal.speed_mps, may_miss_m, limits
             )
-        return approach
+        except FarFromPathError as error:
+            message = f"{error}, which is approached from at most {limits.from_m:g} m"
+            raise GivenUpError(message) from error
 
     def _is_there(self, run: _Run, approach: Approach, leg: Leg, state: VehicleState) -> bool:
         """Tell whether the way onto the path has been driven."""
@@ -311,9 +320,9 @@ class Navigation:
         """Note what was passed of the path; return the cross-track error, m."""
         if run.approach is None:
             run.target_index, run.distance_m = step.target_index, step.distance_m
-            run.coverage.note(state.pose, step.distance_m)
+            run.coverage.note(state, step.distance_m)
             return step.cross_track_error_m
-        run.coverage.note(state.pose, None)
+        run.coverage.note(state, None)
         here = run.path.project(state.pose.x_m, state.pose.y_m, run.target_index)
         # A loop of the way may come near to the path further on than where it meets it.
         along_m = max(step.distance_m - run.approach.length_m, 0.0)
@@ -342,3 +351,21 @@ class Navigation:
         left_m = math.hypot(end.x_m - state.pose.x_m, end.y_m - state.pose.y_m)
         tolerance_m = self.settings.end_tolerance_m * min(self._limits.scale, 1.0)
         return self._vehicle.stands and left_m <= max(tolerance_m, _LEAST_END_TOLERANCE_M)
+
+
+def _goes_on(goal: SendGoal, before: _Run) -> bool:
+    """Tell whether a goal takes up the one that was preempted before."""
+    is_same = goal.path is before.goal.path and goal.first_index == before.goal.first_index
+    return is_same and goal.reached_m >= before.coverage.reached_m - _ROUNDING_M
+
+
+def _feedback(run: _Run, step: ControlStep, error_m: float, command: DriveCommand) -> GoalFeedback:
+    return GoalFeedback(
+        run.goal.goal,
+        run.target_index,
+        run.distance_m,
+        error_m,
+        step.lookahead,
+        command,
+        run.coverage.left_out_m,
+    )

@@ -6,7 +6,7 @@ would be missing in the end.
 """
 
 from dataclasses import dataclass
-from math import inf, remainder, sqrt, tau
+from math import ceil, hypot, remainder, sqrt, tau
 
 import numpy as np
 
@@ -29,6 +29,8 @@ APPROACH_MPS = 1.0
 """Speed of an approach, for `REFERENCE_WHEELBASE_M`."""
 RADIUS_SHARE = 1.5
 """Radius of the arcs, in tightest radii of the vehicle: leaves room for corrections."""
+RADIUS_WHEELBASES = 2.1
+"""Radius of the arcs, in wheelbases, at least: trackers look ahead as far as the wheelbase asks."""
 
 _MEETS_EVERY = 0.5
 """Distance between places where the path could be met, in radii."""
@@ -46,6 +48,37 @@ _BARELY = 5.0
 _BEYOND_M = 9.0
 """The way goes on along the path, at least as far as a tracker looks ahead."""
 _SPACING_M = 0.1
+_MAX_PLACES = 64
+"""Bound on the places where the path could be met, whatever the start distance is set to."""
+_MAX_SAMPLES = 128
+"""Bound on the pieces of the path, and of a curve, that are compared."""
+_MAX_SPACINGS = 4_000
+"""Bound on the waypoints of the way."""
+
+
+class FarFromPathError(Exception):
+    """The vehicle is too far from its path to approach it."""
+
+    def __init__(self, away_m: float) -> None:
+        """Say how far.
+
+        Args:
+            away_m: Distance from where the path goes on, m.
+        """
+        super().__init__(f"{away_m:.1f} m from where the path goes on")
+        self.away_m = away_m
+
+
+@dataclass(frozen=True, slots=True)
+class ApproachLimits:
+    """What a vehicle can do, and from how far it approaches a path."""
+
+    vehicle: VehicleLimits
+    speed: SpeedLimits
+    near_m: float
+    """What is no further from the way is not missing, m."""
+    from_m: float
+    """Largest distance from where the path begins, or goes on, m."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -81,6 +114,11 @@ def approach_mps(limits: VehicleLimits) -> float:
     return APPROACH_MPS * sqrt(limits.scale)
 
 
+def approach_radius_m(limits: VehicleLimits) -> float:
+    """Return the radius of the arcs that a vehicle drives onto its path, m."""
+    return max(RADIUS_SHARE * limits.min_radius_m, RADIUS_WHEELBASES * limits.wheelbase_m)
+
+
 def is_on_path(here: Projection, pose: Pose, limits: VehicleLimits, turned_rad: float) -> bool:
     """Tell whether a vehicle is on a path and drives along it.
 
@@ -100,10 +138,8 @@ def plan_approach(
     start_index: int,
     begin_m: float,
     cruise_mps: float,
-    vehicle: VehicleLimits,
-    speed: SpeedLimits,
-    near_m: float | None = None,
-    may_miss_m: float | None = None,
+    may_miss_m: float,
+    limits: ApproachLimits,
 ) -> Approach | None:
     """Return the way of a vehicle onto a path; None: it is on it.
 
@@ -113,22 +149,24 @@ def plan_approach(
         start_index: First waypoint not yet passed.
         begin_m: Distance along the path up to which it is passed, m.
         cruise_mps: Speed of the task, m/s.
-        vehicle: Limits of the vehicle.
-        speed: Limits of its acceleration.
-        near_m: What is no further from the way is not missing, m; None: `near_path_m`.
-        may_miss_m: Length of the path that may be missing, m; None: `MAY_MISS_SHARE` of it.
+        may_miss_m: Length of the path that may be missing, m.
+        limits: What the vehicle can do, and from how far.
+
+    Raises:
+        FarFromPathError: It is too far from where the path goes on.
     """
-    near_m = near_path_m(vehicle) if near_m is None else near_m
-    may_miss_m = MAY_MISS_SHARE * path.length_m if may_miss_m is None else may_miss_m
+    vehicle = limits.vehicle
     here = path.project(pose.x_m, pose.y_m, start_index)
+    begun = path.point_at(begin_m)
     begin_m = min(begin_m, here.distance_m)
-    if is_on_path(here, pose, vehicle, TURNED_RAD):
-        # Who stands too far ahead of the start drives back to it.
-        skipped_m = here.distance_m - begin_m - near_m
-        if skipped_m <= may_miss_m:
-            return None
-    radius_m = RADIUS_SHARE * vehicle.min_radius_m
-    curve, met_m = _best(path, pose, begin_m, here.distance_m, radius_m, near_m, may_miss_m)
+    # Who stands too far ahead of the start drives back to it.
+    skipped_m = here.distance_m - begin_m - limits.near_m
+    if is_on_path(here, pose, vehicle, TURNED_RAD) and skipped_m <= may_miss_m:
+        return None
+    away_m = hypot(begun.x_m - pose.x_m, begun.y_m - pose.y_m)
+    if away_m > limits.from_m:
+        raise FarFromPathError(away_m)
+    curve, met_m = _best(path, pose, begin_m, here.distance_m, may_miss_m, limits)
     way = _joined(curve, path, met_m, vehicle)
     slow = min(cruise_mps, approach_mps(vehicle), vehicle.max_speed_mps)
     return Approach(
@@ -137,7 +175,7 @@ def plan_approach(
         met_m,
         abs(here.cross_track_error_m),
         remainder(here.heading_rad - pose.yaw_rad, tau),
-        SpeedProfile(way, slow, speed, vehicle).slowest_mps,
+        SpeedProfile(way, slow, limits.speed, vehicle).slowest_mps,
     )
 
 
@@ -146,55 +184,59 @@ def _best(
     pose: Pose,
     begin_m: float,
     here_m: float,
-    radius_m: float,
-    near_m: float,
     may_miss_m: float,
+    limits: ApproachLimits,
 ) -> tuple[DubinsCurve, float]:
     """Return the curve that meets the path soonest, as far as it still covers it, and where."""
+    radius_m = approach_radius_m(limits.vehicle)
     until_m = min(here_m + _MEETS_WITHIN * radius_m, path.length_m)
-    count = 2 + int((until_m - begin_m) / (_MEETS_EVERY * radius_m))
-    found: tuple[DubinsCurve, float] | None = None
-    best = (inf, inf)
+    stretch = _Stretch(path, begin_m, until_m, limits.near_m)
+    count = min(2 + int((until_m - begin_m) / (_MEETS_EVERY * radius_m)), _MAX_PLACES)
+    found: list[tuple[float, float, DubinsCurve, float]] = []
     for met_m in np.linspace(begin_m, until_m, count).tolist():
         place = path.point_at(met_m)
         end = Pose(place.x_m, place.y_m, path.heading_at(met_m))
         curve = shortest_curve(pose, end, radius_m)
-        missed_m, barely_m = _missed_m(path, curve, begin_m, met_m, near_m)
+        missed_m, barely_m = stretch.missed_m(curve, met_m)
         length_m = curve.length_m + _BARELY * barely_m + _TURN_RADII * radius_m * curve.turned_rad
-        cost = (max(missed_m - may_miss_m, 0.0), length_m - _EARLY * met_m)
-        if found is None or cost < best:
-            found, best = (curve, met_m), cost
-    assert found is not None
-    return found
+        found.append((max(missed_m - may_miss_m, 0.0), length_m - _EARLY * met_m, curve, met_m))
+    _, _, curve, met_m = min(found, key=lambda candidate: candidate[:2])
+    return curve, met_m
 
 
-def _missed_m(
-    path: Path, curve: DubinsCurve, begin_m: float, met_m: float, near_m: float
-) -> tuple[float, float]:
-    """Return what a curve never comes near of the path between two distances, m.
+class _Stretch:
+    """The part of a path that an approach may pass over, in short pieces."""
 
-    Returns:
-        Its length, and the length of what it comes near enough or not quite.
-    """
-    count = int((met_m - begin_m) / (near_m / 8))
-    if count == 0:
-        return 0.0, 0.0
-    piece_m = (met_m - begin_m) / count
-    driven = curve.places(near_m / 8)[:, :2]
-    missed = barely = 0
-    for number in range(count):
-        place = path.point_at(begin_m + (number + 0.5) * piece_m)
-        away_m = np.hypot(driven[:, 0] - place.x_m, driven[:, 1] - place.y_m).min()
-        missed += bool(away_m > _NEAR_SHARE * near_m)
-        barely += bool(away_m > _BARELY_SHARE * near_m)
-    return missed * piece_m, barely * piece_m
+    def __init__(self, path: Path, begin_m: float, end_m: float, near_m: float) -> None:
+        length_m = end_m - begin_m
+        count = min(max(ceil(length_m / (near_m / 8)), 1), _MAX_SAMPLES)
+        self._near_m = near_m
+        self._piece_m = length_m / count
+        self._middles_m = begin_m + (np.arange(count) + 0.5) * self._piece_m
+        places = map(path.point_at, self._middles_m.tolist())
+        self._places = np.array([(place.x_m, place.y_m) for place in places])
+
+    def missed_m(self, curve: DubinsCurve, met_m: float) -> tuple[float, float]:
+        """Return what a curve never comes near of the path before it meets it, m.
+
+        Returns:
+            Its length, and the length of what it comes near enough or not quite.
+        """
+        places = self._places[self._middles_m < met_m]
+        driven = curve.places(max(self._near_m / 8, curve.length_m / _MAX_SAMPLES))
+        away = places[:, np.newaxis] - driven[:, :2]
+        away_m = np.hypot(away[..., 0], away[..., 1]).min(axis=1)
+        missed = np.count_nonzero(away_m > _NEAR_SHARE * self._near_m)
+        barely = np.count_nonzero(away_m > _BARELY_SHARE * self._near_m)
+        return missed * self._piece_m, barely * self._piece_m
 
 
 def _joined(curve: DubinsCurve, path: Path, met_m: float, vehicle: VehicleLimits) -> Path:
     """Return a curve continued along the path that it meets, as the vehicle sees it."""
+    beyond_m = _BEYOND_M * max(vehicle.scale, 1.0)
     spacing_m = _SPACING_M * min(vehicle.scale, 1.0)
+    spacing_m = max(spacing_m, (curve.length_m + beyond_m) / _MAX_SPACINGS)
     rows = curve.places(spacing_m)
-    beyond_m = met_m + _BEYOND_M * max(vehicle.scale, 1.0)
-    along = np.arange(met_m + spacing_m, beyond_m, spacing_m)
+    along = np.arange(met_m + spacing_m, met_m + beyond_m, spacing_m)
     onwards = [(place.x_m, place.y_m, 0.0) for place in map(path.point_at, along.tolist())]
     return Path(np.concatenate((rows, np.array(onwards)))).for_vehicle(vehicle)

@@ -56,7 +56,7 @@ class Projection:
 
 
 _Array: TypeAlias = NDArray[np.float64]
-_State: TypeAlias = tuple[_Array, _Array, _Array, _Array, tuple[float, float]]
+_State: TypeAlias = tuple[_Array, _Array, _Array, _Array, tuple[float, float], float]
 
 
 class Path:
@@ -117,12 +117,24 @@ class Path:
 
     def __getstate__(self) -> _State:
         # Computed arrays are pickled as well: the receiving process has no time to compute them.
-        # The scale is not: whoever receives a path asks for it by `for_vehicle`.
-        return self.waypoints, self._along, self._knots, self._distances, self._origin
+        return (
+            self.waypoints,
+            self._along,
+            self._knots,
+            self._distances,
+            self._origin,
+            self._scale,
+        )
 
     def __setstate__(self, state: _State) -> None:
-        self.waypoints, self._along, self._knots, self._distances, self._origin = state
-        self._scale = 1.0
+        (
+            self.waypoints,
+            self._along,
+            self._knots,
+            self._distances,
+            self._origin,
+            self._scale,
+        ) = state
         self.waypoints.flags.writeable = False
         self._take_numbers()
 

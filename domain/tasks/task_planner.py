@@ -54,6 +54,19 @@ def check_cruise(speed_mps: float, limits: VehicleLimits) -> None:
         raise InvalidValueError(message, "speed_mps")
 
 
+def check_start(path: Path, index: int) -> None:
+    """Reject a waypoint at which no task can begin.
+
+    Raises:
+        InvalidValueError: It does not exist, or leaves no path.
+    """
+    if not 0 <= index < path.count - 1:
+        message = f"start_index {index} is not within 0 to {path.count - 2}"
+        raise InvalidValueError(message, "start_index")
+    if path.distance_of(index) >= path.length_m:
+        raise InvalidValueError("no path is left after this waypoint", "start_index")
+
+
 class TaskPlanner:
     """The current task, if any, the holds, and the goal of navigation."""
 
@@ -88,11 +101,7 @@ class TaskPlanner:
         if request.controller not in TRACKERS:
             raise UnknownControllerError("controller", request.controller, tuple(TRACKERS))
         path, index = request.path, request.start_index
-        if not 0 <= index < path.count - 1:
-            message = f"start_index {index} is not within 0 to {path.count - 2}"
-            raise InvalidValueError(message, "start_index")
-        if path.distance_of(index) >= path.length_m:
-            raise InvalidValueError("no path is left after this waypoint", "start_index")
+        check_start(path, index)
         check_cruise(request.speed_mps, self._limits)
         if (distance := self._too_far(path.waypoint(index))) is not None:
             limit_m = self._settings.max_start_distance_m

@@ -49,6 +49,25 @@ def test_what_a_held_vehicle_rolls_over_is_driven() -> None:
     assert trip.robot.task.status is TaskPhase.SUCCEEDED, trip.robot.task.reason
 
 
+@pytest.mark.parametrize("spacing_m", [0.2, 20.0])
+@pytest.mark.parametrize("lost_s", [0.4, 2.0, 30.0])
+def test_what_a_vehicle_rolls_over_while_its_pose_is_lost_is_driven(
+    lost_s: float, spacing_m: float
+) -> None:
+    """The hold of a lost pose stops it; from 5 m/s it rolls 15 m unseen."""
+    x = np.arange(0.0, 60.0, spacing_m)
+    path = Path(np.column_stack((x, 0 * x, 0 * x)))
+    trip = Trip(path, "pure_pursuit", 5.0, Plant(braking_mps2=1.0))
+    trip.drive(6.0)
+    trip.robot.lose_pose()
+    trip.robot.advance(lost_s)
+    trip.robot.lose_pose(lost=False)
+    trip.drive()
+
+    assert trip.robot.task.status is TaskPhase.SUCCEEDED, trip.robot.task.reason
+    assert trip.largest_error_m() < 0.1
+
+
 @EVERY_TRACKER
 def test_a_vehicle_that_is_held_in_a_bend_brakes_along_its_path(controller: str) -> None:
     """With the wheels held it would leave an s-bend while it rolls."""
@@ -133,7 +152,23 @@ def test_a_held_vehicle_that_was_carried_away_is_not_let_loose_across_the_field(
     trip.robot.release()
 
     assert trip.robot.task.status is TaskPhase.ABORTED
-    assert trip.robot.task.reason == ("15.0 m from the path, which is approached from at most 5 m")
+    told = trip.robot.task.reason
+    assert told == "15.0 m from where the path goes on, which is approached from at most 5 m"
+
+
+def test_a_held_vehicle_that_was_carried_along_its_path_does_not_drive_all_the_way_back() -> None:
+    trip = Trip(through((0, 0), (2000, 0), (4000, 0)))
+    trip.drive(6.0)
+    trip.robot.hold()
+    trip.robot.advance(5.0)
+    vehicle = trip.robot.robot.vehicle
+    stood_m = vehicle.state.pose.x_m
+    vehicle._state = type(vehicle.state)(Pose(stood_m + 1500, 0.0, 0.0), 0.0, 0.0)  # noqa: SLF001
+    trip.robot.advance(0.2)
+    trip.robot.release()
+
+    assert trip.robot.task.status is TaskPhase.ABORTED
+    assert str(trip.robot.task.reason).startswith("1500.0 m from where the path goes on")
 
 
 # --- far from the origin -------------------------------------------------------------------------

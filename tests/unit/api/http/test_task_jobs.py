@@ -2,6 +2,7 @@
 
 import json
 import pickle
+from dataclasses import replace
 
 import pytest
 
@@ -13,9 +14,9 @@ from api.http.task_jobs import (
     read_posted_task,
     thinned,
 )
-from domain.paths.speed_profile import SpeedLimits
-from domain.vehicle import Pose, VehicleLimits
+from domain.vehicle import Pose
 from service.files.waypoint_file import Heading, InvalidWaypointsError
+from tests.support.approach_limits import approach_limits
 from tests.support.paths import straight
 
 LINE = b"0,0,0\n5,0,0\n10,0,0\n"
@@ -54,12 +55,12 @@ def test_a_file_that_is_none_is_refused_with_its_lines() -> None:
 def test_a_preview_of_an_impossible_speed_is_refused() -> None:
     fast = TaskOptions("stanley", 99.0, 0, Heading.RAD)
     with pytest.raises(InvalidBodyError, match=r"11\.2 m/s"):
-        preview_posted(LINE, fast, None, VehicleLimits(), SpeedLimits())
+        preview_posted(LINE, fast, None, approach_limits())
 
 
 def test_a_preview_knows_how_far_the_vehicle_is() -> None:
-    pose = Pose(0.0, 2.5, 0.0)
-    shown = json.loads(preview_posted(LINE, OPTIONS, pose, VehicleLimits(), SpeedLimits()))
+    pose, options = Pose(0.0, 2.5, 0.0), replace(OPTIONS, start_index=0)
+    shown = json.loads(preview_posted(LINE, options, pose, approach_limits()))
 
     assert shown["start"]["distance_m"] == 2.5
     assert shown["approach"]["distance_m"] == pytest.approx(2.5)

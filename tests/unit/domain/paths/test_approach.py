@@ -3,10 +3,16 @@ from math import pi
 import numpy as np
 import pytest
 
-from domain.paths.approach import APPROACH_MPS, Approach, plan_approach
+from domain.paths.approach import (
+    APPROACH_MPS,
+    MAY_MISS_SHARE,
+    Approach,
+    FarFromPathError,
+    plan_approach,
+)
 from domain.paths.path import Path
-from domain.paths.speed_profile import SpeedLimits
 from domain.vehicle import Pose, VehicleLimits
+from tests.support.approach_limits import approach_limits
 from tests.support.paths import straight
 
 VEHICLE = VehicleLimits()
@@ -16,7 +22,8 @@ def plan(
     pose: Pose, path: Path | None = None, vehicle: VehicleLimits = VEHICLE, cruise: float = 2.8
 ) -> Approach | None:
     line = (path or straight(100.0)).for_vehicle(vehicle)
-    return plan_approach(line, pose, 0, 0.0, cruise, vehicle, SpeedLimits())
+    may_miss_m = MAY_MISS_SHARE * line.length_m
+    return plan_approach(line, pose, 0, 0.0, cruise, may_miss_m, approach_limits(vehicle))
 
 
 def planned(pose: Pose, path: Path | None = None, vehicle: VehicleLimits = VEHICLE) -> Approach:
@@ -87,3 +94,23 @@ def test_every_bend_of_a_way_can_be_steered(yaw_rad: float) -> None:
     at = np.linspace(0.0, way.way.length_m, 300)
 
     assert np.abs(way.way.curvatures_at(at)).max() <= 1 / VEHICLE.min_radius_m
+
+
+@pytest.mark.parametrize("pose", [Pose(0.0, 5.1, 0.0), Pose(1e7, 1e7, 0.0), Pose(40.0, 1.0, 0.0)])
+def test_who_is_too_far_from_where_the_path_begins_approaches_nothing(pose: Pose) -> None:
+    with pytest.raises(FarFromPathError, match="m from where the path goes on"):
+        plan(pose, straight(100.0, 100.0))
+
+
+@pytest.mark.parametrize("wheelbase_m", [0.1, 20.0])
+@pytest.mark.parametrize("most_rad", [0.01, 1.5])
+def test_a_way_from_any_distance_that_can_be_set_has_a_bounded_number_of_waypoints(
+    wheelbase_m: float, most_rad: float
+) -> None:
+    vehicle = VehicleLimits(wheelbase_m=wheelbase_m, max_steering_angle_rad=most_rad)
+    line = straight(2_000.0, 1_000.0).for_vehicle(vehicle)
+    limits = approach_limits(vehicle, from_m=1_000.0)
+    found = plan_approach(line, Pose(700.0, 700.0, 2.0), 0, 0.0, 2.8, 60.0, limits)
+
+    assert found is not None
+    assert found.way.count < 10_000

@@ -4,12 +4,15 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from numpy.typing import NDArray
 
 from domain.paths.path import Path
 from domain.paths.speed_profile import (
     BRAKING_SHARE,
     CRAWL_MPS,
     REACTION_S,
+    STEP_M,
+    STRETCH_STEPS,
     TURNING_MPS,
     SpeedLimits,
     SpeedProfile,
@@ -156,3 +159,36 @@ def test_who_brakes_weakly_brakes_earlier() -> None:
     weak = SpeedProfile(line(100), 5.0, LIMITS, VehicleLimits(braking_mps2=0.2))
 
     assert weak.speed_at(90.0) == pytest.approx(sqrt(2 * BRAKING_SHARE * 0.2 * 10), abs=0.1)
+
+
+def test_a_goal_on_a_path_of_any_length_begins_at_the_cost_of_a_short_one(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """Planning 100,000 waypoints at once would hold up the loop for 0.2 s."""
+    samples: list[int] = []
+    curvatures_at = Path.curvatures_at
+
+    def counted(path: Path, distances_m: NDArray[np.float64]) -> NDArray[np.float64]:
+        samples.append(len(distances_m))
+        return curvatures_at(path, distances_m)
+
+    monkeypatch.setattr(Path, "curvatures_at", counted)
+    speeds = profile(line(100_000.0), 11.0)
+    for distance_m in np.linspace(49_000.0, 51_000.0, 2_000).tolist():
+        speeds.speed_at(distance_m)
+
+    # 11 m/s are braked within 76 m.
+    assert max(samples) <= STRETCH_STEPS + 2 * 76 + 2 * 8 + 3
+    assert len(samples) <= 2_000 / (STRETCH_STEPS * STEP_M) + 2
+
+
+def test_a_stretch_brakes_for_what_the_next_one_demands() -> None:
+    """A bend just beyond the end of the first stretch of 250 m."""
+    bend = bend_between_straights(10.0).waypoints + np.array([205.0, 0.0, 0.0])
+    speeds = profile(Path(np.vstack(([0.0, 0.0, 0.0], bend))), 7.0)
+
+    assert speeds.speed_at(STRETCH_STEPS * STEP_M - 1.0) < 7.0
+    begin = np.linspace(200.0, 270.0, 500)
+    allowed = np.array([speeds.speed_at(distance) for distance in begin.tolist()])
+    braking = -np.diff(allowed**2) / np.diff(begin) / 2
+    assert braking.max() <= BRAKING_SHARE + 1e-6
