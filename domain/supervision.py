@@ -37,6 +37,7 @@ from domain.snapshot import (
 from domain.state_and_mode import PartName
 from domain.tasks.driving import Driving
 from domain.tasks.settings import TaskSettings
+from domain.tasks.standstill import Standstill
 from domain.timebase import Instant
 from domain.vehicle import VehicleLimits
 
@@ -87,6 +88,7 @@ class Supervision:
             self._health,
             self._emergency_stop,
             self.driving,
+            Standstill(self.driving, self._emergency_stop, self._outbox),
             self._robot_state,
             self._changing,
             Audit(self._outbox),

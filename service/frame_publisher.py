@@ -124,12 +124,12 @@ class FramePublisher:
     def _take_signals(self, *, full: bool) -> Mapping[str, SignalView]:
         """Return the signals that changed; one that was only received again waits its turn."""
         now = self._clock.now()
-        taken = self._core.signals() if full else {}
+        taken = dict(self._core.signals()) if full else {}
         for name in sorted(self._changed_signals):
             view, told = self._core.signal(name), self.frames.signals.get(name)
             is_due = now - self._signals_told_at.get(name, now - REPEATS_EVERY) >= REPEATS_EVERY
             if full or told is None or is_due or not _only_repeats(view, told):
-                taken = {**taken, name: view}
+                taken[name] = view
         for name in taken:
             self._changed_signals.discard(name)
             self._signals_told_at[name] = now

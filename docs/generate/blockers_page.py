@@ -16,6 +16,7 @@ from domain.health.signals import (
     SignalSettings,
     default_signals,
 )
+from domain.tasks.standstill import STANDSTILL_UNKNOWN, STILL_MOVING
 from domain.timebase import to_seconds
 
 _OF_CHANGES = {
@@ -24,6 +25,11 @@ _OF_CHANGES = {
     "ERROR_PROCESSING": "A node is processing an error; it will soon report its final state.",
     "UNREACHABLE": "A node is unreachable.",
     "UNKNOWN_STATE": "A node has never reported its state.",
+}
+_OF_THE_VEHICLE = {
+    STILL_MOVING: "The vehicle moves after the time for a stop: 1 s, and 1.25 times the time that "
+    "braking with [`driving.braking_mps2`](settings.md) takes.",
+    STANDSTILL_UNKNOWN: "No pose shows after that time whether the vehicle stands.",
 }
 _WARNINGS = {
     "CLOCK_SKEW": "The stamps of a signal differ from the local clock by more than a second.",
@@ -34,7 +40,8 @@ _WARNINGS = {
 
 _INTRODUCTION = """\
 A blocker says why a mode cannot be entered (`GET .../modes`) or why a change was rejected (409). A
-reason says why the robot is in ERROR (`GET /system_state`). Both have the same form:
+reason says why the robot is in ERROR, or that the vehicle should stand and does not
+(`GET /system_state`). Both have the same form:
 
 | member | meaning |
 |---|---|
@@ -45,6 +52,12 @@ reason says why the robot is in ERROR (`GET /system_state`). Both have the same 
 | `since_at` | since when |
 | `root_cause` | whether it is a cause itself rather than the effect of another one |
 | `refuses` | whether a request is rejected because of it; false: it is only shown |"""
+
+_VEHICLE = """\
+The vehicle should stand after a task was held or ended and after a hold was set, and as long as a
+task is held or the robot is in ERROR. A reason that says that it does not is the first in
+`GET /system_state`, also without an error; it is `still_moving` of `GET /vehicle`, too. It ends
+when the vehicle stands, or when a task drives it again."""
 
 _SIGNALS = """\
 `error_code` is the sum of the bits of all active errors. An error clears when its cause does, but
@@ -76,6 +89,9 @@ def blockers_page() -> str:
         "## Signal errors",
         _SIGNALS,
         table(("error", "bit", "signal", "when"), _errors()),
+        "## Standstill",
+        _VEHICLE,
+        table(("code", "when"), ((code(name), about) for name, about in _OF_THE_VEHICLE.items())),
         "## Warnings of `/healthz`",
         table(("code", "cause"), warnings),
     )

@@ -16,10 +16,12 @@ from domain.events.changes import CHANGE_ENDS
 from domain.health.health import Health
 from domain.identifiers import ChangeId
 from domain.inputs import ChangeRequest, NodeAnswer, NodeReport
+from domain.lifecycle import LifecycleState
 from domain.outbox import Outbox
+from domain.parts.convergence import is_there
 from domain.parts.parts import Parts
 from domain.snapshot import ChangeStatus, StepStatus
-from domain.state_and_mode import PartName
+from domain.state_and_mode import PartName, StateAndMode
 from domain.timebase import Instant
 
 KEPT_CHANGES = 1_000
@@ -180,8 +182,22 @@ class Changes:
         """Note that a node has ended its part of a change, and end the change with the last."""
         change = self._changes[pursuit.change]
         change.open.discard(pursuit.node)
+        self._let_stay(change, pursuit)
         self._conclude(change, now)
         self._let_go(change, {pursuit.node})
+
+    def _let_stay(self, change: Change, pursuit: Pursuit) -> None:
+        """Leave a node that turned out to be unconfigured so; deactivating its system asks no more.
+
+        A node that is known to be unconfigured is not asked to be inactive in the first place.
+        """
+        node, goal = pursuit.node, pursuit.goal
+        if goal.configures or node == change.part or pursuit.outcome is not StepStatus.SUCCEEDED:
+            return
+        resting = StateAndMode(self._parts.facts[node].known_state)
+        if resting.state is LifecycleState.UNCONFIGURED:
+            change.targets[node] = resting
+            self._parts.ask({node: resting})
 
     def _conclude(self, change: Change, now: Instant) -> None:
         """End a running change after its last node has ended; success is verified."""
@@ -202,6 +218,8 @@ class Changes:
         if target is None or self._inference.converged(change.part):
             return None
         actual = self._inference.actual(change.part)
+        if is_there(actual, target):
+            return self._inference.deviation_reason(change.part)
         words = f"{change.part} is {actual.state_and_mode.label}, not {target.label}"
         others = [
             f"{node} is {self._inference.actual(node).state_and_mode.label}"

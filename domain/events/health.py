@@ -133,7 +133,7 @@ class EmergencyStopReleased(Event):
 
 @dataclass(frozen=True, slots=True)
 class EmergencyStopStandstill(Event):
-    """The vehicle was first seen at standstill after the emergency stop."""
+    """The vehicle is at standstill after the emergency stop; told again if it moved meanwhile."""
 
     kind = "emergency_stop.standstill"
 

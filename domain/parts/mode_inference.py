@@ -16,20 +16,13 @@ from domain.errors import UnknownPartError
 from domain.inputs import NodeReport
 from domain.lifecycle import LifecycleState
 from domain.parameters import same_value
+from domain.parts.convergence import Convergence, is_there
 from domain.parts.node_facts import NodeFacts
 from domain.parts.system_inference import SystemInference, by_bytes, parents_of
 from domain.parts.system_model import NodeModel, SmhModel
 from domain.snapshot import Actual
 from domain.state_and_mode import DEFAULT_MODE, ModeName, PartName, StateAndMode
 from domain.timebase import Instant
-
-
-def _is_there(actual: StateAndMode | Actual, target: StateAndMode) -> bool:
-    if actual.state is not target.state:
-        return False
-    if target.state is not LifecycleState.ACTIVE or target.mode is None:
-        return True
-    return actual.mode == target.mode
 
 
 class ModeInference:
@@ -54,10 +47,13 @@ class ModeInference:
         self._depth = {name: len(model.ancestors[name]) for name in model.systems}
         """Larger than that of every system above: the deepest systems are inferred first."""
         self._actual = dict.fromkeys(model.parts, Actual(LifecycleState.UNKNOWN))
+        self._convergence = Convergence(
+            model, self._parents, self._targets, self._actual, self._plain
+        )
         self._infer((*model.nodes, *model.systems))
 
     def report(self, report: NodeReport, now: Instant | None = None) -> set[PartName]:
-        """Process a report; return the parts whose actual state or mode changed.
+        """Process a report; return the parts whose actual, `converged` or deviation reason changed.
 
         Args:
             report: From a node.
@@ -72,14 +68,16 @@ class ModeInference:
             return set()
         node = report.node
         if facts.has_lifecycle is not (node in self._plain):
-            return self._infer((node,))
-        # Its parents judge a node with a lifecycle and one without differently.
-        (self._plain.discard if facts.has_lifecycle else self._plain.add)(node)
-        self._tell_parents(node)
-        return self._infer((node, *self._parents.get(node, ())))
+            changed = self._infer((node,))
+        else:
+            # Its parents judge a node with a lifecycle and one without differently.
+            (self._plain.discard if facts.has_lifecycle else self._plain.add)(node)
+            self._tell_parents(node)
+            changed = self._infer((node, *self._parents.get(node, ())))
+        return changed | self._convergence.renew({*changed, node})
 
     def set_targets(self, targets: Mapping[PartName, StateAndMode | None]) -> set[PartName]:
-        """Set the targets in force; return the parts whose actual state or mode changed.
+        """Set the targets in force; return the parts of which that changed anything.
 
         Raises:
             UnknownPartError: A part is not in the model; no target was set.
@@ -92,7 +90,8 @@ class ModeInference:
                 self._targets.pop(part, None)
             else:
                 self._targets[part] = target
-        return self._infer(targets)
+        changed = self._infer(targets)
+        return changed | self._convergence.renew(changed | targets.keys())
 
     def target(self, part: PartName) -> StateAndMode | None:
         """Return the target in force of a part; None: it has none."""
@@ -131,19 +130,25 @@ class ModeInference:
         return StateAndMode(actual.state)
 
     def converged(self, part: PartName) -> bool:
-        """Tell whether a part is in its target state and mode, or has no target.
+        """Tell whether a part is in its target state and mode, or has no target, and so its parts.
 
         An active part with an unknown mode does not count as in `__DEFAULT__`.
         """
-        target = self._targets.get(part)
-        return target is None or _is_there(self._actual[part], target)
+        return self._convergence.converged(part)
+
+    def deviation_reason(self, part: PartName) -> str | None:
+        """Return which part is not where its target says; None: the part has converged."""
+        return self._convergence.reason(part)
 
     def deviations(self) -> list[tuple[PartName, StateAndMode, StateAndMode]]:
-        """Return part, target and actual of each decidable part that deviates from its target."""
+        """Return part, target and actual of each decidable part that deviates from its own target.
+
+        As in system_modes: what the parts of a system deviate from is told of these parts only.
+        """
         found = []
         for part in sorted(self._targets, key=by_bytes):
             seen = self.as_seen(part)
-            if seen is not None and not _is_there(seen, self._targets[part]):
+            if seen is not None and not is_there(seen, self._targets[part]):
                 found.append((part, self._targets[part], seen))
         return found
 

@@ -16,6 +16,7 @@ from domain.inputs import NodeReport
 from domain.lifecycle import LifecycleState
 from domain.outbox import Outbox
 from domain.parameters import value_type
+from domain.parts.convergence import is_there
 from domain.parts.deviations import Deviations
 from domain.parts.mode_inference import ModeInference
 from domain.parts.node_facts import NodeFacts
@@ -173,9 +174,12 @@ class Parts(Concern):
             self._outbox.emit(PartActualChanged(part, now, was, actual.reason, of_system=is_system))
 
     def _tell_deviation(self, part: PartName, *, began: bool) -> None:
-        actual = self.inference.actual(part)
+        actual, target = self.inference.actual(part), self.target(part)
+        why = actual.reason
+        if began and (target is None or is_there(actual, target)):
+            why = self.inference.deviation_reason(part)
         kind = DeviationBegan if began else DeviationEnded
-        self._outbox.emit(kind(part, self.target(part), actual.state_and_mode, actual.reason))
+        self._outbox.emit(kind(part, target, actual.state_and_mode, why))
 
     def _build(self, part: PartName) -> PartView:
         system = self.model.systems.get(part)
@@ -188,6 +192,7 @@ class Parts(Concern):
             actual=self.inference.actual(part),
             converged=self._deviations.since(part) is None,
             deviation_since=self._deviations.since(part),
+            deviation_reason=self._deviations.reason(part),
             reachable=self._reachability.reaches(part),
             change=self.change_of(part),
         )

@@ -172,6 +172,11 @@ class Driving(Concern):
         return self.watch.view
 
     @property
+    def still_moving(self) -> Blocker | None:
+        """Return that the vehicle should stand and does not, or may not; None: no such finding."""
+        return self.watch.still_moving
+
+    @property
     def holds(self) -> Mapping[str, HoldView]:
         """Return the holds by owner; the same object as long as nothing changed."""
         return self._planner.holds.views

@@ -34,13 +34,15 @@ class DrivingBlock(SettingsBlock):
     acceleration_mps2: Positive = 1.0
     """Rate at which the commanded speed rises, in m/s2."""
     braking_mps2: Positive = 1.0
-    """Rate at which the commanded speed falls before bends and the end, in m/s2."""
+    """Rate at which the commanded speed falls before bends and the end, in m/s2. A vehicle that
+    needs 1 s more than 1.25 times the time to stop at this rate counts as still moving."""
 
     def to_task_settings(self) -> TaskSettings:
         """Return the settings for the supervision."""
         return TaskSettings(
             max_start_distance_m=self.max_start_distance_m,
             pose_stale_after=seconds(self.pose_stale_after_s),
+            braking_mps2=self.braking_mps2,
         )
 
     def to_navigation_settings(self) -> NavigationSettings:

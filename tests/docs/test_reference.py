@@ -140,6 +140,18 @@ def a_drive() -> list[RecordedEvent]:
     )
 
 
+def soft_brakes() -> list[RecordedEvent]:
+    """A stop that does not stop: without a pose for a while, and at last the vehicle stands."""
+    return happened(
+        {"t_s": 1, "task": {"waypoints": STRAIGHT}},
+        request(4, "PUT", "/emergency_stop", engaged=True, reason="look"),
+        {"t_s": 15, "vehicle": "silent"},
+        {"t_s": 20, "vehicle": "recover"},
+        until_s=40,
+        vehicle={"plant": {"braking_mps2": 0.1}},
+    )
+
+
 def a_sick_robot() -> list[RecordedEvent]:
     """Errors that wait, clocks that differ, changes that end in every way."""
     mode = {"part": "actuation", "mode": "PERFORMANCE"}
@@ -204,7 +216,7 @@ def _example(path: Path) -> list[RecordedEvent]:
 
 def test_events_that_happen_are_listed_with_what_they_carry() -> None:
     seen: dict[str, list[set[str]]] = {}
-    stories = (a_drive, a_sick_robot, a_lost_backend, a_write, the_examples)
+    stories = (a_drive, soft_brakes, a_sick_robot, a_lost_backend, a_write, the_examples)
     for event in (event for story in stories for event in story()):
         seen.setdefault(event.kind, []).append(set(event.data))
 

@@ -107,7 +107,7 @@ async def get_metrics(known: Annotated[Metrics, Depends(_metrics)]) -> Response:
 
 def _checks(supervisor: Supervisor) -> list[CheckJson]:
     model = supervisor.model
-    loaded = f"{len(model.systems)} systems, {len(model.nodes)} nodes"
+    loaded = f"systems: {len(model.systems)}, nodes: {len(model.nodes)}"
     hanging, last = supervisor.hanging(), supervisor.publisher.last_tick_at
     if hanging is not None or last is None:
         ticking = CheckJson(name="core", ok=False, message=hanging or "has not ticked yet")

@@ -13,6 +13,9 @@ from domain.events.driving import (
     TaskResumed,
     TaskServed,
     VehicleReported,
+    VehicleStandstillUnknown,
+    VehicleStillMoving,
+    VehicleStopped,
 )
 from domain.events.event import Event
 from domain.identifiers import GoalId, TaskId
@@ -25,6 +28,16 @@ T1 = TaskId("t1")
     ("event", "words"),
     [
         (VehicleReported(1.0, 2.5, 0.25), "vehicle at x 1.00 m, y 2.50 m, 0.25 m/s"),
+        (
+            VehicleStillMoving(2.577, 4.5),
+            "the vehicle should stand, but moved at 2.58 m/s, 4.5 s after the stop began",
+        ),
+        (
+            VehicleStandstillUnknown(4.5),
+            "the vehicle should stand, but there was no pose to show it, "
+            "4.5 s after the stop began",
+        ),
+        (VehicleStopped(55.0), "the vehicle stands, 55.0 s after the stop began"),
         (GoalEnded(GoalId(3), False, "off the path"), "goal 3 aborted: off the path"),
         (
             TaskRequested(5, 20.04, 0, "stanley", 2.8),

@@ -24,7 +24,7 @@ class Robot:
     def __init__(self) -> None:
         self.outbox = Outbox()
         self.health = Health(default_signals(), self.outbox, 0)
-        self.driving = SimpleNamespace(status=TaskStatus.NO_TASK)
+        self.driving = SimpleNamespace(status=TaskStatus.NO_TASK, still_moving=None)
         self.state = RobotState(self.health, cast("Driving", self.driving), self.outbox)
         self.events: dict[int, RecordedEvent] = {}
         self.now = 0

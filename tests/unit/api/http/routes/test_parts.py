@@ -20,6 +20,7 @@ PART_FIELDS = {
     "actual",
     "converged",
     "deviation_since_at",
+    "deviation_reason",
     "reachable",
     "change",
 }
