@@ -4,6 +4,7 @@ from dataclasses import dataclass, field
 from math import tan
 
 import numpy as np
+from numpy.typing import NDArray
 
 from domain.parts.system_model import SmhModel
 from domain.paths.path import Path
@@ -29,12 +30,13 @@ def through(*places: tuple[float, float]) -> Path:
 
 @dataclass(slots=True)
 class Look:
-    """What was commanded, and how far off the vehicle was, in one control period."""
+    """What was commanded, and where the vehicle was, in one control period."""
 
     speed_mps: float
     commanded_rad: float
     steering_rad: float
     error_m: float
+    place: tuple[float, float]
 
 
 @dataclass(slots=True)
@@ -87,6 +89,11 @@ class Trip:
         """Return how long it took so far, s."""
         return to_seconds(self.robot.now)
 
+    @property
+    def places(self) -> NDArray[np.float64]:
+        """Return where the vehicle was, shape (n, 2), m."""
+        return np.array([look.place for look in self.looks])
+
     def lateral_mps2(self) -> float:
         """Return the largest lateral acceleration of what was commanded, m/s2.
 
@@ -114,5 +121,6 @@ class Trip:
                 command.steering_angle_rad,
                 state.steering_angle_rad,
                 task.cross_track_error_m,
+                (state.pose.x_m, state.pose.y_m),
             )
         )

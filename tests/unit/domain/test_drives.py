@@ -13,7 +13,7 @@ from domain.timebase import seconds
 from domain.tracking.trackers import TRACKERS
 from domain.vehicle import Pose, VehicleLimits
 from tests.support.drives import Trip, through
-from tests.support.track_study import PLANTS
+from tests.support.track_study import PLANTS, track
 
 EVERY_TRACKER = pytest.mark.parametrize("controller", sorted(TRACKERS))
 SLOW_WHEELS = Plant(2.0, 3.0, 0.5, 0.15, delay=seconds(0.05))
@@ -47,6 +47,35 @@ def test_what_a_held_vehicle_rolls_over_is_driven() -> None:
     trip.drive()
 
     assert trip.robot.task.status is TaskPhase.SUCCEEDED, trip.robot.task.reason
+
+
+@pytest.mark.parametrize("braking_mps2", [0.3, 1.0])
+@pytest.mark.parametrize("at_s", np.arange(8.0, 15.0, 0.9).tolist())
+def test_a_hold_near_the_end_does_not_keep_a_task_from_succeeding(
+    at_s: float, braking_mps2: float
+) -> None:
+    """It may roll past the end."""
+    plant = Plant(braking_mps2=braking_mps2)
+    trip = Trip(through((0, 0), (30, 0), (59, 0)), "pure_pursuit", 5.0, plant)
+    trip.drive(at_s)
+    trip.hold()
+    trip.drive()
+
+    assert trip.robot.task.status is TaskPhase.SUCCEEDED, trip.robot.task.reason
+
+
+@EVERY_TRACKER
+def test_any_number_of_holds_on_a_closed_course_adds_up_to_nothing(controller: str) -> None:
+    trip = Trip(arena(1.75), controller, 5.0, Plant(1.0, 1.0, 0.5, 0.15))
+    held = 0
+    while not trip.ended:
+        trip.drive(4.0)
+        trip.hold()
+        held += 1
+
+    assert held > 5
+    assert trip.robot.task.status is TaskPhase.SUCCEEDED, trip.robot.task.reason
+    assert trip.largest_error_m() < 0.5
 
 
 @pytest.mark.parametrize("spacing_m", [0.2, 20.0])
@@ -191,6 +220,7 @@ def test_a_path_far_from_the_origin_is_driven_alike(
 
     assert far.robot.task.status is TaskPhase.SUCCEEDED, far.robot.task.reason
     assert len(far.looks) == len(here.looks)
+    assert far.places == pytest.approx(here.places + np.array(there), abs=1e-6)
     for one, other in zip(here.looks, far.looks, strict=True):
         assert other.speed_mps == pytest.approx(one.speed_mps, abs=1e-6)
         assert other.commanded_rad == pytest.approx(one.commanded_rad, abs=1e-6)
@@ -214,6 +244,24 @@ def test_a_vehicle_of_any_size_follows_a_course_of_its_size(
     assert trip.robot.task.status is TaskPhase.SUCCEEDED, trip.robot.task.reason
     assert trip.largest_error_m() <= 0.25 * wheelbase_m
     assert trip.lateral_mps2() <= 2.0 + 1e-6
+
+
+@EVERY_TRACKER
+@pytest.mark.parametrize("speed_mps", [0.5, 2.0, 5.0])
+@pytest.mark.parametrize("name", ["gem_e2_loop", "gem_e2_real_loop_compass_heading"])
+def test_a_vehicle_of_1_to_10_follows_a_recorded_track_of_1_to_10(
+    name: str, speed_mps: float, controller: str
+) -> None:
+    """With the look-ahead of a car it would be off by 1.4 to 2.4 m, and still succeed."""
+    recorded = track(f"tracks/{name}.csv").waypoints
+    small = Path((recorded - recorded[0]) * np.array([0.1, 0.1, 1.0]))
+    limits = VehicleLimits(wheelbase_m=0.33)
+    start = Pose(0.0, 0.0, small.for_vehicle(limits).heading_at(0.0))
+    trip = Trip(small, controller, speed_mps, Plant(3.0, 3.0, 3.2, 0.05), start, limits)
+    trip.drive()
+
+    assert trip.robot.task.status is TaskPhase.SUCCEEDED, trip.robot.task.reason
+    assert trip.largest_error_m() < 0.1
 
 
 @EVERY_TRACKER
