@@ -28,13 +28,29 @@ angles = st.one_of(st.just(0.0), st.just(pi), st.floats(-pi, pi))
 timeout = pytest.mark.timeout(0 if SOAK else 120)
 
 
-def winding(pieces: list[tuple[float, float]]) -> Path:
-    """Return a path of arcs that begins eastwards at the origin: curvature 1/m, length m."""
+SMALL = Plant(3.0, 3.0, 3.2, 0.05)
+VEHICLES = st.sampled_from(
+    [
+        *((VehicleLimits(), plant) for plant in PLANTS.values()),
+        *((VehicleLimits(wheelbase_m=0.33), plant) for plant in (Plant(), SMALL)),
+        (VehicleLimits(wheelbase_m=1.0, max_steering_angle_rad=0.45), PLANTS["gazebo-like"]),
+        (VehicleLimits(wheelbase_m=3.0, max_steering_angle_rad=0.7), PLANTS["gazebo-like"]),
+    ]
+)
+
+
+def winding(pieces: list[tuple[float, float]], scale: float = 1.0) -> Path:
+    """Return a path of arcs that begins eastwards at the origin.
+
+    Args:
+        pieces: Curvature, 1/m, and length, m, of each arc.
+        scale: By which all is larger.
+    """
     rows = np.zeros((1, 3))
     for curvature, length in pieces:
         count = round(length / 0.25)
         yaw = rows[-1, 2] + curvature * 0.25 * (np.arange(count) + 0.5)
-        steps = 0.25 * np.column_stack((np.cos(yaw), np.sin(yaw)))
+        steps = 0.25 * scale * np.column_stack((np.cos(yaw), np.sin(yaw)))
         places = rows[-1, :2] + np.cumsum(steps, axis=0)
         rows = np.concatenate((rows, np.column_stack((places, yaw))))
     return Path(rows)
@@ -45,7 +61,7 @@ def winding(pieces: list[tuple[float, float]]) -> Path:
 @given(
     bends,
     controllers,
-    st.sampled_from(sorted(PLANTS)),
+    VEHICLES,
     st.floats(0, 5),
     angles,
     angles,
@@ -54,15 +70,16 @@ def winding(pieces: list[tuple[float, float]]) -> Path:
 def test_every_start_within_5_m_and_any_turn_leads_onto_the_path_and_to_its_end(
     pieces: list[tuple[float, float]],
     controller: str,
-    plant: str,
+    vehicle: tuple[VehicleLimits, Plant],
     away_m: float,
     bearing_rad: float,
     yaw_rad: float,
     speed_mps: float,
 ) -> None:
     start = Pose(away_m * cos(bearing_rad), away_m * sin(bearing_rad), yaw_rad)
-    trip = Trip(winding(pieces), controller, speed_mps, PLANTS[plant], start)
-    trip.drive()
+    limits, plant = vehicle
+    trip = Trip(winding(pieces, limits.scale), controller, speed_mps, plant, start, limits)
+    trip.drive(3_000.0)
 
     event(str(trip.robot.task.status))
     assert trip.robot.task.status is TaskPhase.SUCCEEDED, trip.robot.task.reason
