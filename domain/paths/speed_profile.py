@@ -22,6 +22,8 @@ CRAWL_MPS = 0.05
 """Lowest command before the end, which would otherwise never be reached; stops without a jerk."""
 BRAKING_SHARE = 0.8
 """Planned share of the allowed braking: a vehicle that reacts late has to brake harder."""
+LATERAL_SHARE = 0.95
+"""Planned share of the lateral acceleration: a tracker also needs some to correct its error."""
 REACTION_S = 0.15
 """Delay from a command to the wheels; without it the vehicle would overrun the end."""
 TURN_OVER_STEPS = (1, 2, 4, 8)
@@ -67,7 +69,7 @@ class SpeedProfile:
         """
         self._path = path.for_vehicle(vehicle)
         self._vehicle = vehicle
-        self._lateral_mps2 = limits.lateral_acceleration_mps2
+        self._lateral_mps2 = LATERAL_SHARE * limits.lateral_acceleration_mps2
         braking = BRAKING_SHARE * min(limits.braking_mps2, vehicle.braking_mps2 or inf)
         self._braking_mps2 = braking
         self._top_mps = min(cruise_mps, vehicle.max_speed_mps)

@@ -10,6 +10,7 @@ from domain.paths.path import Path
 from domain.paths.speed_profile import (
     BRAKING_SHARE,
     CRAWL_MPS,
+    LATERAL_SHARE,
     REACTION_S,
     STEP_M,
     STRETCH_STEPS,
@@ -80,7 +81,7 @@ def test_a_path_too_short_for_the_cruise_is_braked_on_from_its_start(length: flo
 def test_in_a_bend_the_lateral_acceleration_is_kept() -> None:
     speeds = profile(bend_between_straights(10.0), 7.0)
 
-    assert speeds.speed_at(50 + 5 * pi) == pytest.approx(sqrt(2 * 10), rel=0.02)
+    assert speeds.speed_at(50 + 5 * pi) == pytest.approx(sqrt(LATERAL_SHARE * 2 * 10), rel=0.01)
 
 
 def test_a_bend_is_braked_for_in_time() -> None:
@@ -89,14 +90,16 @@ def test_a_bend_is_braked_for_in_time() -> None:
 
     assert speeds.speed_at(50 - 25) == pytest.approx(7.0)
     assert speeds.speed_at(50 - 10) < 7.0
-    assert speeds.speed_at(50) == pytest.approx(sqrt(2 * 10), abs=0.5)
+    assert speeds.speed_at(50) == pytest.approx(sqrt(LATERAL_SHARE * 2 * 10), abs=0.5)
 
 
 def test_a_corner_of_a_polygon_is_driven_as_the_tightest_bend() -> None:
     corner = Path(np.array([[0.0, 0.0, 0.0], [50.0, 0.0, 0.0], [50.0, 50.0, 0.0]]))
     tightest = tan(VEHICLE.max_steering_angle_rad) / VEHICLE.wheelbase_m
 
-    assert profile(corner, 7.0).speed_at(50.0) == pytest.approx(sqrt(2 / tightest), rel=0.05)
+    assert profile(corner, 7.0).speed_at(50.0) == pytest.approx(
+        sqrt(LATERAL_SHARE * 2 / tightest), rel=0.05
+    )
 
 
 @given(
