@@ -15,7 +15,7 @@ from domain.inputs import HoldRequest, Input, ServiceStall
 from domain.onboard import Onboard
 from domain.outbox import Outputs
 from domain.parts.system_model import SmhModel
-from domain.paths.speed_profile import SpeedLimits
+from domain.paths.approach import ApproachLimits
 from domain.supervision import Supervision
 from domain.timebase import Duration, seconds
 from service.catch_up import CatchUp
@@ -105,9 +105,9 @@ class Supervisor:
         return self._loaded.warnings
 
     @property
-    def speed_limits(self) -> SpeedLimits:
-        """Return the acceleration limits of the vehicle."""
-        return self._onboard.navigation.settings.speed
+    def approach_limits(self) -> ApproachLimits:
+        """Return what the vehicle can do, and from how far it approaches a path."""
+        return self._onboard.navigation.approach_limits
 
     @property
     def epoch(self) -> str:

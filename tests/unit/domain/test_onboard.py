@@ -60,7 +60,10 @@ def test_nothing_is_driven_while_the_task_is_held(robot: CoreRobot) -> None:
     told = len(robot.commands)
     drive(robot, 3)
 
-    assert robot.commands[told:] == []
+    assert {c.command.speed_mps for c in robot.commands[told:] if isinstance(c, Drive)} <= {0.0}
+    stands = len(robot.commands)
+    drive(robot, 3)
+    assert robot.commands[stands:] == []
 
 
 def test_the_whole_path_is_driven_and_the_vehicle_stands_at_its_end(robot: CoreRobot) -> None:
