@@ -252,7 +252,7 @@ def test_a_pose_that_is_late_by_our_own_fault_is_taken_before_its_age_is_judged(
 def test_missed_control_steps_are_not_made_up_for_after_a_stall(robot: CoreRobot) -> None:
     robot.submit_task(straight())
     robot.advance(1)
-    late = robot.now + seconds(1)
+    late = robot.now + seconds(0.7)
     assert robot.onboard.take_in(at(robot), late).commands == ()
     outputs = robot.onboard.handle(TimePassed(), late + seconds(0.05))
     assert [type(command).__name__ for command in outputs.commands] == ["Drive"]
