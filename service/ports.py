@@ -8,9 +8,18 @@ from collections.abc import Callable
 from typing import Protocol, TypeAlias
 
 from domain.commands import Drive, NodeCommand
-from domain.inputs import BackendStatus, NodeAnswer, NodeReport, Readings, VehicleReport
+from domain.inputs import (
+    BackendStatus,
+    NodeAnswer,
+    NodeReport,
+    NodesBehind,
+    Readings,
+    VehicleReport,
+)
 
-BackendMessage: TypeAlias = NodeReport | NodeAnswer | BackendStatus | Readings | VehicleReport
+BackendMessage: TypeAlias = (
+    NodeReport | NodeAnswer | NodesBehind | BackendStatus | Readings | VehicleReport
+)
 Deliver: TypeAlias = Callable[[BackendMessage], None]
 
 
@@ -28,7 +37,8 @@ class Adapter(Protocol):
 class NodeBackend(Adapter, Protocol):
     """The nodes; `tests/conformance/test_node_backend.py` specifies what an adapter must do.
 
-    It delivers `BackendStatus`, `NodeReport` and `NodeAnswer`. A node that cannot be reached is
+    It delivers `BackendStatus`, `NodeReport` and `NodeAnswer`, and may frame very many of them by
+    `NodesBehind`. A node that cannot be reached is
     reported as unreachable; when it reappears, all its facts are reported.
     """
 
