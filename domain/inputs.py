@@ -123,6 +123,16 @@ class TimePassed:
 
 
 @dataclass(frozen=True, slots=True)
+class NodesBehind:
+    """A backend has more messages of nodes than it can hand over at once, or no longer has.
+
+    Until all of them are taken in, no step times out: the node may have arrived long ago.
+    """
+
+    behind: bool
+
+
+@dataclass(frozen=True, slots=True)
 class ServiceStall:
     """The service itself did nothing for a while."""
 
@@ -242,6 +252,7 @@ DriveRequest: TypeAlias = TaskRequest | CancelTaskRequest | HoldRequest | Releas
 Input: TypeAlias = (
     NodeReport
     | NodeAnswer
+    | NodesBehind
     | Readings
     | VehicleReport
     | DriveStatus

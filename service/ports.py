@@ -13,12 +13,13 @@ from domain.inputs import (
     DriveStatus,
     NodeAnswer,
     NodeReport,
+    NodesBehind,
     Readings,
     VehicleReport,
 )
 
 BackendMessage: TypeAlias = (
-    NodeReport | NodeAnswer | BackendStatus | Readings | VehicleReport | DriveStatus
+    NodeReport | NodeAnswer | NodesBehind | BackendStatus | Readings | VehicleReport | DriveStatus
 )
 Deliver: TypeAlias = Callable[[BackendMessage], None]
 
@@ -37,7 +38,8 @@ class Adapter(Protocol):
 class NodeBackend(Adapter, Protocol):
     """The nodes; `tests/conformance/test_node_backend.py` specifies what an adapter must do.
 
-    It delivers `BackendStatus`, `NodeReport` and `NodeAnswer`. A node that cannot be reached is
+    It delivers `BackendStatus`, `NodeReport` and `NodeAnswer`, and may frame very many of them by
+    `NodesBehind`. A node that cannot be reached is
     reported as unreachable; when it reappears, all its facts are reported.
     """
 

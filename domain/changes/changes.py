@@ -146,6 +146,10 @@ class Changes:
         """Fail the step in flight if the node rejected it."""
         self._steps.answer(answer, now)
 
+    def wait_for_nodes(self, *, behind: bool) -> None:
+        """Let no step time out while a backend is behind with the messages of its nodes."""
+        self._steps.wait_for_nodes(behind=behind)
+
     def pass_time(self, now: Instant) -> None:
         """Handle all deadlines up to `now`."""
         self._steps.pass_time(now)

@@ -29,6 +29,7 @@ from domain.inputs import (
     ModeRequest,
     NodeAnswer,
     NodeReport,
+    NodesBehind,
     ParametersRequest,
     TransitionRequest,
 )
@@ -68,6 +69,7 @@ class Changing(Concern):
             CancelRequest: self._take_cancel,
             NodeReport: self._follow_report,
             NodeAnswer: self._take_answer,
+            NodesBehind: self._take_behind,
             BackendStatus: self._take_backend_status,
         }
 
@@ -121,6 +123,9 @@ class Changing(Concern):
         answered = NodeAnswered(answer.node, answer.accepted, answer.reason)
         self._outbox.begin(now, answered, cause=step.event if step and awaited else None)
         self._changes.answer(answer, now)
+
+    def _take_behind(self, nodes: NodesBehind, now: Instant) -> None:
+        self._changes.wait_for_nodes(behind=nodes.behind)
 
     def _take_backend_status(self, status: BackendStatus, now: Instant) -> None:
         if status.available is not self._backend.available:

@@ -60,6 +60,8 @@ class NodeSteps:
         self._pursuits: dict[PartName, Pursuit] = {}
         self._in_flight: dict[PartName, Step] = {}
         self._deadlines: Deadlines[PartName] = Deadlines()
+        self._behind = 0
+        """Backends that are behind with the messages of their nodes; no deadline passes then."""
 
     # --- what can be seen ------------------------------------------------------------------------
 
@@ -83,7 +85,7 @@ class NodeSteps:
 
     def wake_at(self) -> Instant | None:
         """Return the next deadline; None: there is none."""
-        return self._deadlines.next()
+        return None if self._behind else self._deadlines.next()
 
     # --- pursuits --------------------------------------------------------------------------------
 
@@ -136,9 +138,13 @@ class NodeSteps:
             self._end_step(step, StepStatus.FAILED, reason, now)
             self._advance(answer.node, now)
 
+    def wait_for_nodes(self, *, behind: bool) -> None:
+        """Note that a backend is behind, or no longer; deadlines wait for all of them."""
+        self._behind += 1 if behind else -1
+
     def pass_time(self, now: Instant) -> None:
         """Handle all deadlines up to `now`."""
-        while (node := self._deadlines.pop_due(now)) is not None:
+        while not self._behind and (node := self._deadlines.pop_due(now)) is not None:
             if node in self._in_flight:
                 self._step_is_late(self._in_flight[node], now)
             elif node in self._pursuits:

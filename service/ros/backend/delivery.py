@@ -4,7 +4,7 @@ import asyncio
 from enum import IntEnum
 
 from domain.health.signals import ESTOP_SIGNAL
-from domain.inputs import DriveStatus, Readings, VehicleReport
+from domain.inputs import DriveStatus, NodesBehind, Readings, VehicleReport
 from service.ports import BackendMessage, Deliver
 
 _AT_ONCE = 5
@@ -45,7 +45,11 @@ class Delivery:
         self._woken.set()
 
     async def run(self, deliver: Deliver) -> None:
-        """Deliver until cancelled, or until `deliver` raises."""
+        """Deliver until cancelled, or until `deliver` raises.
+
+        `NodesBehind` tells whether more messages of nodes wait than one turn delivers.
+        """
+        behind = False
         while True:
             await self._woken.wait()
             for _ in range(_AT_ONCE):
@@ -54,6 +58,9 @@ class Delivery:
                     self._woken.clear()
                     break
                 deliver(lane.get_nowait())
+            if behind is self._lanes[_Urgency.NODES].empty():
+                behind = not behind
+                deliver(NodesBehind(behind))
             await asyncio.sleep(0)
 
 
