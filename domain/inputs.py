@@ -123,16 +123,6 @@ class TimePassed:
 
 
 @dataclass(frozen=True, slots=True)
-class NodesBehind:
-    """A backend has more messages of nodes than it can hand over at once, or no longer has.
-
-    Until all of them are taken in, no step times out: the node may have arrived long ago.
-    """
-
-    behind: bool
-
-
-@dataclass(frozen=True, slots=True)
 class ServiceStall:
     """The service itself did nothing for a while."""
 
@@ -246,17 +236,27 @@ class ReleaseRequest:
     actor: Actor = NOBODY
 
 
+@dataclass(frozen=True, slots=True)
+class ReportBacklog:
+    """Reports and answers of nodes have arrived that are not taken in yet, or all are again."""
+
+    source: str
+    """What delivers them; each source has its own backlog."""
+    since: Instant | None
+    """All that arrived up to then is taken in; None: all that arrived at all."""
+
+
 ChangeRequest: TypeAlias = ModeRequest | TransitionRequest | ParametersRequest
 DriveRequest: TypeAlias = TaskRequest | CancelTaskRequest | HoldRequest | ReleaseRequest
 
 Input: TypeAlias = (
     NodeReport
     | NodeAnswer
-    | NodesBehind
     | Readings
     | VehicleReport
     | DriveStatus
     | BackendStatus
+    | ReportBacklog
     | GoalFeedback
     | GoalResult
     | TimePassed

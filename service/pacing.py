@@ -27,7 +27,7 @@ class Paced(Protocol[MessageT_co]):
 
 
 AT_ONCE = 25
-"""Messages in one turn of the loop."""
+"""Messages delivered in one turn of the event loop."""
 
 
 class Pacer(Generic[MessageT]):
@@ -49,22 +49,26 @@ class Pacer(Generic[MessageT]):
     async def run(
         self,
         deliver: Callable[[MessageT], None],
-        deliver_many: Callable[[Sequence[MessageT]], Awaitable[None]] | None = None,
+        deliver_many: Callable[[Sequence[MessageT], Instant], Awaitable[None]] | None = None,
     ) -> None:
         """Pass messages on in order when they are due, until cancelled.
 
         Args:
             deliver: Gets one message.
-            deliver_many: Gets more than `AT_ONCE` messages that are due together, and lets other
-                tasks run in between; None: there are never so many.
+            deliver_many: Gets more than `AT_ONCE` messages that are due together, and up to when
+                all that was due is delivered; lets other tasks run in between. None: there are
+                never so many.
         """
+        delivered = self._clock.now()
         while True:
-            due = self._paced.advance(self._clock.now())
+            now = self._clock.now()
+            due = self._paced.advance(now)
             if deliver_many is not None and len(due) > AT_ONCE:
-                await deliver_many(due)
+                await deliver_many(due, delivered)
             else:
                 for message in due:
                     deliver(message)
+            delivered = now
             await self._rest()
 
     async def _rest(self) -> None:

@@ -29,8 +29,8 @@ from domain.inputs import (
     ModeRequest,
     NodeAnswer,
     NodeReport,
-    NodesBehind,
     ParametersRequest,
+    ReportBacklog,
     TransitionRequest,
 )
 from domain.lifecycle import LifecycleState, Transition
@@ -69,8 +69,8 @@ class Changing(Concern):
             CancelRequest: self._take_cancel,
             NodeReport: self._follow_report,
             NodeAnswer: self._take_answer,
-            NodesBehind: self._take_behind,
             BackendStatus: self._take_backend_status,
+            ReportBacklog: self._take_backlog,
         }
 
     def wake_at(self) -> Instant | None:
@@ -124,9 +124,6 @@ class Changing(Concern):
         self._outbox.begin(now, answered, cause=step.event if step and awaited else None)
         self._changes.answer(answer, now)
 
-    def _take_behind(self, nodes: NodesBehind, now: Instant) -> None:
-        self._changes.wait_for_nodes(behind=nodes.behind)
-
     def _take_backend_status(self, status: BackendStatus, now: Instant) -> None:
         if status.available is not self._backend.available:
             kind = BackendAvailable if status.available else BackendUnavailable
@@ -134,6 +131,9 @@ class Changing(Concern):
             self._outbox.record_input()
             self._backend_since = now
         self._backend = status
+
+    def _take_backlog(self, backlog: ReportBacklog, now: Instant) -> None:
+        self._changes.note_backlog(backlog)
 
     # --- what can be seen ------------------------------------------------------------------------
 

@@ -6,16 +6,19 @@ from collections.abc import Sequence
 from functools import partial
 
 from domain.commands import Drive, NodeCommand
-from domain.inputs import BackendStatus, NodeAnswer, NodeReport, NodesBehind
+from domain.inputs import BackendStatus, NodeAnswer, NodeReport, ReportBacklog
 from domain.parameters import Parameters
 from domain.simulation.node_settings import Fault
 from domain.simulation.robot import RobotMessage, SimulatedRobot
 from domain.state_and_mode import PartName
+from domain.timebase import Instant
 from service.clock import Clock
 from service.pacing import AT_ONCE, Pacer
 from service.ports import Deliver
 from service.readings import DirectReadings, ReadingInput, Submit
 from service.simulation.mock_source import MockHandle
+
+_SOURCE = "simulated nodes"
 
 
 class SimulatedBackend:
@@ -37,23 +40,33 @@ class SimulatedBackend:
         deliver(BackendStatus(available=True))
         await self._pacer.run(deliver, partial(self._deliver_in_turns, deliver))
 
-    async def _deliver_in_turns(self, deliver: Deliver, due: Sequence[RobotMessage]) -> None:
+    async def _deliver_in_turns(
+        self, deliver: Deliver, due: Sequence[RobotMessage], delivered: Instant
+    ) -> None:
         """Deliver very many messages, some at a time, those of the nodes last.
 
         Other tasks must keep running, and a pose that comes behind the reports of thousands of
         nodes must not become too old meanwhile.
         """
-        urgent, others = deque[RobotMessage](), deque[RobotMessage]()
-        deliver(NodesBehind(behind=True))
+        urgent = deque[RobotMessage]()
+        others = deque[tuple[Instant, RobotMessage]]()
+        """Each with up to when all that was due before it was handed over."""
+        told, advanced = None, delivered
         while due or urgent or others:
             for message in due:
-                of_node = isinstance(message, NodeReport | NodeAnswer)
-                (others if of_node else urgent).append(message)
+                if isinstance(message, NodeReport | NodeAnswer):
+                    others.append((delivered, message))
+                else:
+                    urgent.append(message)
+            if others and others[0][0] != told:
+                told = others[0][0]
+                deliver(ReportBacklog(_SOURCE, told))
             for _ in range(min(AT_ONCE, len(urgent) + len(others))):
-                deliver((urgent or others).popleft())
+                deliver(urgent.popleft() if urgent else others.popleft()[1])
             await asyncio.sleep(0)
-            due = self.robot.advance(self._clock.now())
-        deliver(NodesBehind(behind=False))
+            delivered, advanced = advanced, self._clock.now()
+            due = self.robot.advance(advanced)
+        deliver(ReportBacklog(_SOURCE, None))
 
     def readings(self, submit: Submit) -> ReadingInput:
         """Return the input for external readings."""

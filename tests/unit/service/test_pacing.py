@@ -124,19 +124,20 @@ async def test_many_things_handed_in_at_once_wake_it_once() -> None:
 
 
 async def test_very_many_things_that_are_due_together_are_delivered_by_who_can_do_that() -> None:
-    one, many = list[float](), list[int]()
+    one, many = list[float](), list[tuple[int, Instant]]()
 
-    async def take(due: Sequence[float]) -> None:
-        many.append(len(due))
+    async def take(due: Sequence[float], delivered: Instant) -> None:
+        many.append((len(due), delivered))
 
     clock = ManualClock()
-    pacer = Pacer(Alarms(*[0.0] * (AT_ONCE + 1), *[1.0] * AT_ONCE), clock)
+    pacer = Pacer(Alarms(1.0, *[2.0] * (AT_ONCE + 1), *[3.0] * AT_ONCE), clock)
     running = asyncio.create_task(pacer.run(one.append, take))
-    await clock.advance(1.0)
+    await clock.advance(3.0)
     running.cancel()
     await asyncio.wait([running])
 
-    assert (many, len(one)) == ([AT_ONCE + 1], AT_ONCE)
+    assert many == [(AT_ONCE + 1, seconds(1.0))], "all that was due up to 1 s was delivered before"
+    assert len(one) == 1 + AT_ONCE
 
 
 async def test_what_the_listener_raises_ends_it() -> None:

@@ -8,10 +8,10 @@ from domain.inputs import (
     ModeRequest,
     NodeAnswer,
     NodeReport,
-    NodesBehind,
     ParametersRequest,
     Reading,
     Readings,
+    ReportBacklog,
     TimePassed,
     TransitionRequest,
 )
@@ -148,6 +148,31 @@ def test_a_node_that_answers_nothing_at_all_times_out_after_it_was_asked_for_its
         "drive_base: configure: not done within 10 s, and the node did not answer a query of"
         " its state"
     )
+
+
+def test_no_node_is_late_while_its_report_may_wait_to_be_taken_in() -> None:
+    core = _core()
+    _configure(core)
+    core.handle(ReportBacklog("nodes", since=seconds(9)), seconds(9.5))
+    core.handle(TimePassed(), seconds(30))
+    assert core.change("c1").status is ChangeStatus.RUNNING
+    due = core.wake_at()
+    assert due is None or due > seconds(30), "it does not become due again and again"
+    core.handle(NodeReport(BASE, state=LifecycleState.INACTIVE), seconds(30))
+    assert core.change("c1").status is ChangeStatus.SUCCEEDED
+
+
+def test_a_node_is_late_once_all_that_came_before_its_deadline_is_taken_in() -> None:
+    core = _core()
+    _configure(core)
+    core.handle(ReportBacklog("nodes", since=seconds(9)), seconds(9.5))
+    core.handle(ReportBacklog("others", since=seconds(40)), seconds(12))
+    assert core.handle(TimePassed(), seconds(12)).commands == ()
+    core.handle(ReportBacklog("nodes", since=seconds(11)), seconds(12))
+    assert core.handle(TimePassed(), seconds(12)).commands == (AskFacts(2, BASE),)
+    core.handle(ReportBacklog("nodes", since=None), seconds(14))
+    core.handle(TimePassed(), seconds(14))
+    assert core.change("c1").status is ChangeStatus.TIMED_OUT
 
 
 @pytest.mark.parametrize(
@@ -331,29 +356,3 @@ def test_as_many_steps_as_are_allowed_are_taken(monkeypatch: pytest.MonkeyPatch)
     robot.advance(2)
     assert robot.change(change).status is ChangeStatus.SUCCEEDED
     assert len(robot.steps(change)) == 3
-
-
-# --- reports that wait in a backend --------------------------------------------------------------
-
-
-def test_no_step_times_out_while_a_backend_is_behind_with_its_nodes(robot: CoreRobot) -> None:
-    robot.fault("drive_base", Fault.SILENT)
-    change = robot.ask_transition("drive_base", "configure")
-    robot.give(NodesBehind(behind=True))
-    robot.advance(60)
-    assert robot.change(change).status is ChangeStatus.RUNNING
-    robot.give(NodeReport(BASE, LifecycleState.INACTIVE, reachable=True))
-    robot.give(NodesBehind(behind=False))
-    assert robot.change(change).status is ChangeStatus.SUCCEEDED
-
-
-def test_a_step_times_out_once_all_backends_have_caught_up(robot: CoreRobot) -> None:
-    robot.fault("drive_base", Fault.SILENT)
-    change = robot.ask_transition("drive_base", "configure")
-    for behind in (True, True, False):
-        robot.give(NodesBehind(behind))
-    robot.advance(60)
-    assert robot.change(change).status is ChangeStatus.RUNNING
-    robot.give(NodesBehind(behind=False))
-    robot.advance(0)
-    assert robot.change(change).status is ChangeStatus.TIMED_OUT

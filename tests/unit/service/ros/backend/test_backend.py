@@ -9,8 +9,8 @@ from domain.inputs import (
     DriveStatus,
     NodeAnswer,
     NodeReport,
-    NodesBehind,
     Readings,
+    ReportBacklog,
 )
 from domain.lifecycle import Transition
 from domain.vehicle import DriveCommand
@@ -118,7 +118,7 @@ async def test_what_comes_at_once_is_delivered_in_its_order_and_lets_others_run(
     assert 0 < early < len(values)
     reports = [message for message in robot.heard if isinstance(message, NodeReport)]
     assert reports == [NodeReport(BASE, parameters={"max_speed": v}) for v in values]
-    assert robot.heard[-1] == NodesBehind(behind=False)
+    assert robot.heard[-1] == ReportBacklog("ROS nodes", None)
 
 
 async def test_it_leaves_the_graph_when_it_is_cancelled() -> None:
