@@ -17,6 +17,7 @@ from domain.outbox import Outputs
 from domain.parts.system_model import SmhModel
 from domain.paths.speed_profile import SpeedLimits
 from domain.supervision import Supervision
+from domain.timebase import Instant
 from service.change_ends import ChangeEnds
 from service.clock import Clock
 from service.event_log import EventLog
@@ -74,6 +75,8 @@ class Supervisor:
         """Submits a report of an adapter, and logs it if it is rejected."""
         self.let_pass: Callable[[], None] = self._submitter.let_pass
         """Processes the deadlines that have expired by now."""
+        self.owing_since: Callable[[], Instant | None] = lambda: None
+        """Tells since when clients of a stream are not written what was published."""
         self.readings = readings(self.submit)
         """The input for external readings."""
 
@@ -125,6 +128,7 @@ class Supervisor:
             self._onboard.wake_at(),
             publisher.last_tick_at,
             publisher.published_at,
+            self.owing_since(),
             self.clock.now(),
         )
 
