@@ -1,8 +1,8 @@
 """Whether everything that supervises a robot goes on.
 
 What feeds the watchdog of a service manager are the event loop, the core and the publishing of
-frames, to the clients too, since only a restart mends these. A backend is not part of it: a restart does not mend a
-robot that is silent, which is an error or a hold instead.
+frames, to the clients too, since only a restart mends these. A backend is not part of it: a restart
+does not mend a robot that is silent, which is an error or a hold instead.
 """
 
 from domain.timebase import Duration, Instant, seconds, to_seconds

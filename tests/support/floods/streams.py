@@ -80,7 +80,7 @@ _GOOD_FRAMES = st.one_of(
     st.sampled_from([(0x89, b""), (0x89, b"a" * 125), (0x8A, b""), (0x8A, b"ping")]),
     st.sampled_from([(0x81, message) for message in _MESSAGES]),
     st.sampled_from([(0x01, b""), (0x00, b""), (0x00, b"a"), (0x80, b"")]),
-).map(lambda frame: _frame(*frame, None, is_masked=True))
+).map(lambda frame: _frame(frame[0], frame[1], None, is_masked=True))
 FRAMES = st.one_of(_GOOD_FRAMES, _GOOD_FRAMES, _GOOD_FRAMES, _ANY_FRAMES)
 
 
