@@ -8,11 +8,19 @@ from api.http.dependencies import SupervisorDep
 from api.http.request_body import limits_of, read_body
 from api.http.route_policy import Permission, policy
 from api.http.schemas.simulation import SimulationJson
-from api.simulation.simulation_job import LiveCopy, SimulatedParts, copy_of, simulate_posted
+from api.simulation.simulation_job import (
+    LiveCopy,
+    SimulatedParts,
+    copy_of,
+    simulate_posted,
+)
 from service.supervisor import Supervisor
 from service.worker import Jobs
 
 router = APIRouter(prefix="/simulations", tags=["simulation"])
+
+MAX_COPIED_PARTS = 2_000
+"""Of the live robot; such a copy takes 50 ms, in which nothing is supervised."""
 
 
 # A coroutine, since the framework would call a plain function in a thread.
@@ -54,9 +62,16 @@ async def simulate(
     return Response(content, media_type="application/json")
 
 
-def _copy(robot: SimulatedParts | None, supervisor: Supervisor) -> LiveCopy | None:
+def _copy(robot: SimulatedParts | None, supervisor: Supervisor) -> LiveCopy | str | None:
+    """Return a copy of one moment, so all of it in one turn of the loop; or why there is none."""
     if robot is None:
         return None
+    parts = len(supervisor.model.parts)
+    if parts > MAX_COPIED_PARTS:
+        return (
+            f"the live robot has {parts} parts: with more than {MAX_COPIED_PARTS}, a copy would "
+            "hold up its supervision; begin without `from`"
+        )
     clock = supervisor.clock
     now = clock.now()
     return LiveCopy(copy_of(*robot), now, clock.wall_time(now), supervisor.events.newest)
