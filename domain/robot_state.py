@@ -1,7 +1,10 @@
 """The state of the whole robot, derived from its errors and its task: IDLE, RUNNING or ERROR."""
 
+from dataclasses import replace
+
 from domain.concern import Concern
 from domain.events.health import SystemStateChanged
+from domain.findings import Blocker
 from domain.health.health import Health
 from domain.outbox import Outbox
 from domain.snapshot import SystemStateView, TaskStatus
@@ -19,10 +22,14 @@ class RobotState(Concern):
         view = health.system_state(TaskStatus.NO_TASK)
         self._told = (view.state, view.errors)
         self._told_status = TaskStatus.NO_TASK
+        self._told_moving: Blocker | None = None
 
     def settle(self, now: Instant) -> bool:
         """Publish the state of the robot if it differs from the last published one."""
-        status = self._driving.status
+        status, moving = self._driving.status, self._driving.still_moving
+        if moving is not self._told_moving:
+            self._told_moving = moving
+            self._outbox.system_state = True
         if status is self._told_status and self._health.errors == self._told[1]:
             return False
         view = self._health.system_state(status)
@@ -39,5 +46,10 @@ class RobotState(Concern):
         return True
 
     def view(self) -> SystemStateView:
-        """Return the state of the robot with its reasons."""
-        return self._health.system_state(self._driving.status)
+        """Return the state of the robot with its reasons.
+
+        A vehicle that should stand and does not comes first; it is a reason, and not an error.
+        """
+        view = self._health.system_state(self._driving.status)
+        moving = self._driving.still_moving
+        return view if moving is None else replace(view, reasons=(moving, *view.reasons))

@@ -3,7 +3,7 @@
 Nothing here refers to a live object, so a snapshot may be kept, compared and sent.
 """
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from enum import StrEnum
 from typing import Literal
@@ -74,7 +74,10 @@ class PartView:
     effective_target: EffectiveTarget | None
     actual: Actual
     converged: bool
+    """Whether it and all its parts are where their targets say."""
     deviation_since: Instant | None
+    deviation_reason: str | None
+    """Which part is not where its target says; None exactly while `converged`."""
     reachable: bool
     """For a system: whether all its nodes are reachable."""
     change: ChangeId | None
@@ -145,7 +148,8 @@ class ChangeView:
     request: ChangeRequest
     status: ChangeStatus
     reason: str | None
-    steps: tuple[StepView, ...]
+    steps: Sequence[StepView]
+    """Frozen as the rest; each is made when it is read, since there may be thousands."""
     started_at: Instant
     ended_at: Instant | None
     cause: int
@@ -196,7 +200,8 @@ class EmergencyStopView:
     reason: str | None
     since: Instant | None
     standstill_at: Instant | None
-    """When the vehicle was first seen at standstill since; None: not yet, or no vehicle."""
+    """When the vehicle was first seen at standstill since, or since it was found moving all the
+    same; None: not yet, or no vehicle."""
 
 
 class TaskPhase(StrEnum):
@@ -263,3 +268,5 @@ class VehicleView:
     """The last command."""
     lookahead: Point | None
     """The point that the tracker steers to; None: no task is driving."""
+    still_moving: Blocker | None = None
+    """The vehicle should stand, and does not or is not known to; None: no such finding."""

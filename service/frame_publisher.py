@@ -68,6 +68,10 @@ class FramePublisher:
                 log.warning("skipped %d ticks: %.0f ms late", skipped, late / 1e6)
             await self._clock.sleep_until(start + count * PERIOD)
 
+    def tick_due(self) -> Instant | None:
+        """Return when the next tick has to begin; None: there was none yet."""
+        return None if self.last_tick_at is None else self.last_tick_at + PERIOD
+
     def note(self, outputs: Outputs) -> None:
         """Remember what changed; the next frame shows it."""
         self._changed_parts.update(dict.fromkeys(sorted(outputs.parts)))
@@ -124,12 +128,12 @@ class FramePublisher:
     def _take_signals(self, *, full: bool) -> Mapping[str, SignalView]:
         """Return the signals that changed; one that was only received again waits its turn."""
         now = self._clock.now()
-        taken = self._core.signals() if full else {}
+        taken = dict(self._core.signals()) if full else {}
         for name in sorted(self._changed_signals):
             view, told = self._core.signal(name), self.frames.signals.get(name)
             is_due = now - self._signals_told_at.get(name, now - REPEATS_EVERY) >= REPEATS_EVERY
             if full or told is None or is_due or not _only_repeats(view, told):
-                taken = {**taken, name: view}
+                taken[name] = view
         for name in taken:
             self._changed_signals.discard(name)
             self._signals_told_at[name] = now

@@ -28,7 +28,6 @@ from service.simulation.virtual_time import VirtualClock, VirtualService
 EPOCH = "simulation"
 BEGIN = datetime(2000, 1, 1, tzinfo=UTC)
 """Wall time at 0 s; fixed, so that all runs are equal."""
-_REAL = "the live robot is real: only a simulated one can be copied"
 
 
 class SimulatedParts(NamedTuple):
@@ -75,13 +74,13 @@ class _Pickler(pickle.Pickler):
     }
 
 
-def simulate_posted(raw: bytes, model_text: str, live: LiveCopy | str | None) -> bytes:
+def simulate_posted(raw: bytes, model_text: str, live: LiveCopy | None) -> bytes:
     """Run a posted scenario and return the results as JSON.
 
     Args:
         raw: The body, as described by `SimulationBody`.
         model_text: The loaded model.
-        live: A copy of the live robot, or why there is none; None: since it is real.
+        live: A copy of the live robot; None: not available.
 
     Raises:
         PilothouseError: The body is invalid, or the results are too large.
@@ -101,21 +100,22 @@ def _read(raw: bytes) -> SimulationBody:
         raise InvalidBodyError(faults_of(placed), count=error.error_count()) from error
 
 
-def robot_for(body: SimulationBody, model_text: str, live: LiveCopy | str | None) -> VirtualService:
+def robot_for(body: SimulationBody, model_text: str, live: LiveCopy | None) -> VirtualService:
     """Return the robot at the start of a scenario.
 
     Args:
         body: The scenario.
         model_text: The loaded model, for a scenario without one.
-        live: A copy of the live robot, or why there is none; None: since it is real.
+        live: A copy of the live robot; None: not available.
 
     Raises:
         InvalidBodyError: The settings are invalid, or the live robot cannot be copied.
         InvalidModelError: The model is invalid.
     """
     if body.begin == "live":
-        if not isinstance(live, LiveCopy):
-            raise InvalidBodyError.at("from", InvalidValueError(live or _REAL))
+        if live is None:
+            error = InvalidValueError("the live robot is real: only a simulated one can be copied")
+            raise InvalidBodyError.at("from", error)
         return _copied(model_text, live)
     loaded = read_model(model_text if body.model is None else body.model)
     try:

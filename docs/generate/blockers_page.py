@@ -5,6 +5,7 @@ from collections.abc import Iterator
 from docs.generate.markdown import code, page, table
 from docs.generate.source_scan import codes_given_to, codes_in, require_described
 from domain.changes.admission import ADVISORY
+from domain.errors import BackendUnavailableError
 from domain.health.signals import (
     DECLARED_BIT,
     ESTOP,
@@ -16,25 +17,34 @@ from domain.health.signals import (
     SignalSettings,
     default_signals,
 )
+from domain.tasks.standstill import STANDSTILL_UNKNOWN, STILL_MOVING
 from domain.timebase import to_seconds
 
 _OF_CHANGES = {
     ESTOP: "A node would be activated while ESTOP is active.",
+    BackendUnavailableError.code: "The whole backend is down; the request is answered with 503.",
     "FINALIZED": "A node is finalized: its process must be restarted.",
     "ERROR_PROCESSING": "A node is processing an error; it will soon report its final state.",
     "UNREACHABLE": "A node is unreachable.",
     "UNKNOWN_STATE": "A node has never reported its state.",
 }
+_OF_THE_VEHICLE = {
+    STILL_MOVING: "The vehicle moves after the time for a stop: 1 s, and 1.25 times the time that "
+    "braking with [`driving.braking_mps2`](settings.md) takes.",
+    STANDSTILL_UNKNOWN: "No pose shows after that time whether the vehicle stands.",
+}
 _WARNINGS = {
     "CLOCK_SKEW": "The stamps of a signal differ from the local clock by more than a second.",
     "LATE_TICKS": "Ticks were skipped: the machine is overloaded.",
     "NO_AUTHENTICATION": "Anyone who can reach the service may use it.",
+    "NO_DRIVE": "Drive commands do not reach the vehicle, so tasks are held.",
     "NO_POSE": "No current pose of the vehicle, so tasks are held.",
 }
 
 _INTRODUCTION = """\
 A blocker says why a mode cannot be entered (`GET .../modes`) or why a change was rejected (409). A
-reason says why the robot is in ERROR (`GET /system_state`). Both have the same form:
+reason says why the robot is in ERROR, or that the vehicle should stand and does not
+(`GET /system_state`). Both have the same form:
 
 | member | meaning |
 |---|---|
@@ -46,10 +56,17 @@ reason says why the robot is in ERROR (`GET /system_state`). Both have the same 
 | `root_cause` | whether it is a cause itself rather than the effect of another one |
 | `refuses` | whether a request is rejected because of it; false: it is only shown |"""
 
+_VEHICLE = """\
+The vehicle should stand after a task was held or ended and after a hold was set, and as long as a
+task is held or the robot is in ERROR. A reason that says that it does not is the first in
+`GET /system_state`, also without an error; it is `still_moving` of `GET /vehicle`, too. It ends
+when the vehicle stands, or when a task drives it again."""
+
 _SIGNALS = """\
 `error_code` is the sum of the bits of all active errors. An error clears when its cause does, but
 stays active for at least 0.2 s. All numbers are [settings](settings.md).
-*for* counts from the last good reading, or from the start if there was none."""
+*for* counts from the last good reading, or from the start if there was none; with a `for_s` of all
+other signals, from the first bad reading after a good one or after staleness."""
 
 
 def blockers_page() -> str:
@@ -58,7 +75,7 @@ def blockers_page() -> str:
     Raises:
         UndescribedError: A code of the source is not described here, or the reverse.
     """
-    of_changes = codes_in("domain/changes/admission.py") | {ESTOP}
+    of_changes = codes_in("domain/changes/admission.py") | {ESTOP, BackendUnavailableError.code}
     require_described("blockers", of_changes, set(_OF_CHANGES))
     require_described("warnings", codes_given_to("WarningJson"), set(_WARNINGS))
     changes = (
@@ -76,6 +93,9 @@ def blockers_page() -> str:
         "## Signal errors",
         _SIGNALS,
         table(("error", "bit", "signal", "when"), _errors()),
+        "## Standstill",
+        _VEHICLE,
+        table(("code", "when"), ((code(name), about) for name, about in _OF_THE_VEHICLE.items())),
         "## Warnings of `/healthz`",
         table(("code", "cause"), warnings),
     )

@@ -26,6 +26,74 @@ class VehicleReported(Event):
 
 
 @dataclass(frozen=True, slots=True)
+class DriveAvailable(Event):
+    """Drive commands reach the vehicle again."""
+
+    kind = "drive.available"
+    is_input = True
+    is_notable = False
+
+    def _words(self) -> str:
+        return "drive commands reach the vehicle"
+
+
+@dataclass(frozen=True, slots=True)
+class DriveUnavailable(Event):
+    """Drive commands do not reach the vehicle."""
+
+    kind = "drive.unavailable"
+    is_input = True
+    is_notable = False
+
+    reason: str
+
+    def _words(self) -> str:
+        return because("drive commands do not reach the vehicle", self.reason)
+
+
+@dataclass(frozen=True, slots=True)
+class VehicleStillMoving(Event):
+    """The vehicle should stand, and still moves after the time that its braking needs."""
+
+    kind = "vehicle.still_moving"
+
+    speed_mps: float
+    after_s: float
+    """Time since the stop began."""
+
+    def _words(self) -> str:
+        when = f"{self.after_s:.1f} s after the stop began"
+        return f"the vehicle should stand, but moved at {self.speed_mps:.2f} m/s, {when}"
+
+
+@dataclass(frozen=True, slots=True)
+class VehicleStandstillUnknown(Event):
+    """The vehicle should stand, but there is no pose that shows it."""
+
+    kind = "vehicle.standstill_unknown"
+
+    after_s: float
+    """Time since the stop began."""
+
+    def _words(self) -> str:
+        when = f"{self.after_s:.1f} s after the stop began"
+        return f"the vehicle should stand, but there was no pose to show it, {when}"
+
+
+@dataclass(frozen=True, slots=True)
+class VehicleStopped(Event):
+    """The vehicle stands at last, after it was found moving, or was not known to stand."""
+
+    kind = "vehicle.stopped"
+
+    after_s: float
+    """Time since the stop began."""
+
+    def _words(self) -> str:
+        return f"the vehicle stands, {self.after_s:.1f} s after the stop began"
+
+
+@dataclass(frozen=True, slots=True)
 class GoalProgressed(Event):
     """Navigation reports its progress towards a goal."""
 

@@ -89,19 +89,19 @@ class _Deviation(Event):
     reason: str | None
 
     def _words(self) -> str:
-        wanted = self.target.label if self.target else "nothing in particular"
-        return because(f"{self.part} is {self.actual.label}, target {wanted}", self.reason)
+        wanted = f", target {self.target.label}" if self.target else ""
+        return because(f"{self.part} is {self.actual.label}{wanted}", self.reason)
 
 
 @dataclass(frozen=True, slots=True)
 class DeviationBegan(_Deviation):
-    """A part is no longer in its target state and mode."""
+    """A part, or one of its parts, is no longer in its target state and mode."""
 
     kind = "part.deviation_began"
 
 
 @dataclass(frozen=True, slots=True)
 class DeviationEnded(_Deviation):
-    """A part is in its target state and mode again, or has no target any more."""
+    """A part and all its parts are in their target states and modes again, if they have any."""
 
     kind = "part.deviation_ended"

@@ -53,10 +53,15 @@ class EmergencyStop(Concern):
         self._health.press_stop(now, engaged=request.engaged)
 
     def note_standstill(self, now: Instant) -> None:
-        """Record the first standstill of the vehicle since the stop was engaged."""
+        """Record the first standstill since the stop was engaged, or since it moved after that."""
         if self._view.engaged and self._view.standstill_at is None:
             self._view = replace(self._view, standstill_at=now)
             self._outbox.emit(EmergencyStopStandstill())
+
+    def note_motion(self) -> None:
+        """Record that the vehicle moves, or may move, though the stop is engaged."""
+        if self._view.standstill_at is not None:
+            self._view = replace(self._view, standstill_at=None)
 
     def view(self) -> EmergencyStopView:
         """Return the latch; the same object until it changes."""

@@ -6,14 +6,14 @@ from domain.timebase import Instant
 
 
 class Deviations:
-    """Parts whose effective target and actual differ, with the instant at which that began."""
+    """Parts that have not converged, with the instant at which that began."""
 
     def __init__(self, inference: ModeInference) -> None:
         self._inference = inference
         self._since: dict[PartName, Instant] = {}
 
     def look(self, part: PartName, now: Instant) -> bool | None:
-        """Compare a part with its target.
+        """Compare a part and its parts with their targets.
 
         Returns:
             True: a deviation began; False: it ended; None: no change.

@@ -15,3 +15,5 @@ class TaskSettings:
     """A pose older than this holds the task."""
     standstill_mps: float = 0.05
     """Below this speed the vehicle counts as at standstill."""
+    braking_mps2: float = 1.0
+    """Deceleration that the vehicle is trusted with; a stop that takes longer is told."""

@@ -3,6 +3,7 @@
 import math
 
 from domain.errors import InvalidValueError
+from domain.findings import Blocker
 from domain.inputs import VehicleReport
 from domain.outbox import Outbox
 from domain.snapshot import VehicleView
@@ -25,6 +26,8 @@ class VehicleWatch:
         self._lookahead: Point | None = None
         self.is_lost = True
         """No report, or none within `pose_stale_after`."""
+        self.still_moving: Blocker | None = None
+        """See `VehicleView`; set by `Standstill`."""
 
     def check(self, report: VehicleReport) -> None:
         """Reject an invalid report.
@@ -51,6 +54,11 @@ class VehicleWatch:
             self._command, self._lookahead = command, lookahead
             self._outbox.vehicle_changed = True
 
+    def found(self, still_moving: Blocker | None) -> None:
+        """Record whether the vehicle moves though it should stand; None: no such finding."""
+        self.still_moving = still_moving
+        self._outbox.vehicle_changed = True
+
     def stop_command(self) -> DriveCommand:
         """Return the command to stop with the current steering angle."""
         steering = 0.0 if self._state is None else self._state.steering_angle_rad
@@ -73,6 +81,22 @@ class VehicleWatch:
         if self._state is None or self.is_lost:
             return False
         return abs(self._state.speed_mps) < self.settings.standstill_mps
+
+    @property
+    def moves(self) -> bool:
+        """Tell whether the vehicle moved when it was last heard."""
+        if self._state is None:
+            return False
+        return abs(self._state.speed_mps) >= self.settings.standstill_mps
+
+    def speed_since(self, since: Instant) -> float | None:
+        """Return the present speed without its sign, in m/s.
+
+        None: it is unknown, since there is no report after `since`, or none that is recent enough.
+        """
+        if self._state is None or self._at is None or self.is_lost or self._at <= since:
+            return None
+        return abs(self._state.speed_mps)
 
     def distance_to(self, point: Point) -> float | None:
         """Return the distance to a point, in m; None: the pose is unknown."""
@@ -99,4 +123,4 @@ class VehicleWatch:
     @property
     def view(self) -> VehicleView:
         """Return the view of the vehicle."""
-        return VehicleView(self._state, self._at, self._command, self._lookahead)
+        return VehicleView(self._state, self._at, self._command, self._lookahead, self.still_moving)

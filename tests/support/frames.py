@@ -42,6 +42,7 @@ def part_view(name: str, mode: str = "__DEFAULT__") -> PartView:
         actual=Actual(wanted.state, wanted.mode),
         converged=True,
         deviation_since=None,
+        deviation_reason=None,
         reachable=True,
         change=None,
     )

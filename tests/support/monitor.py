@@ -38,6 +38,7 @@ def part(name: str, state: str = "active", mode: str | None = None, **more: obje
         "actual": actual,
         "converged": True,
         "deviation_since_at": None,
+        "deviation_reason": None,
         "reachable": True,
         "change": None,
         **more,

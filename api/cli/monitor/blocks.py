@@ -139,7 +139,12 @@ def _part_note(view: View, row: PartRow) -> str:
     reason = part["actual"]["reason"]
     if reason:
         return str(reason)
-    return f"deviates{for_time}" if row.mark == WRONG else ""
+    if row.mark != WRONG:
+        return ""
+    # What a part itself deviates from is in its columns; which of its parts deviates is not.
+    elsewhere = part.get("deviation_reason")
+    is_own = not elsewhere or elsewhere.startswith(f"{row.name} is ")
+    return f"deviates{for_time}" if is_own else f"deviates{for_time}: {elsewhere}"
 
 
 def signals(view: View, every: Sequence[SignalRow], width: int, room: int | None) -> list[Text]:

@@ -8,6 +8,7 @@ from typing import Literal, TextIO
 from rich.console import Console
 
 from api.cli.monitor.picture import picture
+from api.cli.monitor.sentence import alarm_of
 from api.cli.monitor.store import Json, Robot
 from api.cli.monitor.view import Level, View
 
@@ -66,11 +67,11 @@ class ChangeLog:
 
 
 def what_stands(robot: Robot) -> Hashable:
-    """Return a key that changes with states, errors, tasks and holds, but not with values."""
+    """Return a key that changes with states, reasons, tasks and holds, but not with values."""
     state, task, stop = robot.system_state, robot.task, robot.emergency_stop
     return (
         robot.epoch,
-        None if state is None else (state["state"], *state["errors"]),
+        None if state is None else (state["state"], *state["errors"], alarm_of(state)),
         tuple(_part(part) for part in (robot.parts or {}).values()),
         None if task is None else (task["id"], task["status"]),
         None if stop is None else (stop["engaged"], stop["standstill_at"]),

@@ -77,7 +77,7 @@ def stop_sentence(view: View) -> Sentence | None:
 def standstill_words(robot: Robot) -> str:
     """Return whether the vehicle stands under the emergency stop."""
     moves = _moving_at(robot)
-    if robot.system_state is not None and _alarm(robot.system_state):
+    if robot.system_state is not None and alarm_of(robot.system_state):
         at = "may be moving" if moves is None else f"still moves at {words.speed(moves)}"
         return f"the vehicle {at}: use the hardware stop"
     if moves is not None:
@@ -112,7 +112,7 @@ def _error_sentence(robot: Robot) -> Sentence:
     also = (f"also {kept}",) if kept else ()
     found = (*_movement(robot), *part_problems(robot.parts or {}))
     more = (*others, *found, *also, *_aborted(robot))
-    return Sentence(_alarm(state) or "ERROR", text, more, "error")
+    return Sentence(alarm_of(state) or "ERROR", text, more, "error")
 
 
 def _calm_sentence(robot: Robot) -> Sentence:
@@ -122,13 +122,15 @@ def _calm_sentence(robot: Robot) -> Sentence:
     found = [*reasons, *_movement(robot), *part_problems(robot.parts or {})]
     text = "; ".join([*found[:1], text])
     more = tuple(found[1:])
-    if alarm := _alarm(state):
+    if alarm := alarm_of(state):
         return Sentence(alarm, text, more, "error")
-    is_calm = not found and not [*_aborted(robot)] and "vehicle" not in _holds(robot)
+    is_unable = not _holds(robot).keys().isdisjoint(_UNABLE)
+    is_calm = not found and not [*_aborted(robot)] and not is_unable
     return Sentence(word, text, more, "calm" if is_calm else "attention")
 
 
-def _alarm(state: Json) -> str | None:
+def alarm_of(state: Json) -> str | None:
+    """Return the word for a vehicle that should stand and does not; None: there is none."""
     reasons = state["reasons"]
     return _ALARMS.get(reasons[0].get("code", "")) if reasons else None
 
@@ -178,7 +180,7 @@ def _aborted(robot: Robot) -> Iterator[str]:
 def _movement(robot: Robot) -> Iterator[str]:
     """Yield that the vehicle moves though no task drives or stops it."""
     # An alarm tells already how fast it moves.
-    moves = None if _alarm(robot.system_state or {"reasons": ()}) else _moving_at(robot)
+    moves = None if alarm_of(robot.system_state or {"reasons": ()}) else _moving_at(robot)
     task = robot.current_task
     status = None if task is None else task["status"]
     drives = status == "PAUSING" or (status == "RUNNING" and not _holds(robot))
@@ -200,6 +202,8 @@ def _holds(robot: Robot) -> Mapping[str, Json]:
 
 
 _STANDS = {"RUNNING": "running", "PAUSING": "stopping", "PAUSED": "paused"}
+_UNABLE = ("vehicle", "drive_process")
+"""The holds of a vehicle that cannot be driven: without a pose, or without commands."""
 _UNKNOWN_TASKS = {
     "RUNNING_TASK": ("RUNNING", "the task is running"),
     "PAUSED_TASK": ("PAUSED", "the task is paused"),

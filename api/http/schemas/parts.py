@@ -81,8 +81,13 @@ class PartJson(Json):
     target: StateAndModeJson | None = Field(description="Target that was requested")
     effective_target: EffectiveTargetJson | None = Field(description="Target in force")
     actual: ActualJson
-    converged: bool
+    converged: bool = Field(
+        description="Whether it and all its parts are where their effective targets say"
+    )
     deviation_since_at: Timestamp | None
+    deviation_reason: str | None = Field(
+        description="Which part is not where its target says; null exactly while `converged`"
+    )
     reachable: bool = Field(description="For a system: whether all its nodes are reachable")
     change: str | None = Field(description="Id of the change that drives this part")
 
@@ -99,6 +104,7 @@ class PartJson(Json):
             actual=ActualJson.of(view.actual),
             converged=view.converged,
             deviation_since_at=timestamp_or_none(clock, view.deviation_since),
+            deviation_reason=view.deviation_reason,
             reachable=view.reachable,
             change=view.change,
         )
@@ -209,7 +215,8 @@ class ParametersJson(Json):
 class ModeBody(Body):
     """Bring a part into a mode."""
 
-    mode: str = Field(min_length=1, max_length=256, examples=["PERFORMANCE"])
+    # No maximum but that of the body: a mode of a model may have a name of any length.
+    mode: str = Field(min_length=1, examples=["PERFORMANCE"])
 
 
 class TransitionBody(Body):

@@ -4,7 +4,8 @@ from typing import Annotated
 
 from pydantic import Field
 
-from api.http.schemas.base import Body, Json, Timestamp, timestamp, timestamp_or_none
+from api.http.schemas.base import BlockerJson, Body, Json, Timestamp, timestamp, timestamp_or_none
+from api.http.schemas.problem import WithIgnored
 from domain.snapshot import HoldView, TaskPhase, TaskView, VehicleView
 from domain.tracking.trackers import TRACKERS
 from domain.vehicle import DriveCommand, Point, Pose, VehicleLimits
@@ -179,12 +180,15 @@ class VehicleJson(Json):
         description="Point that the tracker steers to; null: no task is driving"
     )
     at: Timestamp | None = Field(description="When the pose was reported")
+    still_moving: BlockerJson | None = Field(
+        description="The vehicle should stand, and does not or is not known to"
+    )
     limits: VehicleLimitsJson
 
     @classmethod
     def of(cls, view: VehicleView, limits: VehicleLimits, clock: Clock) -> "VehicleJson":
         """Show `view`."""
-        state = view.state
+        state, moving = view.state, view.still_moving
         return cls(
             pose=None if state is None else PoseJson.of(state.pose),
             speed_mps=None if state is None else round(state.speed_mps, DIGITS),
@@ -192,6 +196,7 @@ class VehicleJson(Json):
             command=DriveCommandJson.of(view.command),
             lookahead=None if view.lookahead is None else PointJson.of(view.lookahead),
             at=timestamp_or_none(clock, view.at),
+            still_moving=None if moving is None else BlockerJson.of(moving, clock),
             limits=VehicleLimitsJson.of(limits),
         )
 
@@ -219,6 +224,10 @@ class HoldJson(Json):
             by=view.by,
             since_at=timestamp(clock, view.since),
         )
+
+
+class HoldAnswerJson(HoldJson, WithIgnored):
+    """A hold after it was set."""
 
 
 class HoldsJson(Json):

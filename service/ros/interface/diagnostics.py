@@ -9,6 +9,7 @@ from enum import IntEnum
 from typing import TypeVar
 
 from domain.lifecycle import LifecycleState
+from domain.parts.convergence import is_there
 from domain.snapshot import PartView, SignalView, SystemState, SystemStateView
 from service.clock import Clock
 from service.frame_feed import Frame
@@ -88,14 +89,15 @@ def _most_urgent(
 def _reasons(view: SystemStateView) -> dict[str, str]:
     """Return the reasons of the active errors, by signal."""
     found: dict[str, list[str]] = {}
-    for reason in view.reasons:
+    for reason in (reason for reason in view.reasons if reason.code in view.errors):
         found.setdefault(reason.path[-1], []).append(reason.message)
     return {signal: "; ".join(messages) for signal, messages in found.items()}
 
 
 def _robot_status(frame: Frame, left_out: int) -> Fields:
     view = frame.system_state
-    level = Level.ERROR if view.state is SystemState.ERROR else Level.OK
+    # Without errors, the reason is a vehicle that should stand and does not.
+    level = Level.ERROR if view.state is SystemState.ERROR or view.reasons else Level.OK
     message = "; ".join(reason.message for reason in view.reasons) or str(view.state)
     values = {
         "state": view.state,
@@ -158,6 +160,8 @@ def _part_message(view: PartView) -> str:
         return f"{what}{why}"
     if view.change is not None:
         return f"changing to {view.target.label}" if view.target else "changing"
-    if not view.converged and view.target is not None:
-        return f"target {view.target.label}, actual {actual}{why}"
-    return f"{actual}{why}"
+    if view.converged:
+        return f"{actual}{why}"
+    if view.target is None or is_there(view.actual, view.target):
+        return f"{actual}: {view.deviation_reason}"
+    return f"target {view.target.label}, actual {actual}{why}"

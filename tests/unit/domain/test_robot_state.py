@@ -1,6 +1,7 @@
 from types import SimpleNamespace
 from typing import cast
 
+from domain.findings import Blocker
 from domain.health.health import Health
 from domain.health.signals import default_signals
 from domain.inputs import Reading, Readings
@@ -17,7 +18,7 @@ class Robot:
     def __init__(self) -> None:
         self.outbox = Outbox()
         self.health = Health(default_signals(), self.outbox, 0)
-        self.driving = SimpleNamespace(status=TaskStatus.NO_TASK)
+        self.driving = SimpleNamespace(status=TaskStatus.NO_TASK, still_moving=None)
         self.state = RobotState(self.health, cast("Driving", self.driving), self.outbox)
 
     def read(self, **values: bool) -> None:
@@ -39,6 +40,27 @@ def test_the_state_is_told_once_and_points_at_the_error_that_decided_it() -> Non
     assert (raised.kind, changed.kind) == ("error.raised", "system_state.changed")
     assert changed.cause == raised.id
     assert robot.state.view().state is SystemState.ERROR
+
+
+def test_a_vehicle_that_does_not_stand_comes_first_and_is_no_error() -> None:
+    robot = Robot()
+    robot.read(estop=True)
+    robot.state.settle(0)
+    robot.outbox.take()
+    before = robot.state.view()
+
+    robot.driving.still_moving = Blocker("STILL_MOVING", "1.1 m/s", ("vehicle",))
+    robot.state.settle(0)
+
+    outputs, view = robot.outbox.take(), robot.state.view()
+    assert outputs.system_state
+    assert not outputs.events
+    assert [reason.code for reason in view.reasons] == ["STILL_MOVING", "ESTOP"]
+    assert (view.state, view.error_code, view.errors) == (
+        before.state,
+        before.error_code,
+        before.errors,
+    )
 
 
 def test_a_task_makes_an_idle_robot_a_running_one_because_of_the_request_itself() -> None:

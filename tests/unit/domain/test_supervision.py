@@ -328,7 +328,7 @@ def test_a_request_answers_with_its_change_and_the_commands_that_begin_it(
     outputs = robot.core.handle(TransitionRequest(BASE, T.CONFIGURE), 0)
     assert outputs.change == "c1"
     assert outputs.commands == (AskTransition(1, BASE, T.CONFIGURE),)
-    assert outputs.parts == {BASE}
+    assert outputs.parts == {BASE, ACTUATION}, "a system has not converged before its parts have"
     assert robot.core.changes()[0].status is ChangeStatus.RUNNING
 
 

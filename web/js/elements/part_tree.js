@@ -191,7 +191,11 @@ function noteWords(part, now) {
   if (part.actual.reason) return part.actual.reason;
   if (part.converged || !part.deviation_since_at) return "";
   const since = duration(now - Date.parse(part.deviation_since_at));
-  return part.change ? `changing for ${since}` : `deviating for ${since}`;
+  if (part.change) return `changing for ${since}`;
+  // What a part itself deviates from is on its pills; which of its parts deviates is not.
+  const elsewhere = part.deviation_reason;
+  const isOwn = !elsewhere || elsewhere.startsWith(`${part.name} is `);
+  return isOwn ? `deviating for ${since}` : `deviating for ${since}: ${elsewhere}`;
 }
 
 customElements.define("ph-part-tree", PartTree);

@@ -14,7 +14,8 @@ class Pills extends HTMLElement {
     );
     renderOnce(this, JSON.stringify([target, actual, part.converged]), () => {
       const shown = actualPill(actual);
-      if (part.converged || !target) return [shown];
+      // A system may be where its target says while its parts are not: its note tells which.
+      if (part.converged || !target || label(target) === label(actual)) return [shown];
       return [
         el("span", { class: "pill target" }, hidden("target "), label(target)),
         el("span", { class: "arrow", "aria-hidden": "true" }, "→"),

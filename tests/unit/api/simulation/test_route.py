@@ -113,20 +113,6 @@ async def test_the_word_live_elsewhere_begins_nothing_live(robot: HttpRobot) -> 
     assert told["samples"][0]["parts"]["actuation"]["actual"]["state"] == "unconfigured"
 
 
-async def test_a_large_live_robot_is_not_copied_since_that_would_hold_up_its_supervision(
-    robot: HttpRobot, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    monkeypatch.setattr(route, "MAX_COPIED_PARTS", 2)
-
-    answer = await robot.http.post("/simulations", json={"until_s": 1, "from": "live"})
-    told = await simulate(robot, title="live")
-
-    (fault,) = answer.json()["errors"]
-    assert (answer.status_code, fault["pointer"]) == (422, "/from")
-    assert fault["message"].startswith("the live robot has 3 parts: with more than 2")
-    assert told["samples"]
-
-
 async def test_what_cannot_be_is_refused_with_its_place(robot: HttpRobot) -> None:
     wrong: dict[str, dict[str, object]] = {
         "/until_s": {"until_s": 86_401},
@@ -192,7 +178,7 @@ async def test_the_live_robot_is_not_copied_for_a_queue_that_is_full(
     def refuse() -> None:
         raise WorkerBusyError
 
-    monkeypatch.setattr(route, "copy_of", lambda *parts: copies.append(parts))
+    monkeypatch.setattr(route, "forked_call", copies.append)
     monkeypatch.setattr(robot.app.state.simulator, "require_room", refuse)
 
     answer = await robot.http.post("/simulations", json={"from": "live", "until_s": 1})

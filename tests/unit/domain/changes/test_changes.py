@@ -243,6 +243,49 @@ def test_deactivating_a_system_leaves_its_unconfigured_parts_alone(robot: CoreRo
     assert all(view.converged for view in robot.core.parts().values())
 
 
+def test_an_absent_node_that_turns_out_to_be_unconfigured_is_left_alone_too(
+    robot: CoreRobot,
+) -> None:
+    robot.ask_mode("drive_base", "FAST")
+    robot.advance(2)
+    robot.fault("manipulator", Fault.DIE)
+    robot.advance(1)
+    change = robot.ask_transition("actuation", "deactivate")
+    robot.advance(2)
+    robot.fault("manipulator", None)
+    robot.advance(2)
+    assert robot.actual("manipulator") == "unconfigured"
+    assert robot.change(change).status is ChangeStatus.SUCCEEDED
+    assert all(view.converged for view in robot.core.parts().values())
+
+
+def test_a_system_whose_nodes_refuse_has_not_converged_though_it_is_called_inactive() -> None:
+    refuses = NodeSettings(fault=Fault.REFUSE)
+    robot = CoreRobot(actuation_model(), nodes={"drive_base": refuses, "manipulator": refuses})
+    robot.read(**GOOD)
+    change = robot.ask_transition("actuation", "configure")
+    robot.advance(2)
+    assert robot.change(change).status is ChangeStatus.FAILED
+    view = robot.core.part(ACTUATION)
+    assert (view.actual.state, view.converged) == (LifecycleState.INACTIVE, False)
+    assert view.deviation_reason == "drive_base is unconfigured, target inactive"
+    assert view.deviation_since is not None
+
+
+def test_a_node_that_falls_back_before_the_last_one_arrives_fails_the_change() -> None:
+    robot = CoreRobot(actuation_model(), nodes={"manipulator": NodeSettings(configure=seconds(2))})
+    robot.read(**GOOD)
+    change = robot.ask_transition("actuation", "configure")
+    robot.advance(1)
+    robot.give(NodeReport(BASE, state=LifecycleState.UNCONFIGURED))
+    robot.advance(2)
+    assert {status for _, _, status in robot.steps(change)} == {"succeeded"}
+    assert robot.actual("actuation") == "inactive"
+    view = robot.change(change)
+    assert view.status is ChangeStatus.FAILED
+    assert view.reason == "drive_base is unconfigured, target inactive"
+
+
 def test_a_finalized_part_does_not_keep_the_rest_from_being_deactivated(
     robot: CoreRobot,
 ) -> None:

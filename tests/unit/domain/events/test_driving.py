@@ -4,6 +4,8 @@ import pytest
 
 from domain.events.driving import (
     TASK_ENDS,
+    DriveAvailable,
+    DriveUnavailable,
     GoalEnded,
     HoldReleased,
     HoldSet,
@@ -13,6 +15,9 @@ from domain.events.driving import (
     TaskResumed,
     TaskServed,
     VehicleReported,
+    VehicleStandstillUnknown,
+    VehicleStillMoving,
+    VehicleStopped,
 )
 from domain.events.event import Event
 from domain.identifiers import GoalId, TaskId
@@ -25,6 +30,21 @@ T1 = TaskId("t1")
     ("event", "words"),
     [
         (VehicleReported(1.0, 2.5, 0.25), "vehicle at x 1.00 m, y 2.50 m, 0.25 m/s"),
+        (
+            VehicleStillMoving(2.577, 4.5),
+            "the vehicle should stand, but moved at 2.58 m/s, 4.5 s after the stop began",
+        ),
+        (
+            VehicleStandstillUnknown(4.5),
+            "the vehicle should stand, but there was no pose to show it, "
+            "4.5 s after the stop began",
+        ),
+        (DriveAvailable(), "drive commands reach the vehicle"),
+        (
+            DriveUnavailable("the drive process has ended"),
+            "drive commands do not reach the vehicle: the drive process has ended",
+        ),
+        (VehicleStopped(55.0), "the vehicle stands, 55.0 s after the stop began"),
         (GoalEnded(GoalId(3), False, "off the path"), "goal 3 aborted: off the path"),
         (
             TaskRequested(5, 20.04, 0, "stanley", 2.8),

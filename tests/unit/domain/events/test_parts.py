@@ -38,9 +38,10 @@ ARM, ACTUATION = PartName("arm"), PartName("actuation")
             "arm is inactive, target active.FAST: arm is unreachable",
         ),
         (
-            DeviationEnded(ARM, None, inactive(), None),
-            "arm is inactive, target nothing in particular",
+            DeviationBegan(ACTUATION, None, inactive(), "arm is unconfigured, target active.FAST"),
+            "actuation is inactive: arm is unconfigured, target active.FAST",
         ),
+        (DeviationEnded(ARM, None, inactive(), None), "arm is inactive"),
     ],
     ids=lambda value: value.kind if isinstance(value, Event) else "",
 )

@@ -98,6 +98,19 @@ def test_the_first_standstill_after_the_stop_is_kept() -> None:
     )
 
 
+def test_a_vehicle_that_moves_again_has_to_be_seen_standing_anew() -> None:
+    robot = Robot()
+    robot.stop.note_motion()
+    assert robot.stop.view() == RELEASED
+    robot.engage("anna", "child on the track", 7)
+    robot.stand(9)
+
+    robot.stop.note_motion()
+    assert robot.stop.view().standstill_at is None
+    assert robot.stand(12) == ["emergency_stop.standstill"]
+    assert robot.stop.view().standstill_at == 12
+
+
 def test_a_vehicle_that_stands_without_a_stop_is_no_news() -> None:
     robot = Robot()
 

@@ -24,4 +24,4 @@ def test_what_somebody_asks_is_pursued_because_it_was_requested() -> None:
     assert targets.effective(BASE) == pursued
     assert inference.target(BASE) == active("FAST")
     assert targets.asked(ARM) is None
-    assert changed == set(), "nobody has reported yet, so that all is unknown still"
+    assert changed == {ACTUATION, BASE}, "none of them is where it should be from now on"

@@ -3,6 +3,7 @@ import math
 import pytest
 
 from domain.errors import InvalidValueError
+from domain.findings import Blocker
 from domain.inputs import VehicleReport
 from domain.outbox import Outbox
 from domain.snapshot import VehicleView
@@ -69,6 +70,30 @@ def test_only_what_differs_is_a_change() -> None:
     assert not outbox.take().vehicle_changed
     watch.told(DriveCommand(1.1, 0.0), Point(1.0, 0.0))
 
+    assert outbox.take().vehicle_changed
+
+
+def test_speed_is_only_what_was_reported_since_then_and_not_too_long_ago(
+    watch: VehicleWatch,
+) -> None:
+    assert watch.speed_since(0) is None
+    assert not watch.moves
+    watch.take(report(speed_mps=-2.0), seconds(1))
+    assert watch.moves
+    assert watch.speed_since(seconds(1)) is None, "no report since"
+    assert watch.speed_since(seconds(0.9)) == 2.0
+    watch.pass_time(seconds(2))
+
+    assert watch.speed_since(seconds(0.9)) is None
+
+
+def test_that_it_does_not_stand_as_it_should_is_shown() -> None:
+    outbox = Outbox()
+    watch = VehicleWatch(TaskSettings(), outbox)
+    blocker = Blocker("STILL_MOVING", "1.1 m/s", ("vehicle",))
+    watch.found(blocker)
+
+    assert watch.view.still_moving is blocker
     assert outbox.take().vehicle_changed
 
 

@@ -29,7 +29,7 @@ def test_everything_that_is_said_holds() -> None:
     )
 
     assert block.to_task_settings() == TaskSettings(
-        max_start_distance_m=7.5, pose_stale_after=seconds(0.4)
+        max_start_distance_m=7.5, pose_stale_after=seconds(0.4), braking_mps2=1.3
     )
     assert block.to_navigation_settings() == NavigationSettings(
         max_cross_track_m=1.5,

@@ -98,6 +98,21 @@ def test_a_deviation_is_marked_and_its_time_counted() -> None:
     assert line.endswith(" deviates 12 s")
 
 
+def test_a_system_that_is_there_by_name_tells_which_of_its_parts_is_not() -> None:
+    reason = "arm is unconfigured, target inactive"
+    deviates: Json = {"converged": False, "deviation_since_at": AT, "deviation_reason": reason}
+    target = {"state": "inactive", "mode": None}
+    parts = (
+        system("robot", "arm", state="inactive", target=target, **deviates),
+        part("arm", "unconfigured", target=target, **deviates),
+    )
+
+    _, robot, arm = drawn_parts(*parts, width=120, later_s=12.0)
+
+    assert robot.endswith(f" deviates 12 s: {reason}")
+    assert arm.endswith(" deviates 12 s"), "its own deviation is in its columns"
+
+
 def test_a_part_that_changes_is_marked_as_changing() -> None:
     line = drawn_parts(off_target("arm", change="c1"), later_s=3.0)[1]
 

@@ -124,6 +124,12 @@ def test_values_ages_and_ways_are_no_change(message: Json) -> None:
     [
         frame(system_state=system_state("RUNNING")),
         frame(system_state=system_state("IDLE", "battery is low")),
+        frame(
+            system_state={
+                **system_state("RUNNING"),
+                "reasons": [{"code": "STILL_MOVING", "message": "it moves"}],
+            }
+        ),
         frame(parts=named("name", part("arm", "inactive"))),
         frame(parts=named("name", part("arm", mode="FAST"))),
         frame(parts=named("name", part("arm", target={"state": "active", "mode": "FAST"}))),

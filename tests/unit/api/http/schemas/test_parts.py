@@ -20,6 +20,7 @@ VIEW = PartView(
     actual=Actual(LifecycleState.ACTIVE, ModeName("SLOW"), mode_inferred=True),
     converged=False,
     deviation_since=seconds(2),
+    deviation_reason="drive_base is active.SLOW, target active.FAST",
     reachable=True,
     change=None,
 )
@@ -32,6 +33,7 @@ def test_a_part_tells_what_was_asked_what_is_pursued_and_what_is() -> None:
     assert (shown.effective_target and shown.effective_target.because) == "rule slow_down"
     assert shown.actual.mode == "SLOW"
     assert shown.deviation_since_at == "2026-01-01T00:00:02.000Z"
+    assert shown.deviation_reason == "drive_base is active.SLOW, target active.FAST"
 
 
 def test_state_and_mode_tell_the_target_as_a_label() -> None:

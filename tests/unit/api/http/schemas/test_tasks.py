@@ -1,4 +1,5 @@
 from api.http.schemas.tasks import HoldJson, TaskJson, VehicleJson
+from domain.findings import Blocker
 from domain.identifiers import TaskId
 from domain.snapshot import HoldView, TaskPhase, TaskView, VehicleView
 from domain.timebase import seconds
@@ -24,6 +25,16 @@ def test_a_vehicle_that_never_reported_has_no_pose_and_no_speed() -> None:
     shown = VehicleJson.of(view, VehicleLimits(), CLOCK)
 
     assert (shown.pose, shown.speed_mps, shown.steering_angle_rad, shown.at) == (None,) * 4
+
+
+def test_a_vehicle_that_should_stand_says_why_it_is_told() -> None:
+    found = Blocker("STILL_MOVING", "it moved", ("vehicle",), 1.1, 0.05, seconds(1), refuses=False)
+    view = VehicleView(None, None, DriveCommand(0.0, 0.0), None, found)
+    shown = VehicleJson.of(view, VehicleLimits(), CLOCK).model_dump()["still_moving"]
+
+    assert (shown["code"], shown["value"], shown["threshold"]) == ("STILL_MOVING", 1.1, 0.05)
+    assert (shown["path"], shown["refuses"]) == (("vehicle",), False)
+    assert shown["since_at"] == "2026-01-01T00:00:01.000Z"
 
 
 def test_a_task_is_shown_with_its_times_and_reason() -> None:

@@ -59,6 +59,15 @@ def test_a_robot_that_is_well_is_ok_in_all_its_parts_and_signals() -> None:
     assert {each["hardware_id"] for each in statuses} == {""}
 
 
+def test_a_vehicle_that_should_stand_is_an_error_of_the_robot_and_of_no_signal() -> None:
+    moving = Blocker("STILL_MOVING", "the vehicle moved at 1.1 m/s", ("vehicle",))
+    robot, signal = diagnosed([], [signal_view("vehicle")], replace(IDLE, reasons=(moving,)))
+
+    assert told(robot) == (2, "pilothouse: system state", "the vehicle moved at 1.1 m/s")
+    assert values(robot)["state"] == "IDLE"
+    assert told(signal) == (0, "pilothouse: signal vehicle", "OK")
+
+
 def test_a_robot_in_error_says_why() -> None:
     low = Blocker("BATTERY_LOW", "battery 20 % is below 50 %", ("battery_level",))
     stop = Blocker("ESTOP", "e-stop is pressed (source api)", ("estop",))
@@ -126,6 +135,11 @@ UNDECIDABLE = Actual(LifecycleState.UNKNOWN, undecidable=True, reason="lidar is 
             replace(ARM, actual=INACTIVE, converged=False),
             Level.WARN,
             "target active.STRONG, actual inactive",
+        ),
+        (
+            replace(ARM, converged=False, deviation_reason="hand is inactive, target active"),
+            Level.WARN,
+            "active.STRONG: hand is inactive, target active",
         ),
         (replace(ARM, target=None, actual=UNDECIDABLE), Level.WARN, "unknown: lidar is unknown"),
         (replace(ARM, reachable=False), Level.ERROR, "is unreachable"),
