@@ -95,7 +95,8 @@ class WebSocketProtocol(WebSocketsSansIOProtocol):
         if not self.handshake_complete and self.handshake_initiated:
             self.conn.send_response(self.conn.reject(503, "the service is shutting down\n"))
             self.transport.write(b"".join(self.conn.data_to_send()))
-            self.handshake_complete = self.close_sent = True
+            # The application, which has not begun yet, finds that its client has gone.
+            self.handshake_complete = self.close_sent = self.disconnected = True
         super().shutdown()
 
     def pause_writing(self) -> None:

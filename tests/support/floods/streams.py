@@ -18,7 +18,7 @@ def repeated(
     part: st.SearchStrategy[bytes], most: int = 5_000, count: int = 4
 ) -> st.SearchStrategy[bytes]:
     """Return some parts, each many times in a row."""
-    many = st.tuples(part, st.one_of(st.integers(1, 4), st.integers(1, most)))
+    many = st.tuples(part, st.sampled_from([1, 2, 17, most]))
     return st.lists(many, min_size=1, max_size=count).map(
         lambda parts: b"".join(
             part * min(n, 1 + MAX_BYTES // max(1, len(part))) for part, n in parts
@@ -69,13 +69,19 @@ _FIRST_BYTES = st.one_of(
 _LIES = st.one_of(
     st.none(), st.none(), st.none(), st.sampled_from([125, 126, 65_535, 1 << 20, (1 << 63) - 1])
 )
-FRAMES = st.builds(
+_ANY_FRAMES = st.builds(
     _frame,
     _FIRST_BYTES,
     st.one_of(st.sampled_from(_MESSAGES), st.binary(max_size=130)),
     _LIES,
     is_masked=st.sampled_from([True, True, True, False]),
 )
+_GOOD_FRAMES = st.one_of(
+    st.sampled_from([(0x89, b""), (0x89, b"a" * 125), (0x8A, b""), (0x8A, b"ping")]),
+    st.sampled_from([(0x81, message) for message in _MESSAGES]),
+    st.sampled_from([(0x01, b""), (0x00, b""), (0x00, b"a"), (0x80, b"")]),
+).map(lambda frame: _frame(frame[0], frame[1], None, is_masked=True))
+FRAMES = st.one_of(_GOOD_FRAMES, _GOOD_FRAMES, _GOOD_FRAMES, _ANY_FRAMES)
 
 
 def _handshake(path: str, key: bytes) -> bytes:
@@ -84,8 +90,8 @@ def _handshake(path: str, key: bytes) -> bytes:
 
 HANDSHAKES = st.builds(
     _handshake,
-    st.sampled_from(["/ws", "/ws?after=0", "/ws?topics=nothing", "/rosbridge", "/nothing"]),
-    st.sampled_from([b"", _KEY]),
+    st.sampled_from(["/ws", "/ws?after=0", "/rosbridge", "/ws?topics=nothing", "/nothing"]),
+    st.sampled_from([_KEY, _KEY, b""]),
 )
 SOCKETS = st.builds(lambda handshake, frames: [handshake, frames], HANDSHAKES, repeated(FRAMES))
 """What is sent at first, and what once that was answered."""
@@ -165,7 +171,8 @@ _CHUNKS = st.sampled_from(
         b"a: b\r\n",
         b"\r\n",
         b"z",
-        b"GET /livez HTTP/1.1\r\n" + HOST + b"\r\n",
+        b"0\r\n\r\n" + b"GET /livez HTTP/1.1\r\n" + HOST + b"\r\n",
+        b"0\r\n\r\n" + b"GET /x HTTP/1.1\r\n\r\n" * 100,
     ]
 )
 _CHUNKED = repeated(_CHUNKS).map(
@@ -201,6 +208,7 @@ _ROUTES = (
 )
 _SIZES = st.sampled_from([1, 20, 1_000, 1_001, 30_000])
 _BODIES = st.one_of(
+    st.just(b"[" + b"{}, " * 30_000 + b"{}]"),
     _SIZES.map(lambda n: b"[" * n),
     _SIZES.map(lambda n: b'{"a": ' * n),
     _SIZES.map(lambda n: b"{" + b", ".join(b'"k%d": 1' % k for k in range(n)) + b"}"),
@@ -226,7 +234,7 @@ _REQUEST = st.builds(
 )
 BODIES = repeated(_REQUEST, 40).map(lambda data: [data])
 
-STREAMS = st.one_of(SOCKETS, HEADS, BODIES)
+STREAMS = st.one_of(SOCKETS, SOCKETS, HEADS, BODIES)
 
 
 def cut(data: bytes, sizes: list[int]) -> Iterator[bytes]:
