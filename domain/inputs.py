@@ -10,7 +10,7 @@ from domain.lifecycle import LifecycleState, Transition
 from domain.parameters import Parameters, ParameterValue
 from domain.paths.path import Path
 from domain.state_and_mode import ModeName, PartName
-from domain.timebase import Instant
+from domain.timebase import Duration, Instant
 from domain.vehicle import DriveCommand, Point, VehicleState
 
 SignalValue: TypeAlias = bool | float | str
@@ -120,6 +120,14 @@ class GoalResult:
 @dataclass(frozen=True, slots=True)
 class TimePassed:
     """Time passes, and nothing else happens."""
+
+
+@dataclass(frozen=True, slots=True)
+class ServiceStall:
+    """The service itself did nothing for a while."""
+
+    late: Duration
+    """How much later than planned it went on."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -241,6 +249,7 @@ Input: TypeAlias = (
     | GoalFeedback
     | GoalResult
     | TimePassed
+    | ServiceStall
     | WriteRecord
     | ChangeRequest
     | CancelRequest

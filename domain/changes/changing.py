@@ -1,11 +1,12 @@
 """Changes as a concern of the core: requests in; steps and verified results out."""
 
+from collections.abc import Sequence
 from itertools import islice
 
 from domain.changes.admission import ChangeAdmission, refuse
 from domain.changes.changes import Changes
 from domain.changes.plan import ChangeGoal, next_steps, presumed_steps
-from domain.changes.record import Step
+from domain.changes.record import Step, StepTable
 from domain.changes.request_check import check_request
 from domain.changes.restoring import Restoring
 from domain.changes.settings import ChangeSettings
@@ -35,7 +36,7 @@ from domain.lifecycle import LifecycleState, Transition
 from domain.outbox import Outbox
 from domain.parts.parts import Parts
 from domain.snapshot import ChangeView, ModeView, StepView
-from domain.state_and_mode import PartName
+from domain.state_and_mode import ModeName, PartName
 from domain.timebase import Instant
 
 
@@ -131,17 +132,13 @@ class Changing(Concern):
 
     # --- what can be seen ------------------------------------------------------------------------
 
-    def modes(self, part: PartName) -> tuple[ModeView, ...]:
-        """Return the modes of a part, with the blockers of each."""
-        stop = self._health.stop_reasons
-        views = []
-        for mode in self._parts.model.modes_of(part):
-            blockers = (
-                *self._backend_blockers(part),
-                *self._admission.blockers(ModeRequest(part, mode), stop),
-            )
-            views.append(ModeView(mode, not refuse(blockers), blockers))
-        return tuple(views)
+    def mode(self, part: PartName, mode: ModeName) -> ModeView:
+        """Return a mode of a part, with its blockers."""
+        blockers = (
+            *self._backend_blockers(part),
+            *self._admission.blockers(ModeRequest(part, mode), self._health.stop_reasons),
+        )
+        return ModeView(mode, not refuse(blockers), blockers)
 
     def _backend_error(self) -> BackendUnavailableError | None:
         return None if self._backend.available else BackendUnavailableError(self._backend.reason)
@@ -158,7 +155,7 @@ class Changing(Concern):
             return ()
         return self._admission.available_transitions(part, self._health.stop_reasons)
 
-    def plan(self, request: ChangeRequest) -> tuple[StepView, ...]:
+    def plan(self, request: ChangeRequest) -> Sequence[StepView]:
         """Return the steps that a request would take now, without starting them.
 
         Raises:
@@ -171,8 +168,8 @@ class Changing(Concern):
             facts = self._parts.facts[node]
             unknown = facts.known_state is LifecycleState.UNKNOWN
             actions = presumed_steps(node_goal) if unknown else next_steps(facts, node_goal)
-            steps += [Step(ChangeId(""), node, action).view() for action in actions or ()]
-        return tuple(steps)
+            steps += [Step(ChangeId(""), node, action) for action in actions or ()]
+        return StepTable(steps)
 
     def change(self, identity: str) -> ChangeView:
         """Return a change.

@@ -123,6 +123,8 @@ class StateManager:
         _check_declared(declared)
         self._monitors = {item.spec.name: SignalMonitor(item, start) for item in declared}
         self._registry = ErrorRegistry(self._monitors.values())
+        self.is_late = False
+        """While set, deadlines that passed are not judged: what has arrived is taken in first."""
         self._seen = self._look()
         self._wake_at = self._registry.next_wake()
         """Cached, since every input of the core reads it."""
@@ -146,6 +148,14 @@ class StateManager:
             if behind is not None:
                 raise OutdatedReadingError(name, to_seconds(behind))
             held.take(reading, readings.source, now)
+
+    def released_by(self, readings: Readings) -> tuple[str, ...]:
+        """Return the stops that their source would release with readings that passed `check`."""
+        return tuple(
+            reading.signal
+            for reading in readings.items
+            if self._monitors[reading.signal].readings.is_released_by(reading, readings.source)
+        )
 
     def receive(self, readings: Readings, now: Instant) -> HealthChanges:
         """Process readings that passed `check`."""
@@ -244,7 +254,7 @@ class StateManager:
     def _gathering(self, now: Instant) -> Iterator[_Gathered]:
         """Advance time to `now`, then run the body, and gather the changes."""
         gathered = _Gathered()
-        while (due := self.wake_at()) is not None and due <= now:
+        while not self.is_late and (due := self.wake_at()) is not None and due <= now:
             self._registry.judge(due)
             self._gather(gathered)
         yield gathered

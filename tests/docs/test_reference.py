@@ -20,7 +20,7 @@ from domain.actor import Actor
 from domain.changes.admission import ADVISORY
 from domain.events.event import RecordedEvent
 from domain.events.kinds import EVENTS
-from domain.inputs import BackendStatus, DriveStatus, Input, WriteRecord
+from domain.inputs import BackendStatus, DriveStatus, Input, ServiceStall, WriteRecord
 from domain.supervision import Supervision, SupervisionSettings
 from tests.support.good import GOOD
 from tests.support.http_robot import ACTUATION
@@ -194,6 +194,10 @@ def a_write() -> list[RecordedEvent]:
     )
 
 
+def a_stall() -> list[RecordedEvent]:
+    return told(ServiceStall(1_500_000_000))
+
+
 def told(*inputs: Input) -> list[RecordedEvent]:
     """Return the events of a core that is given what no scenario holds."""
     core = Supervision(actuation_model(), SupervisionSettings(), 0)
@@ -227,6 +231,7 @@ def test_events_that_happen_are_listed_with_what_they_carry() -> None:
         a_lost_backend,
         a_lost_drive_process,
         a_write,
+        a_stall,
         the_examples,
     )
     for event in (event for story in stories for event in story()):

@@ -230,3 +230,25 @@ def test_a_task_that_pauses_is_told_though_the_robot_goes_on_running(health: Rob
 
     assert health.read(**GOOD) == []
     assert health.last.system_state
+
+
+def test_a_reading_that_releases_a_stop_is_in_the_audit_trail(health: Robot) -> None:
+    health.read(**{**GOOD, "estop": True})
+    assert "audit.write" not in [event.kind for event in health.events.values()]
+
+    events = health.read(estop=False)
+
+    (written,) = [event for event in events if event.kind == "audit.write"]
+    assert written.data == {
+        "method": "READING",
+        "path": "/signals/estop",
+        "status": 200,
+        "address": "test",
+    }
+    assert health.root(written) == "signal.read"
+
+
+def test_a_reading_that_releases_nothing_is_not(health: Robot) -> None:
+    health.read(**GOOD)
+
+    assert [event.kind for event in health.read(estop=False)] == []

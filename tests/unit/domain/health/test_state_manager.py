@@ -289,7 +289,7 @@ def test_the_signals_are_the_same_object_until_one_changes(robot: Robot) -> None
 REFUSALS: list[tuple[Reading, type[PilothouseError]]] = [
     (Reading("fuel", 1.0), UnknownSignalError),
     (Reading("temperature", math.nan), InvalidValueError),
-    (Reading("estop", 1.0), InvalidValueError),
+    (Reading("estop", 2.0), InvalidValueError),
     (Reading("temperature", 19.0, START - 1), OutdatedReadingError),
 ]
 

@@ -106,8 +106,8 @@ async def test_several_readings_are_taken_together(unmocked: HttpRobot) -> None:
         ("temperature", [1], "INVALID_VALUE"),
         ("battery_level", 1.5, "INVALID_VALUE"),
         ("gps_accuracy", -1, "INVALID_VALUE"),
-        ("estop", 1, "INVALID_VALUE"),
-        ("estop", "true", "INVALID_VALUE"),
+        ("estop", 2, "INVALID_VALUE"),
+        ("estop", "false", "INVALID_VALUE"),
         ("signal_strength", "GREAT", "INVALID_VALUE"),
         ("mood", 1, "UNKNOWN_SIGNAL"),
     ],
@@ -191,8 +191,8 @@ async def test_one_source_of_the_e_stop_cannot_release_anothers(unmocked: HttpRo
 
 @pytest.mark.parametrize("source", ["", "x" * 65])
 async def test_a_source_has_a_name_of_reasonable_length(source: str, unmocked: HttpRobot) -> None:
-    one = await unmocked.http.post("/signals/estop", json={"value": True, "source": source})
-    many = await unmocked.http.post("/signals", json={"estop": True, "source": source})
+    one = await unmocked.http.post("/signals/estop", json={"value": False, "source": source})
+    many = await unmocked.http.post("/signals", json={"estop": False, "source": source})
 
     assert (one.status_code, many.status_code) == (422, 422)
 
