@@ -32,6 +32,8 @@ def refused(text: str) -> tuple[str, int | None]:
         ("x y\n1,2", 1, ("x", "y")),
         ("# x, y\n1 2", 1, ("x", "y")),
         ("Track of Monday\nx,y\n1,2", 2, ("x", "y")),
+        ("sep=;\nx;y\n1;2", 2, ("x", "y")),
+        ("x [m]  y (m)\n1   2", 1, ("x[m]", "y(m)")),
         ('"x","y"\n1,2', 1, ("x", "y")),
         ("\ufeffx,y\r\n1,2\r\n", 1, ("x", "y")),
         ("x,y,\n1,2,\n", 1, ("x", "y", "")),
