@@ -67,13 +67,9 @@ def no_place_in(
             message = "the first column is the distance along the path of the next two, not x"
             return Suspect(message, "say what the columns are, such as ?columns=s,x,y")
         if _is_count(sample[:, :3]) or (not may_be_heading and _is_clock(sample[:, :3])):
-            message = (
-                "the first column grows evenly, as a time or a count, and the third fits as no"
-            )
-            hint = (
-                "say what the columns are, such as ?columns=t,x,y; ?columns=x,y if these are first"
-            )
-            return Suspect(f"{message} heading", hint)
+            message = "the first column grows evenly, like a time or a count"
+            hint = "say what the columns are, such as ?columns=t,x,y, or ?columns=x,y if it is x"
+            return Suspect(f"{message}, and the third is no heading", hint)
     if _are_degrees(places):
         message = "the first two columns look like latitude and longitude, not x and y in m"
         return Suspect(message, "project them, such as to UTM; ?columns=x,y if they are m")

@@ -56,7 +56,9 @@ def test_a_straight_along_x_is_no_distance() -> None:
 
 @pytest.mark.parametrize("steps", [np.ones(121), np.full(121, 0.04)])
 def test_a_count_and_a_clock_before_x_and_y_are_told(steps: Floats) -> None:
-    assert "?columns=t,x,y" in doubt(table(np.cumsum(steps), TRACK.x, TRACK.y))
+    track = Track(0.2)
+
+    assert "?columns=t,x,y" in doubt(table(np.cumsum(steps), track.x, track.y))
 
 
 def test_a_clock_may_be_x_where_the_third_column_fits_as_a_heading() -> None:
