@@ -19,6 +19,7 @@ from api.http.body_parsing import (
 )
 from api.http.schemas.base import BlockerJson, FindingJson
 from api.http.schemas.problem import BodyFault, Problem
+from api.http.stop_asked import StopTakenError
 from domain.errors import (
     BackendUnavailableError,
     BlockedError,
@@ -68,6 +69,7 @@ STATUS_OF: Mapping[type[PilothouseError], HTTPStatus] = {
     FarStartError: HTTPStatus.UNPROCESSABLE_ENTITY,
     InvalidWaypointsError: HTTPStatus.UNPROCESSABLE_ENTITY,
     InvalidBodyError: HTTPStatus.UNPROCESSABLE_ENTITY,
+    StopTakenError: HTTPStatus.UNPROCESSABLE_ENTITY,
     InvalidModelError: HTTPStatus.UNPROCESSABLE_ENTITY,
     TooComplexError: HTTPStatus.UNPROCESSABLE_ENTITY,
     OutOfMemoryError: HTTPStatus.UNPROCESSABLE_ENTITY,

@@ -13,12 +13,12 @@ from api.http.body_parsing import InvalidBodyError, MalformedBodyError, parse_bo
 from api.http.schemas.path_preview import MAX_DRAWN, PathPreviewJson
 from api.http.schemas.tasks import TaskBody, WaypointJson, WaypointsJson
 from domain.errors import InvalidValueError
+from domain.paths.approach import ApproachLimits
 from domain.paths.headings import Heading
 from domain.paths.path import Path
 from domain.paths.preview import preview
-from domain.paths.speed_profile import SpeedLimits
-from domain.tasks.task_planner import check_cruise
-from domain.vehicle import Pose, VehicleLimits
+from domain.tasks.task_planner import check_cruise, check_start
+from domain.vehicle import Pose
 from service.files.csv_reading import CsvReading
 from service.files.text_file import decode_csv
 from service.files.waypoint_file import read_waypoint_file
@@ -86,8 +86,7 @@ def preview_posted(
     raw: bytes,
     csv: TaskOptions | None,
     pose: Pose | None,
-    vehicle: VehicleLimits,
-    limits: SpeedLimits,
+    limits: ApproachLimits,
 ) -> bytes:
     """Return a preview of a task as JSON.
 
@@ -95,18 +94,18 @@ def preview_posted(
         raw: The body.
         csv: As for `read_posted_task`.
         pose: Of the vehicle; None: unknown.
-        vehicle: Speed and steering limits.
-        limits: Acceleration limits.
+        limits: What the vehicle can do, and from how far it approaches a path.
 
     Raises:
         PilothouseError: The body or its waypoints are invalid.
     """
     task = read_posted_task(raw, None) if csv is None else _read_csv(raw, csv, is_driven=False)
     try:
-        check_cruise(task.speed_mps, vehicle)
+        check_cruise(task.speed_mps, limits.vehicle)
+        check_start(task.path, task.start_index)
     except InvalidValueError as error:
         raise InvalidBodyError.at(error.pointer, error) from error
-    found = preview(task.path, task.speed_mps, pose, vehicle, limits)
+    found = preview(task.path, task.speed_mps, pose, limits, task.start_index)
     waypoints = task.path.waypoints
     drawn = waypoints[thinned(len(waypoints), MAX_DRAWN), :2].tolist()
     return PathPreviewJson.of(found, drawn, task.csv).model_dump_json().encode()

@@ -24,8 +24,9 @@ class DrivingBlock(SettingsBlock):
     """Largest distance from the vehicle to the start of a path, in m; others are rejected."""
     pose_stale_after_s: SomeSeconds = 0.3
     """A pose older than this, in seconds, holds the task."""
-    max_cross_track_m: Positive = 3.0
-    """A larger cross-track error, in m, for `max_cross_track_for_s` aborts the task."""
+    max_cross_track_m: Positive | None = None
+    """A larger cross-track error, in m, for `max_cross_track_for_s` aborts the task. Default: 3 m,
+    and less for a wheelbase below 1.75 m, in proportion."""
     max_cross_track_for_s: Seconds = 1.0
     """Time with a larger cross-track error after which the task is aborted, in seconds."""
     no_progress_for_s: SomeSeconds = 20.0

@@ -239,6 +239,9 @@ def preview_lines(file: str, found: Json) -> Iterator[str]:
     else:
         off = f"heading off by {abs(degrees(start['heading_error_rad'])):.0f} degrees"
         yield f"  start {start['distance_m']:.1f} m from the vehicle, {off}"
+    if (approach := found["approach"]) is not None:
+        way = f"{approach['length_m']:.1f} m at {approach['speed_mps']:.1f} m/s"
+        yield f"  the vehicle drives onto the path first: {way}"
     for warning in found["warnings"]:
         place = "" if warning["index"] is None else f" (waypoint {warning['index']})"
         yield f"  warning {warning['code']}: {warning['message']}{place}"

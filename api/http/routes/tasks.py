@@ -166,12 +166,9 @@ async def preview_task(
 ) -> Response:
     """Check waypoints and preview their path; nothing is started."""
     raw = await read_body(request, limits_of(request).waypoints_bytes)
-    driving = supervisor.core.driving
-    state = driving.vehicle.state
+    state = supervisor.core.driving.vehicle.state
     pose = None if state is None else state.pose
-    content = await worker.call(
-        preview_posted, raw, csv, pose, driving.limits, supervisor.speed_limits
-    )
+    content = await worker.call(preview_posted, raw, csv, pose, supervisor.approach_limits)
     return Response(content, media_type="application/json")
 
 

@@ -25,6 +25,15 @@ class StartJson(Json):
     heading_error_rad: float = Field(description="Heading of the vehicle minus heading of the path")
 
 
+class ApproachJson(Json):
+    """How the vehicle gets onto the path: slowly, forward, and in loops where it must turn."""
+
+    distance_m: float = Field(description="Distance of the vehicle from the path")
+    turn_rad: float = Field(description="How far it has to turn, left positive")
+    speed_mps: float = Field(description="Speed until it is on the path")
+    length_m: float = Field(description="Distance that it drives until it is on the path")
+
+
 class PathWarningJson(Json):
     """A property of the path that a person should check."""
 
@@ -95,7 +104,12 @@ class PathPreviewJson(Json):
     vehicle_min_radius_m: float
     steerable: bool = Field(description="Whether the vehicle can steer the tightest bend")
     start: StartJson | None = Field(description="null: the pose of the vehicle is unknown")
-    duration_s: float = Field(description="Estimated driving time, standstill to standstill")
+    approach: ApproachJson | None = Field(
+        description="null: the vehicle is on the path, too far from it, or its pose is unknown"
+    )
+    duration_s: float = Field(
+        description="Estimated driving time, standstill to standstill, with the approach"
+    )
     warnings: list[PathWarningJson]
     csv: CsvJson | None = Field(
         default=None, description="How the CSV was read; null: the waypoints were JSON"
@@ -113,7 +127,7 @@ class PathPreviewJson(Json):
             drawn: Waypoints to draw: x and y in m.
             csv: How the CSV was read; None: the waypoints were JSON.
         """
-        spacing, start = view.spacing, view.start
+        spacing, start, approach = view.spacing, view.start, view.approach
         return cls(
             waypoint_count=view.waypoint_count,
             length_m=view.length_m,
@@ -128,6 +142,16 @@ class PathPreviewJson(Json):
                 if start is None
                 else StartJson(
                     distance_m=start.distance_m, heading_error_rad=start.heading_error_rad
+                )
+            ),
+            approach=(
+                None
+                if approach is None
+                else ApproachJson(
+                    distance_m=approach.distance_m,
+                    turn_rad=approach.turn_rad,
+                    speed_mps=approach.speed_mps,
+                    length_m=approach.length_m,
                 )
             ),
             duration_s=view.duration_s,

@@ -168,6 +168,7 @@ def test_the_preview_tells_what_is_not_usual() -> None:
         **PREVIEW,
         "min_radius_m": None,
         "start": None,
+        "approach": {"distance_m": 3.5, "turn_rad": 0.0, "speed_mps": 1.0, "length_m": 7.25},
         "warnings": [
             {"code": "TOO_TIGHT", "message": "a bend", "index": 41},
             {"code": "LONG", "message": "it is long", "index": None},
@@ -177,6 +178,7 @@ def test_the_preview_tells_what_is_not_usual() -> None:
     assert list(preview_lines("a.csv", found))[1:] == [
         "  straight",
         "  it is not known where the vehicle is",
+        "  the vehicle drives onto the path first: 7.2 m at 1.0 m/s",
         "  warning TOO_TIGHT: a bend (waypoint 41)",
         "  warning LONG: it is long",
     ]

@@ -1,5 +1,6 @@
 """`/tasks` as an operator uses it."""
 
+from math import pi
 from typing import Any
 
 import httpx
@@ -298,6 +299,45 @@ async def test_a_preview_warns_of_a_bend_that_the_vehicle_cannot_steer(robot: Ht
 
     assert shown["steerable"] is False
     assert "TOO_TIGHT" in [warning["code"] for warning in shown["warnings"]]
+
+
+@pytest.mark.parametrize("yaw_rad", [0.0, pi / 2, pi])
+async def test_a_preview_says_how_a_path_beside_the_vehicle_is_approached(
+    robot: HttpRobot, yaw_rad: float
+) -> None:
+    beside = f"0,3.5,{yaw_rad}\n50,3.5,0\n100,3.5,0\n"
+    answer = await robot.http.post("/tasks/preview", content=beside, headers=CSV)
+    approach = answer.json()["approach"]
+
+    assert approach["distance_m"] == pytest.approx(3.5)
+    assert 0 < approach["speed_mps"] <= 1.0
+    assert 3.5 < approach["length_m"] < 15.0
+    assert (await post(robot, beside)).status_code == 201
+
+
+@pytest.mark.parametrize("start_index", [0, 5])
+async def test_a_preview_says_from_where_a_task_is_refused(
+    robot: HttpRobot, start_index: int
+) -> None:
+    far = "".join(f"{x},5.1,0\n" for x in range(11))
+    query = {"start_index": start_index}
+    answer = await robot.http.post("/tasks/preview", content=far, headers=CSV, params=query)
+    shown = answer.json()
+
+    assert shown["approach"] is None
+    (warning,) = [found for found in shown["warnings"] if found["code"] == "FAR_START"]
+    assert warning["index"] == start_index
+    assert warning["message"].endswith("and is approached from at most 5 m")
+    refused = await post(robot, far, start_index=start_index)
+    assert (refused.status_code, refused.json()["code"]) == (422, "FAR_START")
+
+
+async def test_a_preview_refuses_a_start_that_does_not_exist(robot: HttpRobot) -> None:
+    query = {"start_index": 10}
+    answer = await robot.http.post("/tasks/preview", content=LINE, headers=CSV, params=query)
+
+    assert answer.status_code == 422
+    assert answer.json()["errors"][0]["pointer"] == "/start_index"
 
 
 async def test_a_preview_refuses_what_a_task_would(robot: HttpRobot) -> None:
