@@ -35,7 +35,11 @@ def stop_body(raw: bytes, member: str, kept: Mapping[str, int]) -> dict[str, obj
     if found is None:
         asks = _writes(text, (member,))
     else:
-        asks = any(_asks(members, (member,)) for members in _objects(found))
+        asks = _is_stop_reading(found) or any(
+            asks_for_stop(value) or _asks_within(value, STOP_FIELDS)
+            for members in _objects(found)
+            for value in _every(members, member)
+        )
     return {member: True, **texts_in(found, kept)} if asks else None
 
 
@@ -61,6 +65,11 @@ def is_stop_of_stream(message: Mapping[str, Any]) -> bool:
     found = _parsed(text)
     if found is None:
         return _names_estop(text, "signal") and _writes(text, ("value",))
+    return _is_stop_reading(found)
+
+
+def _is_stop_reading(found: object) -> bool:
+    """Tell whether an object in what was parsed names the e-stop and asks for a stop."""
     return any(
         _is_estop(members, "signal") and _asks_within(members, ("value",))
         for members in _objects(found)
@@ -168,12 +177,11 @@ def _every(found: object, *names: str) -> Iterable[Any]:
     return (value for name, value in members if signal_name(name).lower() in names)
 
 
-def _asks(members: _Members, names: tuple[str, ...]) -> bool:
-    return any(map(asks_for_stop, _every(members, *names)))
-
-
-def _asks_within(members: _Members, names: tuple[str, ...]) -> bool:
-    return any(_asks(inner, names) for inner in _objects(members))
+def _asks_within(found: object, names: tuple[str, ...]) -> bool:
+    """Tell whether a member of an object in what was parsed asks for a stop."""
+    return any(
+        asks_for_stop(value) for members in _objects(found) for value in _every(members, *names)
+    )
 
 
 def _is_estop(members: _Members, member: str) -> bool:
