@@ -8,9 +8,18 @@ from collections.abc import Callable
 from typing import Protocol, TypeAlias
 
 from domain.commands import Drive, NodeCommand
-from domain.inputs import BackendStatus, NodeAnswer, NodeReport, Readings, VehicleReport
+from domain.inputs import (
+    BackendStatus,
+    DriveStatus,
+    NodeAnswer,
+    NodeReport,
+    Readings,
+    VehicleReport,
+)
 
-BackendMessage: TypeAlias = NodeReport | NodeAnswer | BackendStatus | Readings | VehicleReport
+BackendMessage: TypeAlias = (
+    NodeReport | NodeAnswer | BackendStatus | Readings | VehicleReport | DriveStatus
+)
 Deliver: TypeAlias = Callable[[BackendMessage], None]
 
 
@@ -44,7 +53,8 @@ class NodeBackend(Adapter, Protocol):
 class VehicleBackend(Adapter, Protocol):
     """The vehicle; `tests/conformance/test_vehicle.py` specifies what an adapter must do.
 
-    It delivers a `VehicleReport` at about 20 Hz while the pose of the vehicle is known.
+    It delivers a `VehicleReport` at about 20 Hz while the pose of the vehicle is known, and a
+    `DriveStatus` when commands no longer reach the vehicle, or reach it again.
     """
 
     def send(self, command: Drive, /) -> None:

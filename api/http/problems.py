@@ -43,9 +43,9 @@ from domain.errors import (
     UnknownTaskError,
 )
 from service.clock import Clock
+from service.files.csv_table import InvalidWaypointsError
 from service.files.robot_file import InvalidRobotFileError
 from service.files.text_file import UnreadableFileError
-from service.files.waypoint_file import InvalidWaypointsError
 from service.start_task import StartTaskError
 from service.worker import OutOfMemoryError, TooComplexError, WorkerBusyError, WorkerClosedError
 

@@ -1,4 +1,4 @@
-"""Events of the service itself: writes and time."""
+"""Events of the service itself: writes, stalls and time."""
 
 from dataclasses import dataclass
 
@@ -24,6 +24,23 @@ class WriteAnswered(Event):
 
     def _words(self) -> str:
         return f"{self.method} {self.path} from {self.address} answered {self.status}"
+
+
+@dataclass(frozen=True, slots=True)
+class ServiceStalled(Event):
+    """The service itself did nothing for a while, such as on a host that is too busy.
+
+    What arrived meanwhile was taken in before ages and deadlines were judged. Told at most once in
+    10 s, with the longest stall.
+    """
+
+    kind = "service.stalled"
+    is_input = True
+
+    late_s: float
+
+    def _words(self) -> str:
+        return f"the service itself was {self.late_s:.2f} s late"
 
 
 @dataclass(frozen=True, slots=True)

@@ -1,6 +1,7 @@
 """Health as a concern of the core: readings and acknowledgements in; errors and reasons out."""
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Iterator, Mapping
+from contextlib import contextmanager
 
 from domain.concern import Concern, Takers
 from domain.events.health import (
@@ -53,6 +54,15 @@ class Health(Concern):
     def pass_time(self, now: Instant) -> None:
         """Raise and clear the errors that are due."""
         self._tell(self._manager.pass_time(now))
+
+    @contextmanager
+    def late(self) -> Iterator[None]:
+        """Leave what is due to a later call of `pass_time` while the context is open."""
+        self._manager.is_late = True
+        try:
+            yield
+        finally:
+            self._manager.is_late = False
 
     def take_readings(self, readings: Readings, now: Instant) -> None:
         """Accept readings, and decide at once; one that releases a stop is in the audit trail.
@@ -129,8 +139,8 @@ class Health(Concern):
         emit = self._outbox.emit
         for signal, error in changes.pending:
             self._pending[error] = emit(SignalPending(signal, error))
-        for signal, error in changes.settled:
-            emit(SignalSettled(signal, error))
+        for signal, error, stale in changes.settled:
+            emit(SignalSettled(signal, error, stale))
             self._pending.pop(error, None)
         for signal in changes.skewed:
             emit(SignalSkewed(signal))

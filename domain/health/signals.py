@@ -71,6 +71,15 @@ class Recovery(StrEnum):
     """Only after an operator has acknowledged it, before or after the cause was gone."""
 
 
+class CountsFrom(StrEnum):
+    """Where the time of an error begins that is raised only after a time."""
+
+    FIRST_BAD = "first_bad"
+    """At the first bad reading after a good one, or after the signal was stale."""
+    LAST_GOOD = "last_good"
+    """At the last good reading, or at the start: silence counts, too. As in smart_polaris."""
+
+
 @dataclass(frozen=True, slots=True)
 class SignalSpec:
     """Name, type and range of a signal.
@@ -165,7 +174,7 @@ class Condition:
     clear_threshold: float | None = None
     """For a number: where an active error clears (hysteresis); None: at the threshold."""
     for_: Duration = 0
-    """How long after the last good reading the error is raised; 0: at once."""
+    """Time after which the error is raised, see `CountsFrom`; 0: at once."""
     bit: int = DECLARED_BIT
     key: str = ""
     """Prefix that tells the settings of several conditions apart, as in `lost_for_s`."""
@@ -208,6 +217,8 @@ class SignalSettings:
     """Minimum time that an error of this signal stays active, so that a short one is seen."""
     recovery: Recovery = Recovery.AUTOMATIC
     """Recovery of value errors; staleness always recovers automatically."""
+    counts_from: CountsFrom = CountsFrom.FIRST_BAD
+    """Where `for_` of the conditions begins."""
 
     def __post_init__(self) -> None:
         if len({condition.key for condition in self.conditions}) != len(self.conditions):
@@ -301,6 +312,7 @@ _DEFAULT_SIGNALS = (
     SignalSettings(
         SignalSpec("gps_accuracy", _NUMBER, "mm", "GPS accuracy", minimum=0.0),
         (Condition("GPS_LOST", _ABOVE, 200.0, for_=seconds(15.0), bit=4),),
+        counts_from=CountsFrom.LAST_GOOD,
     ),
     SignalSettings(
         SignalSpec(
@@ -316,6 +328,7 @@ _DEFAULT_SIGNALS = (
             ),
             Condition("SIGNAL_LOW", _EQUAL, "LOW_SIGNAL", for_=seconds(20.0), bit=16, key="low"),
         ),
+        counts_from=CountsFrom.LAST_GOOD,
     ),
     SignalSettings(
         SignalSpec("temperature", _NUMBER, "°C"),

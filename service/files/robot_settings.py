@@ -90,7 +90,8 @@ class NumberSignal(AnySignal):
     clear_threshold: Number | None = None
     """Threshold at which an active error clears, in the signal's unit. Default: `threshold`."""
     for_s: Seconds | None = None
-    """Time in seconds after the last good reading until the error is raised."""
+    """Time in seconds until the error is raised: for `gps_accuracy` after the last good reading,
+    else after the first bad one."""
 
     def _condition(self, condition: Condition) -> Condition:
         threshold = condition.threshold if self.threshold is None else self.threshold
@@ -139,7 +140,8 @@ class DeclaredSignal(AnySignal):
     clear_threshold: Number | None = None
     """Threshold at which an active error clears. Default: `above` or `below`."""
     for_s: Seconds = 0.0
-    """Time in seconds after the last good reading until the error is raised."""
+    """Time in seconds after the first bad reading until the error is raised. A good reading, or a
+    stale signal, begins it anew."""
 
     @model_validator(mode="after")
     def _is_whole(self) -> Self:

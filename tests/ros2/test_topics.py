@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 import pytest
 
 from domain.commands import Drive
-from domain.inputs import Readings, SignalValue, VehicleReport
+from domain.inputs import DriveStatus, Readings, SignalValue, VehicleReport
 from domain.vehicle import DriveCommand, VehicleLimits
 from service.clock import MonotonicClock
 from service.files.robot_file import robot_settings_of
@@ -190,7 +190,7 @@ async def test_what_was_not_measured_is_no_reading(link: "RosLink", somebody: Ro
 
 
 async def test_odometry_says_how_the_vehicle_moves(link: "RosLink", somebody: RosNode) -> None:
-    heard: list[VehicleReport] = []
+    heard: list[VehicleReport | DriveStatus] = []
     vehicle(link, odometry={"topic": "/odom"}).start(heard.append)
     turn = {"z": math.sin(0.6), "w": math.cos(0.6)}
     fields = {
@@ -200,7 +200,9 @@ async def test_odometry_says_how_the_vehicle_moves(link: "RosLink", somebody: Ro
     publish = publishes(somebody, {"topic": "/odom", "type": "nav_msgs/msg/Odometry"}, fields)
     await until(every_time(publish, until_it_is=lambda: bool(heard)), PAUSE_S)
 
-    state = heard[0].state
+    report = heard[0]
+    assert isinstance(report, VehicleReport)
+    state = report.state
     assert (state.pose.x_m, state.pose.y_m, state.speed_mps) == (12.0, -3.0, 2.0)
     assert state.pose.yaw_rad == pytest.approx(1.2)
     assert state.steering_angle_rad == pytest.approx(0.3)

@@ -38,7 +38,7 @@ class PendingJson(Json):
 
 
 class AgedPendingJson(PendingJson):
-    """An error that will be raised if the signal stays bad, and how long it has been bad."""
+    """An error that will be raised if the signal stays bad, and how long that has counted."""
 
     for_s: float
 

@@ -144,10 +144,10 @@ def test_members_are_counted_at_every_depth() -> None:
         require_few_members(many)
 
 
-def test_lists_in_lists_are_counted() -> None:
-    require_few_members([[]] * 1_000)
+@pytest.mark.parametrize("items", [[{}] * 1_001, [[]] * 1_001, [[[]] * 500] * 3])
+def test_objects_and_arrays_in_arrays_are_members(items: list[object]) -> None:
     with pytest.raises(InvalidBodyError, match="more than 1000 members"):
-        require_few_members([[]] * 1_001)
+        require_few_members({"gains": items})
 
 
 def test_what_is_too_much_is_refused_before_it_is_parsed(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -137,7 +137,11 @@ def test_an_error_that_needs_time_is_told_when_it_begins_to_count(health: Robot)
 def test_what_stopped_counting_is_told(health: Robot) -> None:
     health.read(gps_accuracy=300.0)
     events = health.read(gps_accuracy=100.0)
-    assert _only(events, "signal.settled").data == {"signal": "gps_accuracy", "error": "GPS_LOST"}
+    assert _only(events, "signal.settled").data == {
+        "signal": "gps_accuracy",
+        "error": "GPS_LOST",
+        "stale": False,
+    }
 
 
 def test_an_error_that_time_raised_is_caused_by_the_reading_that_first_was_bad(

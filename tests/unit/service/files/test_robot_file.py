@@ -96,7 +96,7 @@ start_task: {file: tracks/loop.csv, controller: stanley, speed_mps: 2}
         MODEL,
     )
 
-    assert settings.to_vehicle_limits() == VehicleLimits(max_speed_mps=5.0)
+    assert settings.to_vehicle_limits() == VehicleLimits(max_speed_mps=5.0, steering_delay_s=0.25)
     assert settings.vehicle.pose == PoseBlock(x_m=1.0, y_m=-2.0, yaw_rad=1.5)
     assert settings.vehicle.plant == PlantBlock(steering_lag_s=0.15, delay_s=0.1)
     assert settings.to_task_settings() == TaskSettings(max_start_distance_m=8.0)
