@@ -6,6 +6,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from api.http import body_parsing
 from api.http.body_parsing import (
     MAX_FAULTS,
     BodyTooLargeError,
@@ -15,6 +16,7 @@ from api.http.body_parsing import (
     check_body,
     parse_body,
     parse_json,
+    parse_small,
     parse_text,
     pointer_to,
     read_limited,
@@ -146,6 +148,15 @@ def test_members_are_counted_at_every_depth() -> None:
 def test_objects_and_arrays_in_arrays_are_members(items: list[object]) -> None:
     with pytest.raises(InvalidBodyError, match="more than 1000 members"):
         require_few_members({"gains": items})
+
+
+def test_what_is_too_much_is_refused_before_it_is_parsed(monkeypatch: pytest.MonkeyPatch) -> None:
+    assert parse_small(b'{"colons":"' + b":" * 9_000 + b'"}')
+
+    monkeypatch.setattr(body_parsing, "parse_json", pytest.fail)
+    for raw in (b"[" + b"{}," * 10_001, b'{"a"' + b":" * 10_000):
+        with pytest.raises(InvalidBodyError, match="more than 1000 members"):
+            parse_small(raw)
 
 
 def test_long_lists_of_numbers_are_no_members() -> None:
