@@ -152,6 +152,38 @@ def test_a_path_3_5_m_beside_is_approached_slowly_and_driven(
     assert max(look.speed_mps for look in trip.looks[:beside]) <= 1.0
 
 
+@pytest.mark.parametrize("speed_mps", [2.8, 8.0])
+@pytest.mark.parametrize("turn_rad", [0.0, pi / 4, pi / 2, pi])
+@pytest.mark.parametrize("plant", sorted(PLANTS))
+def test_a_task_that_replaces_one_at_speed_brakes_before_it_turns(
+    plant: str, turn_rad: float, speed_mps: float
+) -> None:
+    trip = Trip(through((0, 0), (50, 0), (300, 0)), speed_mps=speed_mps, plant=PLANTS[plant])
+    trip.drive(12.0)
+    here = trip.robot.robot.vehicle.state.pose
+    begin = (here.x_m - 3.5 * sin(turn_rad), here.y_m + 3.5 * cos(turn_rad))
+    end = (begin[0] + 60 * cos(turn_rad), begin[1] + 60 * sin(turn_rad))
+    trip.robot.submit_task(through(begin, end), controller="stanley", speed_mps=speed_mps)
+    trip.drive()
+
+    assert trip.robot.task.status is TaskPhase.SUCCEEDED, trip.robot.task.reason
+    assert trip.lateral_mps2() <= 2.0 + 1e-6
+
+
+def test_a_hold_while_it_brakes_before_an_approach_changes_nothing() -> None:
+    trip = Trip(through((0, 0), (300, 0)), speed_mps=8.0, plant=PLANTS["gazebo-like"])
+    trip.drive(12.0)
+    here = trip.robot.robot.vehicle.state.pose
+    new = through((here.x_m, 0.0), (here.x_m, 60.0))
+    trip.robot.submit_task(new, controller="stanley", speed_mps=2.8)
+    for _ in range(4):
+        trip.drive(0.5)
+        trip.hold(0.2)
+    trip.drive()
+
+    assert trip.robot.task.status is TaskPhase.SUCCEEDED, trip.robot.task.reason
+
+
 def test_a_vehicle_whose_wheels_are_stuck_gives_up_with_the_reason() -> None:
     stuck = Plant(steering_rate_radps=1e-6)
     trip = Trip(through((0, 3.5), (50, 3.5), (100, 3.5)), plant=stuck, start=Pose(0.0, 0.0, pi))
