@@ -258,6 +258,29 @@ def test_a_path_far_from_the_origin_is_driven_alike(
         assert other.commanded_rad == pytest.approx(one.commanded_rad, abs=1e-6)
 
 
+@pytest.mark.parametrize("yaw_rad", [0.0, pi / 2, pi, -pi / 2])
+def test_a_path_at_the_edge_of_the_range_is_approached_from_beyond_it(yaw_rad: float) -> None:
+    edge = 1e7
+    places = ((edge - 30.0, edge), (edge, edge))
+    trip = Trip(through(*places), start=Pose(edge - 30.0, edge - 2.0, yaw_rad))
+    trip.drive()
+
+    assert trip.robot.task.status is TaskPhase.SUCCEEDED, trip.robot.task.reason
+
+
+@pytest.mark.parametrize("x_m", [1e7, 1e15, -1e300])
+def test_a_pose_that_jumps_anywhere_ends_the_task_with_a_reason(x_m: float) -> None:
+    trip = Trip(through((0, 0), (50, 0), (100, 0)))
+    trip.drive(6.0)
+    vehicle = trip.robot.robot.vehicle
+    vehicle._state = type(vehicle.state)(Pose(x_m, x_m, 0.0), 0.0, 0.0)  # noqa: SLF001
+    trip.hold()
+    trip.drive()
+
+    assert trip.robot.task.status is TaskPhase.ABORTED
+    assert trip.robot.task.reason
+
+
 # --- any size ------------------------------------------------------------------------------------
 
 
