@@ -10,7 +10,7 @@ from domain.lifecycle import LifecycleState, Transition
 from domain.parameters import Parameters, ParameterValue
 from domain.paths.path import Path
 from domain.state_and_mode import ModeName, PartName
-from domain.timebase import Instant
+from domain.timebase import Duration, Instant
 from domain.vehicle import DriveCommand, Point, VehicleState
 
 SignalValue: TypeAlias = bool | float | str
@@ -72,6 +72,15 @@ class VehicleReport:
 
 
 @dataclass(frozen=True, slots=True)
+class DriveStatus:
+    """Whether drive commands reach the vehicle. Without such a report, they do."""
+
+    available: bool
+    reason: str = ""
+    """Why they do not; empty: they do."""
+
+
+@dataclass(frozen=True, slots=True)
 class BackendStatus:
     """Whether the backend works, so that nodes can be reached at all."""
 
@@ -111,6 +120,24 @@ class GoalResult:
 @dataclass(frozen=True, slots=True)
 class TimePassed:
     """Time passes, and nothing else happens."""
+
+
+@dataclass(frozen=True, slots=True)
+class NodesBehind:
+    """A backend has more messages of nodes than it can hand over at once, or no longer has.
+
+    Until all of them are taken in, no step times out: the node may have arrived long ago.
+    """
+
+    behind: bool
+
+
+@dataclass(frozen=True, slots=True)
+class ServiceStall:
+    """The service itself did nothing for a while."""
+
+    late: Duration
+    """How much later than planned it went on."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -225,12 +252,15 @@ DriveRequest: TypeAlias = TaskRequest | CancelTaskRequest | HoldRequest | Releas
 Input: TypeAlias = (
     NodeReport
     | NodeAnswer
+    | NodesBehind
     | Readings
     | VehicleReport
+    | DriveStatus
     | BackendStatus
     | GoalFeedback
     | GoalResult
     | TimePassed
+    | ServiceStall
     | WriteRecord
     | ChangeRequest
     | CancelRequest

@@ -199,7 +199,7 @@ class Navigation:
         run = self._run
         if run is None or run.next_at > now:
             return ()
-        run.next_at += ((now - run.next_at) // PERIOD + 1) * PERIOD
+        self.skip_missed(now)
         try:
             return self._stop(run, now) if run.is_preempted else self._control(run, now)
         except GivenUpError as error:
@@ -207,6 +207,12 @@ class Navigation:
             if run.is_preempted:
                 return ()
             return (GoalResult(run.goal.goal, succeeded=False, reason=str(error)),)
+
+    def skip_missed(self, now: Instant) -> None:
+        """Do the next control step after `now`, at a time of the same raster."""
+        run = self._run
+        if run is not None and run.next_at <= now:
+            run.next_at += ((now - run.next_at) // PERIOD + 1) * PERIOD
 
     def _control(self, run: _Run, now: Instant) -> tuple[NavigationMessage, ...]:
         """Do one control step.

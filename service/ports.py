@@ -8,9 +8,19 @@ from collections.abc import Callable
 from typing import Protocol, TypeAlias
 
 from domain.commands import Drive, NodeCommand
-from domain.inputs import BackendStatus, NodeAnswer, NodeReport, Readings, VehicleReport
+from domain.inputs import (
+    BackendStatus,
+    DriveStatus,
+    NodeAnswer,
+    NodeReport,
+    NodesBehind,
+    Readings,
+    VehicleReport,
+)
 
-BackendMessage: TypeAlias = NodeReport | NodeAnswer | BackendStatus | Readings | VehicleReport
+BackendMessage: TypeAlias = (
+    NodeReport | NodeAnswer | NodesBehind | BackendStatus | Readings | VehicleReport | DriveStatus
+)
 Deliver: TypeAlias = Callable[[BackendMessage], None]
 
 
@@ -28,7 +38,8 @@ class Adapter(Protocol):
 class NodeBackend(Adapter, Protocol):
     """The nodes; `tests/conformance/test_node_backend.py` specifies what an adapter must do.
 
-    It delivers `BackendStatus`, `NodeReport` and `NodeAnswer`. A node that cannot be reached is
+    It delivers `BackendStatus`, `NodeReport` and `NodeAnswer`, and may frame very many of them by
+    `NodesBehind`. A node that cannot be reached is
     reported as unreachable; when it reappears, all its facts are reported.
     """
 
@@ -44,7 +55,8 @@ class NodeBackend(Adapter, Protocol):
 class VehicleBackend(Adapter, Protocol):
     """The vehicle; `tests/conformance/test_vehicle.py` specifies what an adapter must do.
 
-    It delivers a `VehicleReport` at about 20 Hz while the pose of the vehicle is known.
+    It delivers a `VehicleReport` at about 20 Hz while the pose of the vehicle is known, and a
+    `DriveStatus` when commands no longer reach the vehicle, or reach it again.
     """
 
     def send(self, command: Drive, /) -> None:

@@ -11,23 +11,29 @@ from domain.actor import Actor
 from domain.commands import PreemptGoal, SendGoal
 from domain.errors import PilothouseError
 from domain.findings import Finding
-from domain.inputs import HoldRequest, Input
+from domain.inputs import HoldRequest, Input, ServiceStall
 from domain.onboard import Onboard
 from domain.outbox import Outputs
 from domain.parts.system_model import SmhModel
 from domain.paths.approach import ApproachLimits
 from domain.supervision import Supervision
+from domain.timebase import Duration, seconds
+from service.catch_up import CatchUp
 from service.change_ends import ChangeEnds
 from service.clock import Clock
 from service.event_log import EventLog
 from service.files.model_file import LoadedModel
-from service.frame_publisher import FramePublisher
+from service.frame_publisher import PERIOD, FramePublisher
 from service.node_incidents import log_node_incidents
 from service.ports import RobotBackend
 from service.readings import DirectReadings, ReadingInput, Submit
+from service.refused_readings import RefusedReadings
 from service.running import run_forever
 from service.submitter import Submitter
 from service.watchdog import hanging
+
+STALL: Duration = seconds(0.25)
+"""A tick that is later is told: the pose of a vehicle that reports every 0.05 s is too old then."""
 
 
 class Supervisor:
@@ -63,11 +69,17 @@ class Supervisor:
         self.events = events or EventLog()
         self.publisher = FramePublisher(onboard.core, clock, self.simulated)
         self.frames = self.publisher.frames
-        self.change_ends = ChangeEnds(onboard.core, clock)
+        self._catch_up = CatchUp(clock, self.publisher.tick_due)
+        self.change_ends = ChangeEnds(onboard.core, clock, self._catch_up.wait)
         self._loaded = loaded
         self._onboard = onboard
         self._backend = backend
-        self._submitter = Submitter(onboard, clock, self._carry_out)
+        self.refused_readings = RefusedReadings()
+        """Rejected readings, on all ways in."""
+        self._submitter = Submitter(
+            onboard, clock, self._carry_out, self._catch_up, self.refused_readings
+        )
+        self.publisher.on_tick.append(self._note_tick)
         self.submit: Callable[[Input], Outputs] = self._submitter.submit
         """Passes an input to the core; raises PilothouseError if it is rejected."""
         self.deliver: Callable[[Input], None] = self._submitter.deliver
@@ -134,6 +146,13 @@ class Supervisor:
         with suppress(PilothouseError):
             self.submit(HoldRequest("service", "the service ends", Actor("service")))
 
+    def _note_tick(self, since_s: float) -> None:
+        """Let deadlines wait after a tick that was late, and tell of one that was very late."""
+        self._catch_up.note_tick(self.clock.now())
+        late = seconds(since_s) - PERIOD
+        if late > STALL:
+            self.submit(ServiceStall(late))
+
     def _carry_out(self, outputs: Outputs) -> None:
         """Send commands to the robot first, then publish."""
         for command in outputs.commands:
@@ -141,8 +160,7 @@ class Supervisor:
             if not isinstance(command, SendGoal | PreemptGoal):
                 self._backend.send(command)
         self.publisher.note(outputs)
-        for event in outputs.events:
-            self.events.append(event)
+        self.events.append(*outputs.events)
         self.change_ends.note(outputs.events)
         if outputs.system_state:
             self.publisher.publish_change()

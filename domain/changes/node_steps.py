@@ -5,7 +5,7 @@ in parallel, each with at most one step in flight. A step in flight is never rec
 of its node waits until it ends or times out.
 """
 
-from collections.abc import Callable, Set
+from collections.abc import Callable, Mapping, Set
 
 from domain.changes.plan import SetParameters, next_steps, presumed_steps
 from domain.changes.record import Pursuit, Step
@@ -15,6 +15,7 @@ from domain.commands import AskFacts, AskParameters, AskTransition
 from domain.deadlines import Deadlines
 from domain.events.changes import StepEnded, StepStarted
 from domain.health.health import Health
+from domain.identifiers import ChangeId
 from domain.inputs import NodeAnswer, NodeReport
 from domain.lifecycle import LifecycleState, Transition
 from domain.outbox import Outbox
@@ -37,6 +38,7 @@ class NodeSteps:
         outbox: Outbox,
         health: Health,
         ended: Callable[[Pursuit, Instant], None],
+        loose_ended: Callable[[ChangeId], None],
     ) -> None:
         """Begin without a pursuit.
 
@@ -46,6 +48,7 @@ class NodeSteps:
             outbox: Where commands and events go.
             health: Whether ESTOP is on.
             ended: Is handed each pursuit that reached its goal or failed, at once.
+            loose_ended: Is handed the change of a step that ended after its pursuit was dropped.
         """
         self._parts = parts
         self._facts = parts.facts
@@ -53,9 +56,12 @@ class NodeSteps:
         self._outbox = outbox
         self._health = health
         self._ended = ended
+        self._loose_ended = loose_ended
         self._pursuits: dict[PartName, Pursuit] = {}
         self._in_flight: dict[PartName, Step] = {}
         self._deadlines: Deadlines[PartName] = Deadlines()
+        self._behind = 0
+        """Backends that are behind with the messages of their nodes; no deadline passes then."""
 
     # --- what can be seen ------------------------------------------------------------------------
 
@@ -79,13 +85,13 @@ class NodeSteps:
 
     def wake_at(self) -> Instant | None:
         """Return the next deadline; None: there is none."""
-        return self._deadlines.next()
+        return None if self._behind else self._deadlines.next()
 
     # --- pursuits --------------------------------------------------------------------------------
 
-    def add(self, pursuit: Pursuit) -> None:
-        """Take over a node, whose earlier pursuit was dropped; `start` lets it move."""
-        self._pursuits[pursuit.node] = pursuit
+    def add(self, pursuits: Mapping[PartName, Pursuit]) -> None:
+        """Take over nodes, whose earlier pursuits were dropped; `start` lets each move."""
+        self._pursuits.update(pursuits)
 
     def start(self, pursuit: Pursuit, now: Instant) -> None:
         """Plan the steps of an added pursuit, and start the first unless one is in flight.
@@ -97,8 +103,8 @@ class NodeSteps:
         self._foresee(pursuit)
         self._advance(pursuit.node, now)
 
-    def drop(self, pursuit: Pursuit, status: StepStatus, now: Instant) -> None:
-        """Start no further step of a node; one in flight ends by itself.
+    def drop(self, pursuit: Pursuit, status: StepStatus, now: Instant) -> bool:
+        """Start no further step of a node; return whether one is in flight, which ends by itself.
 
         Args:
             pursuit: Of the node.
@@ -108,8 +114,10 @@ class NodeSteps:
         pursuit.outcome = status
         pursuit.drop_pending(status, now)
         del self._pursuits[pursuit.node]
-        if pursuit.node not in self._in_flight:
+        step = self._in_flight.get(pursuit.node)
+        if step is None:
             self._deadlines.clear(pursuit.node)
+        return step is not None and step.change == pursuit.change
 
     # --- what happens ----------------------------------------------------------------------------
 
@@ -130,9 +138,13 @@ class NodeSteps:
             self._end_step(step, StepStatus.FAILED, reason, now)
             self._advance(answer.node, now)
 
+    def wait_for_nodes(self, *, behind: bool) -> None:
+        """Note that a backend is behind, or no longer; deadlines wait for all of them."""
+        self._behind += 1 if behind else -1
+
     def pass_time(self, now: Instant) -> None:
         """Handle all deadlines up to `now`."""
-        while (node := self._deadlines.pop_due(now)) is not None:
+        while not self._behind and (node := self._deadlines.pop_due(now)) is not None:
             if node in self._in_flight:
                 self._step_is_late(self._in_flight[node], now)
             elif node in self._pursuits:
@@ -205,9 +217,10 @@ class NodeSteps:
         self._deadlines.clear(step.node)
         self._outbox.emit(StepEnded(step.change, step.node, step.action_name, status, error))
         pursuit = self._pursuits.get(step.node)
-        if pursuit is None or pursuit.change != step.change or status is StepStatus.SUCCEEDED:
-            return
-        self._finish(pursuit, status, f"{step.node}: {step.action_name}: {error}", now)
+        if pursuit is None or pursuit.change != step.change:
+            self._loose_ended(step.change)
+        elif status is not StepStatus.SUCCEEDED:
+            self._finish(pursuit, status, f"{step.node}: {step.action_name}: {error}", now)
 
     def _step_is_late(self, step: Step, now: Instant) -> None:
         """Query the actual state before a step is declared timed out."""

@@ -29,6 +29,8 @@ class PathWarning:
     message: str
     index: int | None = None
     """Index of the waypoint concerned; None: none in particular."""
+    hint: str | None = None
+    """What to do."""
 
 
 @dataclass(frozen=True, slots=True)

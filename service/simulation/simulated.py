@@ -1,13 +1,18 @@
 """The simulated robot in real time: a backend without a real robot."""
 
+import asyncio
+from collections import deque
+from collections.abc import Sequence
+from functools import partial
+
 from domain.commands import Drive, NodeCommand
-from domain.inputs import BackendStatus
+from domain.inputs import BackendStatus, NodeAnswer, NodeReport, NodesBehind
 from domain.parameters import Parameters
 from domain.simulation.node_settings import Fault
-from domain.simulation.robot import SimulatedRobot
+from domain.simulation.robot import RobotMessage, SimulatedRobot
 from domain.state_and_mode import PartName
 from service.clock import Clock
-from service.pacing import Pacer
+from service.pacing import AT_ONCE, Pacer
 from service.ports import Deliver
 from service.readings import DirectReadings, ReadingInput, Submit
 from service.simulation.mock_source import MockHandle
@@ -16,7 +21,8 @@ from service.simulation.mock_source import MockHandle
 class SimulatedBackend:
     """Runs a `SimulatedRobot` on a clock: nodes, vehicle and, if it has them, mock signals.
 
-    One adapter for all, since messages of the same instant have one order.
+    One adapter for all, since messages of the same instant have one order. Only of very many, those
+    of the nodes come last, as with ROS 2.
     """
 
     def __init__(self, robot: SimulatedRobot, clock: Clock) -> None:
@@ -29,7 +35,25 @@ class SimulatedBackend:
     async def run(self, deliver: Deliver) -> None:
         """Deliver the state of every node and of the vehicle, then changes, until cancelled."""
         deliver(BackendStatus(available=True))
-        await self._pacer.run(deliver)
+        await self._pacer.run(deliver, partial(self._deliver_in_turns, deliver))
+
+    async def _deliver_in_turns(self, deliver: Deliver, due: Sequence[RobotMessage]) -> None:
+        """Deliver very many messages, some at a time, those of the nodes last.
+
+        Other tasks must keep running, and a pose that comes behind the reports of thousands of
+        nodes must not become too old meanwhile.
+        """
+        urgent, others = deque[RobotMessage](), deque[RobotMessage]()
+        deliver(NodesBehind(behind=True))
+        while due or urgent or others:
+            for message in due:
+                of_node = isinstance(message, NodeReport | NodeAnswer)
+                (others if of_node else urgent).append(message)
+            for _ in range(min(AT_ONCE, len(urgent) + len(others))):
+                deliver((urgent or others).popleft())
+            await asyncio.sleep(0)
+            due = self.robot.advance(self._clock.now())
+        deliver(NodesBehind(behind=False))
 
     def readings(self, submit: Submit) -> ReadingInput:
         """Return the input for external readings."""

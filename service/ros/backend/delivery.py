@@ -4,7 +4,7 @@ import asyncio
 from enum import IntEnum
 
 from domain.health.signals import ESTOP_SIGNAL
-from domain.inputs import Readings, VehicleReport
+from domain.inputs import DriveStatus, NodesBehind, Readings, VehicleReport
 from service.ports import BackendMessage, Deliver
 
 _AT_ONCE = 5
@@ -16,7 +16,7 @@ class _Urgency(IntEnum):
 
     ESTOP = 0
     SENSORS = 1
-    """All other readings, and reports of the vehicle."""
+    """All other readings, and reports of the vehicle and of what drives it."""
     NODES = 2
 
 
@@ -45,7 +45,11 @@ class Delivery:
         self._woken.set()
 
     async def run(self, deliver: Deliver) -> None:
-        """Deliver until cancelled, or until `deliver` raises."""
+        """Deliver until cancelled, or until `deliver` raises.
+
+        `NodesBehind` tells whether more messages of nodes wait than one turn delivers.
+        """
+        behind = False
         while True:
             await self._woken.wait()
             for _ in range(_AT_ONCE):
@@ -54,6 +58,9 @@ class Delivery:
                     self._woken.clear()
                     break
                 deliver(lane.get_nowait())
+            if behind is self._lanes[_Urgency.NODES].empty():
+                behind = not behind
+                deliver(NodesBehind(behind))
             await asyncio.sleep(0)
 
 
@@ -61,4 +68,5 @@ def _urgency(message: BackendMessage) -> _Urgency:
     if isinstance(message, Readings):
         is_estop = any(reading.signal == ESTOP_SIGNAL for reading in message.items)
         return _Urgency.ESTOP if is_estop else _Urgency.SENSORS
-    return _Urgency.SENSORS if isinstance(message, VehicleReport) else _Urgency.NODES
+    is_driving = isinstance(message, VehicleReport | DriveStatus)
+    return _Urgency.SENSORS if is_driving else _Urgency.NODES

@@ -8,6 +8,7 @@ from domain.inputs import (
     ModeRequest,
     NodeAnswer,
     NodeReport,
+    NodesBehind,
     ParametersRequest,
     Reading,
     Readings,
@@ -330,3 +331,29 @@ def test_as_many_steps_as_are_allowed_are_taken(monkeypatch: pytest.MonkeyPatch)
     robot.advance(2)
     assert robot.change(change).status is ChangeStatus.SUCCEEDED
     assert len(robot.steps(change)) == 3
+
+
+# --- reports that wait in a backend --------------------------------------------------------------
+
+
+def test_no_step_times_out_while_a_backend_is_behind_with_its_nodes(robot: CoreRobot) -> None:
+    robot.fault("drive_base", Fault.SILENT)
+    change = robot.ask_transition("drive_base", "configure")
+    robot.give(NodesBehind(behind=True))
+    robot.advance(60)
+    assert robot.change(change).status is ChangeStatus.RUNNING
+    robot.give(NodeReport(BASE, LifecycleState.INACTIVE, reachable=True))
+    robot.give(NodesBehind(behind=False))
+    assert robot.change(change).status is ChangeStatus.SUCCEEDED
+
+
+def test_a_step_times_out_once_all_backends_have_caught_up(robot: CoreRobot) -> None:
+    robot.fault("drive_base", Fault.SILENT)
+    change = robot.ask_transition("drive_base", "configure")
+    for behind in (True, True, False):
+        robot.give(NodesBehind(behind))
+    robot.advance(60)
+    assert robot.change(change).status is ChangeStatus.RUNNING
+    robot.give(NodesBehind(behind=False))
+    robot.advance(0)
+    assert robot.change(change).status is ChangeStatus.TIMED_OUT

@@ -89,7 +89,7 @@ async def test_a_compass_is_converted_when_told(robot: HttpRobot) -> None:
 @pytest.mark.parametrize(
     ("csv", "line", "word"),
     [
-        ("x,y,yaw\n0,0,0\n", 1, "header"),
+        ("a,b,c\n0,0,0\n1,0,0\n", 1, "columns"),
         ("0,0,0\n1,zero,0\n", 2, "zero"),
         ("0,0,0\nnan,0,0\n2,0,0\n", 2, "nan"),
         ("0,0,0\n1,0\n", 2, "column"),
@@ -110,12 +110,43 @@ async def test_a_refused_file_names_the_line_and_changes_nothing(
     assert (await robot.get("/tasks"))["items"] == []
 
 
-async def test_headings_in_degrees_are_refused_with_what_to_say(robot: HttpRobot) -> None:
-    csv = "".join(f"{x},0,90.0\n" for x in range(11)).replace("3,0,90.0", "3,0,88.5")
-    answer = await post(robot, csv)
+async def test_headings_that_fit_in_no_unit_are_refused_until_it_is_said_what_they_are(
+    robot: HttpRobot,
+) -> None:
+    widths = "".join(f"{x},0,2.0\n" for x in range(6))
+    widths += "".join(f"5,{y},2.0\n" for y in range(1, 9))
+    answer = await post(robot, widths)
 
     assert answer.status_code == 422
-    assert "?heading=" in answer.json()["hint"]
+    assert answer.json()["findings"][0]["code"] == "HEADINGS_MISFIT"
+    assert "?columns=x,y" in answer.json()["hint"]
+    assert (await robot.get("/tasks"))["items"] == []
+    assert (await post(robot, widths, columns="x,y,width")).status_code == 201
+    assert (await post(robot, widths, heading="rad")).status_code == 201
+
+
+async def test_columns_are_taken_from_a_header_or_from_the_query(robot: HttpRobot) -> None:
+    rows = "".join(f"{x};{x},5;0,0\n" for x in range(11))
+    assert (await post(robot, "# s_m; x_m; y_m\n" + rows)).status_code == 201
+    assert (await post(robot, rows)).status_code == 422
+    assert (await post(robot, rows, columns="s,x,y")).status_code == 201
+    items = (await robot.get("/tasks/t2/waypoints"))["items"]
+
+    assert items[1] == {"x_m": 1.5, "y_m": 0.0, "yaw_rad": 0.0}
+
+
+async def test_columns_without_x_and_y_are_refused(robot: HttpRobot) -> None:
+    answer = await post(robot, LINE, columns="s,yaw")
+
+    assert answer.status_code == 422
+    assert "query columns: no column is named x" in answer.json()["detail"]
+
+
+async def test_columns_of_json_are_refused(robot: HttpRobot) -> None:
+    answer = await robot.http.post("/tasks?columns=x,y", json={"waypoints": WAYPOINTS})
+
+    assert answer.status_code == 422
+    assert "columns in the query is for a CSV" in answer.json()["detail"]
 
 
 @pytest.mark.parametrize(

@@ -3,7 +3,7 @@ from collections.abc import AsyncIterator
 
 import pytest
 
-from domain.inputs import NodeReport, Reading, Readings, VehicleReport
+from domain.inputs import NodeReport, NodesBehind, Reading, Readings, VehicleReport
 from domain.vehicle import Pose, VehicleState
 from service.ports import BackendMessage
 from service.ros.backend.delivery import Delivery
@@ -28,6 +28,13 @@ class Robot:
     def __init__(self) -> None:
         self.delivery = Delivery(ROOM)
         self.heard: list[BackendMessage] = []
+        self.behind: list[bool] = []
+
+    def deliver(self, message: BackendMessage) -> None:
+        if isinstance(message, NodesBehind):
+            self.behind.append(message.behind)
+        else:
+            self.heard.append(message)
 
     def hear(self, *messages: BackendMessage) -> None:
         for message in messages:
@@ -37,7 +44,7 @@ class Robot:
 @pytest.fixture
 async def robot() -> AsyncIterator[Robot]:
     robot = Robot()
-    run = asyncio.create_task(robot.delivery.run(robot.heard.append))
+    run = asyncio.create_task(robot.delivery.run(robot.deliver))
     await settle()
     yield robot
     run.cancel()
@@ -50,6 +57,17 @@ async def test_an_emergency_stop_goes_before_what_was_heard_earlier(robot: Robot
     await settle()
 
     assert robot.heard == [PRESSED, RELEASED, AT_REST, WARM, *earlier]
+
+
+async def test_who_listens_knows_while_reports_of_nodes_wait(robot: Robot) -> None:
+    robot.hear(*reports(1_000))
+    await until(lambda: len(robot.heard) > 500)
+    assert robot.behind == [True]
+    await settle()
+    assert robot.behind == [True, False]
+    robot.hear(*reports(2), AT_REST)
+    await settle()
+    assert robot.behind == [True, False], "what one turn delivers does not wait"
 
 
 async def test_in_the_middle_of_a_storm_it_is_next(robot: Robot) -> None:
