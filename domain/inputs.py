@@ -10,7 +10,7 @@ from domain.lifecycle import LifecycleState, Transition
 from domain.parameters import Parameters, ParameterValue
 from domain.paths.path import Path
 from domain.state_and_mode import ModeName, PartName
-from domain.timebase import Instant
+from domain.timebase import Duration, Instant
 from domain.vehicle import DriveCommand, Point, VehicleState
 
 SignalValue: TypeAlias = bool | float | str
@@ -72,6 +72,15 @@ class VehicleReport:
 
 
 @dataclass(frozen=True, slots=True)
+class DriveStatus:
+    """Whether drive commands reach the vehicle. Without such a report, they do."""
+
+    available: bool
+    reason: str = ""
+    """Why they do not; empty: they do."""
+
+
+@dataclass(frozen=True, slots=True)
 class BackendStatus:
     """Whether the backend works, so that nodes can be reached at all."""
 
@@ -111,6 +120,14 @@ class GoalResult:
 @dataclass(frozen=True, slots=True)
 class TimePassed:
     """Time passes, and nothing else happens."""
+
+
+@dataclass(frozen=True, slots=True)
+class ServiceStall:
+    """The service itself did nothing for a while."""
+
+    late: Duration
+    """How much later than planned it went on."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -237,11 +254,13 @@ Input: TypeAlias = (
     | NodeAnswer
     | Readings
     | VehicleReport
+    | DriveStatus
     | BackendStatus
     | ReportBacklog
     | GoalFeedback
     | GoalResult
     | TimePassed
+    | ServiceStall
     | WriteRecord
     | ChangeRequest
     | CancelRequest

@@ -4,8 +4,9 @@ One input in; commands to nodes and vehicle, and events, out. Goals stay inside,
 stops the vehicle in the same step.
 """
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import replace
+from typing import TypeAlias
 
 from domain.commands import Command, Drive, PreemptGoal, SendGoal
 from domain.inputs import Input, TimePassed
@@ -13,6 +14,8 @@ from domain.navigation import Navigation
 from domain.outbox import NOTHING, Outputs
 from domain.supervision import Supervision
 from domain.timebase import Instant
+
+_Take: TypeAlias = Callable[[Input, Instant], Outputs]
 
 
 class Onboard:
@@ -48,7 +51,29 @@ class Onboard:
             PilothouseError: The input is rejected; it changed nothing.
         """
         self._let_pass(now)
-        self._take(given, now)
+        self._take(given, now, self.core.handle)
+        return self._told()
+
+    def take_in(self, given: Input, now: Instant) -> Outputs:
+        """Handle one input that is late by our own fault, before what was due before it.
+
+        The next `handle` judges what is due then. Missed control steps are not made up for.
+
+        Args:
+            given: A fact or a request.
+            now: The current time; it never decreases.
+
+        Returns:
+            As `handle`.
+
+        Raises:
+            PilothouseError: The input is rejected; it changed nothing.
+        """
+        self.navigation.skip_missed(now)
+        self._take(given, now, self.core.take_in)
+        return self._told()
+
+    def _told(self) -> Outputs:
         gathered, self._untold = self._untold, []
         return _merged(gathered)
 
@@ -56,11 +81,11 @@ class Onboard:
         while (due := self.navigation.wake_at()) is not None and due <= now:
             core_due = self.core.wake_at()
             if core_due is not None and core_due <= due:
-                self._take(TimePassed(), due)
-            self._let_navigation_act(due)
+                self._take(TimePassed(), due, self.core.handle)
+            self._let_navigation_act(due, self.core.handle)
 
-    def _take(self, given: Input, now: Instant) -> None:
-        outputs = self.core.handle(given, now)
+    def _take(self, given: Input, now: Instant, take: _Take) -> None:
+        outputs = take(given, now)
         if not outputs.commands:
             self._untold.append(outputs)
             return
@@ -72,14 +97,14 @@ class Onboard:
         for goal in goals:
             self.navigation.handle(goal, now)
         if goals:
-            self._let_navigation_act(now)
+            self._let_navigation_act(now, take)
 
-    def _let_navigation_act(self, now: Instant) -> None:
+    def _let_navigation_act(self, now: Instant, take: _Take) -> None:
         for message in self.navigation.advance(now):
             if isinstance(message, Drive):
                 self._untold.append(replace(NOTHING, commands=(message,)))
             else:
-                self._take(message, now)
+                self._take(message, now, take)
 
 
 def _merged(parts: Sequence[Outputs]) -> Outputs:

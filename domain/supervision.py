@@ -34,6 +34,7 @@ from domain.snapshot import (
     StepView,
     SystemStateView,
 )
+from domain.stalls import Stalls
 from domain.state_and_mode import ModeName, PartName
 from domain.tasks.driving import Driving
 from domain.tasks.settings import TaskSettings
@@ -92,6 +93,7 @@ class Supervision:
             self._robot_state,
             self._changing,
             Audit(self._outbox),
+            Stalls(self._outbox),
         )
         self._takers = _takers(self._concerns)
         self._clocked = [c for c in self._concerns if _overrides(c, "wake_at")]
@@ -126,6 +128,28 @@ class Supervision:
             PilothouseError: The input is rejected; it changed nothing.
         """
         self._let_pass(max(now, self._now))
+        return self._take(given)
+
+    def take_in(self, given: Input, now: Instant) -> Outputs:
+        """Handle one input that is late by our own fault, before what was due before it.
+
+        The next `handle` judges what is due then: an age that the input ended never was too high.
+
+        Args:
+            given: A fact or a request.
+            now: The current time; when the input arrived is not known.
+
+        Returns:
+            As `handle`.
+
+        Raises:
+            PilothouseError: The input is rejected; it changed nothing.
+        """
+        self._now = max(now, self._now)
+        with self._health.late():
+            return self._take(given)
+
+    def _take(self, given: Input) -> Outputs:
         for take in self._takers[type(given)]:
             take(given, self._now)
         if self._has_more and isinstance(given, TimePassed):

@@ -2,7 +2,7 @@
 
 import asyncio
 from collections import Counter
-from collections.abc import Iterable
+from collections.abc import Awaitable, Callable, Iterable
 from contextlib import suppress
 
 from domain.events.changes import ChangeEnded
@@ -10,18 +10,28 @@ from domain.events.event import RecordedEvent
 from domain.identifiers import ChangeId
 from domain.snapshot import ChangeStatus, ChangeView
 from domain.supervision import Supervision
-from domain.timebase import seconds
+from domain.timebase import Instant, seconds
 from service.clock import Clock
 
 
 class ChangeEnds:
     """Notifies the callers that wait for a change when it ends."""
 
-    def __init__(self, core: Supervision, clock: Clock) -> None:
+    def __init__(
+        self, core: Supervision, clock: Clock, caught_up: Callable[[], Awaitable[None]]
+    ) -> None:
+        """Begin with no change ended.
+
+        Args:
+            core: Has the changes.
+            clock: Of the service.
+            caught_up: Returns once what arrived during a stall of the service is taken in.
+        """
         self.counts: Counter[str] = Counter()
         """Changes that ended so far, by their final status."""
         self._core = core
         self._clock = clock
+        self._caught_up = caught_up
         self._stopped = False
         self._waiting: dict[ChangeId, set[asyncio.Future[None]]] = {}
 
@@ -46,7 +56,7 @@ class ChangeEnds:
         waiting = self._waiting.setdefault(change, set())
         waiting.add(ended)
         deadline = self._clock.now() + seconds(timeout_s)
-        timer = asyncio.ensure_future(self._clock.sleep_until(deadline))
+        timer = asyncio.ensure_future(self._expire(deadline))
         try:
             await asyncio.wait({ended, timer}, return_when=asyncio.FIRST_COMPLETED)
         finally:
@@ -55,6 +65,11 @@ class ChangeEnds:
             with suppress(asyncio.CancelledError):
                 await timer
         return self._core.change(change)
+
+    async def _expire(self, deadline: Instant) -> None:
+        """Return at a deadline; the end of a change that has arrived by then comes first."""
+        await self._clock.sleep_until(deadline)
+        await self._caught_up()
 
     def stop(self) -> None:
         """Wake every waiting caller; from now on `wait` returns at once."""

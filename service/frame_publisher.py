@@ -68,6 +68,10 @@ class FramePublisher:
                 log.warning("skipped %d ticks: %.0f ms late", skipped, late / 1e6)
             await self._clock.sleep_until(start + count * PERIOD)
 
+    def tick_due(self) -> Instant | None:
+        """Return when the next tick has to begin; None: there was none yet."""
+        return None if self.last_tick_at is None else self.last_tick_at + PERIOD
+
     def note(self, outputs: Outputs) -> None:
         """Remember what changed; the next frame shows it."""
         self._changed_parts.update(dict.fromkeys(sorted(outputs.parts)))

@@ -1,7 +1,7 @@
 """Runs deterministic objects, which report when they are due next, in real time."""
 
 import asyncio
-from collections.abc import Callable, Sequence
+from collections.abc import Awaitable, Callable, Sequence
 from typing import Generic, Protocol, TypeVar
 
 from domain.timebase import Instant
@@ -49,30 +49,27 @@ class Pacer(Generic[MessageT]):
     async def run(
         self,
         deliver: Callable[[MessageT], None],
-        tell_backlog: Callable[[Instant | None], None] = lambda since: None,
+        deliver_many: Callable[[Sequence[MessageT], Instant], Awaitable[None]] | None = None,
     ) -> None:
-        """Pass messages to `deliver` in order when they are due, until cancelled.
+        """Pass messages on in order when they are due, until cancelled.
 
         Args:
-            deliver: Takes one message.
-            tell_backlog: Is told before more messages are delivered than one turn takes, until when
-                all that was due was delivered; and None, once all is again.
+            deliver: Gets one message.
+            deliver_many: Gets more than `AT_ONCE` messages that are due together, and up to when
+                all that was due is delivered; lets other tasks run in between. None: there are
+                never so many.
         """
-        delivered, is_behind = self._clock.now(), False
+        delivered = self._clock.now()
         while True:
             now = self._clock.now()
-            messages = self._paced.advance(now)
-            was_behind, is_behind = is_behind, len(messages) > AT_ONCE
-            if is_behind or was_behind:
-                tell_backlog(delivered if is_behind else None)
-            for number, message in enumerate(messages, start=1):
-                deliver(message)
-                if number % AT_ONCE == 0:
-                    # Thousands of nodes may appear at once; the other tasks must keep running.
-                    await asyncio.sleep(0)
+            due = self._paced.advance(now)
+            if deliver_many is not None and len(due) > AT_ONCE:
+                await deliver_many(due, delivered)
+            else:
+                for message in due:
+                    deliver(message)
             delivered = now
-            if not is_behind:
-                await self._rest()
+            await self._rest()
 
     async def _rest(self) -> None:
         """Wait until something is due or the object gets input."""

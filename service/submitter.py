@@ -1,14 +1,24 @@
-"""The only input of the core: requests, reports of adapters, and deadlines."""
+"""The only input of the core: requests, reports of adapters, and deadlines.
+
+After a stall of the event loop, deadlines wait until what has arrived meanwhile is taken in.
+"""
 
 import logging
 from collections.abc import Callable
+from typing import TypeAlias
 
+from domain.actor import Actor
 from domain.errors import PilothouseError
-from domain.inputs import Input, TimePassed
+from domain.inputs import Input, Readings, TimePassed
 from domain.onboard import Onboard
 from domain.outbox import Outputs
+from domain.timebase import Instant
+from service.catch_up import CatchUp
 from service.clock import Clock
 from service.pacing import Alarm
+from service.refused_readings import RefusedReadings
+
+Handle: TypeAlias = Callable[[Input, Instant], Outputs]
 
 log = logging.getLogger(__name__)
 
@@ -17,7 +27,12 @@ class Submitter:
     """Passes each input to the core at once, and the outputs to `carry_out`."""
 
     def __init__(
-        self, onboard: Onboard, clock: Clock, carry_out: Callable[[Outputs], None]
+        self,
+        onboard: Onboard,
+        clock: Clock,
+        carry_out: Callable[[Outputs], None],
+        catch_up: CatchUp,
+        refused: RefusedReadings,
     ) -> None:
         """Prepare.
 
@@ -25,11 +40,15 @@ class Submitter:
             onboard: The core.
             clock: Of the service.
             carry_out: Acts on the outputs of the core.
+            catch_up: Tells whether deadlines wait.
+            refused: Counts rejected readings of adapters, all of which hear ROS topics.
         """
         self._onboard = onboard
         self._clock = clock
         self._carry_out = carry_out
-        self._alarm = Alarm(onboard.wake_at, self.let_pass, clock)
+        self._catch_up = catch_up
+        self._refused = refused
+        self._alarm = Alarm(self._due, self.let_pass, clock)
 
     async def run(self) -> None:
         """Process deadlines exactly when they expire, until cancelled."""
@@ -42,11 +61,15 @@ class Submitter:
             PilothouseError: The input is rejected; it changed nothing.
         """
         now = self._clock.now()
+        is_late = self._catch_up.is_on(now)
+        return self._pass(given, now, self._onboard.take_in if is_late else self._onboard.handle)
+
+    def _pass(self, given: Input, now: Instant, handle: Handle) -> Outputs:
         try:
-            outputs = self._onboard.handle(given, now)
+            outputs = handle(given, now)
         except PilothouseError:
             # Deadlines that expired before the rejected input are processed nevertheless.
-            self._carry_out(self._onboard.handle(TimePassed(), now))
+            self._carry_out(handle(TimePassed(), now))
             raise
         finally:
             self._alarm.check()
@@ -58,10 +81,17 @@ class Submitter:
         try:
             self.submit(given)
         except PilothouseError as error:
-            log.warning("rejected %s: %s", type(given).__name__, error)
+            if isinstance(given, Readings):
+                self._refused.note(Actor(given.source, way="ros"), error.message)
+            else:
+                log.warning("rejected %s: %s", type(given).__name__, error)
 
     def let_pass(self) -> None:
         """Process the deadlines that have expired by now."""
-        due = self._onboard.wake_at()
-        if due is not None and due <= self._clock.now():
-            self.submit(TimePassed())
+        due, now = self._onboard.wake_at(), self._clock.now()
+        if due is not None and due <= now and not self._catch_up.is_on(now):
+            self._pass(TimePassed(), now, self._onboard.handle)
+
+    def _due(self) -> Instant | None:
+        due, until = self._onboard.wake_at(), self._catch_up.until
+        return due if due is None or until is None else max(due, until)

@@ -11,23 +11,29 @@ from domain.actor import Actor
 from domain.commands import PreemptGoal, SendGoal
 from domain.errors import PilothouseError
 from domain.findings import Finding
-from domain.inputs import HoldRequest, Input
+from domain.inputs import HoldRequest, Input, ServiceStall
 from domain.onboard import Onboard
 from domain.outbox import Outputs
 from domain.parts.system_model import SmhModel
-from domain.paths.speed_profile import SpeedLimits
+from domain.paths.approach import ApproachLimits
 from domain.supervision import Supervision
+from domain.timebase import Duration, Instant, seconds
+from service.catch_up import CatchUp
 from service.change_ends import ChangeEnds
 from service.clock import Clock
 from service.event_log import EventLog
 from service.files.model_file import LoadedModel
-from service.frame_publisher import FramePublisher
+from service.frame_publisher import PERIOD, FramePublisher
 from service.node_incidents import log_node_incidents
 from service.ports import RobotBackend
 from service.readings import DirectReadings, ReadingInput, Submit
+from service.refused_readings import RefusedReadings
 from service.running import run_forever
 from service.submitter import Submitter
 from service.watchdog import hanging
+
+STALL: Duration = seconds(0.25)
+"""A tick that is later is told: the pose of a vehicle that reports every 0.05 s is too old then."""
 
 
 class Supervisor:
@@ -63,17 +69,25 @@ class Supervisor:
         self.events = events or EventLog()
         self.publisher = FramePublisher(onboard.core, clock, self.simulated)
         self.frames = self.publisher.frames
-        self.change_ends = ChangeEnds(onboard.core, clock)
+        self._catch_up = CatchUp(clock, self.publisher.tick_due)
+        self.change_ends = ChangeEnds(onboard.core, clock, self._catch_up.wait)
         self._loaded = loaded
         self._onboard = onboard
         self._backend = backend
-        self._submitter = Submitter(onboard, clock, self._carry_out)
+        self.refused_readings = RefusedReadings()
+        """Rejected readings, on all ways in."""
+        self._submitter = Submitter(
+            onboard, clock, self._carry_out, self._catch_up, self.refused_readings
+        )
+        self.publisher.on_tick.append(self._note_tick)
         self.submit: Callable[[Input], Outputs] = self._submitter.submit
         """Passes an input to the core; raises PilothouseError if it is rejected."""
         self.deliver: Callable[[Input], None] = self._submitter.deliver
         """Submits a report of an adapter, and logs it if it is rejected."""
         self.let_pass: Callable[[], None] = self._submitter.let_pass
         """Processes the deadlines that have expired by now."""
+        self.owing_since: Callable[[], Instant | None] = lambda: None
+        """Tells since when clients of a stream are not written what was published."""
         self.readings = readings(self.submit)
         """The input for external readings."""
 
@@ -93,9 +107,9 @@ class Supervisor:
         return self._loaded.warnings
 
     @property
-    def speed_limits(self) -> SpeedLimits:
-        """Return the acceleration limits of the vehicle."""
-        return self._onboard.navigation.settings.speed
+    def approach_limits(self) -> ApproachLimits:
+        """Return what the vehicle can do, and from how far it approaches a path."""
+        return self._onboard.navigation.approach_limits
 
     @property
     def epoch(self) -> str:
@@ -125,6 +139,7 @@ class Supervisor:
             self._onboard.wake_at(),
             publisher.last_tick_at,
             publisher.published_at,
+            self.owing_since(),
             self.clock.now(),
         )
 
@@ -133,6 +148,13 @@ class Supervisor:
         # Rejected only if the maximum of holds is reached, and then the vehicle is held already.
         with suppress(PilothouseError):
             self.submit(HoldRequest("service", "the service ends", Actor("service")))
+
+    def _note_tick(self, since_s: float) -> None:
+        """Let deadlines wait after a tick that was late, and tell of one that was very late."""
+        self._catch_up.note_tick(self.clock.now())
+        late = seconds(since_s) - PERIOD
+        if late > STALL:
+            self.submit(ServiceStall(late))
 
     def _carry_out(self, outputs: Outputs) -> None:
         """Send commands to the robot first, then publish."""

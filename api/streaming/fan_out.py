@@ -17,7 +17,7 @@ from api.streaming.cursor import Cursor, FrameBytes
 from api.streaming.encoder import StreamEncoder
 from api.streaming.stream_client import Group, StreamClient
 from api.streaming.websocket_frames import PING, Connection
-from domain.timebase import seconds
+from domain.timebase import Instant, seconds
 from service.supervisor import Supervisor
 
 log = logging.getLogger(__name__)
@@ -50,6 +50,14 @@ class FanOut:
         """Clients that are due for a complete frame; those that left meanwhile stay for a while."""
         self._woken = asyncio.Event()
         self._task: asyncio.Task[None] | None = None
+        self._owing_since: Instant | None = None
+
+    def owing_since(self) -> Instant | None:
+        """Return since when nothing was written although there is something; None: there is not.
+
+        After a failure it stays until all clients there are have been written to again.
+        """
+        return self._owing_since
 
     @contextmanager
     def serve(
@@ -71,7 +79,7 @@ class FanOut:
         client = StreamClient(group, connection.transport, cursor, address, self._supervisor.clock)
         group.add(client)
         connection.listen(client)
-        self._woken.set()
+        self._wake()
         if self._task is None:
             self._task = asyncio.create_task(self._run(), name="stream fan-out")
             self._task.add_done_callback(self._ended)
@@ -84,12 +92,12 @@ class FanOut:
                 del self._groups[query.topics]
             if not self._groups and self._task is not None:
                 self._task.cancel()
-                self._task = None
+                self._task = self._owing_since = None
 
     def resync(self, client: StreamClient) -> None:
         """Send a complete frame to one client next."""
         client.resync()
-        self._woken.set()
+        self._wake()
 
     def drop(self, transport: asyncio.WriteTransport, address: str) -> None:
         """Disconnect a client that does not read; the close frame reaches it if it reads on."""
@@ -103,7 +111,7 @@ class FanOut:
 
     async def _run(self) -> None:
         frames, events = self._supervisor.frames, self._supervisor.events
-        with frames.watch(self._woken.set), events.watch(self._woken.set):
+        with frames.watch(self._wake), events.watch(self._wake):
             while True:
                 await self._woken.wait()
                 self._woken.clear()
@@ -116,7 +124,19 @@ class FanOut:
                     await self._write_apart(group, encoded, ping)
                 # Writing to a transport with room never suspends, and a long history takes many
                 # rounds: other tasks must run in between.
-                await asyncio.sleep(0)
+                await self._let_others_run()
+                if not self._woken.is_set():
+                    self._owing_since = None
+
+    def _wake(self) -> None:
+        self._woken.set()
+        if self._owing_since is None:
+            self._owing_since = self._supervisor.clock.now()
+
+    async def _let_others_run(self) -> None:
+        """Let other tasks run, after some clients were written to."""
+        await asyncio.sleep(0)
+        self._owing_since = self._supervisor.clock.now()
 
     def _ping(self) -> bytes:
         """Return a ping if one is due, after dropping the clients that missed the last one."""
@@ -157,7 +177,7 @@ class FanOut:
                 batch = tuple(filter(group.in_step.__contains__, batch))
             for transport in batch:
                 transport.write(content)
-            await asyncio.sleep(0)
+            await self._let_others_run()
 
     async def _write_apart(self, group: Group, encoded: FrameBytes, ping: bytes) -> None:
         """Write to each of the other clients what it lacks; then it may rejoin the group."""
@@ -179,11 +199,11 @@ class FanOut:
                 self.drop(client.transport, client.address)
             if number % _CLIENTS_AT_ONCE == 0 or written >= _BYTES_AT_ONCE:
                 written = 0
-                await asyncio.sleep(0)
+                await self._let_others_run()
 
     def _wake_if_more(self, cursor: Cursor) -> None:
         if cursor.has_events:
-            self._woken.set()
+            self._wake()
 
     def _ended(self, task: asyncio.Task[None]) -> None:
         """Disconnect all clients if the task failed: a silent connection would mislead them."""

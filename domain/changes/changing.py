@@ -19,6 +19,7 @@ from domain.events.changes import (
     ChangeRequested,
     NodeAnswered,
 )
+from domain.findings import Blocker
 from domain.health.health import Health
 from domain.identifiers import ChangeId
 from domain.inputs import (
@@ -53,6 +54,8 @@ class Changing(Concern):
         self._changes = Changes(parts, settings, outbox, health)
         self._restoring = Restoring(parts, self._changes, settings, outbox, self._admit)
         self._backend = BackendStatus(available=True)
+        self._backend_since: Instant | None = None
+        """Since when the backend is as it is; None: since the start."""
 
     # --- what happens ----------------------------------------------------------------------------
 
@@ -99,8 +102,8 @@ class Changing(Concern):
         self._restoring.forget(goal.targets)
 
     def _admit(self, request: ChangeRequest) -> ChangeGoal:
-        if not self._backend.available:
-            raise BackendUnavailableError(self._backend.reason)
+        if (down := self._backend_error()) is not None:
+            raise down
         return self._admission.admit(request, self._health.stop_reasons)
 
     def _take_cancel(self, request: CancelRequest, now: Instant) -> None:
@@ -126,6 +129,7 @@ class Changing(Concern):
             kind = BackendAvailable if status.available else BackendUnavailable
             self._outbox.begin(now, kind(status.reason))
             self._outbox.record_input()
+            self._backend_since = now
         self._backend = status
 
     def _take_backlog(self, backlog: ReportBacklog, now: Instant) -> None:
@@ -135,11 +139,25 @@ class Changing(Concern):
 
     def mode(self, part: PartName, mode: ModeName) -> ModeView:
         """Return a mode of a part, with its blockers."""
-        blockers = self._admission.blockers(ModeRequest(part, mode), self._health.stop_reasons)
-        return ModeView(mode, self._backend.available and not refuse(blockers), blockers)
+        blockers = (
+            *self._backend_blockers(part),
+            *self._admission.blockers(ModeRequest(part, mode), self._health.stop_reasons),
+        )
+        return ModeView(mode, not refuse(blockers), blockers)
+
+    def _backend_error(self) -> BackendUnavailableError | None:
+        return None if self._backend.available else BackendUnavailableError(self._backend.reason)
+
+    def _backend_blockers(self, part: PartName) -> tuple[Blocker, ...]:
+        down = self._backend_error()
+        if down is None:
+            return ()
+        return (Blocker(down.code, down.message, (part,), since=self._backend_since),)
 
     def available_transitions(self, part: PartName) -> tuple[Transition, ...]:
         """Return the transitions that would be accepted now and change something."""
+        if not self._backend.available:
+            return ()
         return self._admission.available_transitions(part, self._health.stop_reasons)
 
     def plan(self, request: ChangeRequest) -> Sequence[StepView]:

@@ -1,4 +1,4 @@
-"""Events of the service itself: writes and time."""
+"""Events of the service itself: writes, stalls and time."""
 
 from dataclasses import dataclass
 
@@ -7,21 +7,40 @@ from domain.events.event import Event
 
 @dataclass(frozen=True, slots=True)
 class WriteAnswered(Event):
-    """A write request was answered; the audit trail."""
+    """A write request was answered, or a reading released a stop; the audit trail."""
 
     kind = "audit.write"
     is_input = True
     is_notable = False
 
     method: str
+    """Of HTTP, or CALL of a ROS service, or READING that releases a stop."""
     path: str
+    """Of the request, or name of the service."""
     status: int
-    """HTTP status code."""
+    """HTTP status code, also of calls and readings."""
     address: str
-    """Host and port of the client."""
+    """Host and port of the client, as far as known; else its name."""
 
     def _words(self) -> str:
         return f"{self.method} {self.path} from {self.address} answered {self.status}"
+
+
+@dataclass(frozen=True, slots=True)
+class ServiceStalled(Event):
+    """The service itself did nothing for a while, such as on a host that is too busy.
+
+    What arrived meanwhile was taken in before ages and deadlines were judged. Told at most once in
+    10 s, with the longest stall.
+    """
+
+    kind = "service.stalled"
+    is_input = True
+
+    late_s: float
+
+    def _words(self) -> str:
+        return f"the service itself was {self.late_s:.2f} s late"
 
 
 @dataclass(frozen=True, slots=True)

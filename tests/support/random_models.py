@@ -1,5 +1,6 @@
 """Random models, and random histories of what happens to the robots that they describe."""
 
+import json
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import TypeAlias
@@ -61,15 +62,51 @@ def _system_modes(
     draw: st.DrawFn, modes_of: Mapping[PartName, list[ModeName]]
 ) -> Mapping[ModeName, Mapping[PartName, StateAndMode]]:
     names = [DEFAULT_MODE, *draw(st.lists(st.sampled_from(MODES), unique=True, max_size=2))]
-    chosen = st.lists(st.sampled_from(list(modes_of)), unique=True, min_size=1, max_size=3)
-    parts = draw(chosen)
-    return {name: {part: draw(_wanted(modes_of[part])) for part in parts} for name in names}
+    known = st.sampled_from(list(modes_of))
+    parts = draw(st.lists(known, unique=True, min_size=1, max_size=3))
+    # A mode may name a part that `__DEFAULT__` does not.
+    more = {name: draw(st.lists(known, max_size=1)) for name in names if name != DEFAULT_MODE}
+    return {
+        name: {
+            part: draw(_wanted(modes_of[part]))
+            for part in dict.fromkeys([*parts, *more.get(name, ())])
+        }
+        for name in names
+    }
 
 
 def _wanted(modes: list[ModeName]) -> st.SearchStrategy[StateAndMode]:
     choices: Sequence[ModeName | None] = modes or [None]
     active = [StateAndMode(LifecycleState.ACTIVE, mode) for mode in choices]
     return st.sampled_from([*active, *active, StateAndMode(LifecycleState.INACTIVE)])
+
+
+def model_text(model: SmhModel) -> str:
+    """Return a model as YAML."""
+    text = {
+        **{part: _node_block(node) for part, node in model.nodes.items()},
+        **{part: _system_block(system) for part, system in model.systems.items()},
+    }
+    # JSON is YAML.
+    return json.dumps({part: {"ros__parameters": block} for part, block in text.items()})
+
+
+def _node_block(node: NodeModel) -> Mapping[str, object]:
+    # In a file, every mode has parameters, and `__DEFAULT__` has all of them.
+    every = {name: value for values in node.modes.values() for name, value in values.items()}
+    of_mode = {mode: {"r": 0, **values} for mode, values in node.modes.items()}
+    if of_mode:
+        of_mode[DEFAULT_MODE] = {**every, **of_mode[DEFAULT_MODE]}
+    modes = {mode: {"ros__parameters": values} for mode, values in of_mode.items()}
+    return {"type": "node", "modes": modes} if modes else {"type": "node"}
+
+
+def _system_block(system: SystemModel) -> Mapping[str, object]:
+    modes = {
+        mode: {part: want.label for part, want in wanted.items()}
+        for mode, wanted in system.modes.items()
+    }
+    return {"type": "system", "modes": modes}
 
 
 @st.composite

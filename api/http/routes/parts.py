@@ -45,6 +45,8 @@ async def list_parts(request: Request, supervisor: SupervisorDep) -> Response:
 @policy(Permission.OBSERVE)
 async def get_state(part: PartDep, supervisor: SupervisorDep) -> StateJson:
     """Show the lifecycle state, and which transitions would be accepted now."""
+    # A request would find that what is due has passed.
+    supervisor.let_pass()
     core = supervisor.core
     return StateJson.of(core.part(part), core.available_transitions(part))
 
@@ -104,6 +106,8 @@ async def change_mode(
 @policy(Permission.OBSERVE)
 async def list_modes(part: PartDep, supervisor: SupervisorDep) -> ModesJson:
     """List the modes, and for each the blockers that keep the part from entering it now."""
+    # A request would find that what is due has passed.
+    supervisor.let_pass()
     items = []
     for mode in supervisor.model.modes_of(part):
         # The blockers of one mode of 10,000 nodes are enough for one turn of the event loop.

@@ -215,7 +215,8 @@ class ParametersJson(Json):
 class ModeBody(Body):
     """Bring a part into a mode."""
 
-    mode: str = Field(min_length=1, max_length=256, examples=["PERFORMANCE"])
+    # No maximum but that of the body: a mode of a model may have a name of any length.
+    mode: str = Field(min_length=1, examples=["PERFORMANCE"])
 
 
 class TransitionBody(Body):

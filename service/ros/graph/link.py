@@ -34,6 +34,7 @@ from rosidl_generator_py.import_type_support_impl import (
 )
 
 from domain.vehicle import DriveCommand
+from service.ros.graph.answers import answer_within
 from service.ros.graph.conversion import fill, find_type, require_field
 from service.ros.graph.crossing import MAX_UNANSWERED, Crossing, Inbox, Server
 from service.ros.graph.drive import drive_message
@@ -334,8 +335,7 @@ class _Client:
         # Awaiting the future of rclpy would busy-wait.
         asked.add_done_callback(lambda done: self._crossing.post(_settle, response, done.result()))
         try:
-            async with asyncio.timeout(within_s):
-                return await response
+            return await answer_within(response, within_s)
         finally:
             self._client.remove_pending_request(asked)
 

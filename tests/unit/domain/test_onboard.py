@@ -60,7 +60,10 @@ def test_nothing_is_driven_while_the_task_is_held(robot: CoreRobot) -> None:
     told = len(robot.commands)
     drive(robot, 3)
 
-    assert robot.commands[told:] == []
+    assert {c.command.speed_mps for c in robot.commands[told:] if isinstance(c, Drive)} <= {0.0}
+    stands = len(robot.commands)
+    drive(robot, 3)
+    assert robot.commands[stands:] == []
 
 
 def test_the_whole_path_is_driven_and_the_vehicle_stands_at_its_end(robot: CoreRobot) -> None:
@@ -223,3 +226,62 @@ def test_an_error_that_is_due_at_the_instant_of_a_control_step_comes_before_it(
     assert driven == pytest.approx([0.1, 0.0])
     raised = next(event for event in outputs.events if event.kind == "error.raised")
     assert raised.at == seconds(15)
+
+
+# --- an input that is late by our own fault ------------------------------------------------------
+
+
+def at(robot: CoreRobot) -> VehicleReport:
+    """Return a report of the vehicle where it is."""
+    state = robot.core.driving.vehicle.state
+    assert state is not None
+    return VehicleReport(state)
+
+
+def test_a_pose_that_is_late_by_our_own_fault_is_taken_before_its_age_is_judged(
+    robot: CoreRobot,
+) -> None:
+    robot.submit_task(straight())
+    robot.advance(1)
+    late = robot.now + seconds(1)
+    taken = robot.onboard.take_in(at(robot), late)
+    outputs = robot.onboard.handle(TimePassed(), late)
+    assert not {"hold.set", "task.pausing"} & {e.kind for e in (*taken.events, *outputs.events)}
+
+
+def test_missed_control_steps_are_not_made_up_for_after_a_stall(robot: CoreRobot) -> None:
+    robot.submit_task(straight())
+    robot.advance(1)
+    late = robot.now + seconds(0.7)
+    assert robot.onboard.take_in(at(robot), late).commands == ()
+    outputs = robot.onboard.handle(TimePassed(), late + seconds(0.05))
+    assert [type(command).__name__ for command in outputs.commands] == ["Drive"]
+
+
+def test_what_was_due_is_judged_next_if_the_input_does_not_end_it(robot: CoreRobot) -> None:
+    robot.submit_task(straight())
+    robot.advance(1)
+    late = robot.now + seconds(1)
+    assert not robot.onboard.take_in(Readings((Reading("estop", False),), "pad"), late).commands
+    outputs = robot.onboard.handle(TimePassed(), late)
+    assert "task.pausing" in {event.kind for event in outputs.events}
+
+
+def test_of_signals_that_arrive_one_after_the_other_none_is_stale_in_between(
+    robot: CoreRobot,
+) -> None:
+    late = robot.now + seconds(60)
+    for name, value in GOOD.items():
+        robot.onboard.take_in(Readings((Reading(name, value),), "pad"), late)
+    robot.onboard.take_in(at(robot), late)
+    robot.onboard.handle(TimePassed(), late)
+    assert robot.core.system_state().errors == ()
+
+
+def test_a_late_input_that_is_refused_changes_nothing_and_judges_nothing(robot: CoreRobot) -> None:
+    late = robot.now + seconds(60)
+    with pytest.raises(InvalidValueError):
+        robot.onboard.take_in(Readings((Reading("battery_level", 7.0),), "pad"), late)
+    assert robot.core.system_state().errors == ()
+    robot.onboard.handle(TimePassed(), late)
+    assert robot.core.system_state().errors == ("STALE_DATA",)

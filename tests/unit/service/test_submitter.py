@@ -9,6 +9,9 @@ from domain.errors import UnknownPartError
 from domain.inputs import ModeRequest, NodeReport, Reading, Readings
 from domain.outbox import Outputs
 from domain.state_and_mode import PartName
+from domain.timebase import Instant
+from service.catch_up import CatchUp
+from service.refused_readings import RefusedReadings
 from service.submitter import Submitter
 from service.supervisor import Supervisor
 from tests.support.live_robot import make_onboard, make_supervisor, running
@@ -23,7 +26,12 @@ class Given:
         self.clock = ManualClock()
         self.onboard = make_onboard(actuation_model(), self.clock.now())
         self.carried_out: list[Outputs] = []
-        self.submitter = Submitter(self.onboard, self.clock, self.carried_out.append)
+        self.tick_due: Instant | None = None
+        catch_up = CatchUp(self.clock, lambda: self.tick_due)
+        self.refused = RefusedReadings()
+        self.submitter = Submitter(
+            self.onboard, self.clock, self.carried_out.append, catch_up, self.refused
+        )
 
 
 @pytest.fixture
@@ -43,7 +51,8 @@ async def test_what_was_due_before_a_refused_request_is_still_told(
 ) -> None:
     supervisor.readings.submit([Reading("estop", value=True)])
     supervisor.readings.submit([Reading("estop", value=False)])
-    clock.stall(0.3)
+    await clock.advance(0.19)
+    clock.stall(0.02)
     with pytest.raises(UnknownPartError):
         supervisor.submit(ModeRequest(PartName("nobody"), "FAST"))
     kinds = [event.kind for event in supervisor.events.oldest_first()]
@@ -65,6 +74,14 @@ def test_a_report_that_is_refused_is_logged(caplog: pytest.LogCaptureFixture) ->
 
     assert "rejected NodeReport" in caplog.text
     assert given.onboard.core.part(BASE).reachable is False
+
+
+def test_a_refused_reading_of_a_topic_is_counted(caplog: pytest.LogCaptureFixture) -> None:
+    given = Given()
+    given.submitter.deliver(Readings((Reading("battery_level", 7.0),), "ros:/battery"))
+
+    assert given.refused.counts == {"ros": 1}
+    assert "rejected a reading of ros:/battery" in caplog.text
 
 
 async def test_what_time_makes_due_happens_at_its_time() -> None:

@@ -404,3 +404,53 @@ async def test_whoever_reads_nothing_at_all_is_told_and_cut_though_its_kernel_ho
 
     assert wire.closing
     assert wire.written[-1].endswith(b"you do not read")
+
+
+async def test_it_owes_nothing_once_all_is_written(fan_out: FanOut, clock: ManualClock) -> None:
+    wire = Wire()
+    assert fan_out.owing_since() is None
+    with fan_out.serve(wire.connection, ALL, "page"):
+        assert fan_out.owing_since() == clock.now()
+        await clock.advance(0.1)
+
+        assert fan_out.owing_since() is None
+
+
+async def test_the_watchdog_learns_that_the_fan_out_hangs(
+    fan_out: FanOut,
+    supervisor: Supervisor,
+    clock: ManualClock,
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    supervisor.owing_since = fan_out.owing_since
+
+    async def hang(*_: object) -> None:
+        await asyncio.Event().wait()
+
+    monkeypatch.setattr(StreamEncoder, "prepare", hang)
+    with fan_out.serve(Wire().connection, ALL, "page"):
+        await clock.advance(0.9)
+        assert supervisor.hanging() is None
+        await clock.advance(0.2)
+
+        assert supervisor.hanging() == "the stream has written nothing for 1.10 s"
+
+    assert supervisor.hanging() is None
+
+
+async def test_the_watchdog_learns_that_the_fan_out_has_failed_and_that_it_writes_again(
+    fan_out: FanOut,
+    supervisor: Supervisor,
+    clock: ManualClock,
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    supervisor.owing_since = fan_out.owing_since
+    with monkeypatch.context() as broken:
+        broken.setattr(StreamEncoder, "frame", None)
+        with fan_out.serve(Wire().connection, STATE, "page"):
+            await clock.advance(2)
+
+    assert supervisor.hanging() == "the stream has written nothing for 2.00 s"
+    with fan_out.serve(Wire().connection, STATE, "page"):
+        await clock.advance(0.1)
+    assert supervisor.hanging() is None

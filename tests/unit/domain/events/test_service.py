@@ -3,7 +3,7 @@
 import pytest
 
 from domain.events.event import Event
-from domain.events.service import TimeWasDue, WriteAnswered
+from domain.events.service import ServiceStalled, TimeWasDue, WriteAnswered
 
 
 @pytest.mark.parametrize(
@@ -13,6 +13,7 @@ from domain.events.service import TimeWasDue, WriteAnswered
             WriteAnswered("PUT", "/holds/gate", 409, "10.0.0.7:5"),
             "PUT /holds/gate from 10.0.0.7:5 answered 409",
         ),
+        (ServiceStalled(1.234), "the service itself was 1.23 s late"),
         (TimeWasDue(), "a deadline passed"),
     ],
     ids=lambda value: value.kind if isinstance(value, Event) else "",
