@@ -127,8 +127,8 @@ async def _measure(service: MeasuredService, root: str) -> Row:
 
 async def _change(service: MeasuredService, root: str, mode: str) -> Mapping[str, Any]:
     """Ask for a mode of all, and return the change when it has ended."""
-    async with httpx.AsyncClient(timeout=60, base_url=str(service.process.url)) as http:
-        answer = await http.post(f"/systems/{root}/mode?wait=40", json={"mode": mode})
+    async with httpx.AsyncClient(timeout=90, base_url=str(service.process.url)) as http:
+        answer = await http.post(f"/systems/{root}/mode?wait=60", json={"mode": mode})
     change: dict[str, Any] = answer.json()
     return change
 
@@ -151,7 +151,7 @@ async def _stop_meanwhile(service: MeasuredService, root: str) -> tuple[float, M
 async def _read_all(service: MeasuredService) -> float:
     """Read large resources, and return the longest answer to a small request meanwhile, s."""
     longest = 0.0
-    async with httpx.AsyncClient(timeout=60, base_url=str(service.process.url)) as http:
+    async with httpx.AsyncClient(timeout=90, base_url=str(service.process.url)) as http:
         for resource in RESOURCES:
             reading = asyncio.create_task(http.get(f"/{resource}"))
             async with asking(service.host) as asker:
@@ -200,7 +200,7 @@ async def _request(
     json: object = None,
     content: str | None = None,
 ) -> None:
-    async with httpx.AsyncClient(timeout=60, base_url=str(service.process.url)) as http:
+    async with httpx.AsyncClient(timeout=90, base_url=str(service.process.url)) as http:
         (await http.request(method, path, json=json, content=content)).raise_for_status()
 
 
@@ -214,7 +214,7 @@ async def _supersede(service: MeasuredService, root: str) -> None:
 async def _cancel(service: MeasuredService, root: str) -> None:
     canceled = asyncio.create_task(_change(service, root, SLOW))
     await asyncio.sleep(MIDWAY_S)
-    async with httpx.AsyncClient(timeout=60, base_url=str(service.process.url)) as http:
+    async with httpx.AsyncClient(timeout=90, base_url=str(service.process.url)) as http:
         newest = (await http.get("/changes?limit=1")).json()["items"][0]["id"]
         (await http.delete(f"/changes/{newest}")).raise_for_status()
     assert (await canceled)["status"] == "canceled"
