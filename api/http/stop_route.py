@@ -55,8 +55,9 @@ class StopRoute(JsonRoute):
                 if asked is None:
                     _note_refused(request, error)
                     raise
-                rejected = error
-            return await _handle_again(handle, request, asked, rejected)
+                # Not the error itself: it refers to this frame, which would refer to it.
+                faults, is_cut = _faults_of(error), isinstance(error, BodyTooLargeError)
+            return await _handle_again(handle, request, asked, faults, is_cut=is_cut)
 
         return handle_stop
 
@@ -65,14 +66,23 @@ async def _handle_again(
     handle: _Handle,
     request: Request,
     asked: Mapping[str, object],
-    rejected: PilothouseError | RequestValidationError,
+    faults: list[BodyFault],
+    *,
+    is_cut: bool,
 ) -> Response:
-    """Handle what is valid of a request that was rejected."""
-    faults = _faults_of(rejected)
+    """Handle what is valid of a request that was rejected.
+
+    Args:
+        handle: The framework's handler.
+        request: The request.
+        asked: What is valid of it.
+        faults: Why it was rejected.
+        is_cut: Whether its body was not read to the end.
+    """
     taken = JsonRequest.of(request, json.dumps(asked).encode(), asked)
     taken.scope[_IGNORED] = faults
     answer = await handle(taken)
-    if isinstance(rejected, BodyTooLargeError):
+    if is_cut:
         # The rest of the body is not read; otherwise it would be read as the next request.
         answer.headers["Connection"] = "close"
     _refused(request).note_ignored(_sender(request), _told(faults))
