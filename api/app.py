@@ -1,5 +1,6 @@
 """The web application around a supervisor that somebody else runs: its robot, and simulations."""
 
+import asyncio
 from collections.abc import AsyncIterator, Sequence
 from contextlib import asynccontextmanager
 
@@ -62,6 +63,7 @@ def create_app(
         supervisor, limits.requests_per_s, app.state.stream_server
     )
     app.state.simulated = simulated
+    app.state.copying = asyncio.Lock()
     app.include_router(simulations.router)
     app.include_router(documents.router)
     app.include_router(rosbridge.router)

@@ -64,7 +64,10 @@ class SendGoal:
 
 @dataclass(frozen=True, slots=True)
 class PreemptGoal:
-    """Preempt the goal of navigation; no drive command of this goal may follow."""
+    """Preempt the goal of navigation.
+
+    Until the vehicle is at standstill, navigation steers at a commanded speed of 0.
+    """
 
     goal: GoalId
 

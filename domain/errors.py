@@ -93,6 +93,21 @@ class UnknownPartError(UnknownNameError):
 
     code = "UNKNOWN_PART"
 
+    @classmethod
+    def of_other_kind(cls, name: str, asked: str, hint: str | None = None) -> "UnknownPartError":
+        """Return the error for a system where a node is needed, or the other way round.
+
+        Args:
+            name: Of the part.
+            asked: `system` or `node`, the kind that is needed.
+            hint: What to do.
+        """
+        error = cls(asked, name, (), hint)
+        other = "system" if asked == "node" else "node"
+        error.message = f"{shortened(name)!r} is a {other}, not a {asked}"
+        error.args = (error.message,)
+        return error
+
 
 class UnknownModeError(UnknownNameError):
     """An unknown mode: the part has no mode of this name."""

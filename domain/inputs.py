@@ -72,6 +72,15 @@ class VehicleReport:
 
 
 @dataclass(frozen=True, slots=True)
+class DriveStatus:
+    """Whether drive commands reach the vehicle. Without such a report, they do."""
+
+    available: bool
+    reason: str = ""
+    """Why they do not; empty: they do."""
+
+
+@dataclass(frozen=True, slots=True)
 class BackendStatus:
     """Whether the backend works, so that nodes can be reached at all."""
 
@@ -246,6 +255,7 @@ Input: TypeAlias = (
     | NodesBehind
     | Readings
     | VehicleReport
+    | DriveStatus
     | BackendStatus
     | GoalFeedback
     | GoalResult

@@ -30,6 +30,9 @@ class LifecycleState(StrEnum):
     DEACTIVATING = "deactivating"
     ERROR_PROCESSING = "errorprocessing"
 
+    # That of Enum is written in Python, and tables are keyed by states.
+    __hash__ = str.__hash__
+
     @property
     def id(self) -> int:
         """Return the number of this state in `lifecycle_msgs/msg/State`."""

@@ -1,27 +1,45 @@
 """Follows one path at a time, like an action server: goal, feedback, preemption, result.
 
 Deterministic and advanced like the simulated robot. The task planner decides whether to drive;
-navigation aborts a goal only when a limit is reached. No drive command follows a preemption.
+navigation aborts a goal only when a limit is reached. After a preemption it stops the vehicle, and
+steers along the path until the vehicle is at standstill: one that brakes in a bend with the wheels
+held leaves its path.
 
 Source: smart_polaris, `controller_action_interface.py`; limits: docs/explanation/semantics.md.
 """
 
 import math
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import TypeAlias
 
 from domain.commands import Drive, PreemptGoal, SendGoal
 from domain.inputs import GoalFeedback, GoalResult
+from domain.paths.approach import (
+    ALIGNED_RAD,
+    MAY_MISS_SHARE,
+    TURNED_RAD,
+    Approach,
+    ApproachLimits,
+    FarFromPathError,
+    approach_mps,
+    approach_radius_m,
+    is_on_path,
+    near_path_m,
+    on_path_m,
+    plan_approach,
+)
+from domain.paths.path import Path
 from domain.paths.speed_profile import SpeedLimits, SpeedProfile
 from domain.tasks.vehicle_watch import VehicleWatch
 from domain.timebase import Duration, Instant, seconds, to_seconds
+from domain.tracking.coverage import Coverage
+from domain.tracking.leg import GivenUpError, Leg, LegLimits
+from domain.tracking.pace import PERIOD, Pace
+from domain.tracking.pure_pursuit import PurePursuit
 from domain.tracking.tracker import ControlStep, PathTracker
 from domain.tracking.trackers import TRACKERS
 from domain.vehicle import DriveCommand, VehicleLimits, VehicleState
-
-PERIOD: Duration = seconds(0.05)
-"""Period of the control loop."""
 
 COVERED_SHARE = 0.95
 """A goal succeeds only if more than this share of the length is covered."""
@@ -34,15 +52,29 @@ Trackers: TypeAlias = Mapping[str, Callable[[VehicleLimits], PathTracker]]
 class NavigationSettings:
     """Limits at which a goal is aborted, and speed limits."""
 
-    max_cross_track_m: float = 3.0
+    max_cross_track_m: float | None = None
+    """Largest cross-track error, m; None: 3 m, less for a small vehicle."""
     max_cross_track_for: Duration = seconds(1.0)
-    """A cross-track error above `max_cross_track_m` for this long aborts the goal."""
+    """A larger cross-track error for this long aborts the goal."""
     no_progress_for: Duration = seconds(20.0)
     """This long without `least_progress_m` of progress aborts the goal."""
     least_progress_m: float = 0.05
     end_tolerance_m: float = 0.3
-    """A standstill within this distance of the last waypoint counts as arrival."""
+    """A standstill within this distance, m, of the last waypoint counts as arrival; less for a
+    small vehicle."""
     speed: SpeedLimits = field(default_factory=SpeedLimits)
+
+    def cross_track_m(self, limits: VehicleLimits) -> float:
+        """Return the largest cross-track error of a vehicle, m."""
+        if self.max_cross_track_m is not None:
+            return self.max_cross_track_m
+        return near_path_m(limits)
+
+
+_LEAST_END_TOLERANCE_M = 0.05
+_LOOP_RADII = 4.0
+"""An approach turns within this multiple of the radius of its arcs."""
+_ROUNDING_M = 1e-6
 
 
 @dataclass(slots=True)
@@ -50,27 +82,24 @@ class _Run:
     """One goal while it is followed."""
 
     goal: SendGoal
-    tracker: PathTracker
+    path: Path
+    """The path as the vehicle sees it."""
     profile: SpeedProfile
+    pace: Pace
+    coverage: Coverage
     next_at: Instant
     target_index: int
-    speed_mps: float
-    """Last commanded speed; the next one exceeds it by no more than the acceleration allows."""
-    best_m: float
-    """Largest distance along the path that counted as progress."""
-    best_at: Instant
-    reached_m: float
-    """Distance along the path up to which passed and skipped stretches are known."""
-    left_out_m: float
-    """Total length of stretches that were further away than `max_cross_track_m`."""
-    off_path_since: Instant | None = None
-
-
-_PASSED_STEP_M = 0.25
-
-
-class _GivenUpError(Exception):
-    """The goal is aborted; the message says why."""
+    """First waypoint not yet passed, also beside the path."""
+    distance_m: float
+    """Distance of the vehicle along the path, m."""
+    leg: Leg | None = None
+    """What is followed now: the path, or the way onto it; None: not yet known."""
+    approach: Approach | None = None
+    """The way onto the path; None: the vehicle is on it."""
+    is_preempted: bool = False
+    """Whether it only stops."""
+    was_approaching: bool = False
+    """Whether the goal that it takes up was preempted on the way onto the path."""
 
 
 class Navigation:
@@ -98,30 +127,57 @@ class Navigation:
         self.settings = settings
         self._vehicle = vehicle
         self._trackers = trackers
+        near_m = settings.cross_track_m(limits)
+        self.approach_limits = ApproachLimits(
+            limits, settings.speed, near_m, vehicle.settings.max_start_distance_m
+        )
+        """From where paths are approached, and how."""
+        self._leg_limits = LegLimits(
+            near_m,
+            settings.max_cross_track_for,
+            settings.no_progress_for,
+            settings.least_progress_m,
+        )
         self._run: _Run | None = None
+        self._preempted: _Run | None = None
+        """The goal that was preempted last: what is known of its path still holds."""
 
     def handle(self, command: SendGoal | PreemptGoal, now: Instant) -> None:
         """Accept a goal, whose first control step is due at once, or preempt it."""
         if isinstance(command, SendGoal):
             self._begin(command, now)
         elif self._run is not None and self._run.goal.goal == command.goal:
-            self._run = None
+            self._preempt(self._run)
 
     def _begin(self, goal: SendGoal, now: Instant) -> None:
         state = self._vehicle.state
         speed = 0.0 if state is None else max(state.speed_mps, 0.0)
+        before = self._preempted
+        if before is not None and not _goes_on(goal, before):
+            before = self._preempted = None
+        path = goal.path.for_vehicle(self._limits)
+        reached_m = max(goal.reached_m, path.distance_of(goal.first_index))
         self._run = _Run(
             goal=goal,
-            tracker=self._trackers[goal.controller](self._limits),
-            profile=SpeedProfile(goal.path, goal.speed_mps, self.settings.speed, self._limits),
+            path=path,
+            profile=SpeedProfile(path, goal.speed_mps, self.settings.speed, self._limits),
+            pace=Pace(self.settings.speed, self._limits, speed),
+            coverage=self._coverage(goal, path, reached_m) if before is None else before.coverage,
             next_at=now,
             target_index=goal.start_index,
-            speed_mps=speed,
-            best_m=-math.inf,
-            best_at=now,
-            reached_m=max(goal.reached_m, goal.path.distance_of(goal.first_index)),
-            left_out_m=goal.left_out_m,
+            distance_m=reached_m,
+            was_approaching=before is not None and before.approach is not None,
         )
+
+    def _coverage(self, goal: SendGoal, path: Path, reached_m: float) -> Coverage:
+        braking = min(self.settings.speed.braking_mps2, self._limits.braking_mps2 or math.inf)
+        near_m = self.approach_limits.near_m
+        return Coverage(path, reached_m, goal.left_out_m, near_m, braking)
+
+    def _preempt(self, run: _Run) -> None:
+        self._preempted, run.is_preempted = run, True
+        if self._vehicle.stands or run.leg is None:
+            self._run = None
 
     def wake_at(self) -> Instant | None:
         """Return when the next control step is due; None: there is no goal."""
@@ -134,9 +190,11 @@ class Navigation:
             return ()
         self.skip_missed(now)
         try:
-            return self._control(run, now)
-        except _GivenUpError as error:
+            return self._stop(run, now) if run.is_preempted else self._control(run, now)
+        except GivenUpError as error:
             self._run = None
+            if run.is_preempted:
+                return ()
             return (GoalResult(run.goal.goal, succeeded=False, reason=str(error)),)
 
     def skip_missed(self, now: Instant) -> None:
@@ -149,106 +207,171 @@ class Navigation:
         """Do one control step.
 
         Raises:
-            _GivenUpError: A limit was reached.
+            GivenUpError: A limit was reached.
         """
         state = self._fresh_state(now)
-        step = self._steer(run, state)
-        self._judge(run, step, now)
-        self._note_passed(run, step, state)
-        run.target_index = step.target_index
-        command = self._command(run, step)
-        feedback = GoalFeedback(
-            run.goal.goal,
-            step.target_index,
-            step.distance_m,
-            step.cross_track_error_m,
-            step.lookahead,
-            command,
-            run.left_out_m,
+        leg = self._leg(run, state, now)
+        step = leg.follow(state)
+        leg.judge(step, self._leg_limits, now)
+        error_m = self._locate(run, step, state)
+        limit_mps = run.profile.speed_at(step.distance_m)
+        if run.approach is not None:
+            limit_mps = run.approach.speed_mps
+        elif abs(error_m) > on_path_m(self._limits):
+            limit_mps = min(limit_mps, run.pace.braked_mps(approach_mps(self._limits)))
+        command = run.pace.command(
+            limit_mps, step.steering_angle_rad, step.cross_track_error_m, state, now
         )
-        if self._has_arrived(run, step, state):
+        feedback = _feedback(run, step, error_m, command)
+        if run.approach is None and self._has_arrived(run, state):
             self._run = None
             return feedback, GoalResult(run.goal.goal, succeeded=True)
         return Drive(command), feedback
+
+    def _stop(self, run: _Run, now: Instant) -> tuple[NavigationMessage, ...]:
+        """Steer along the path, without driving, until the vehicle is at standstill.
+
+        Raises:
+            GivenUpError: There is nothing to steer by.
+        """
+        state = self._fresh_state(now)
+        if run.leg is None or self._vehicle.stands:
+            self._run = None
+            return ()
+        step = run.leg.follow(state)
+        error_m = self._locate(run, step, state)
+        command = run.pace.stop(step.steering_angle_rad, state)
+        return Drive(command), _feedback(run, step, error_m, command)
 
     def _fresh_state(self, now: Instant) -> VehicleState:
         state = self._vehicle.fresh_state(now)
         if state is None:
             limit_s = to_seconds(self._vehicle.settings.pose_stale_after)
-            raise _GivenUpError(f"no pose of the vehicle for {limit_s:g} s")
+            raise GivenUpError(f"no pose of the vehicle for {limit_s:g} s")
         return state
 
-    def _steer(self, run: _Run, state: VehicleState) -> ControlStep:
-        """Ask the tracker; an exception or an invalid answer aborts the goal."""
-        try:
-            step = run.tracker.control_step(state, run.goal.path, run.target_index)
-        except Exception as error:
-            # Trackers may be third-party code: a fault aborts the goal, not the supervision.
-            kind = type(error).__name__
-            raise _GivenUpError(f"{run.goal.controller} failed: {kind}: {error}") from error
-        if not math.isfinite(step.steering_angle_rad):
-            raise _GivenUpError(
-                f"{run.goal.controller} commands a steering angle that is not finite"
-            )
-        return step
+    # --- what is followed ------------------------------------------------------------------------
 
-    def _judge(self, run: _Run, step: ControlStep, now: Instant) -> None:
-        settings = self.settings
-        if abs(step.cross_track_error_m) > settings.max_cross_track_m:
-            if run.off_path_since is None:
-                run.off_path_since = now
-            elif now - run.off_path_since >= settings.max_cross_track_for:
-                error_m = abs(step.cross_track_error_m)
-                raise _GivenUpError(
-                    f"{error_m:.1f} m from the path for "
-                    f"{to_seconds(settings.max_cross_track_for):g} s"
-                )
-        else:
-            run.off_path_since = None
-        if step.distance_m >= run.best_m + settings.least_progress_m:
-            run.best_m, run.best_at = step.distance_m, now
-        elif now - run.best_at >= settings.no_progress_for:
-            raise _GivenUpError(f"no progress for {to_seconds(settings.no_progress_for):g} s")
+    def _leg(self, run: _Run, state: VehicleState, now: Instant) -> Leg:
+        """Return what is followed now: the way onto the path, and then the path.
 
-    def _note_passed(self, run: _Run, step: ControlStep, state: VehicleState) -> None:
-        """Sort the path since the last step into passed and skipped stretches.
-
-        A vehicle that cannot steer a hairpin is projected onto the path behind it: it skipped the
-        hairpin.
+        Raises:
+            GivenUpError: The vehicle is too far from the path.
         """
-        path, pose = run.goal.path, state.pose
-        while run.reached_m < step.distance_m:
-            until_m = min(run.reached_m + _PASSED_STEP_M, step.distance_m)
-            middle = path.point_at((run.reached_m + until_m) / 2)
-            away_m = math.hypot(middle.x_m - pose.x_m, middle.y_m - pose.y_m)
-            if away_m > self.settings.max_cross_track_m:
-                run.left_out_m += until_m - run.reached_m
-            run.reached_m = until_m
+        if run.leg is None:
+            self._take_up(run, state)
+            run.approach = self._plan(run, state)
+            if run.approach is not None:
+                run.leg = self._leg_onto_the_path(run.approach, now)
+        elif run.approach is not None and self._is_there(run, run.approach, run.leg, state):
+            run.leg = run.approach = None
+        if run.leg is None:
+            name = run.goal.controller
+            tracker = self._trackers[name](self._limits)
+            run.leg = Leg(run.path, "the path", name, tracker, run.target_index, now)
+        return run.leg
 
-    def _command(self, run: _Run, step: ControlStep) -> DriveCommand:
-        """Return steering within its limit, and a speed that rises no faster than allowed."""
-        limit = self._limits.max_steering_angle_rad
-        steering = min(max(step.steering_angle_rad, -limit), limit)
-        gained = self.settings.speed.acceleration_mps2 * to_seconds(PERIOD)
-        run.speed_mps = min(run.profile.speed_at(step.distance_m), run.speed_mps + gained)
-        return DriveCommand(run.speed_mps, steering)
+    def _leg_onto_the_path(self, approach: Approach, now: Instant) -> Leg:
+        # Whatever tracker the task has: this one also follows tight curves with slow wheels.
+        tracker = PurePursuit(self._limits)
+        return Leg(approach.way, "its way onto the path", "pure_pursuit", tracker, 0, now)
 
-    def _has_arrived(self, run: _Run, step: ControlStep, state: VehicleState) -> bool:
+    def _take_up(self, run: _Run, state: VehicleState) -> None:
+        """Find a vehicle that rolled on along its path while its pose was unknown."""
+        if run.was_approaching or not run.coverage.may_have_rolled(state):
+            return
+        pose, index = state.pose, run.target_index
+        here = run.path.project(pose.x_m, pose.y_m, index)
+        # A projection searches ahead within a window.
+        while (ahead := run.path.index_after(here.distance_m)) > index:
+            index = ahead
+            here = run.path.project(pose.x_m, pose.y_m, index)
+        if is_on_path(here, pose, self._limits, TURNED_RAD):
+            run.coverage.note(state, here.distance_m)
+            run.target_index, run.distance_m = index, max(run.distance_m, here.distance_m)
+
+    def _plan(self, run: _Run, state: VehicleState) -> Approach | None:
+        """Return the way onto the path; None: the vehicle is on it.
+
+        Raises:
+            GivenUpError: The vehicle is too far from the path.
+        """
+        goal, path, limits = run.goal, run.path, self.approach_limits
+        if run.was_approaching:
+            loop_m = _LOOP_RADII * approach_radius_m(self._limits)
+            limits = replace(limits, from_m=limits.from_m + loop_m)
+        whole_m = path.length_m - path.distance_of(goal.first_index)
+        may_miss_m = max(MAY_MISS_SHARE * whole_m - run.coverage.left_out_m, 0.0)
+        begin_m, index = run.coverage.reached_m, run.target_index
+        try:
+            return plan_approach(
+                path, state.pose, index, begin_m, goal.speed_mps, may_miss_m, limits
+            )
+        except FarFromPathError as error:
+            message = f"{error}, which is approached from at most {limits.from_m:g} m"
+            raise GivenUpError(message) from error
+
+    def _is_there(self, run: _Run, approach: Approach, leg: Leg, state: VehicleState) -> bool:
+        """Tell whether the way onto the path has been driven."""
+        if leg.distance_m < approach.length_m:
+            return False
+        pose = state.pose
+        here = run.path.project(pose.x_m, pose.y_m, run.target_index)
+        is_there = is_on_path(here, pose, self._limits, ALIGNED_RAD)
+        return is_there or leg.distance_m >= leg.path.length_m
+
+    # --- where the vehicle is --------------------------------------------------------------------
+
+    def _locate(self, run: _Run, step: ControlStep, state: VehicleState) -> float:
+        """Note what was passed of the path; return the cross-track error, m."""
+        if run.approach is None:
+            run.target_index, run.distance_m = step.target_index, step.distance_m
+            run.coverage.note(state, step.distance_m)
+            return step.cross_track_error_m
+        run.coverage.note(state, None)
+        here = run.path.project(state.pose.x_m, state.pose.y_m, run.target_index)
+        # A loop of the way may come near to the path further on than where it meets it.
+        along_m = max(step.distance_m - run.approach.length_m, 0.0)
+        most_m = run.approach.meets_m + along_m
+        run.distance_m = max(run.distance_m, min(here.distance_m, most_m))
+        run.target_index = run.path.index_after(run.distance_m)
+        return here.cross_track_error_m
+
+    def _has_arrived(self, run: _Run, state: VehicleState) -> bool:
         """Tell whether the goal is reached.
 
         Raises:
-            _GivenUpError: The end is passed, but too much of the path was skipped.
+            GivenUpError: The end is passed, but too much of the path was left out.
         """
-        path = run.goal.path
+        path, left_out_m = run.path, run.coverage.left_out_m
         begun = path.distance_of(run.goal.first_index)
-        covered = (step.distance_m - begun - run.left_out_m) / (path.length_m - begun)
-        is_past_end = step.distance_m >= path.length_m
+        covered = (run.distance_m - begun - left_out_m) / (path.length_m - begun)
+        is_past_end = run.distance_m >= path.length_m
         if covered <= COVERED_SHARE:
             if is_past_end:
-                raise _GivenUpError(f"the end is passed, but {run.left_out_m:.1f} m were skipped")
+                raise GivenUpError(f"the end is passed, but {left_out_m:.1f} m were skipped")
             return False
         if is_past_end:
             return True
         end = path.waypoint(path.count - 1)
         left_m = math.hypot(end.x_m - state.pose.x_m, end.y_m - state.pose.y_m)
-        return self._vehicle.stands and left_m <= self.settings.end_tolerance_m
+        tolerance_m = self.settings.end_tolerance_m * min(self._limits.scale, 1.0)
+        return self._vehicle.stands and left_m <= max(tolerance_m, _LEAST_END_TOLERANCE_M)
+
+
+def _goes_on(goal: SendGoal, before: _Run) -> bool:
+    """Tell whether a goal takes up the one that was preempted before."""
+    is_same = goal.path is before.goal.path and goal.first_index == before.goal.first_index
+    return is_same and goal.reached_m >= before.coverage.reached_m - _ROUNDING_M
+
+
+def _feedback(run: _Run, step: ControlStep, error_m: float, command: DriveCommand) -> GoalFeedback:
+    return GoalFeedback(
+        run.goal.goal,
+        run.target_index,
+        run.distance_m,
+        error_m,
+        step.lookahead,
+        command,
+        run.coverage.left_out_m,
+    )

@@ -75,6 +75,11 @@ class Outbox:
         self._at, self._input, self._actor, self._cause = now, event, actor, cause
         self._input_id = None
 
+    @property
+    def actor(self) -> Actor:
+        """Return who sent the current input."""
+        return self._actor
+
     def resume(self, now: Instant, recorded: int, actor: Actor) -> None:
         """Go on with an input that was recorded earlier; what follows is its consequence.
 

@@ -3,7 +3,7 @@
 Nothing here refers to a live object, so a snapshot may be kept, compared and sent.
 """
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from enum import StrEnum
 from typing import Literal
@@ -148,7 +148,8 @@ class ChangeView:
     request: ChangeRequest
     status: ChangeStatus
     reason: str | None
-    steps: tuple[StepView, ...]
+    steps: Sequence[StepView]
+    """Frozen as the rest; each is made when it is read, since there may be thousands."""
     started_at: Instant
     ended_at: Instant | None
     cause: int

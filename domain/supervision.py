@@ -6,7 +6,7 @@ live service, in a simulation and in a test.
 Its concerns make the decisions; this module keeps their order.
 """
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -35,7 +35,7 @@ from domain.snapshot import (
     SystemStateView,
 )
 from domain.stalls import Stalls
-from domain.state_and_mode import PartName
+from domain.state_and_mode import ModeName, PartName
 from domain.tasks.driving import Driving
 from domain.tasks.settings import TaskSettings
 from domain.tasks.standstill import Standstill
@@ -153,8 +153,7 @@ class Supervision:
         for take in self._takers[type(given)]:
             take(given, self._now)
         if self._has_more and isinstance(given, TimePassed):
-            for concern in self._portioned:
-                concern.go_on(self._now)
+            self._go_on()
         self._settle()
         return self._outbox.take()
 
@@ -167,6 +166,13 @@ class Supervision:
                 concern.pass_time(self._now)
             self._settle()
         self._now = now
+
+    def _go_on(self) -> None:
+        """Do one portion: what an earlier concern left comes before what follows from it."""
+        for concern in self._portioned:
+            if concern.has_more:
+                concern.go_on(self._now)
+                return
 
     def _settle(self) -> None:
         settle(self._settling, self._now, self._max_rounds)
@@ -193,7 +199,11 @@ class Supervision:
 
     def modes(self, part: PartName) -> tuple[ModeView, ...]:
         """Return the modes of a part, with the blockers of each."""
-        return self._changing.modes(part)
+        return tuple(self.mode(part, mode) for mode in self.model.modes_of(part))
+
+    def mode(self, part: PartName, mode: ModeName) -> ModeView:
+        """Return a mode of a part, with its blockers."""
+        return self._changing.mode(part, mode)
 
     def parameters(self, node: PartName) -> tuple[ParameterView, ...]:
         """Return the parameters of a node."""
@@ -203,7 +213,7 @@ class Supervision:
         """Return the transitions that would be accepted now and change something."""
         return self._changing.available_transitions(part)
 
-    def plan(self, request: ChangeRequest) -> tuple[StepView, ...]:
+    def plan(self, request: ChangeRequest) -> Sequence[StepView]:
         """Return the steps that a request would take now, without starting them.
 
         Raises:

@@ -57,20 +57,22 @@ class EventLog(Watched):
         """Id of the oldest event that is kept; while the log is empty, of its first event."""
         return max(self._before + 1, self._newest - self._capacity + 1)
 
-    def append(self, event: RecordedEvent) -> None:
-        """Add an event, drop the oldest one if the log is full, and wake the readers.
+    def append(self, *events: RecordedEvent) -> None:
+        """Add events, drop the oldest ones if the log is full, and wake the readers.
 
         Raises:
-            ValueError: Its id does not follow the id of the newest event.
+            ValueError: An id does not follow the id of the newest event.
         """
-        if event.id != self._newest + 1:
-            raise ValueError(f"event {event.id} does not follow event {self._newest}")
-        if len(self._ring) < self._capacity:
-            self._ring.append(event)
-        else:
-            self._ring[self._slot(event.id)] = event
-        self._newest = event.id
-        self._wake_watchers()
+        for event in events:
+            if event.id != self._newest + 1:
+                raise ValueError(f"event {event.id} does not follow event {self._newest}")
+            if len(self._ring) < self._capacity:
+                self._ring.append(event)
+            else:
+                self._ring[self._slot(event.id)] = event
+            self._newest = event.id
+        if events:
+            self._wake_watchers()
 
     def oldest_first(self, after: int = 0) -> Iterator[RecordedEvent]:
         """Yield the kept events with ids above `after`."""

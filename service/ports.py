@@ -10,6 +10,7 @@ from typing import Protocol, TypeAlias
 from domain.commands import Drive, NodeCommand
 from domain.inputs import (
     BackendStatus,
+    DriveStatus,
     NodeAnswer,
     NodeReport,
     NodesBehind,
@@ -18,7 +19,7 @@ from domain.inputs import (
 )
 
 BackendMessage: TypeAlias = (
-    NodeReport | NodeAnswer | NodesBehind | BackendStatus | Readings | VehicleReport
+    NodeReport | NodeAnswer | NodesBehind | BackendStatus | Readings | VehicleReport | DriveStatus
 )
 Deliver: TypeAlias = Callable[[BackendMessage], None]
 
@@ -54,7 +55,8 @@ class NodeBackend(Adapter, Protocol):
 class VehicleBackend(Adapter, Protocol):
     """The vehicle; `tests/conformance/test_vehicle.py` specifies what an adapter must do.
 
-    It delivers a `VehicleReport` at about 20 Hz while the pose of the vehicle is known.
+    It delivers a `VehicleReport` at about 20 Hz while the pose of the vehicle is known, and a
+    `DriveStatus` when commands no longer reach the vehicle, or reach it again.
     """
 
     def send(self, command: Drive, /) -> None:

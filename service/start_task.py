@@ -5,9 +5,11 @@ from pathlib import Path as FilePath
 from domain.actor import Actor
 from domain.errors import PilothouseError
 from domain.inputs import TaskRequest
+from domain.paths.headings import Heading
 from domain.paths.path import Path
+from service.files.csv_columns import column_names
 from service.files.driving_block import StartTaskBlock
-from service.files.text_file import read_text_file
+from service.files.text_file import decode_csv, read_bytes
 from service.files.waypoint_file import read_waypoints_csv
 from service.supervisor import Supervisor
 
@@ -27,13 +29,15 @@ def submit_start_task(supervisor: Supervisor, task: StartTaskBlock, robot_file: 
         robot_file: Relative paths are resolved against its folder.
 
     Raises:
-        UnreadableFileError: The waypoint file does not exist, or is not text.
+        UnreadableFileError: The waypoint file does not exist, or is too large.
         StartTaskError: The waypoints are invalid, or this vehicle cannot drive their path.
     """
     file = robot_file.parent / task.file
-    text = read_text_file(file)
+    text = decode_csv(read_bytes(file))
+    heading = None if task.heading is None else Heading(task.heading)
+    columns = None if task.columns is None else column_names(task.columns)
     try:
-        path = Path(read_waypoints_csv(text))
+        path = Path(read_waypoints_csv(text, heading, columns))
         asked = TaskRequest(path, 0, task.controller, task.speed_mps, Actor("robot file"))
         supervisor.submit(asked)
     except PilothouseError as error:

@@ -7,14 +7,16 @@ import logging
 from collections.abc import Callable
 from typing import TypeAlias
 
+from domain.actor import Actor
 from domain.errors import PilothouseError
-from domain.inputs import Input, TimePassed
+from domain.inputs import Input, Readings, TimePassed
 from domain.onboard import Onboard
 from domain.outbox import Outputs
 from domain.timebase import Instant
 from service.catch_up import CatchUp
 from service.clock import Clock
 from service.pacing import Alarm
+from service.refused_readings import RefusedReadings
 
 Handle: TypeAlias = Callable[[Input, Instant], Outputs]
 
@@ -30,6 +32,7 @@ class Submitter:
         clock: Clock,
         carry_out: Callable[[Outputs], None],
         catch_up: CatchUp,
+        refused: RefusedReadings,
     ) -> None:
         """Prepare.
 
@@ -38,11 +41,13 @@ class Submitter:
             clock: Of the service.
             carry_out: Acts on the outputs of the core.
             catch_up: Tells whether deadlines wait.
+            refused: Counts rejected readings of adapters, all of which hear ROS topics.
         """
         self._onboard = onboard
         self._clock = clock
         self._carry_out = carry_out
         self._catch_up = catch_up
+        self._refused = refused
         self._alarm = Alarm(self._due, self.let_pass, clock)
 
     async def run(self) -> None:
@@ -76,7 +81,10 @@ class Submitter:
         try:
             self.submit(given)
         except PilothouseError as error:
-            log.warning("rejected %s: %s", type(given).__name__, error)
+            if isinstance(given, Readings):
+                self._refused.note(Actor(given.source, way="ros"), error.message)
+            else:
+                log.warning("rejected %s: %s", type(given).__name__, error)
 
     def let_pass(self) -> None:
         """Process the deadlines that have expired by now."""

@@ -15,7 +15,7 @@ from domain.inputs import HoldRequest, Input, ServiceStall
 from domain.onboard import Onboard
 from domain.outbox import Outputs
 from domain.parts.system_model import SmhModel
-from domain.paths.speed_profile import SpeedLimits
+from domain.paths.approach import ApproachLimits
 from domain.supervision import Supervision
 from domain.timebase import Duration, seconds
 from service.catch_up import CatchUp
@@ -27,6 +27,7 @@ from service.frame_publisher import PERIOD, FramePublisher
 from service.node_incidents import log_node_incidents
 from service.ports import RobotBackend
 from service.readings import DirectReadings, ReadingInput, Submit
+from service.refused_readings import RefusedReadings
 from service.running import run_forever
 from service.submitter import Submitter
 from service.watchdog import hanging
@@ -73,7 +74,11 @@ class Supervisor:
         self._loaded = loaded
         self._onboard = onboard
         self._backend = backend
-        self._submitter = Submitter(onboard, clock, self._carry_out, self._catch_up)
+        self.refused_readings = RefusedReadings()
+        """Rejected readings, on all ways in."""
+        self._submitter = Submitter(
+            onboard, clock, self._carry_out, self._catch_up, self.refused_readings
+        )
         self.publisher.on_tick.append(self._note_tick)
         self.submit: Callable[[Input], Outputs] = self._submitter.submit
         """Passes an input to the core; raises PilothouseError if it is rejected."""
@@ -100,9 +105,9 @@ class Supervisor:
         return self._loaded.warnings
 
     @property
-    def speed_limits(self) -> SpeedLimits:
-        """Return the acceleration limits of the vehicle."""
-        return self._onboard.navigation.settings.speed
+    def approach_limits(self) -> ApproachLimits:
+        """Return what the vehicle can do, and from how far it approaches a path."""
+        return self._onboard.navigation.approach_limits
 
     @property
     def epoch(self) -> str:
@@ -155,8 +160,7 @@ class Supervisor:
             if not isinstance(command, SendGoal | PreemptGoal):
                 self._backend.send(command)
         self.publisher.note(outputs)
-        for event in outputs.events:
-            self.events.append(event)
+        self.events.append(*outputs.events)
         self.change_ends.note(outputs.events)
         if outputs.system_state:
             self.publisher.publish_change()

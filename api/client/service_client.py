@@ -47,21 +47,29 @@ class ServiceClient:
         self._http.close()
 
     def path_of(self, part: str) -> str:
-        """Return the URL path of a system or node.
+        """Return the URL path of a system or node; a leading slash of its name is left out.
 
         Raises:
             ServiceProblemError: There is no such part.
             NoAnswerError: The service did not answer.
         """
-        path = f"/systems/{quote(part)}"
-        try:
-            self.call("GET", path)
-        except ServiceProblemError as error:
-            if error.problem.get("status") != httpx.codes.NOT_FOUND:
-                raise
-            path = f"/nodes/{quote(part)}"
-            self.call("GET", path)
-        return path
+        name = part.lstrip("/")
+        hints: list[str] = []
+        for kind in ("systems", "nodes"):
+            path = f"/{kind}/{quote(name)}"
+            try:
+                self.call("GET", path)
+            except ServiceProblemError as error:
+                problem = error.problem
+                if problem.get("code") != "UNKNOWN_PART":
+                    raise
+                if hint := problem.get("hint"):
+                    hints.append(str(hint).replace("known:", f"{kind}:"))
+            else:
+                return path
+        detail = f"there is no system or node {name!r}"
+        found = {"hint": "; ".join(hints)} if hints else {}
+        raise ServiceProblemError({**problem, "detail": detail, **found})
 
     def call(
         self,

@@ -12,7 +12,7 @@ from fastapi.requests import HTTPConnection
 from domain.actor import Actor
 from domain.errors import UnknownPartError
 from domain.parts.system_model import SmhModel
-from domain.state_and_mode import PartName
+from domain.state_and_mode import PartName, part_name
 from service.supervisor import Supervisor
 from service.worker import Jobs
 
@@ -51,10 +51,14 @@ async def _part(
     """
     kind = "system" if request.url.path.startswith("/systems/") else "node"
     known = supervisor.model.systems if kind == "system" else supervisor.model.nodes
-    if part not in known:
-        hint = _hint(supervisor.model, kind, part, request.url.path)
-        raise UnknownPartError(kind, part, tuple(islice(known, 21)), hint)
-    return PartName(part)
+    name = part_name(part)
+    if name in known:
+        return name
+    if name in supervisor.model:
+        path = request.url.path.replace(part, name, 1)
+        raise UnknownPartError.of_other_kind(name, kind, _hint(supervisor.model, kind, name, path))
+    hint = _hint(supervisor.model, kind, name, request.url.path)
+    raise UnknownPartError(kind, name, tuple(islice(known, 21)), hint)
 
 
 PartDep = Annotated[PartName, Depends(_part)]

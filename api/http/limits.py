@@ -11,7 +11,7 @@ class ServiceLimits:
     """Limits for bodies and messages, bytes, and for the number of clients and requests."""
 
     json_bytes: int = 256 * KIB
-    """Parsed on the event loop in about 3 ms at worst."""
+    """Parsed on the event loop in about 8 ms for waypoints."""
     model_bytes: int = 8 * MIB
     """Of bodies that only the worker parses."""
     waypoints_bytes: int = 16 * MIB

@@ -11,6 +11,7 @@ from prometheus_client.registry import Collector
 from api.http.gate.refusals import COUNTED, Refusals
 from domain.snapshot import ChangeStatus, SystemState
 from domain.timebase import to_seconds
+from service.refused_readings import WAYS
 from service.supervisor import Supervisor
 
 _MAX_PARTS = 1_000
@@ -123,6 +124,12 @@ class _ServiceCollector(Collector):
         for status in _ENDS:
             changes.add_metric([status], self._supervisor.change_ends.counts[status])
         yield changes
+        refused = CounterMetricFamily(
+            "pilothouse_readings_refused", "Rejected readings, by way in", labels=["way"]
+        )
+        for way in WAYS:
+            refused.add_metric([way], self._supervisor.refused_readings.counts[way])
+        yield refused
 
 
 class _GateCollector(Collector):

@@ -112,7 +112,8 @@ def _reports(
     for name, node in sent.items():
         part = part_name(name)
         if part not in model.nodes:
-            faults.append(_unknown_part("node", name, "nodes"))
+            is_system = part in model.systems
+            faults.append(_unknown_part("node", name, "nodes", is_other=is_system))
         elif node is not None:
             state = None if node.state is None else _state(node.state, ("nodes", name), faults)
             mode = ModeName(node.mode) if node.mode else None
@@ -130,7 +131,9 @@ def _state(label: str, place: tuple[str, str], faults: list[BodyFault]) -> Lifec
         return None
 
 
-def _unknown_part(what: str, name: str, member: str) -> BodyFault:
+def _unknown_part(what: str, name: str, member: str, *, is_other: bool = False) -> BodyFault:
     pointer = pointer_to(member, name)
-    error = UnknownPartError(what, name, ())
+    error = (
+        UnknownPartError.of_other_kind(name, what) if is_other else UnknownPartError(what, name, ())
+    )
     return BodyFault(pointer=pointer, code=error.code, message=error.message)

@@ -19,6 +19,7 @@ from api.http.body_parsing import (
 )
 from api.http.schemas.base import BlockerJson, FindingJson
 from api.http.schemas.problem import BodyFault, Problem
+from api.http.stop_asked import StopTakenError
 from domain.errors import (
     BackendUnavailableError,
     BlockedError,
@@ -42,9 +43,9 @@ from domain.errors import (
     UnknownTaskError,
 )
 from service.clock import Clock
+from service.files.csv_table import InvalidWaypointsError
 from service.files.robot_file import InvalidRobotFileError
 from service.files.text_file import UnreadableFileError
-from service.files.waypoint_file import InvalidWaypointsError
 from service.start_task import StartTaskError
 from service.worker import OutOfMemoryError, TooComplexError, WorkerBusyError, WorkerClosedError
 
@@ -68,6 +69,7 @@ STATUS_OF: Mapping[type[PilothouseError], HTTPStatus] = {
     FarStartError: HTTPStatus.UNPROCESSABLE_ENTITY,
     InvalidWaypointsError: HTTPStatus.UNPROCESSABLE_ENTITY,
     InvalidBodyError: HTTPStatus.UNPROCESSABLE_ENTITY,
+    StopTakenError: HTTPStatus.UNPROCESSABLE_ENTITY,
     InvalidModelError: HTTPStatus.UNPROCESSABLE_ENTITY,
     TooComplexError: HTTPStatus.UNPROCESSABLE_ENTITY,
     OutOfMemoryError: HTTPStatus.UNPROCESSABLE_ENTITY,

@@ -52,25 +52,44 @@ class JsonRoute(APIRoute):
             return handle
 
         async def handle_json(request: Request) -> Response:
-            return await handle(await _JsonRequest.read(request))
+            return await handle(await JsonRequest.read(request))
 
         return handle_json
 
 
-class _JsonRequest(Request):
+class JsonRequest(Request):
     """A request with its body read and parsed."""
 
     _raw = b""
     _parsed: object = None
 
     @classmethod
-    async def read(cls, request: Request) -> "_JsonRequest":
+    async def read(cls, request: Request) -> "JsonRequest":
+        """Read and parse the body of a request.
+
+        Raises:
+            PilothouseError: It is too large, is not JSON or has too many members.
+        """
+        return cls.parse(request, await read_body(request, limits_of(request).json_bytes))
+
+    @classmethod
+    def parse(cls, request: Request, raw: bytes) -> "JsonRequest":
+        """Return a request whose body was read already.
+
+        Raises:
+            PilothouseError: The body is not JSON or has too many members.
+        """
+        parsed = parse_json(raw) if raw else None
+        require_few_members(parsed)
+        return cls.of(request, raw, parsed)
+
+    @classmethod
+    def of(cls, request: Request, raw: bytes, parsed: object) -> "JsonRequest":
+        """Return a request with a given body."""
         headers = [item for item in request.scope["headers"] if item[0] != b"content-type"]
         headers.append((b"content-type", b"application/json"))
         read = cls({**request.scope, "headers": headers}, request.receive)
-        read._raw = await read_body(request, limits_of(request).json_bytes)
-        read._parsed = parse_json(read._raw) if read._raw else None
-        require_few_members(read._parsed)
+        read._raw, read._parsed = raw, parsed
         return read
 
     async def body(self) -> bytes:

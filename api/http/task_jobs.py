@@ -9,16 +9,19 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from api.http.body_parsing import InvalidBodyError, MalformedBodyError, parse_body, parse_text
+from api.http.body_parsing import InvalidBodyError, MalformedBodyError, parse_body
 from api.http.schemas.path_preview import MAX_DRAWN, PathPreviewJson
 from api.http.schemas.tasks import TaskBody, WaypointJson, WaypointsJson
 from domain.errors import InvalidValueError
+from domain.paths.approach import ApproachLimits
+from domain.paths.headings import Heading
 from domain.paths.path import Path
 from domain.paths.preview import preview
-from domain.paths.speed_profile import SpeedLimits
-from domain.tasks.task_planner import check_cruise
-from domain.vehicle import Pose, VehicleLimits
-from service.files.waypoint_file import Heading, read_waypoints_csv
+from domain.tasks.task_planner import check_cruise, check_start
+from domain.vehicle import Pose
+from service.files.csv_reading import CsvReading
+from service.files.text_file import decode_csv
+from service.files.waypoint_file import read_waypoint_file
 
 
 @dataclass(frozen=True, slots=True)
@@ -28,7 +31,10 @@ class TaskOptions:
     controller: str
     speed_mps: float
     start_index: int
-    heading: Heading
+    heading: Heading | None = None
+    """Unit of the headings; None: the file says it, or the path does."""
+    columns: tuple[str, ...] | None = None
+    """Names of the columns; None: those in the file, or `x,y[,yaw]`."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -39,6 +45,8 @@ class PostedTask:
     start_index: int
     controller: str
     speed_mps: float
+    csv: CsvReading | None = None
+    """How the CSV was read; None: the body is JSON."""
 
 
 def read_posted_task(raw: bytes, csv: TaskOptions | None) -> PostedTask:
@@ -52,8 +60,7 @@ def read_posted_task(raw: bytes, csv: TaskOptions | None) -> PostedTask:
         PilothouseError: The body or its waypoints are invalid.
     """
     if csv is not None:
-        waypoints = read_waypoints_csv(parse_text(raw), csv.heading)
-        return PostedTask(Path(waypoints), csv.start_index, csv.controller, csv.speed_mps)
+        return _read_csv(raw, csv, is_driven=True)
     try:
         return task_of(parse_body(TaskBody, raw))
     except MalformedBodyError as error:
@@ -79,8 +86,7 @@ def preview_posted(
     raw: bytes,
     csv: TaskOptions | None,
     pose: Pose | None,
-    vehicle: VehicleLimits,
-    limits: SpeedLimits,
+    limits: ApproachLimits,
 ) -> bytes:
     """Return a preview of a task as JSON.
 
@@ -88,21 +94,39 @@ def preview_posted(
         raw: The body.
         csv: As for `read_posted_task`.
         pose: Of the vehicle; None: unknown.
-        vehicle: Speed and steering limits.
-        limits: Acceleration limits.
+        limits: What the vehicle can do, and from how far it approaches a path.
 
     Raises:
         PilothouseError: The body or its waypoints are invalid.
     """
-    task = read_posted_task(raw, csv)
+    task = read_posted_task(raw, None) if csv is None else _read_csv(raw, csv, is_driven=False)
     try:
-        check_cruise(task.speed_mps, vehicle)
+        check_cruise(task.speed_mps, limits.vehicle)
+        check_start(task.path, task.start_index)
     except InvalidValueError as error:
         raise InvalidBodyError.at(error.pointer, error) from error
-    found = preview(task.path, task.speed_mps, pose, vehicle, limits)
+    found = preview(task.path, task.speed_mps, pose, limits, task.start_index)
     waypoints = task.path.waypoints
     drawn = waypoints[thinned(len(waypoints), MAX_DRAWN), :2].tolist()
-    return PathPreviewJson.of(found, drawn).model_dump_json().encode()
+    return PathPreviewJson.of(found, drawn, task.csv).model_dump_json().encode()
+
+
+def _read_csv(raw: bytes, csv: TaskOptions, *, is_driven: bool) -> PostedTask:
+    """Return the task of a CSV.
+
+    Args:
+        raw: The body.
+        csv: Its options.
+        is_driven: Whether headings have to fit the path, unless somebody said what they are.
+
+    Raises:
+        InvalidWaypointsError: The file is invalid.
+    """
+    file = read_waypoint_file(decode_csv(raw), csv.heading, csv.columns)
+    if is_driven and file.refusal is not None:
+        raise file.refusal
+    path = Path(file.waypoints)
+    return PostedTask(path, csv.start_index, csv.controller, csv.speed_mps, file.reading)
 
 
 def encode_waypoints(waypoints: NDArray[np.float64], max_points: int | None) -> bytes:

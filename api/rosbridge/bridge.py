@@ -11,6 +11,7 @@ from domain.actor import Actor
 from domain.errors import InvalidValueError
 from service.clock import Clock
 from service.frame_feed import FrameFeed
+from service.refused_readings import RefusedReadings
 from service.ros.interface.endpoints import Fields, OfferedService, OfferedTopic, SubscribedTopic
 from service.ros.interface.message_check import CHANGE_MODE, CHANGE_STATE, Shape
 from service.ros.interface.services import CANCEL_TASKS
@@ -47,7 +48,12 @@ class Bridge:
     """The interface of the robot, with the services that rosbridge adds to it."""
 
     def __init__(
-        self, interface: Interface, frames: FrameFeed, clock: Clock, calls_per_s: int
+        self,
+        interface: Interface,
+        frames: FrameFeed,
+        clock: Clock,
+        calls_per_s: int,
+        refused: RefusedReadings,
     ) -> None:
         """Prepare.
 
@@ -57,7 +63,9 @@ class Bridge:
             clock: Of the robot.
             calls_per_s: Service calls per second that one client address may make; twice as many
                 may come at once.
+            refused: Counts messages to topics of signals that cannot be read.
         """
+        self.refused = refused
         self.interface = interface
         self.frames = frames
         self.clock = clock

@@ -107,7 +107,13 @@ def rosbridge_clients(app: FastAPI) -> RosbridgeClients:
 
 
 def _make_bridge(supervisor: Supervisor, calls_per_s: int) -> Bridge:
-    return Bridge(RosInterface(supervisor), supervisor.frames, supervisor.clock, calls_per_s)
+    return Bridge(
+        RosInterface(supervisor),
+        supervisor.frames,
+        supervisor.clock,
+        calls_per_s,
+        supervisor.refused_readings,
+    )
 
 
 # A coroutine, since the framework would call a plain function in a thread.

@@ -15,6 +15,11 @@ from domain.actor import Actor
 
 log = logging.getLogger(__name__)
 
+_TURNS_TO_READ = 60
+"""Most turns of the loop between two messages of a client that sends faster than it is heard."""
+_QUIET_TURNS = 4
+"""So many turns without a message show that none waits: reading one takes up to three."""
+
 
 class ServedClient:
     """Reads the messages of a client, and writes those to it."""
@@ -78,6 +83,7 @@ class ServedClient:
             message = await receive()
             if is_urgent(message):
                 self._wire.heard()
+                ahead.overtake()
                 session.hear(message)
                 await asyncio.sleep(0)
                 continue
@@ -88,7 +94,7 @@ class ServedClient:
     async def _hear(self, session: Session, ahead: ReadAhead) -> None:
         """Process messages one after the other."""
         while True:
-            message = await ahead.get()
+            message, number = await ahead.get()
             if message["type"] == "websocket.disconnect":
                 return
             self._wire.heard()
@@ -97,8 +103,9 @@ class ServedClient:
             # One message of all clients at a time: fifty large ones in one pass of the event loop
             # would delay the tick for too long.
             async with self._bridge.turn:
-                session.hear(message)
+                session.hear(message, overtaken=ahead.is_overtaken(number))
                 await asyncio.sleep(0)
+            await _let_read(ahead)
 
     async def _write(self) -> None:
         """Write until cancelled, or until the client must be disconnected.
@@ -122,3 +129,14 @@ class ServedClient:
                     wire.cut_off()
                     return
                 await asyncio.sleep(0)
+
+
+async def _let_read(ahead: ReadAhead) -> None:
+    """Let what has arrived be read first, a message in a few turns: a stop may be among it."""
+    arrived, quiet = ahead.arrived, 0
+    for _ in range(_TURNS_TO_READ):
+        await asyncio.sleep(0)
+        quiet = quiet + 1 if ahead.arrived == arrived else 0
+        arrived = ahead.arrived
+        if quiet == _QUIET_TURNS:
+            return

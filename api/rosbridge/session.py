@@ -6,6 +6,7 @@ from types import MappingProxyType
 from typing import Any, TypeAlias
 
 from api.http.access import ReadsOnlyError
+from api.http.stop_asked import StopTakenError, is_stop_of_rosbridge, members_of
 from api.rosbridge.bridge import Bridge, request_of
 from api.rosbridge.operations import (
     Advertise,
@@ -28,8 +29,10 @@ from api.rosbridge.send_queue import SendQueue
 from api.rosbridge.subscription import Pace, Subscription
 from domain.actor import Actor
 from domain.errors import InvalidValueError, PilothouseError, UnknownNameError
+from domain.health.signals import ESTOP_SIGNAL
 from domain.timebase import seconds
 from service.ros.interface.endpoints import OfferedService
+from service.ros.interface.reading_topics import asks_for_stop_by_fields
 
 MAX_CALLS = 16
 """Pending calls of one client."""
@@ -80,18 +83,26 @@ class Session:
         self._calls_left: int | None = None
         """Calls still allowed after the client disconnected; None: it is connected."""
 
-    def hear(self, message: Mapping[str, Any]) -> None:
+    def hear(self, message: Mapping[str, Any], *, overtaken: bool = False) -> None:
         """Process a message; if it is invalid, an error status is queued.
 
         Args:
-            message: An ASGI message.
+            message: An ASGI message of the client.
+            overtaken: A later message that asks for a stop was processed before this one, which
+                therefore must not release it.
         """
-        said: Mapping[str, Any] = {}
         try:
-            said = read_message(message)
-            self._do(read_operation(said))
+            operation = read_operation(read_message(message))
         except PilothouseError as error:
-            self._tell("error", sentence(error), id_of(said))
+            self._hear_unreadable(message, error)
+            return
+        try:
+            self._do(operation, overtaken=overtaken)
+        except PilothouseError as error:
+            if isinstance(operation, CallService):
+                self._respond(operation, sentence(error), result=False)
+            else:
+                self._tell("error", sentence(error), operation.id)
 
     def leave(self) -> None:
         """Note that the client disconnected while some of its messages are still queued.
@@ -110,7 +121,24 @@ class Session:
         for call in self._calls:
             call.cancel()
 
-    def _do(self, operation: Operation) -> None:
+    def _hear_unreadable(self, message: Mapping[str, Any], error: PilothouseError) -> None:
+        """Take the stop that an invalid message asks for, or say what is wrong with it."""
+        said = members_of(message)
+        if is_stop_of_rosbridge(message) and not self._reads_only:
+            self._bridge.interface.heard[f"/{ESTOP_SIGNAL}"].take({"enabled": True}, self._caller)
+            self._bridge.refused.note_ignored(self._caller, error.message)
+            self._tell("warning", StopTakenError(error).message, id_of(said))
+            return
+        if said.get("op") == "publish":
+            self._bridge.refused.note(self._caller, error.message)
+        if said.get("op") == "call_service":
+            service = said.get("service")
+            named = service if isinstance(service, str) else ""
+            self._queue.put(response_text(named, sentence(error), False, id_of(said)))
+        else:
+            self._tell("error", sentence(error), id_of(said))
+
+    def _do(self, operation: Operation, *, overtaken: bool) -> None:
         if self._reads_only and _writes(operation):
             raise ReadsOnlyError
         match operation:
@@ -123,7 +151,7 @@ class Session:
             case Unadvertise():
                 self._unadvertise(operation)
             case Publish():
-                self._publish(operation)
+                self._publish(operation, overtaken=overtaken)
             case CallService():
                 self._call(operation)
             case SetLevel():
@@ -194,11 +222,16 @@ class Session:
             self._tell("warning", f"{name} was not advertised", asked.id)
         self._published.discard(name)
 
-    def _publish(self, asked: Publish) -> None:
+    def _publish(self, asked: Publish, *, overtaken: bool) -> None:
         name = full_name(asked.topic)
         topic = self._bridge.interface.heard.get(name)
         if topic is not None:
-            topic.take(asked.msg, self._caller)
+            is_void = overtaken and name == f"/{ESTOP_SIGNAL}"
+            if is_void and not asks_for_stop_by_fields(asked.msg):
+                return
+            ignored = topic.take(asked.msg, self._caller)
+            if ignored is not None:
+                self._tell("warning", f"the stop was taken; ignored: {ignored}", asked.id)
         elif name not in self._published:
             # Reported once: a client may publish many times a second.
             self._remember_published(name)

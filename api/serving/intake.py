@@ -7,8 +7,8 @@ from enum import Enum, auto
 from typing import Protocol, cast
 
 from api.serving.paced_transport import PacedTransport
-from api.serving.pieces import READ_COST, Piece
-from api.serving.turns import Turns
+from api.serving.pieces import LOSS_COST, READ_COST, Piece
+from api.serving.turns import RECENT_TURNS, Turns
 
 log = logging.getLogger(__name__)
 
@@ -91,6 +91,7 @@ class Intake(asyncio.BufferedProtocol):
     """
 
     is_urgent = False
+    served_in = -RECENT_TURNS
     # Shared: it is emptied before the loop reads from another connection.
     _buffer = memoryview(bytearray(READ_BYTES))
 
@@ -120,6 +121,8 @@ class Intake(asyncio.BufferedProtocol):
         self._is_held = False
         """Whether the protocol wants no data."""
         self._is_reading = True
+        self._lost: tuple[Exception | None] | None = None
+        """Why the connection ended, until the protocol is told."""
 
     def connection_made(self, transport: asyncio.BaseTransport) -> None:
         """Take over a connection."""
@@ -129,10 +132,16 @@ class Intake(asyncio.BufferedProtocol):
         self.inner.connection_made(self.transport)
 
     def connection_lost(self, exc: Exception | None) -> None:
-        """Tell that nothing more will arrive."""
+        """Tell that nothing more will arrive; in turn, since many may end at once."""
         self._waiting.clear()
         self._watcher.closed(self)
-        self.inner.connection_lost(exc)
+        self._lost = (exc,)
+        if self._turns.has_room:
+            self._turns.spend(self._end())
+        elif not self._is_queued:
+            self._is_queued = True
+            self.is_urgent = False
+            self._turns.wait(self)
 
     def get_buffer(self, sizehint: int) -> memoryview:
         """Return where the next bytes go."""
@@ -166,7 +175,9 @@ class Intake(asyncio.BufferedProtocol):
         self.inner.resume_writing()
 
     def serve(self) -> int:
-        """Handle the next piece."""
+        """Handle the next piece, or the end."""
+        if self._lost is not None:
+            return self._end()
         cost = 0 if self._is_held else self._hand_on()
         if cost and self.inner.in_message and not self._is_held:
             # A small body is handled with its head, and does not wait for a turn of its own.
@@ -176,11 +187,38 @@ class Intake(asyncio.BufferedProtocol):
             self._read(not self._is_held)
         return cost
 
+    def _end(self) -> int:
+        """Tell the protocol that the connection has ended; return what that costs."""
+        if self._lost is None:
+            return 0
+        (reason,), self._lost = self._lost, None
+        try:
+            self.inner.connection_lost(reason)
+        except Exception:
+            log.exception("the end of a connection")
+        # They refer to each other: parted here, they need no garbage collection.
+        self.transport.part()
+        del self.inner, self.transport
+        return LOSS_COST
+
     def _hand_on(self) -> int:
         """Hand the next piece on; return its cost, 0: there is none."""
         if not self._waiting or self.raw.is_closing():
             self._waiting.clear()
             return 0
+        try:
+            cost = self._hand_on_piece()
+        except Exception:
+            # The other connections go on.
+            log.exception("a connection is closed")
+            self.raw.abort()
+            return READ_COST
+        if cost and not self.inner.in_message:
+            # Not before: the body of a stop is as urgent as its head was.
+            self.served_in = self._turns.number
+        return cost
+
+    def _hand_on_piece(self) -> int:
         piece = self.inner.next_piece(self._waiting)
         if not piece.length:
             return 0
@@ -188,12 +226,7 @@ class Intake(asyncio.BufferedProtocol):
         del self._waiting[: piece.length]
         if not self.inner.in_message:
             self._in_stop = self._urgent(data)
-        try:
-            self.inner.data_received(data)
-        except Exception:
-            # The other connections go on.
-            log.exception("a connection is closed")
-            self.raw.abort()
+        self.inner.data_received(data)
         self._judge()
         return piece.cost
 

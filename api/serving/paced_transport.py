@@ -33,6 +33,10 @@ class PacedTransport(asyncio.Transport):
         self.pause_reading = pause  # type: ignore[method-assign]
         self.resume_reading = resume  # type: ignore[method-assign]
 
+    def part(self) -> None:
+        """Let go of the intake, since the connection has ended; a timer may still keep this."""
+        self._succeed = self.pause_reading = self.resume_reading = _do_nothing  # type: ignore[method-assign]
+
     def get_extra_info(self, name: str, default: object = None) -> Any:  # noqa: ANN401
         """Return what the transport knows of the connection."""
         return self.raw.get_extra_info(name, default)
@@ -52,3 +56,7 @@ class PacedTransport(asyncio.Transport):
     def abort(self) -> None:
         """Close at once."""
         self.raw.abort()
+
+
+def _do_nothing(*_: object) -> None:
+    pass

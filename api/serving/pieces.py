@@ -11,6 +11,12 @@ MESSAGE_COST = 200
 FRAME_COST = 30
 """Of a frame that is no whole message."""
 KIB_COST = 20
+CHECKED_KIB_COST = 100
+"""Of a body that is complete and parsed now, or of a head, whose path is compared with routes."""
+MAX_CHECKED_BYTES = 262_144
+"""Larger bodies are parsed by a worker."""
+LOSS_COST = 200
+"""Of the end of a connection, with what the service does then."""
 READ_COST = 5
 """Of the least that can be done."""
 
@@ -31,3 +37,8 @@ INCOMPLETE = Piece(0, 0)
 def cost_of_bytes(count: int) -> int:
     """Return what plain bytes cost."""
     return READ_COST + count * KIB_COST // 1_024
+
+
+def cost_of_checking(count: int) -> int:
+    """Return what it costs to parse a head or a body and to check it."""
+    return READ_COST + min(count, MAX_CHECKED_BYTES) * CHECKED_KIB_COST // 1_024

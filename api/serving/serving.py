@@ -4,7 +4,6 @@ Owns the handling of signals, and every task.
 """
 
 import asyncio
-import gc
 import logging
 import os
 import socket
@@ -18,6 +17,7 @@ from api.distribution import installed_version
 from api.http.access import MIN_GOOD_CHARACTERS, Access
 from api.http.gate.origins import AllowedOrigins, InvalidOriginError
 from api.serving.composition import EXAMPLE, Composition, MisuseError, ServeOptions, compose
+from api.serving.garbage import settle_heap
 from api.serving.output import Output
 from api.serving.process_log import log_to
 from api.serving.service_manager import ServiceManager, UnknownManagerError
@@ -90,10 +90,7 @@ def _serve(options: ServeOptions, output: Output, errors: Output) -> int:
     prepare(app)
     greeting = "\n".join(greet(composition, options, url_of(sockets, options.host), access))
     server = web_server(app, lambda: _say_serving(output, greeting, manager, supervisor))
-    # Objects that exist now stay: without this each garbage collection would scan them again, and
-    # delay the tick.
-    gc.collect()
-    gc.freeze()
+    settle_heap()
     with asyncio.Runner(loop_factory=_new_event_loop) as runner:
         return runner.run(run_service(composition, server, sockets, manager))
 

@@ -5,8 +5,12 @@ from collections import deque
 from collections.abc import Callable
 from typing import Protocol
 
+from api.serving.pieces import READ_COST
+
 BUDGET = 2_000
 """Work of one turn, in nominal microseconds."""
+RECENT_TURNS = 250
+"""Whoever was served within so many turns has had its share, and comes after the others."""
 
 
 class Work(Protocol):
@@ -14,6 +18,8 @@ class Work(Protocol):
 
     is_urgent: bool
     """Whether it is served before all others."""
+    served_in: int
+    """Number of the turn in which its last message was complete."""
 
     def serve(self) -> int:
         """Handle the next piece; return what that costs, 0: nothing that is complete waits."""
@@ -23,9 +29,10 @@ class Work(Protocol):
 class Turns:
     """Serves connections in turn, each with one small piece, up to a budget per turn of the loop.
 
-    Between two turns the loop runs everything else. A connection that has just begun to wait comes
-    before those that waited already when it was last served, so that a single request does not wait
-    behind many connections that send without end; urgent ones come first.
+    Between two turns the loop runs everything else. Whoever was not served for a while comes before
+    those that were, so that a single request does not wait behind many connections that send
+    without end, whether or not these wait for their answers; of both the urgent come first. Each
+    turn begins with one piece of another of these four queues, so that none waits forever.
     """
 
     def __init__(self, call_soon: Callable[[Callable[[], None]], object]) -> None:
@@ -35,9 +42,10 @@ class Turns:
             call_soon: Calls a function in the next turn of the loop.
         """
         self._call_soon = call_soon
-        self._urgent: deque[Work] = deque()
-        self._fresh: deque[Work] = deque()
-        self._others: deque[Work] = deque()
+        self._queues: tuple[deque[Work], ...] = (deque(), deque(), deque(), deque())
+        """Urgent, others; then the same of those that were served recently."""
+        self.number = 0
+        """Of the current turn."""
         self._spent = 0
         self._is_called = False
 
@@ -49,7 +57,7 @@ class Turns:
     @property
     def has_room(self) -> bool:
         """Tell whether work may be done at once: nobody waits, and the budget is not spent."""
-        return self._spent < BUDGET and not (self._urgent or self._fresh or self._others)
+        return self._spent < BUDGET and not any(self._queues)
 
     def spend(self, cost: int) -> None:
         """Count work that was done at once."""
@@ -58,7 +66,8 @@ class Turns:
 
     def wait(self, work: Work) -> None:
         """Let a connection wait that did not wait before."""
-        (self._urgent if work.is_urgent else self._fresh).append(work)
+        had_share = self.number - work.served_in < RECENT_TURNS
+        self._queues[2 * had_share + (not work.is_urgent)].append(work)
         self._call()
 
     def _call(self) -> None:
@@ -69,13 +78,21 @@ class Turns:
     def _run(self) -> None:
         self._is_called = False
         self._spent = 0
+        self.number += 1
+        self._serve(self._queues[self.number % len(self._queues)])
         while self._spent < BUDGET:
-            queue = self._urgent or self._fresh or self._others
-            if not queue:
+            queue = next(filter(None, self._queues), None)
+            if queue is None:
                 return
+            self._serve(queue)
+        self._call()
+
+    def _serve(self, queue: deque[Work]) -> None:
+        """Serve the first who has a complete piece; the others wait for more bytes to arrive."""
+        while queue and self._spent < BUDGET:
             work = queue.popleft()
             cost = work.serve()
+            self._spent += cost or READ_COST
             if cost:
-                self._spent += cost
-                (self._urgent if work.is_urgent else self._others).append(work)
-        self._call()
+                self.wait(work)
+                return

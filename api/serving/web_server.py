@@ -22,6 +22,9 @@ from api.serving.turns import Turns
 from api.serving.websocket_protocol import WebSocketProtocol
 
 _SEND_BUFFER_BYTES = 65_536
+_BACKLOG = 1_024
+"""Connections that wait to be accepted. With fewer, hundreds that come at once make the kernel drop
+those of others, who try again only after a second."""
 _GRACE_S = 1
 _REQUESTS = 500
 """Connections of requests and of rosbridge, beside those of the stream."""
@@ -197,7 +200,7 @@ def _allow_open_files(count: int) -> int:
 
 
 def _listener(family: socket.AddressFamily, address: str, port: int) -> socket.socket:
-    listener = socket.create_server((address, port), family=family, backlog=128)
+    listener = socket.create_server((address, port), family=family, backlog=_BACKLOG)
     # Small, so that a client that does not read is detected soon: the kernel would buffer megabytes
     # of old data. Connections inherit it.
     listener.setsockopt(socket.SOL_SOCKET, socket.SO_SNDBUF, _SEND_BUFFER_BYTES)

@@ -47,6 +47,7 @@ class WebSocketProtocol(WebSocketsSansIOProtocol):
     _between_frames = False
     """Whether the next data certainly starts with a frame."""
     _is_let_in = False
+    _last_words: asyncio.TimerHandle | None = None
     in_message = False
 
     def __init__(
@@ -84,7 +85,10 @@ class WebSocketProtocol(WebSocketsSansIOProtocol):
         connection = Connection(self.transport, self._listen, self._let_in)
         self.scope.setdefault("extensions", {})[EXTENSION] = {"connection": connection}
         await super().run_asgi()
-        self.loop.call_later(_LAST_WORDS_S, self.transport.abort)
+        # It refers to this protocol, as that refers to it.
+        cast("dict[str, Any]", self.scope).clear()
+        if not self.disconnected:
+            self._last_words = self.loop.call_later(_LAST_WORDS_S, self.transport.abort)
 
     def shutdown(self) -> None:
         """Close, since the service ends: with code 1012, or 503 before the handshake is done."""
@@ -105,6 +109,11 @@ class WebSocketProtocol(WebSocketsSansIOProtocol):
         if self._listener is not None:
             self._listener.lost()
         super().connection_lost(exc)
+        # What refers to this protocol, or to itself, would keep it until a garbage collection.
+        if self._last_words is not None:
+            self._last_words.cancel()
+        self.conn.parser.close()
+        self.conn.parser_exc = None
 
     def data_received(self, data: bytes) -> None:
         """Take what the client sent."""

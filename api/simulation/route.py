@@ -1,16 +1,19 @@
 """Simulations: the live core runs a scenario in virtual time."""
 
+from functools import partial
 from typing import Annotated
 
 from fastapi import APIRouter, Depends, Request, Response
+from starlette.datastructures import State
 
 from api.http.dependencies import SupervisorDep
 from api.http.request_body import limits_of, read_body
 from api.http.route_policy import Permission, policy
 from api.http.schemas.simulation import SimulationJson
 from api.simulation.simulation_job import LiveCopy, SimulatedParts, copy_of, simulate_posted
+from service.forked_call import forked_call
 from service.supervisor import Supervisor
-from service.worker import Jobs
+from service.worker import Jobs, OutOfMemoryError
 
 router = APIRouter(prefix="/simulations", tags=["simulation"])
 
@@ -47,16 +50,27 @@ async def simulate(
     scenario provides readings, unless `robot` has `mock: true`.
     """
     raw = await read_body(request, limits_of(request).model_bytes)
-    # A copy takes time on the event loop: only if the job will be taken and may request it.
-    simulator.require_room()
-    live = _copy(request.app.state.simulated, supervisor) if b'"live"' in raw else None
+    live = await _copy(request.app.state, supervisor) if b'"live"' in raw else None
     content = await simulator.call(simulate_posted, raw, supervisor.model_text, live)
     return Response(content, media_type="application/json")
 
 
-def _copy(robot: SimulatedParts | None, supervisor: Supervisor) -> LiveCopy | None:
+async def _copy(state: State, supervisor: Supervisor) -> LiveCopy | None:
+    """Return a copy of the live robot as it is now; None: it is real.
+
+    Raises:
+        PilothouseError: A simulation would not be taken, or there is no memory for a copy.
+    """
+    robot: SimulatedParts | None = state.simulated
     if robot is None:
         return None
-    clock = supervisor.clock
-    now = clock.now()
-    return LiveCopy(copy_of(*robot), now, clock.wall_time(now), supervisor.events.newest)
+    async with state.copying:
+        # A copy costs memory: one at a time, and only if the job will be taken.
+        state.simulator.require_room()
+        clock = supervisor.clock
+        now, newest = clock.now(), supervisor.events.newest
+        try:
+            copied = await forked_call(partial(copy_of, *robot))
+        except OSError as error:
+            raise OutOfMemoryError from error
+    return LiveCopy(copied, now, clock.wall_time(now), newest)

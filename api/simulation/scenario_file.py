@@ -15,11 +15,14 @@ from pydantic import ValidationError
 from api.http.body_parsing import InvalidBodyError
 from api.http.schemas.simulation import SimulationBody, place_in_body
 from api.simulation.simulation_job import robot_for
-from domain.errors import InvalidModelError
+from domain.errors import InvalidModelError, InvalidValueError
 from domain.findings import Finding
+from domain.paths.headings import Heading
+from service.files.csv_columns import column_names
+from service.files.csv_table import InvalidWaypointsError
 from service.files.parameter_file import scalar_value
-from service.files.text_file import UnreadableFileError, read_text_file
-from service.files.waypoint_file import Heading, InvalidWaypointsError, read_waypoints_csv
+from service.files.text_file import UnreadableFileError, decode_csv, read_bytes, read_text_file
+from service.files.waypoint_file import read_waypoints_csv
 from service.files.yaml_tree import (
     Mapping,
     Node,
@@ -230,22 +233,31 @@ def _fill_in_tracks(source: _Source, data: dict[str, Any], folder: Path) -> None
 def _with_waypoints(
     source: _Source, keys: Keys, task: dict[str, Any], folder: Path
 ) -> dict[str, Any]:
-    more = {key: value for key, value in task.items() if key not in ("file", "heading")}
-    name, heading = task["file"], task.get("heading", Heading.RAD)
+    taken = ("file", "heading", "columns")
+    more = {key: value for key, value in task.items() if key not in taken}
+    name, heading, columns = task["file"], task.get("heading"), task.get("columns")
     if not isinstance(name, str):
         source.complain((*keys, "file"), "file: the path of a CSV is needed")
     elif "waypoints" in task:
         source.complain((*keys, "file"), "waypoints are given as well; leave out one of them")
-    elif heading not in tuple(Heading):
+    elif not isinstance(columns, str | None):
+        source.complain((*keys, "columns"), "columns: names of columns, such as x,y,yaw")
+    elif heading is not None and heading not in tuple(Heading):
         message = f"heading: one of {', '.join(Heading)}"
         source.complain((*keys, "heading"), message)
     else:
         try:
-            rows = read_waypoints_csv(read_text_file(folder / name), Heading(heading)).tolist()
+            names = None if columns is None else column_names(columns)
+            unit = None if heading is None else Heading(heading)
+            text = decode_csv(read_bytes(folder / name))
+            rows = read_waypoints_csv(text, unit, names).tolist()
+        except InvalidValueError as error:
+            source.complain((*keys, "columns"), f"columns: {error.message}")
         except UnreadableFileError as error:
             source.complain((*keys, "file"), error.message, error.code)
         except InvalidWaypointsError as error:
             hint = (error.hint or "").replace("?heading=", "heading: ")
+            hint = hint.replace("?columns=", "columns: ")
             source.complain((*keys, "file"), f"{name}: {error.message}; {hint}", error.code)
         else:
             more["waypoints"] = [{"x_m": x, "y_m": y, "yaw_rad": yaw} for x, y, yaw in rows]

@@ -18,6 +18,7 @@ from api.http.task_jobs import task_of
 from api.simulation.requests import Requests
 from domain.actor import Actor
 from domain.errors import PilothouseError
+from domain.health.signals import ESTOP_SIGNAL, asks_for_stop, signal_name
 from domain.inputs import (
     CancelTaskRequest,
     ModeRequest,
@@ -66,8 +67,16 @@ class Actors:
         stamp = None
         if step.stamp_offset_s is not None:
             stamp = self._robot.clock.now() + seconds(step.stamp_offset_s)
-        readings = [Reading(signal, value, stamp) for signal, value in step.reading.items()]
-        self._robot.supervisor.readings.submit(readings, step.source, _ACTOR)
+        sent = [(signal_name(name), value) for name, value in step.reading.items()]
+        readings = [Reading(signal, value, stamp) for signal, value in sent]
+        take = self._robot.supervisor.readings.submit
+        try:
+            take(readings, step.source, _ACTOR)
+        except PilothouseError:
+            # As over HTTP, a stop is taken even if what came with it is rejected.
+            if any(name == ESTOP_SIGNAL and asks_for_stop(value) for name, value in sent):
+                take([Reading(ESTOP_SIGNAL, True, stamp)], step.source, _ACTOR)
+            raise
 
     def _drive(self, step: TaskStep) -> None:
         if step.task is None:

@@ -109,7 +109,10 @@ class MemberCache(Generic[View]):
 
     def __init__(self, encode: Callable[[View], str]) -> None:
         self._encode = encode
-        self._known: dict[str, tuple[View, str]] = {}
+        # Two plain dictionaries: a pair for each of 10,000 parts would be looked through by every
+        # garbage collection.
+        self._views: dict[str, View] = {}
+        self._texts: dict[str, str] = {}
 
     def text(self, views: Mapping[Any, View]) -> str:
         """Return the object that holds these members."""
@@ -118,18 +121,18 @@ class MemberCache(Generic[View]):
     def new_ones(self, views: Iterable[tuple[str, View]]) -> Iterator[tuple[str, View]]:
         """Yield the members that are new or have changed."""
         for name, view in views:
-            known = self._known.get(name)
-            if known is None or known[0] is not view:
+            if self._views.get(name) is not view:
                 yield name, view
 
     def learn(self, views: Iterable[tuple[str, View]]) -> None:
         """Encode members and cache their text."""
         for name, view in views:
-            self._known[name] = (view, f"{to_json(name).decode()}:{self._encode(view)}")
+            self._views[name] = view
+            self._texts[name] = f"{to_json(name).decode()}:{self._encode(view)}"
 
     def _each(self, views: Mapping[Any, View]) -> Iterator[str]:
         self.learn(self.new_ones(views.items()))
-        return (self._known[name][1] for name in views)
+        return (self._texts[name] for name in views)
 
 
 class LatestCache(Generic[View]):

@@ -15,13 +15,17 @@ from fastapi import APIRouter, WebSocket, WebSocketDisconnect
 
 from api.http.access import READS_ONLY, ReadsOnlyError, UnauthorizedError
 from api.http.route_policy import Permission, policy
+from api.http.schemas.health import MAX_SOURCE
 from api.http.schemas.stream import AuthMessage, ResyncMessage
+from api.http.stop_asked import StopTakenError, is_stop_of_stream, source_of
 from api.streaming.client_input import read_client_message, read_stream_query
 from api.streaming.stream_client import StreamClient
 from api.streaming.stream_server import StreamServer, StreamServerDep
 from api.streaming.websocket_frames import connection_of, text_frame
 from domain.actor import Actor
 from domain.errors import PilothouseError
+from domain.health.signals import ESTOP_SIGNAL
+from domain.inputs import Reading
 
 router = APIRouter()
 log = logging.getLogger(__name__)
@@ -69,6 +73,7 @@ class _Client:
         self._connection = connection_of(socket.scope)
         self._server = server
         self._address = socket.client.host if socket.client else "unknown"
+        self._reads_only = bool(socket.scope.get(READS_ONLY))
 
     async def is_let_in(self) -> bool:
         """Ask for the token, where one is needed and the handshake did not hold it.
@@ -153,6 +158,28 @@ class _Client:
         return message
 
     def _take(self, message: Mapping[str, Any], client: StreamClient) -> None:
+        """Process a message; a stop is taken whatever else is in it.
+
+        Raises:
+            PilothouseError: It is rejected, or a part of it was ignored.
+        """
+        try:
+            self._obey(message, client)
+        except PilothouseError as error:
+            supervisor, actor = self._server.supervisor, self._actor
+            if self._reads_only or not is_stop_of_stream(message):
+                supervisor.refused_readings.note(actor, error.message)
+                raise
+            stop = Reading(ESTOP_SIGNAL, True)
+            supervisor.readings.submit([stop], source_of(message, MAX_SOURCE), actor)
+            supervisor.refused_readings.note_ignored(actor, error.message)
+            raise StopTakenError(error) from error
+
+    @property
+    def _actor(self) -> Actor:
+        return Actor(way="websocket", address=self._address)
+
+    def _obey(self, message: Mapping[str, Any], client: StreamClient) -> None:
         supervisor = self._server.supervisor
         given = read_client_message(message)
         if isinstance(given, AuthMessage):
@@ -161,11 +188,10 @@ class _Client:
         if isinstance(given, ResyncMessage):
             self._server.fan_out.resync(client)
             return
-        if self._socket.scope.get(READS_ONLY):
+        if self._reads_only:
             raise ReadsOnlyError
         reading = given.reading(given.signal, supervisor.clock)
-        actor = Actor(way="websocket", address=self._address)
-        supervisor.readings.submit([reading], given.source, actor)
+        supervisor.readings.submit([reading], given.source, self._actor)
 
     async def _answer(self, error: PilothouseError) -> None:
         """Send a problem, once the client has read most of what was written before."""

@@ -5,6 +5,7 @@ from collections.abc import Iterator
 from docs.generate.markdown import code, page, table
 from docs.generate.source_scan import codes_given_to, codes_in, require_described
 from domain.changes.admission import ADVISORY
+from domain.errors import BackendUnavailableError
 from domain.health.signals import (
     DECLARED_BIT,
     ESTOP,
@@ -21,6 +22,7 @@ from domain.timebase import to_seconds
 
 _OF_CHANGES = {
     ESTOP: "A node would be activated while ESTOP is active.",
+    BackendUnavailableError.code: "The whole backend is down; the request is answered with 503.",
     "FINALIZED": "A node is finalized: its process must be restarted.",
     "ERROR_PROCESSING": "A node is processing an error; it will soon report its final state.",
     "UNREACHABLE": "A node is unreachable.",
@@ -35,6 +37,7 @@ _WARNINGS = {
     "CLOCK_SKEW": "The stamps of a signal differ from the local clock by more than a second.",
     "LATE_TICKS": "Ticks were skipped: the machine is overloaded.",
     "NO_AUTHENTICATION": "Anyone who can reach the service may use it.",
+    "NO_DRIVE": "Drive commands do not reach the vehicle, so tasks are held.",
     "NO_POSE": "No current pose of the vehicle, so tasks are held.",
 }
 
@@ -62,7 +65,8 @@ when the vehicle stands, or when a task drives it again."""
 _SIGNALS = """\
 `error_code` is the sum of the bits of all active errors. An error clears when its cause does, but
 stays active for at least 0.2 s. All numbers are [settings](settings.md).
-*for* counts from the last good reading, or from the start if there was none."""
+*for* counts from the last good reading, or from the start if there was none; with a `for_s` of all
+other signals, from the first bad reading after a good one or after staleness."""
 
 
 def blockers_page() -> str:
@@ -71,7 +75,7 @@ def blockers_page() -> str:
     Raises:
         UndescribedError: A code of the source is not described here, or the reverse.
     """
-    of_changes = codes_in("domain/changes/admission.py") | {ESTOP}
+    of_changes = codes_in("domain/changes/admission.py") | {ESTOP, BackendUnavailableError.code}
     require_described("blockers", of_changes, set(_OF_CHANGES))
     require_described("warnings", codes_given_to("WarningJson"), set(_WARNINGS))
     changes = (

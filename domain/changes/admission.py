@@ -6,7 +6,7 @@
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import replace
 
-from domain.changes.plan import TOWARDS_REST, ChangeGoal, NodeGoal, goal_of, next_steps
+from domain.changes.plan import TOWARDS_REST, ChangeGoal, NodeGoal, NodeGoals, goal_of, next_steps
 from domain.errors import BlockedError, IllegalTransitionError
 from domain.findings import Blocker
 from domain.inputs import ChangeRequest, ModeRequest, TransitionRequest
@@ -37,6 +37,7 @@ class ChangeAdmission:
     def __init__(self, model: SmhModel, facts: Mapping[PartName, NodeFacts]) -> None:
         self._model = model
         self._facts = facts
+        self._goals = NodeGoals(model)
 
     def admit(self, request: ChangeRequest, estop: Sequence[Blocker]) -> ChangeGoal:
         """Return the goal of a request that may begin.
@@ -51,7 +52,7 @@ class ChangeAdmission:
         """
         if isinstance(request, TransitionRequest):
             self._check_legal(request, estop)
-        goal = goal_of(self._model, request, self._facts)
+        goal = goal_of(self._model, request, self._facts, self._goals)
         blockers = self._blockers(request, goal, estop)
         if refuse(blockers):
             raise BlockedError(part_of(request), blockers)
@@ -59,7 +60,7 @@ class ChangeAdmission:
 
     def blockers(self, request: ChangeRequest, estop: Sequence[Blocker]) -> tuple[Blocker, ...]:
         """Return all blockers of a request, including the advisory ones."""
-        goal = goal_of(self._model, request, self._facts)
+        goal = goal_of(self._model, request, self._facts, self._goals)
         return self._blockers(request, goal, estop)
 
     def available_transitions(

@@ -4,7 +4,7 @@ What a change wants of its nodes is the work of `node_steps.py`.
 """
 
 from collections import deque
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from itertools import islice
 
 from domain.changes.node_steps import NodeSteps
@@ -50,10 +50,13 @@ class Changes:
         self._parts = parts
         self._inference = parts.inference
         self._outbox = outbox
-        self._steps = NodeSteps(parts, settings, outbox, health, self._take_end)
+        self._steps = NodeSteps(
+            parts, settings, outbox, health, self._take_end, self._take_loose_end
+        )
         self._changes: dict[ChangeId, Change] = {}
         self._running: dict[ChangeId, Change] = {}
         self._to_start: deque[Pursuit] = deque()
+        self._to_pack: dict[ChangeId, Change] = {}
         self._count = 0
 
     # --- what can be seen ------------------------------------------------------------------------
@@ -80,8 +83,8 @@ class Changes:
 
     @property
     def has_more(self) -> bool:
-        """Tell whether nodes are still to be started, and may be."""
-        return bool(self._to_start) and self._steps.count_in_flight <= _ENOUGH_IN_FLIGHT
+        """Tell whether nodes are still to be started, and may be, or something is to be packed."""
+        return self._may_start or bool(self._to_pack)
 
     def step_in_flight(self, node: PartName) -> Step | None:
         """Return the step that a node is executing."""
@@ -109,11 +112,10 @@ class Changes:
         self._changes[identity] = self._running[identity] = change
         self._parts.put_under(identity, {part, *goal.targets, *goal.nodes})
         self._parts.ask(goal.targets)
-        for node, node_goal in goal.nodes.items():
-            change.pursuits[node] = Pursuit(identity, node, node_goal)
-            change.open.add(node)
-            self._steps.add(change.pursuits[node])
-        to_start = iter(list(change.pursuits.values()))
+        change.pursuits = {n: Pursuit(identity, n, goal) for n, goal in goal.nodes.items()}
+        change.open, change.node_count = set(goal.nodes), len(goal.nodes)
+        self._steps.add(change.pursuits)
+        to_start = iter(tuple(change.pursuits.values()))
         for pursuit in islice(to_start, STARTS_AT_ONCE):
             self._steps.start(pursuit, now)
         self._to_start.extend(to_start)
@@ -132,8 +134,7 @@ class Changes:
         found = self.get(change)
         if found.open:
             self._outbox.record_input()
-        for node in sorted(found.open):
-            self._drop(found.pursuits[node], StepStatus.CANCELED, now)
+        self._drop([found.pursuits[node] for node in sorted(found.open)], StepStatus.CANCELED, now)
         if found.status is ChangeStatus.RUNNING:
             self._end(found, ChangeStatus.CANCELED, "canceled on request", now)
 
@@ -155,7 +156,9 @@ class Changes:
 
     def go_on(self, now: Instant) -> None:
         """Start some more nodes of the change that began first."""
-        if not self.has_more:
+        if not self._may_start:
+            if self._to_pack:
+                self._to_pack.pop(next(iter(self._to_pack))).pack()
             return
         identity = self._to_start[0].change
         if (change := self._changes.get(identity)) is not None:
@@ -167,20 +170,47 @@ class Changes:
 
     # --- inside ----------------------------------------------------------------------------------
 
+    @property
+    def _may_start(self) -> bool:
+        return bool(self._to_start) and self._steps.count_in_flight <= _ENOUGH_IN_FLIGHT
+
     def _supersede(self, nodes: set[PartName], newer: Change, now: Instant) -> None:
         """Drop pursuits of `nodes`; a change that loses a node ends, but its other nodes go on."""
-        for node in sorted(nodes & self._steps.nodes):
-            self._drop(self._steps.pursuit_of(node), StepStatus.SUPERSEDED, now)
+        lost = [self._steps.pursuit_of(node) for node in sorted(nodes & self._steps.nodes)]
+        self._drop(lost, StepStatus.SUPERSEDED, now)
         reason = f"superseded by change {newer.id} of {newer.part}"
         for change in list(self._running.values()):
             if nodes & change.pursuits.keys():
                 self._end(change, ChangeStatus.SUPERSEDED, reason, now)
 
-    def _drop(self, pursuit: Pursuit, status: StepStatus, now: Instant) -> None:
-        self._steps.drop(pursuit, status, now)
-        change = self._changes[pursuit.change]
-        change.open.discard(pursuit.node)
-        self._let_go(change, {pursuit.node})
+    def _drop(self, pursuits: Sequence[Pursuit], status: StepStatus, now: Instant) -> None:
+        """Start no further step of nodes, which may be of several changes."""
+        let_go: dict[ChangeId, list[PartName]] = {}
+        for pursuit in pursuits:
+            change = self._changes[pursuit.change]
+            if self._steps.drop(pursuit, status, now):
+                change.loose += 1
+            change.open.discard(pursuit.node)
+            let_go.setdefault(pursuit.change, []).append(pursuit.node)
+        for identity, nodes in let_go.items():
+            change = self._changes[identity]
+            self._let_go(change, nodes)
+            self._pack(change)
+
+    def _take_loose_end(self, identity: ChangeId) -> None:
+        """Note that a step has ended whose node is no longer on its way."""
+        change = self._changes[identity]
+        change.loose -= 1
+        self._pack(change)
+
+    def _pack(self, change: Change) -> None:
+        """Pack a change that is over; a large one in a turn of its own."""
+        if not change.is_over or change.packed is not None:
+            return
+        if change.node_count <= STARTS_AT_ONCE:
+            change.pack()
+        else:
+            self._to_pack[change.id] = change
 
     def _take_end(self, pursuit: Pursuit, now: Instant) -> None:
         """Note that a node has ended its part of a change, and end the change with the last."""
@@ -189,6 +219,7 @@ class Changes:
         self._let_stay(change, pursuit)
         self._conclude(change, now)
         self._let_go(change, {pursuit.node})
+        self._pack(change)
 
     def _let_stay(self, change: Change, pursuit: Pursuit) -> None:
         """Leave a node that turned out to be unconfigured so; deactivating its system asks no more.
@@ -237,24 +268,24 @@ class Changes:
         del self._running[change.id]
         self._let_go(change, {change.part, *change.targets, *change.pursuits})
         self._outbox.emit(CHANGE_ENDS[status](change.id, change.part, reason))
+        self._pack(change)
 
-    def _let_go(self, change: Change, parts: set[PartName]) -> None:
+    def _let_go(self, change: Change, parts: Iterable[PartName]) -> None:
         """Release the parts of an ended change, except nodes that it is still driving."""
-        if change.status is ChangeStatus.RUNNING:
-            return
-        self._parts.let_go(change.id, parts - change.open)
+        if change.status is not ChangeStatus.RUNNING:
+            self._parts.let_go(change.id, set(parts) - change.open)
 
     def _forget_old(self) -> None:
         """Keep the newest changes, and all that are still running or driving a node."""
         excess = len(self._changes) - KEPT_CHANGES
-        kept = sum(len(change.pursuits) for change in self._changes.values())
+        kept = sum(change.node_count for change in self._changes.values())
         for identity, change in list(self._changes.items())[:-1]:
             if excess <= 0 and kept <= KEPT_PURSUITS:
                 return
-            if change.status is not ChangeStatus.RUNNING and not change.open:
+            if change.is_over:
                 del self._changes[identity]
                 excess -= 1
-                kept -= len(change.pursuits)
+                kept -= change.node_count
 
 
 def _joined(reasons: Sequence[str]) -> str:

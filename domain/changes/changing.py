@@ -1,11 +1,12 @@
 """Changes as a concern of the core: requests in; steps and verified results out."""
 
+from collections.abc import Sequence
 from itertools import islice
 
 from domain.changes.admission import ChangeAdmission, refuse
 from domain.changes.changes import Changes
 from domain.changes.plan import ChangeGoal, next_steps, presumed_steps
-from domain.changes.record import Step
+from domain.changes.record import Step, StepTable
 from domain.changes.request_check import check_request
 from domain.changes.restoring import Restoring
 from domain.changes.settings import ChangeSettings
@@ -18,6 +19,7 @@ from domain.events.changes import (
     ChangeRequested,
     NodeAnswered,
 )
+from domain.findings import Blocker
 from domain.health.health import Health
 from domain.identifiers import ChangeId
 from domain.inputs import (
@@ -35,7 +37,7 @@ from domain.lifecycle import LifecycleState, Transition
 from domain.outbox import Outbox
 from domain.parts.parts import Parts
 from domain.snapshot import ChangeView, ModeView, StepView
-from domain.state_and_mode import PartName
+from domain.state_and_mode import ModeName, PartName
 from domain.timebase import Instant
 
 
@@ -52,6 +54,8 @@ class Changing(Concern):
         self._changes = Changes(parts, settings, outbox, health)
         self._restoring = Restoring(parts, self._changes, settings, outbox, self._admit)
         self._backend = BackendStatus(available=True)
+        self._backend_since: Instant | None = None
+        """Since when the backend is as it is; None: since the start."""
 
     # --- what happens ----------------------------------------------------------------------------
 
@@ -98,8 +102,8 @@ class Changing(Concern):
         self._restoring.forget(goal.targets)
 
     def _admit(self, request: ChangeRequest) -> ChangeGoal:
-        if not self._backend.available:
-            raise BackendUnavailableError(self._backend.reason)
+        if (down := self._backend_error()) is not None:
+            raise down
         return self._admission.admit(request, self._health.stop_reasons)
 
     def _take_cancel(self, request: CancelRequest, now: Instant) -> None:
@@ -128,25 +132,35 @@ class Changing(Concern):
             kind = BackendAvailable if status.available else BackendUnavailable
             self._outbox.begin(now, kind(status.reason))
             self._outbox.record_input()
+            self._backend_since = now
         self._backend = status
 
     # --- what can be seen ------------------------------------------------------------------------
 
-    def modes(self, part: PartName) -> tuple[ModeView, ...]:
-        """Return the modes of a part, with the blockers of each."""
-        stop = self._health.stop_reasons
-        views = []
-        for mode in self._parts.model.modes_of(part):
-            blockers = self._admission.blockers(ModeRequest(part, mode), stop)
-            can_enter = self._backend.available and not refuse(blockers)
-            views.append(ModeView(mode, can_enter, blockers))
-        return tuple(views)
+    def mode(self, part: PartName, mode: ModeName) -> ModeView:
+        """Return a mode of a part, with its blockers."""
+        blockers = (
+            *self._backend_blockers(part),
+            *self._admission.blockers(ModeRequest(part, mode), self._health.stop_reasons),
+        )
+        return ModeView(mode, not refuse(blockers), blockers)
+
+    def _backend_error(self) -> BackendUnavailableError | None:
+        return None if self._backend.available else BackendUnavailableError(self._backend.reason)
+
+    def _backend_blockers(self, part: PartName) -> tuple[Blocker, ...]:
+        down = self._backend_error()
+        if down is None:
+            return ()
+        return (Blocker(down.code, down.message, (part,), since=self._backend_since),)
 
     def available_transitions(self, part: PartName) -> tuple[Transition, ...]:
         """Return the transitions that would be accepted now and change something."""
+        if not self._backend.available:
+            return ()
         return self._admission.available_transitions(part, self._health.stop_reasons)
 
-    def plan(self, request: ChangeRequest) -> tuple[StepView, ...]:
+    def plan(self, request: ChangeRequest) -> Sequence[StepView]:
         """Return the steps that a request would take now, without starting them.
 
         Raises:
@@ -159,8 +173,8 @@ class Changing(Concern):
             facts = self._parts.facts[node]
             unknown = facts.known_state is LifecycleState.UNKNOWN
             actions = presumed_steps(node_goal) if unknown else next_steps(facts, node_goal)
-            steps += [Step(ChangeId(""), node, action).view() for action in actions or ()]
-        return tuple(steps)
+            steps += [Step(ChangeId(""), node, action) for action in actions or ()]
+        return StepTable(steps)
 
     def change(self, identity: str) -> ChangeView:
         """Return a change.

@@ -5,7 +5,7 @@ in parallel, each with at most one step in flight. A step in flight is never rec
 of its node waits until it ends or times out.
 """
 
-from collections.abc import Callable, Set
+from collections.abc import Callable, Mapping, Set
 
 from domain.changes.plan import SetParameters, next_steps, presumed_steps
 from domain.changes.record import Pursuit, Step
@@ -15,6 +15,7 @@ from domain.commands import AskFacts, AskParameters, AskTransition
 from domain.deadlines import Deadlines
 from domain.events.changes import StepEnded, StepStarted
 from domain.health.health import Health
+from domain.identifiers import ChangeId
 from domain.inputs import NodeAnswer, NodeReport
 from domain.lifecycle import LifecycleState, Transition
 from domain.outbox import Outbox
@@ -37,6 +38,7 @@ class NodeSteps:
         outbox: Outbox,
         health: Health,
         ended: Callable[[Pursuit, Instant], None],
+        loose_ended: Callable[[ChangeId], None],
     ) -> None:
         """Begin without a pursuit.
 
@@ -46,6 +48,7 @@ class NodeSteps:
             outbox: Where commands and events go.
             health: Whether ESTOP is on.
             ended: Is handed each pursuit that reached its goal or failed, at once.
+            loose_ended: Is handed the change of a step that ended after its pursuit was dropped.
         """
         self._parts = parts
         self._facts = parts.facts
@@ -53,6 +56,7 @@ class NodeSteps:
         self._outbox = outbox
         self._health = health
         self._ended = ended
+        self._loose_ended = loose_ended
         self._pursuits: dict[PartName, Pursuit] = {}
         self._in_flight: dict[PartName, Step] = {}
         self._deadlines: Deadlines[PartName] = Deadlines()
@@ -85,9 +89,9 @@ class NodeSteps:
 
     # --- pursuits --------------------------------------------------------------------------------
 
-    def add(self, pursuit: Pursuit) -> None:
-        """Take over a node, whose earlier pursuit was dropped; `start` lets it move."""
-        self._pursuits[pursuit.node] = pursuit
+    def add(self, pursuits: Mapping[PartName, Pursuit]) -> None:
+        """Take over nodes, whose earlier pursuits were dropped; `start` lets each move."""
+        self._pursuits.update(pursuits)
 
     def start(self, pursuit: Pursuit, now: Instant) -> None:
         """Plan the steps of an added pursuit, and start the first unless one is in flight.
@@ -99,8 +103,8 @@ class NodeSteps:
         self._foresee(pursuit)
         self._advance(pursuit.node, now)
 
-    def drop(self, pursuit: Pursuit, status: StepStatus, now: Instant) -> None:
-        """Start no further step of a node; one in flight ends by itself.
+    def drop(self, pursuit: Pursuit, status: StepStatus, now: Instant) -> bool:
+        """Start no further step of a node; return whether one is in flight, which ends by itself.
 
         Args:
             pursuit: Of the node.
@@ -110,8 +114,10 @@ class NodeSteps:
         pursuit.outcome = status
         pursuit.drop_pending(status, now)
         del self._pursuits[pursuit.node]
-        if pursuit.node not in self._in_flight:
+        step = self._in_flight.get(pursuit.node)
+        if step is None:
             self._deadlines.clear(pursuit.node)
+        return step is not None and step.change == pursuit.change
 
     # --- what happens ----------------------------------------------------------------------------
 
@@ -211,9 +217,10 @@ class NodeSteps:
         self._deadlines.clear(step.node)
         self._outbox.emit(StepEnded(step.change, step.node, step.action_name, status, error))
         pursuit = self._pursuits.get(step.node)
-        if pursuit is None or pursuit.change != step.change or status is StepStatus.SUCCEEDED:
-            return
-        self._finish(pursuit, status, f"{step.node}: {step.action_name}: {error}", now)
+        if pursuit is None or pursuit.change != step.change:
+            self._loose_ended(step.change)
+        elif status is not StepStatus.SUCCEEDED:
+            self._finish(pursuit, status, f"{step.node}: {step.action_name}: {error}", now)
 
     def _step_is_late(self, step: Step, now: Instant) -> None:
         """Query the actual state before a step is declared timed out."""

@@ -7,7 +7,7 @@ Source: micro-ROS deliverable D4.8, section 4.1.2; requests in micro-ROS system_
 """
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from typing import TypeAlias
 
 from domain.inputs import ChangeRequest, ModeRequest, ParametersRequest, TransitionRequest
@@ -43,6 +43,12 @@ class NodeGoal:
     parameters: Parameters = field(default_factory=dict)
     configures: bool = True
     """False: a node that turns out to be unconfigured stays so; deactivating never configures."""
+    setting: SetParameters = field(init=False, compare=False, repr=False)
+    """The step that sets the parameters; one object for all plans towards this goal."""
+
+    def __post_init__(self) -> None:
+        """Prepare the step."""
+        object.__setattr__(self, "setting", SetParameters(self.parameters, self.mode))
 
 
 @dataclass(frozen=True, slots=True)
@@ -54,8 +60,39 @@ class ChangeGoal:
     nodes: Mapping[PartName, NodeGoal]
 
 
+class NodeGoals:
+    """The goals of the nodes of a model: one object for all changes that want the same of a node.
+
+    They are made with the model: ten thousand objects for each change that is kept would be looked
+    through by every garbage collection, while those that exist at the start are left out.
+    """
+
+    def __init__(self, model: SmhModel) -> None:
+        self._in_mode = {
+            name: {
+                mode: NodeGoal(LifecycleState.ACTIVE, mode, parameters)
+                for mode, parameters in node.modes.items()
+            }
+            for name, node in model.nodes.items()
+            if node.modes
+        }
+        self._in_state = {
+            configures: {state: NodeGoal(state, configures=configures) for state in LifecycleState}
+            for configures in (True, False)
+        }
+
+    def of(self, node: PartName, target: StateAndMode, *, configures: bool = True) -> NodeGoal:
+        """Return the goal of a node whose target is `target`."""
+        if target.state is LifecycleState.ACTIVE and node in self._in_mode:
+            return self._in_mode[node][target.mode or DEFAULT_MODE]
+        return self._in_state[configures][target.state]
+
+
 def goal_of(
-    model: SmhModel, request: ChangeRequest, facts: Mapping[PartName, NodeFacts]
+    model: SmhModel,
+    request: ChangeRequest,
+    facts: Mapping[PartName, NodeFacts],
+    goals: NodeGoals | None = None,
 ) -> ChangeGoal:
     """Return the goal of a request for each part.
 
@@ -67,6 +104,7 @@ def goal_of(
         model: The model.
         request: Its part and mode must be known to exist.
         facts: Facts about all nodes.
+        goals: Shared by all requests of a model; None: for this one only.
     """
     if isinstance(request, ParametersRequest):
         return ChangeGoal({}, {request.node: NodeGoal(None, None, dict(request.values))})
@@ -79,15 +117,17 @@ def goal_of(
     else:
         wanted = StateAndMode(request.transition.goal)
     _spread(model, request.part, wanted, targets)
-    if isinstance(request, TransitionRequest):
-        _pass_by(request, facts, targets)
+    goals = goals or NodeGoals(model)
+    if not isinstance(request, TransitionRequest):
+        nodes = {part: goals.of(part, targets[part]) for part in targets if part in facts}
+        return ChangeGoal(targets, nodes)
+    _pass_by(request, facts, targets)
+    configures = request.transition is not Transition.DEACTIVATE
     nodes = {
-        part: _node_goal(model, part, targets[part])
+        part: goals.of(part, targets[part], configures=configures)
         for part in targets
         if part in facts and not _is_left_out(request, part, targets[part], facts[part])
     }
-    if isinstance(request, TransitionRequest) and request.transition is Transition.DEACTIVATE:
-        nodes = {node: replace(goal, configures=False) for node, goal in nodes.items()}
     return ChangeGoal(targets, nodes)
 
 
@@ -107,7 +147,7 @@ def _spread(
             _spread(model, child, want, targets)
     else:
         for child in system.parts:
-            _spread(model, child, StateAndMode(wanted.state), targets)
+            _spread(model, child, wanted, targets)
 
 
 def _pass_by(
@@ -130,22 +170,14 @@ def _stays(state: LifecycleState, transition: Transition) -> bool:
 
 
 def _is_left_out(
-    request: ChangeRequest, part: PartName, target: StateAndMode, facts: NodeFacts
+    request: TransitionRequest, part: PartName, target: StateAndMode, facts: NodeFacts
 ) -> bool:
     """Tell whether a transition of its system leaves a plain node out.
 
     A plain node is always active, and must not block the others.
     """
-    is_asked_itself = not isinstance(request, TransitionRequest) or part == request.part
+    is_asked_itself = part == request.part
     return not (is_asked_itself or facts.has_lifecycle or target.state is LifecycleState.ACTIVE)
-
-
-def _node_goal(model: SmhModel, node: PartName, target: StateAndMode) -> NodeGoal:
-    modes = model.nodes[node].modes
-    if target.state is LifecycleState.ACTIVE and modes:
-        mode = target.mode or DEFAULT_MODE
-        return NodeGoal(target.state, mode, modes[mode])
-    return NodeGoal(target.state)
 
 
 def next_steps(facts: NodeFacts, goal: NodeGoal) -> tuple[Action, ...] | None:
@@ -165,7 +197,7 @@ def next_steps(facts: NodeFacts, goal: NodeGoal) -> tuple[Action, ...] | None:
         return None
     if not _parameters_missing(facts, goal):
         return transitions
-    setting = SetParameters(goal.parameters, goal.mode)
+    setting = goal.setting
     if transitions and transitions[-1] is Transition.ACTIVATE:
         return (*transitions[:-1], setting, transitions[-1])
     return (*transitions, setting)

@@ -1,11 +1,13 @@
 """The record of a change: its request, its steps and its result."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass, field
+from typing import Literal, overload
 
 from domain.changes.plan import Action, NodeGoal, SetParameters
 from domain.identifiers import ChangeId
 from domain.inputs import ChangeRequest
-from domain.lifecycle import LifecycleState
+from domain.lifecycle import LifecycleState, Transition
 from domain.snapshot import ChangeStatus, ChangeView, StepStatus, StepView
 from domain.state_and_mode import PartName, StateAndMode
 from domain.timebase import Instant
@@ -38,19 +40,62 @@ class Step:
     @property
     def action_name(self) -> str:
         """Return the name of the action for clients."""
-        return "set_parameters" if isinstance(self.action, SetParameters) else str(self.action)
+        return str(self.shown_action)
 
-    def view(self) -> StepView:
-        """Return this step as it is now."""
+    @property
+    def shown_action(self) -> Transition | Literal["set_parameters"]:
+        """Return the action as clients see it; not the values that it sets."""
         action = self.action
-        return StepView(
-            self.node,
-            "set_parameters" if isinstance(action, SetParameters) else action,
-            self.status,
-            self.started_at,
-            self.ended_at,
-            self.error,
+        return "set_parameters" if isinstance(action, SetParameters) else action
+
+
+class StepTable(Sequence[StepView]):
+    """Steps as they were at one moment, column by column; a view is made when it is read.
+
+    A change of 10,000 nodes has 30,000 steps. An object for each would take longer to make than a
+    turn may take, and Python's garbage collection would look through all that are kept.
+    """
+
+    def __init__(self, steps: Sequence[Step]) -> None:
+        """Copy steps as they are now."""
+        self._columns = (
+            [step.node for step in steps],
+            [step.shown_action for step in steps],
+            [step.status for step in steps],
+            [step.started_at for step in steps],
+            [step.ended_at for step in steps],
+            [step.error for step in steps],
         )
+
+    def __len__(self) -> int:
+        """Return how many steps there are."""
+        return len(self._columns[0])
+
+    @overload
+    def __getitem__(self, index: int) -> StepView: ...
+
+    @overload
+    def __getitem__(self, index: slice) -> tuple[StepView, ...]: ...
+
+    def __getitem__(self, index: int | slice) -> StepView | tuple[StepView, ...]:
+        """Return one step, or several."""
+        nodes, actions, statuses, started_at, ended_at, errors = self._columns
+        if isinstance(index, slice):
+            return tuple(self[number] for number in range(*index.indices(len(self))))
+        return StepView(
+            nodes[index],
+            actions[index],
+            statuses[index],
+            started_at[index],
+            ended_at[index],
+            errors[index],
+        )
+
+    def __eq__(self, other: object) -> bool:
+        """Tell whether the same steps are in another sequence, in the same order."""
+        return isinstance(other, Sequence) and tuple(self) == tuple(other)
+
+    __hash__ = None  # type: ignore[assignment]
 
 
 @dataclass(slots=True)
@@ -105,24 +150,42 @@ class Change:
     reason: str | None = None
     ended_at: Instant | None = None
     pursuits: dict[PartName, Pursuit] = field(default_factory=dict)
+    """Of each node; empty once the change is packed."""
     open: set[PartName] = field(default_factory=set)
     """Nodes that are still on their way."""
+    loose: int = 0
+    """Steps in flight of nodes that are no longer on their way; they end by themselves."""
+    packed: StepTable | None = None
+    """All steps, once none of them changes any more."""
+    node_count: int = 0
+
+    @property
+    def is_over(self) -> bool:
+        """Tell whether nothing about this change changes any more."""
+        return self.status is not ChangeStatus.RUNNING and not self.open and not self.loose
 
     def errors_of(self, outcome: StepStatus) -> list[str]:
         """Return why nodes ended with `outcome`, in the order of the nodes."""
         return [p.error for p in self.pursuits.values() if p.outcome is outcome and p.error]
 
+    def pack(self) -> None:
+        """Keep only what `view` shows, of a change that has ended in all its nodes."""
+        self.packed = self._table()
+        self.pursuits = {}
+
     def view(self) -> ChangeView:
         """Return this change as it is now."""
-        steps = tuple(step.view() for p in self.pursuits.values() for step in p.steps)
         return ChangeView(
             self.id,
             self.part,
             self.request,
             self.status,
             self.reason,
-            steps,
+            self.packed or self._table(),
             self.started_at,
             self.ended_at,
             self.cause,
         )
+
+    def _table(self) -> StepTable:
+        return StepTable([step for pursuit in self.pursuits.values() for step in pursuit.steps])

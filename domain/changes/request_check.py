@@ -28,6 +28,8 @@ def check_request(
         InvalidValueError: No parameters, or a value that is not finite or of the wrong type.
     """
     if isinstance(request, ParametersRequest):
+        if request.node in model.systems:
+            raise UnknownPartError.of_other_kind(request.node, "node")
         if request.node not in model.nodes:
             raise UnknownPartError("node", request.node, tuple(model.nodes))
         known = facts[request.node].parameters

@@ -95,6 +95,8 @@ class Restoring:
 
     def forget(self, parts: Iterable[PartName]) -> None:
         """Drop pending restores of parts that got a new request, and reset their limits."""
+        if not (self._returned or self._begun or self._given_up):
+            return
         for part in parts:
             self._returned.pop(part, None)
             self._begun.pop(part, None)

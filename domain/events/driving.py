@@ -26,6 +26,32 @@ class VehicleReported(Event):
 
 
 @dataclass(frozen=True, slots=True)
+class DriveAvailable(Event):
+    """Drive commands reach the vehicle again."""
+
+    kind = "drive.available"
+    is_input = True
+    is_notable = False
+
+    def _words(self) -> str:
+        return "drive commands reach the vehicle"
+
+
+@dataclass(frozen=True, slots=True)
+class DriveUnavailable(Event):
+    """Drive commands do not reach the vehicle."""
+
+    kind = "drive.unavailable"
+    is_input = True
+    is_notable = False
+
+    reason: str
+
+    def _words(self) -> str:
+        return because("drive commands do not reach the vehicle", self.reason)
+
+
+@dataclass(frozen=True, slots=True)
 class VehicleStillMoving(Event):
     """The vehicle should stand, and still moves after the time that its braking needs."""
 

@@ -40,15 +40,18 @@ class SignalPending(Event):
 
 @dataclass(frozen=True, slots=True)
 class SignalSettled(Event):
-    """A signal recovered before an error was raised."""
+    """A signal recovered, or became stale, before an error was raised."""
 
     kind = "signal.settled"
     is_notable = False
 
     signal: str
     error: str
+    stale: bool
 
     def _words(self) -> str:
+        if self.stale:
+            return f"{self.signal} is stale; the time of {self.error} begins anew"
         return f"{self.signal} recovered; no {self.error}"
 
 

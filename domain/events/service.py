@@ -7,18 +7,20 @@ from domain.events.event import Event
 
 @dataclass(frozen=True, slots=True)
 class WriteAnswered(Event):
-    """A write request was answered; the audit trail."""
+    """A write request was answered, or a reading released a stop; the audit trail."""
 
     kind = "audit.write"
     is_input = True
     is_notable = False
 
     method: str
+    """Of HTTP, or CALL of a ROS service, or READING that releases a stop."""
     path: str
+    """Of the request, or name of the service."""
     status: int
-    """HTTP status code."""
+    """HTTP status code, also of calls and readings."""
     address: str
-    """Host and port of the client."""
+    """Host and port of the client, as far as known; else its name."""
 
     def _words(self) -> str:
         return f"{self.method} {self.path} from {self.address} answered {self.status}"

@@ -13,6 +13,7 @@ from domain.events.health import (
     SignalSettled,
     SignalSkewed,
 )
+from domain.events.service import WriteAnswered
 from domain.findings import Blocker
 from domain.health.signals import ESTOP, SignalSettings
 from domain.health.state_manager import HealthChanges, StateManager
@@ -20,6 +21,9 @@ from domain.inputs import AcknowledgeRequest, Readings
 from domain.outbox import Outbox
 from domain.snapshot import SignalView, SystemStateView, TaskStatus
 from domain.timebase import Instant
+
+_TAKEN = 200
+"""Status of a request that was accepted, as in HTTP."""
 
 
 class Health(Concern):
@@ -61,15 +65,19 @@ class Health(Concern):
             self._manager.is_late = False
 
     def take_readings(self, readings: Readings, now: Instant) -> None:
-        """Accept readings, and decide at once.
+        """Accept readings, and decide at once; one that releases a stop is in the audit trail.
 
         Raises:
             PilothouseError: One reading is rejected, and so all of them are.
         """
         self._manager.check(readings, now)
         values = {reading.signal: reading.value for reading in readings.items}
+        released = self._manager.released_by(readings)
         self._outbox.begin(now, SignalRead(readings.source, values), readings.actor)
         self._tell(self._manager.receive(readings, now))
+        sender = readings.actor.address or readings.source
+        for signal in released:
+            self._outbox.emit(WriteAnswered("READING", f"/signals/{signal}", _TAKEN, sender))
 
     def acknowledge(self, request: AcknowledgeRequest, now: Instant) -> None:
         """Acknowledge an error, so that it clears once its cause is gone.
@@ -131,8 +139,8 @@ class Health(Concern):
         emit = self._outbox.emit
         for signal, error in changes.pending:
             self._pending[error] = emit(SignalPending(signal, error))
-        for signal, error in changes.settled:
-            emit(SignalSettled(signal, error))
+        for signal, error, stale in changes.settled:
+            emit(SignalSettled(signal, error, stale))
             self._pending.pop(error, None)
         for signal in changes.skewed:
             emit(SignalSkewed(signal))

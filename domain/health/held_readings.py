@@ -12,13 +12,11 @@ from domain.timebase import Duration, Instant, seconds
 MAX_SKEW = seconds(1.0)
 """If a stamp is further from our clock than this, one of the clocks is wrong."""
 
-MAX_QUIET_SOURCES = 64
-"""Largest number of sources kept that do not press a stop; the latest ones are kept."""
+MAX_SOURCES = 32
+"""Largest number of sources that press a stop and are kept apart; as many quiet ones are known."""
 
-MAX_PRESSING_SOURCES = 1_000
-"""Beyond this number, further sources that press a stop share one entry that nobody releases."""
-
-_FURTHER_SOURCES = "further sources"
+FURTHER_SOURCES = "further sources"
+"""Source shared by all that come when `MAX_SOURCES` press a stop already."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -46,6 +44,11 @@ class HeldReadings:
     All sources of a signal measure the same quantity, so the last reading counts. Sources of a stop
     are kept apart: the stop is pressed while one of them presses it, and the stamps of each source
     are ordered separately.
+
+    The number of sources is bounded. While `MAX_SOURCES` press the stop, further ones share one
+    source, and until it is released also all that are not known yet: so whoever pressed a stop
+    can release it by the name under which it was pressed. The stamps of a shared source are of
+    several clocks and are not compared.
     """
 
     def __init__(self, settings: SignalSettings) -> None:
@@ -81,8 +84,11 @@ class HeldReadings:
 
         A worse value is accepted however late it is, and a pressed stop is never rejected.
         """
-        held = self._by_source.get(self._key(source))
+        key = self._key(source)
+        held = self._by_source.get(key)
         if held is None or held.newest_stamp is None or reading.stamp is None:
+            return None
+        if key == FURTHER_SOURCES:
             return None
         if reading.stamp >= held.newest_stamp:
             return None
@@ -90,6 +96,11 @@ class HeldReadings:
         if presses or self._settings.is_worse(reading.value, held.value):
             return None
         return held.newest_stamp - reading.stamp
+
+    def is_released_by(self, reading: Reading, source: str) -> bool:
+        """Tell whether a reading releases the stop that its source presses."""
+        held = self._by_source.get(self._key(source))
+        return held is not None and held.value is True and reading.value is False
 
     def take(self, reading: Reading, source: str, now: Instant) -> None:
         """Hold a checked reading.
@@ -100,9 +111,8 @@ class HeldReadings:
             now: When it arrived.
         """
         key = self._key(source)
-        if reading.value is True and key not in self._by_source and self._is_full:
-            # No source has an empty name, so none can release this entry.
-            key, source = "", _FURTHER_SOURCES
+        if key == FURTHER_SOURCES:
+            source = FURTHER_SOURCES
         # Appended at the end, so that the dictionary stays in order of arrival.
         held = self._by_source.pop(key, None)
         stamps = [] if held is None or held.newest_stamp is None else [held.newest_stamp]
@@ -116,17 +126,23 @@ class HeldReadings:
             newest_stamp=max(stamps, default=None),
             since=held.since if held is not None and held.value == reading.value else now,
         )
-        self._forget_long_quiet_source()
+        self._forget_quiet_source()
 
     def _key(self, source: str) -> str:
-        return source if self._settings.spec.is_stop else ""
+        """Return under which name the readings of a source are held."""
+        if not self._settings.spec.is_stop:
+            return ""
+        if source in self._by_source:
+            return source
+        pressing = sum(held.value is True for held in self._by_source.values())
+        is_shared = FURTHER_SOURCES in self._by_source or pressing >= MAX_SOURCES
+        return FURTHER_SOURCES if is_shared else source
 
-    @property
-    def _is_full(self) -> bool:
-        return len(self._by_source) >= MAX_PRESSING_SOURCES + MAX_QUIET_SOURCES
-
-    def _forget_long_quiet_source(self) -> None:
+    def _forget_quiet_source(self) -> None:
         """Bound the memory against senders that invent source names."""
+        shared = self._by_source.get(FURTHER_SOURCES)
+        if shared is not None and shared.value is not True:
+            del self._by_source[FURTHER_SOURCES]
         quiet = [key for key, held in self._by_source.items() if held.value is not True]
-        if len(quiet) > MAX_QUIET_SOURCES:
+        if len(quiet) > MAX_SOURCES:
             del self._by_source[quiet[0]]

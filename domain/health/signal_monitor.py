@@ -12,6 +12,7 @@ from domain.health.signals import (
     STALE_DATA,
     STALE_DATA_BIT,
     Condition,
+    CountsFrom,
     Recovery,
     SignalSettings,
 )
@@ -26,9 +27,9 @@ class SignalMonitor:
     The result follows from the readings and from the instant of the last `judge`. The caller must
     call `judge` at each `wake_at`, before anything else that happens then or later.
 
-    A reading is good if it meets no condition. "For 15 s" counts from the last good reading, or
-    from the start if there was none; all conditions of a signal share that timer. If the value
-    goes from one error to another without a good reading in between, the second is raised at once.
+    A reading is good if it meets no condition. "For 3 s" counts as `CountsFrom` says; all
+    conditions of a signal share that timer. If the value goes from one error to another without a
+    good reading in between, the second is raised at once.
 
     A stop is as fresh as the newest reading from any source. If every source had to be fresh, a
     source that sends once, such as a person by hand, would make the stop stale for ever.
@@ -37,9 +38,12 @@ class SignalMonitor:
     def __init__(self, settings: SignalSettings, start: Instant) -> None:
         self.settings = settings
         self.readings = HeldReadings(settings)
-        self._last_good = start
+        self._counts_last_good = settings.counts_from is CountsFrom.LAST_GOOD
+        self._counting_since = start if self._counts_last_good else None
+        """From here on "for" counts; None: nothing counts."""
         self._cause: Condition | None = None
-        self._bad_for: Duration = 0
+        self._counted: Duration = 0
+        """How long it had counted when the error was raised."""
         self._engaged_since: Instant | None = None
         self._facts = MappingProxyType(settings.facts())
         self.bits: Mapping[str, int] = MappingProxyType(
@@ -66,7 +70,9 @@ class SignalMonitor:
         """
         self.readings.take(reading, source, now)
         if not self._met_by_readings():
-            self._last_good = now
+            self._counting_since = now if self._counts_last_good else None
+        elif self._counting_since is None:
+            self._counting_since = now
         self.judge(now)
 
     def set_engaged(self, *, engaged: bool, now: Instant) -> None:
@@ -83,11 +89,13 @@ class SignalMonitor:
 
     def judge(self, now: Instant) -> None:
         """Evaluate the readings as of `now`."""
+        if not self._counts_last_good and self._is_stale(now):
+            # What is not heard is not known to be bad.
+            self._counting_since = None
         cause = self._find_cause(now)
         if cause is not self._cause:
             self._cause = cause
-            waited = [c.for_ for c in self.settings.conditions if self._is_due(c, now)]
-            self._bad_for = max(waited, default=0)
+            self._counted = 0 if self._counting_since is None else now - self._counting_since
         self._value_slot.update(None if cause is None else cause.error, now)
         self._stale_slot.update(STALE_DATA if self._is_stale(now) else None, now)
         view = self._make_view(now)
@@ -96,7 +104,8 @@ class SignalMonitor:
 
     def wake_at(self) -> Instant | None:
         """Return the next instant at which time alone changes something; None: never."""
-        due = [self._last_good + condition.for_ for condition in self._waiting()]
+        since = self._counting_since
+        due = [] if since is None else [since + condition.for_ for condition in self._waiting()]
         others = (self._stale_at(), self._value_slot.wake_at, self._stale_slot.wake_at)
         return min((*due, *(at for at in others if at is not None)), default=None)
 
@@ -122,7 +131,7 @@ class SignalMonitor:
         elif self._cause is not None and self.settings.spec.is_stop:
             yield from self._stop_reasons(self._value_slot)
         elif self._cause is not None and value is not None:
-            message = value_reason(self.settings, self._cause, value, self._bad_for)
+            message = value_reason(self.settings, self._cause, value, self._counted)
             threshold = self._cause.threshold
             yield self._reason(self._value_slot, message, value, threshold)
         if self._stale_slot.cause is not None:
@@ -172,7 +181,7 @@ class SignalMonitor:
             stale=self._is_stale(now),
             error=self._value_slot.error,
             pending_error=coming.error if coming else None,
-            pending_since=self._last_good if coming else None,
+            pending_since=self._counting_since if coming else None,
             pending_needs=coming.for_ if coming else None,
             skewed=newest.skewed if newest else False,
             needs_acknowledgement=self._value_slot.waits_for_acknowledgement,
@@ -199,7 +208,9 @@ class SignalMonitor:
         return self._met_by_readings()
 
     def _is_due(self, condition: Condition, now: Instant) -> bool:
-        return self._engaged_since is not None or now - self._last_good >= condition.for_
+        if self._engaged_since is not None:
+            return True
+        return self._counting_since is not None and now - self._counting_since >= condition.for_
 
     def _find_cause(self, now: Instant) -> Condition | None:
         """Return the most urgent condition that is met and due, or is an error already."""
@@ -211,7 +222,7 @@ class SignalMonitor:
 
     def _waiting(self) -> list[Condition]:
         """Return the conditions that are met and will become the cause when they are due."""
-        met = self._met()
+        met = self._met() if self._counting_since is not None else []
         return met[: met.index(self._cause)] if self._cause in met else met
 
     def _stale_at(self) -> Instant | None:

@@ -5,18 +5,20 @@ from domain.health.held_readings import HeldReadings
 from domain.health.signals import (
     RATIO,
     Condition,
+    CountsFrom,
     SignalKind,
     SignalSettings,
     SignalSpec,
 )
 from domain.inputs import SignalValue
-from domain.timebase import Duration, to_seconds
+from domain.timebase import Duration, seconds, to_seconds
 
 _NAMED_SOURCES = 3
+_TENTH = seconds(0.1)
 
 
 def value_reason(
-    settings: SignalSettings, condition: Condition, value: SignalValue, bad_for: Duration
+    settings: SignalSettings, condition: Condition, value: SignalValue, counted: Duration
 ) -> str:
     """Return what is wrong with a value, such as "battery 42 % is below 50 %".
 
@@ -24,18 +26,21 @@ def value_reason(
         settings: Settings of the signal.
         condition: The condition whose error is active.
         value: The value held.
-        bad_for: Minimum time without a good reading when the error was raised.
+        counted: Time that had counted when the error was raised; see `CountsFrom`.
     """
     spec = settings.spec
+    time = _measured(counted, condition.for_)
     if spec.kind is SignalKind.NUMBER:
-        return _number_reason(spec, condition, float(value), min(bad_for, condition.for_))
+        return _number_reason(settings, condition, float(value), time)
     said = str(value).lower() if isinstance(value, bool) else value
-    if not bad_for:
+    if not time:
         return f"{_label(spec)} is {said}"
-    good = _good_members(settings)
+    good = " or ".join(_good_members(settings))
+    if settings.counts_from is CountsFrom.LAST_GOOD:
+        return f"{_label(spec)} is {said}, no {good or 'good'} reading for {time}"
     if not good:
-        return f"{_label(spec)} has been {said} for {_duration(bad_for)}"
-    return f"{_label(spec)} is {said}, not {' or '.join(good)} for {_duration(bad_for)}"
+        return f"{_label(spec)} has been {said} for {time}"
+    return f"{_label(spec)} is {said}, not {good} for {time}"
 
 
 def pressed_reason(readings: HeldReadings, spec: SignalSpec) -> str:
@@ -63,7 +68,8 @@ def kept_reason(settings: SignalSettings, slot: ErrorSlot) -> str:
     return f"{gone} stays active for at least {_duration(settings.min_on)}"
 
 
-def _number_reason(spec: SignalSpec, condition: Condition, value: float, bad_for: Duration) -> str:
+def _number_reason(settings: SignalSettings, condition: Condition, value: float, time: str) -> str:
+    spec = settings.spec
     # Between the two thresholds, the value has not reached the clear threshold.
     is_beyond = condition.is_met_by(value)
     limit = float(condition.threshold) if is_beyond else condition.clear_limit
@@ -71,9 +77,18 @@ def _number_reason(spec: SignalSpec, condition: Condition, value: float, bad_for
     subject = f"{_label(spec)} {_quantity(spec, value, limit)}"
     if not is_beyond:
         return f"{subject} is still {comparison}"
-    if not bad_for:
+    if not time:
         return f"{subject} is {comparison}"
-    return f"{subject} has been {comparison} for {_duration(bad_for)}"
+    if settings.counts_from is CountsFrom.LAST_GOOD:
+        return f"{subject} is {comparison}, no good reading for {time}"
+    return f"{subject} has been {comparison} for {time}"
+
+
+def _measured(counted: Duration, needed: Duration) -> str:
+    """Return a time in words, rounded down so that it is never more; empty: none was needed."""
+    tenths = counted // _TENTH * _TENTH
+    told = max(tenths, needed) if counted >= needed else tenths
+    return _duration(told) if needed and told else ""
 
 
 def _quantity(spec: SignalSpec, value: float, other: float | None = None) -> str:

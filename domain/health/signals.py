@@ -40,12 +40,44 @@ class Comparison(StrEnum):
     EQUAL = "equal"
 
 
+_FLOAT32_ROUNDING = 2.0**-22
+"""Largest relative error of a value that a sender computed in single precision: two units in the
+last place."""
+
+_STOP_WORDS = frozenset({"true", "1", "yes", "on"})
+
+
+def asks_for_stop(value: object) -> bool:
+    """Tell whether the value of a stop asks the robot to stop.
+
+    Senders write true in several ways: True, the number 1, or one of the words true, yes, on and 1.
+    Only False releases a stop; there is no such leniency for it.
+    """
+    if isinstance(value, str):
+        return value.strip().lower() in _STOP_WORDS
+    return value is True or (isinstance(value, int | float) and value == 1)
+
+
+def signal_name(name: str) -> str:
+    """Return the name of a signal without the leading slash of its topic in ROS."""
+    return name.lstrip("/")
+
+
 class Recovery(StrEnum):
     """How an error clears once its cause is gone."""
 
     AUTOMATIC = "automatic"
     ACKNOWLEDGE = "acknowledge"
     """Only after an operator has acknowledged it, before or after the cause was gone."""
+
+
+class CountsFrom(StrEnum):
+    """Where the time of an error begins that is raised only after a time."""
+
+    FIRST_BAD = "first_bad"
+    """At the first bad reading after a good one, or after the signal was stale."""
+    LAST_GOOD = "last_good"
+    """At the last good reading, or at the start: silence counts, too. As in smart_polaris."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -85,14 +117,20 @@ class SignalSpec:
     def checked(self, value: object) -> SignalValue:
         """Return `value` as this signal holds it: a number as a float, -0.0 as 0.0.
 
+        A number that is beyond a limit by no more than the rounding of single precision is that
+        limit: a full battery reads 1.0000001.
+
         Raises:
             InvalidValueError: It has the wrong type, is not finite, out of range or not a member. A
-                boolean is not a number, and a number is not a boolean.
+                boolean is not a number, and a number is not a boolean, except that a stop takes all
+                that `asks_for_stop`.
         """
         match self.kind:
             case SignalKind.NUMBER:
                 return self._checked_number(value)
             case SignalKind.BOOLEAN:
+                if self.is_stop and asks_for_stop(value):
+                    return True
                 if isinstance(value, bool):
                     return value
                 raise self._invalid("true or false", value)
@@ -113,9 +151,13 @@ class SignalSpec:
         if not math.isfinite(number):
             raise self._invalid("a finite number", number)
         if self.minimum is not None and number < self.minimum:
-            raise self._invalid(f"at least {self.minimum:g}", number)
+            if number < self.minimum - _rounding(self.minimum):
+                raise self._invalid(f"at least {self.minimum:g}", number)
+            number = self.minimum
         if self.maximum is not None and number > self.maximum:
-            raise self._invalid(f"at most {self.maximum:g}", number)
+            if number > self.maximum + _rounding(self.maximum):
+                raise self._invalid(f"at most {self.maximum:g}", number)
+            number = self.maximum
         return number + 0.0
 
     def _invalid(self, wanted: str, value: object) -> InvalidValueError:
@@ -132,7 +174,7 @@ class Condition:
     clear_threshold: float | None = None
     """For a number: where an active error clears (hysteresis); None: at the threshold."""
     for_: Duration = 0
-    """How long after the last good reading the error is raised; 0: at once."""
+    """Time after which the error is raised, see `CountsFrom`; 0: at once."""
     bit: int = DECLARED_BIT
     key: str = ""
     """Prefix that tells the settings of several conditions apart, as in `lost_for_s`."""
@@ -175,6 +217,8 @@ class SignalSettings:
     """Minimum time that an error of this signal stays active, so that a short one is seen."""
     recovery: Recovery = Recovery.AUTOMATIC
     """Recovery of value errors; staleness always recovers automatically."""
+    counts_from: CountsFrom = CountsFrom.FIRST_BAD
+    """Where `for_` of the conditions begins."""
 
     def __post_init__(self) -> None:
         if len({condition.key for condition in self.conditions}) != len(self.conditions):
@@ -244,6 +288,11 @@ class SignalSettings:
         return InvalidValueError(f"{setting} of {self.spec.name} {what}", pointer)
 
 
+def _rounding(limit: float) -> float:
+    """Return what single precision may add to a value at a limit; at 0, to one of about 1."""
+    return _FLOAT32_ROUNDING * (abs(limit) or 1.0)
+
+
 def _prefixed(condition: Condition, setting: str) -> str:
     return f"{condition.key}_{setting}" if condition.key else setting
 
@@ -263,6 +312,7 @@ _DEFAULT_SIGNALS = (
     SignalSettings(
         SignalSpec("gps_accuracy", _NUMBER, "mm", "GPS accuracy", minimum=0.0),
         (Condition("GPS_LOST", _ABOVE, 200.0, for_=seconds(15.0), bit=4),),
+        counts_from=CountsFrom.LAST_GOOD,
     ),
     SignalSettings(
         SignalSpec(
@@ -278,6 +328,7 @@ _DEFAULT_SIGNALS = (
             ),
             Condition("SIGNAL_LOW", _EQUAL, "LOW_SIGNAL", for_=seconds(20.0), bit=16, key="low"),
         ),
+        counts_from=CountsFrom.LAST_GOOD,
     ),
     SignalSettings(
         SignalSpec("temperature", _NUMBER, "°C"),

@@ -37,8 +37,9 @@ class HealthChanges:
     cleared: tuple[str, ...] = ()
     pending: tuple[tuple[str, str], ...] = ()
     """Signals and errors whose time began to count."""
-    settled: tuple[tuple[str, str], ...] = ()
-    """Signals and errors whose time stopped before the error was raised."""
+    settled: tuple[tuple[str, str, bool], ...] = ()
+    """Signals and errors whose time stopped before the error was raised, and whether that was
+    because the signal became stale."""
     signals: frozenset[str] = frozenset()
     """Signals whose view changed."""
     skewed: tuple[str, ...] = ()
@@ -63,7 +64,7 @@ class _Gathered:
     raised: list[Blocker] = field(default_factory=list)
     cleared: list[str] = field(default_factory=list)
     pending: list[tuple[str, str]] = field(default_factory=list)
-    settled: list[tuple[str, str]] = field(default_factory=list)
+    settled: list[tuple[str, str, bool]] = field(default_factory=list)
     signals: set[str] = field(default_factory=set)
     skewed: list[str] = field(default_factory=list)
     state_changed: bool = False
@@ -96,7 +97,7 @@ class _Gathered:
         self.signals.add(name)
         if before.pending_error != after.pending_error:
             if before.pending_error not in (None, after.error):
-                self.settled.append((name, before.pending_error))
+                self.settled.append((name, before.pending_error, after.stale))
             if after.pending_error is not None:
                 self.pending.append((name, after.pending_error))
         if after.skewed and not before.skewed:
@@ -147,6 +148,14 @@ class StateManager:
             if behind is not None:
                 raise OutdatedReadingError(name, to_seconds(behind))
             held.take(reading, readings.source, now)
+
+    def released_by(self, readings: Readings) -> tuple[str, ...]:
+        """Return the stops that their source would release with readings that passed `check`."""
+        return tuple(
+            reading.signal
+            for reading in readings.items
+            if self._monitors[reading.signal].readings.is_released_by(reading, readings.source)
+        )
 
     def receive(self, readings: Readings, now: Instant) -> HealthChanges:
         """Process readings that passed `check`."""

@@ -125,14 +125,14 @@ class Convergence:
         for part in moved:
             if part in self._depth:
                 waiting.add(part)
-            elif self._renew(part, moved):
+            elif self._renew(part, self._own_cause(part), moved):
                 renewed.add(part)
                 waiting.update(self._parents.get(part, ()))
         order = [(-self._depth[name], name) for name in waiting]
         heapify(order)
         while order:
             _, name = heappop(order)
-            if not self._renew(name, moved):
+            if not self._renew(name, self._cause(name), moved):
                 continue
             renewed.add(name)
             for parent in self._parents.get(name, ()):
@@ -141,9 +141,9 @@ class Convergence:
                     heappush(order, (-self._depth[parent], parent))
         return renewed
 
-    def _renew(self, part: PartName, moved: set[PartName]) -> bool:
-        """Find the cause of a part anew; return whether that or what is told of it changed."""
-        was, cause = self._causes.get(part), self._cause(part)
+    def _renew(self, part: PartName, cause: PartName | None, moved: set[PartName]) -> bool:
+        """Take over the cause of a part; return whether that or what is told of it changed."""
+        was = self._causes.get(part)
         if cause is was:
             return cause is not None and cause in moved
         if cause is None:
@@ -155,12 +155,13 @@ class Convergence:
                 self._laggards[parent].note(part, lags=cause is not None)
         return True
 
-    def _cause(self, part: PartName) -> PartName | None:
+    def _cause(self, system: PartName) -> PartName | None:
+        last = self._laggards[system].last(self._targets.get(system))
+        return self._own_cause(system) if last is None else self._causes[last]
+
+    def _own_cause(self, part: PartName) -> PartName | None:
+        """Return a part itself, if it is not where its own target says."""
         target = self._targets.get(part)
-        laggards = self._laggards.get(part)
-        last = laggards.last(target) if laggards is not None else None
-        if last is not None:
-            return self._causes[last]
         if target is None or is_there(self._actuals[part], target):
             return None
         return None if part in self._plain and self._is_asked_nothing(part, target) else part

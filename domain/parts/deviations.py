@@ -6,7 +6,7 @@ from domain.timebase import Instant
 
 
 class Deviations:
-    """Parts that have not converged, with the instant at which that began, and the reason."""
+    """Parts that have not converged, with the instant at which that began."""
 
     def __init__(self, inference: ModeInference) -> None:
         self._inference = inference
@@ -30,7 +30,3 @@ class Deviations:
     def since(self, part: PartName) -> Instant | None:
         """Return since when a part deviates; None: it does not deviate."""
         return self._since.get(part)
-
-    def reason(self, part: PartName) -> str | None:
-        """Return which part is not where its target says; None: the part does not deviate."""
-        return self._inference.deviation_reason(part) if part in self._since else None

@@ -42,6 +42,12 @@ class ModeInference:
             name: any(isinstance(v, tuple) for mode in node.modes.values() for v in mode.values())
             for name, node in model.nodes.items()
         }
+        self._fitting: dict[PartName, tuple[ModeName, ...]] = {}
+        """Modes that the parameters of an active node match; kept until it reports others."""
+        self._wavering: set[PartName] = set()
+        """Nodes whose mode depends on their target, since their parameters match several."""
+        self._shared: dict[tuple[LifecycleState, ModeName | None, bool], Actual] = {}
+        """One object for all nodes in the same state and mode: fewer for Python to look through."""
         self._plain: set[PartName] = set()
         """Nodes without a lifecycle."""
         self._depth = {name: len(model.ancestors[name]) for name in model.systems}
@@ -67,6 +73,9 @@ class ModeInference:
         if not is_different:
             return set()
         node = report.node
+        if report.parameters:
+            self._fitting.pop(node, None)
+            self._wavering.discard(node)
         if facts.has_lifecycle is not (node in self._plain):
             changed = self._infer((node,))
         else:
@@ -90,7 +99,8 @@ class ModeInference:
                 self._targets.pop(part, None)
             else:
                 self._targets[part] = target
-        changed = self._infer(targets)
+        nodes = targets.keys() & self._wavering
+        changed = self._infer((*nodes, *(part for part in targets if part in self._systems)))
         return changed | self._convergence.renew(changed | targets.keys())
 
     def target(self, part: PartName) -> StateAndMode | None:
@@ -177,7 +187,8 @@ class ModeInference:
 
     def _renew(self, part: PartName, actual: Actual) -> bool:
         """Take over the actual of a part; return whether it changed."""
-        if actual == self._actual[part]:
+        known = self._actual[part]
+        if actual is known or actual == known:
             return False
         self._actual[part] = actual
         self._tell_parents(part)
@@ -196,14 +207,25 @@ class ModeInference:
         if state is LifecycleState.UNKNOWN:
             return Actual(state, reason=f"{name} {facts.why_unknown}")
         if state is not LifecycleState.ACTIVE:
-            return Actual(state)
+            return self._share(state)
         if facts.mode is not None:
-            return Actual(state, facts.mode)
+            known = facts.mode in self.model.nodes[name].modes
+            return self._share(state, facts.mode) if known else Actual(state, facts.mode)
         mode = self._matching_mode(name)
-        if mode is None:
-            reason = f"the parameters of {name} match no mode" if self._by_rank[name] else None
-            return Actual(state, reason=reason)
-        return Actual(state, mode, mode_inferred=True)
+        if mode is not None:
+            return self._share(state, mode, mode_inferred=True)
+        if self._by_rank[name]:
+            return Actual(state, reason=f"the parameters of {name} match no mode")
+        return self._share(state)
+
+    def _share(
+        self, state: LifecycleState, mode: ModeName | None = None, *, mode_inferred: bool = False
+    ) -> Actual:
+        key = (state, mode, mode_inferred)
+        shared = self._shared.get(key)
+        if shared is None:
+            shared = self._shared[key] = Actual(state, mode, mode_inferred=mode_inferred)
+        return shared
 
     def _matching_mode(self, name: PartName) -> ModeName | None:
         """Return the mode that a node's parameters match: target mode first, then `__DEFAULT__`.
@@ -211,15 +233,24 @@ class ModeInference:
         The target mode is matched on all types of values. As in system_modes, other modes are not
         inferred if the node has list parameters.
         """
-        node = self.model.nodes[name]
+        fitting = self._fitting.get(name)
+        if fitting is None:
+            fitting = self._fitting[name] = self._find_fitting(name)
+        if not fitting:
+            return None
         target = self._targets.get(name)
         asked = target.mode if target is not None else None
-        if asked is not None and asked in node.modes and self._matches(node, asked):
+        if asked is not None and asked in fitting:
             return asked
-        for mode in self._by_rank[name]:
-            if self._matches(node, mode) and not self._has_lists[name]:
-                return mode
-        return None
+        return None if self._has_lists[name] else fitting[0]
+
+    def _find_fitting(self, name: PartName) -> tuple[ModeName, ...]:
+        """Return the modes that a node's parameters match, `__DEFAULT__` first."""
+        node = self.model.nodes[name]
+        fitting = tuple(mode for mode in self._by_rank[name] if self._matches(node, mode))
+        if len(fitting) > 1 or (fitting and self._has_lists[name]):
+            self._wavering.add(name)
+        return fitting
 
     def _matches(self, node: NodeModel, mode: ModeName) -> bool:
         known = self._facts[node.name].parameters

@@ -1,7 +1,10 @@
 """The parts as a concern of the core: reports of nodes, inferred states and targets."""
 
 from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
+from itertools import islice
 
+from domain.actor import Actor
 from domain.concern import Concern, Takers
 from domain.events.parts import (
     DeviationBegan,
@@ -23,11 +26,24 @@ from domain.parts.node_facts import NodeFacts
 from domain.parts.reachability import Reachability
 from domain.parts.system_model import SmhModel
 from domain.parts.targets import Targets
-from domain.snapshot import ParameterView, PartView
+from domain.snapshot import Actual, ParameterView, PartView
 from domain.state_and_mode import DEFAULT_MODE, PartName, StateAndMode
 from domain.timebase import Instant
 
-_UNKNOWN = StateAndMode(LifecycleState.UNKNOWN)
+LOOKS_AT_ONCE = 1_000
+"""Parts whose deviations one turn tells. Those that a request of a large robot caused are told in
+several, in the order of the parts, before anything else of the request goes on."""
+
+_UNKNOWN = Actual(LifecycleState.UNKNOWN)
+
+
+@dataclass(frozen=True, slots=True)
+class _Cause:
+    """The input that may have made parts deviate."""
+
+    event: int
+    actor: Actor
+    at: Instant
 
 
 class Parts(Concern):
@@ -41,9 +57,13 @@ class Parts(Concern):
         self._deviations = Deviations(self.inference)
         self._reachability = Reachability(model)
         self._outbox = outbox
-        self._told: dict[PartName, StateAndMode] = {}
+        self._told: dict[PartName, Actual] = {}
         self._touched: set[PartName] = set()
         """Parts about which something changed since the last `settle`."""
+        self._moved: set[PartName] = set()
+        """Those of them whose actual or target changed, so that a deviation may begin or end."""
+        self._to_look: dict[PartName, _Cause] = {}
+        """Parts whose deviations are told in later turns; their views show them already."""
         self._views: dict[PartName, PartView] = {}
         """Cached until something about the part changes."""
         self._changes: dict[PartName, ChangeId] = {}
@@ -68,30 +88,34 @@ class Parts(Concern):
         for value in (report.parameters or {}).values():
             value_type(value)
         facts = self.inference.facts_of(report.node)
+        if self._to_look:
+            self._look_late(sorted({report.node, *self.model.ancestors[report.node]}), now)
         self._outbox.begin(now, _described(report), cause=self._steps.get(report.node))
         self.state_before = facts.known_state
         changed = self.inference.report(report, now)
         self._note_reachable(report.node, reachable=bool(facts.reachable))
         self.touch(changed)
+        self._moved |= changed
         self._tell_actuals(changed)
 
     def ask(self, wanted: Mapping[PartName, StateAndMode]) -> None:
         """Set requested targets; they are in force at once."""
-        self.touch(self._targets.ask(wanted))
-        self.touch(wanted)
+        moved = self._targets.ask(wanted) | wanted.keys()
+        self.touch(moved)
+        self._moved |= moved
 
     def put_under(self, change: ChangeId, parts: Iterable[PartName]) -> None:
         """Record that a change drives parts; it replaces an earlier one."""
-        for part in parts:
-            self._changes[part] = change
-            self.touch((part,))
+        driven = dict.fromkeys(parts, change)
+        self._changes.update(driven)
+        self.touch(driven)
 
     def let_go(self, change: ChangeId, parts: Iterable[PartName]) -> None:
         """Record that a change no longer drives parts; parts of another change are not affected."""
-        for part in parts:
-            if self._changes.get(part) == change:
-                del self._changes[part]
-                self.touch((part,))
+        driven = [part for part in parts if self._changes.get(part) == change]
+        for part in driven:
+            del self._changes[part]
+        self.touch(driven)
 
     def expect_report(self, node: PartName, step: int) -> None:
         """Record the event of a node's step in flight; it becomes the cause of its reports."""
@@ -111,13 +135,26 @@ class Parts(Concern):
         if not touched:
             return False
         self._outbox.parts |= touched
-        self._tell_actuals(touched)
-        for part in sorted(touched):
+        for part in touched:
             self._views.pop(part, None)
-            began = self._deviations.look(part, now)
-            if began is not None:
-                self._tell_deviation(part, began=began)
+        moved, self._moved = sorted(self._moved), set()
+        self._tell_actuals(moved)
+        for part in moved[:LOOKS_AT_ONCE]:
+            self._to_look.pop(part, None)
+            self._look(part, now)
+        if len(moved) > LOOKS_AT_ONCE:
+            cause = _Cause(self._outbox.record_input(), self._outbox.actor, now)
+            self._to_look.update(dict.fromkeys(moved[LOOKS_AT_ONCE:], cause))
         return True
+
+    @property
+    def has_more(self) -> bool:
+        """Tell whether deviations are still to be told."""
+        return bool(self._to_look)
+
+    def go_on(self, now: Instant) -> None:
+        """Tell some more deviations."""
+        self._look_late(list(islice(self._to_look, LOOKS_AT_ONCE)), now)
 
     # --- what can be seen ------------------------------------------------------------------------
 
@@ -162,16 +199,35 @@ class Parts(Concern):
             self.touch((node, *self.model.ancestors[node]))
             self._outbox.emit(NodeReachable(node) if reachable else NodeUnreachable(node))
 
+    def _look_late(self, parts: Iterable[PartName], now: Instant) -> None:
+        """Tell the deviations of those parts whose turn has not come yet."""
+        for part in parts:
+            cause = self._to_look.pop(part, None)
+            if cause is not None:
+                self._outbox.resume(now, cause.event, cause.actor)
+                self._look(part, cause.at)
+
+    def _look(self, part: PartName, since: Instant) -> None:
+        began = self._deviations.look(part, since)
+        if began is not None:
+            self._tell_deviation(part, began=began)
+
     def _tell_actuals(self, parts: Iterable[PartName]) -> None:
         """Publish the parts whose actual state or mode differs from the last published one."""
         for part in sorted(parts):
-            actual = self.inference.actual(part)
-            now, was = actual.state_and_mode, self._told.get(part, _UNKNOWN)
-            if now == was:
+            actual, was = self.inference.actual(part), self._told.get(part, _UNKNOWN)
+            if actual is was or (actual.state is was.state and actual.mode == was.mode):
                 continue
-            self._told[part] = now
-            is_system = part in self.model.systems
-            self._outbox.emit(PartActualChanged(part, now, was, actual.reason, of_system=is_system))
+            self._told[part] = actual
+            self._outbox.emit(
+                PartActualChanged(
+                    part,
+                    actual.state_and_mode,
+                    was.state_and_mode,
+                    actual.reason,
+                    of_system=part in self.model.systems,
+                )
+            )
 
     def _tell_deviation(self, part: PartName, *, began: bool) -> None:
         actual, target = self.inference.actual(part), self.target(part)
@@ -181,8 +237,18 @@ class Parts(Concern):
         kind = DeviationBegan if began else DeviationEnded
         self._outbox.emit(kind(part, target, actual.state_and_mode, why))
 
+    def _deviation_since(self, part: PartName) -> Instant | None:
+        """Return since when a part deviates, also if that is told in a later turn."""
+        since = self._deviations.since(part)
+        if part not in self._to_look:
+            return since
+        if self.inference.converged(part):
+            return None
+        return self._to_look[part].at if since is None else since
+
     def _build(self, part: PartName) -> PartView:
         system = self.model.systems.get(part)
+        since = self._deviation_since(part)
         return PartView(
             name=part,
             kind="system" if system else "node",
@@ -190,9 +256,9 @@ class Parts(Concern):
             target=self._targets.asked(part),
             effective_target=self._targets.effective(part),
             actual=self.inference.actual(part),
-            converged=self._deviations.since(part) is None,
-            deviation_since=self._deviations.since(part),
-            deviation_reason=self._deviations.reason(part),
+            converged=since is None,
+            deviation_since=since,
+            deviation_reason=None if since is None else self.inference.deviation_reason(part),
             reachable=self._reachability.reaches(part),
             change=self.change_of(part),
         )

@@ -2,9 +2,10 @@
 
 from collections.abc import Mapping
 
+from domain.lifecycle import LifecycleState
 from domain.parts.mode_inference import ModeInference
 from domain.snapshot import EffectiveTarget
-from domain.state_and_mode import PartName, StateAndMode
+from domain.state_and_mode import ModeName, PartName, StateAndMode
 
 REQUESTED = "requested"
 """Reason of a target in force that was requested."""
@@ -21,12 +22,14 @@ class Targets:
         self._inference = inference
         self._asked: dict[PartName, StateAndMode] = {}
         self._effective: dict[PartName, EffectiveTarget] = {}
+        self._shared: dict[tuple[LifecycleState, ModeName | None], EffectiveTarget] = {}
+        """One object for all parts with the same target."""
 
     def ask(self, wanted: Mapping[PartName, StateAndMode]) -> set[PartName]:
         """Set requested targets, in force at once; return the parts whose actual changed."""
         for part, target in wanted.items():
             self._asked[part] = target
-            self._effective[part] = EffectiveTarget(target.state, target.mode, REQUESTED)
+            self._effective[part] = self._requested(target)
         return self._inference.set_targets(wanted)
 
     def asked(self, part: PartName) -> StateAndMode | None:
@@ -36,3 +39,10 @@ class Targets:
     def effective(self, part: PartName) -> EffectiveTarget | None:
         """Return the target in force of a part, with its reason; None: there is none."""
         return self._effective.get(part)
+
+    def _requested(self, target: StateAndMode) -> EffectiveTarget:
+        key = (target.state, target.mode)
+        shared = self._shared.get(key)
+        if shared is None:
+            shared = self._shared[key] = EffectiveTarget(target.state, target.mode, REQUESTED)
+        return shared

@@ -1,21 +1,102 @@
-"""How well the headings of waypoints fit the direction of the path.
+"""Headings of waypoints: their units, and how well they fit the direction of the path."""
 
-Used to check the unit and the zero direction of headings.
-"""
-
-from math import hypot, pi
+from collections.abc import Iterable
+from dataclasses import dataclass
+from enum import StrEnum
+from math import hypot, pi, tau
 
 import numpy as np
 from numpy.typing import NDArray
 
+MAX_MISFIT_RAD = pi / 6
+"""Headings whose median differs by more from the path are none, or in another unit."""
+
 _CHORD_M = 0.5
 """Directions are taken over this chord, or a tenth of the path, since a receiver jitters."""
+_FEW_WAYS = 2
+_MOST_WAYS = 0.9
+_ONE_TURN = 1.001
+"""More is not a heading in radians, unless headings are unwrapped over several turns."""
+_MOST_TURNS = 100
+"""Further unwrapped headings are none: a time in seconds soon has thousands of turns."""
+
+Floats = NDArray[np.float64]
+
+
+class Heading(StrEnum):
+    """Unit, zero direction and sense of headings."""
+
+    RAD = "rad"
+    """Radians counter-clockwise from the x axis."""
+    DEG = "deg"
+    """Degrees counter-clockwise from the x axis."""
+    COMPASS = "compass"
+    """Degrees clockwise from north, which is the y axis."""
+    RAD_NORTH = "rad_north"
+    """Radians counter-clockwise from north, as `psi_rad` of race lines."""
+    RAD_COMPASS = "rad_compass"
+    """Radians clockwise from north, as in NED frames."""
+
+    @property
+    def words(self) -> str:
+        """Return what it means, for a person."""
+        return _WORDS[self]
+
+    def yaws(self, values: Floats) -> Floats:
+        """Return headings in rad counter-clockwise from the x axis; shape (n,).
+
+        Radians from the x axis are returned as they are, others wrapped to [-pi, pi).
+        """
+        match self:
+            case Heading.RAD:
+                return values
+            case Heading.DEG:
+                return wrapped(np.radians(values))
+            case Heading.COMPASS:
+                return wrapped(pi / 2 - np.radians(values))
+            case Heading.RAD_NORTH:
+                return wrapped(pi / 2 + values)
+            case Heading.RAD_COMPASS:
+                return wrapped(pi / 2 - values)
+
+    @property
+    def turn(self) -> float:
+        """Return a full turn in this unit."""
+        return 360.0 if self in (Heading.DEG, Heading.COMPASS) else tau
+
+
+_WORDS = {
+    Heading.RAD: "radians counter-clockwise from east",
+    Heading.DEG: "degrees counter-clockwise from east",
+    Heading.COMPASS: "degrees clockwise from north",
+    Heading.RAD_NORTH: "radians counter-clockwise from north",
+    Heading.RAD_COMPASS: "radians clockwise from north",
+}
+
+
+@dataclass(frozen=True, slots=True)
+class Fit:
+    """How headings read in some unit fit the direction of the path."""
+
+    heading: Heading
+    misfit_rad: float
+    """Median angle between heading and path, 0 to pi / 2; of reversed headings to the way back.
+
+    Of headings that are all the same, 90 % of the angles are smaller.
+    """
+    is_reversed: bool
+    """Whether the headings point against the path, as of a vehicle that drove backwards."""
+
+    @property
+    def fits(self) -> bool:
+        """Return whether these are headings along the path, or against it."""
+        return self.misfit_rad <= MAX_MISFIT_RAD
 
 
 class Ways:
     """Directions of the path between waypoints."""
 
-    def __init__(self, places: NDArray[np.float64]) -> None:
+    def __init__(self, places: Floats) -> None:
         """Find the directions.
 
         Args:
@@ -23,7 +104,8 @@ class Ways:
         """
         kept = _apart(places)
         steps = np.diff(places[kept], axis=0)
-        self._middles = (kept[:-1] + kept[1:]) // 2
+        # A heading may be that of the way to a waypoint, or from it.
+        self._beside = (kept[:-1], (kept[:-1] + kept[1:]) // 2, kept[1:])
         self._angles = np.arctan2(steps[:, 1], steps[:, 0])
 
     @property
@@ -31,25 +113,81 @@ class Ways:
         """Return the number of directions; 0 if all positions are the same."""
         return len(self._angles)
 
-    def misfit(self, yaws: NDArray[np.float64]) -> float:
-        """Return the median angle between heading and path, rad; 0 to pi / 2.
+    def fit(self, values: Floats, heading: Heading) -> Fit:
+        """Return how headings fit the path.
 
-        Headings against the path fit as well: the recording vehicle may have driven backwards.
+        Where there is no more than one direction, any heading within a turn fits: two waypoints
+        say too little to doubt their headings.
 
         Args:
-            yaws: Headings of all waypoints, shape (n,), rad counter-clockwise from the x axis.
+            values: Headings of all waypoints, shape (n,); finite.
+            heading: Their unit.
         """
-        errors = np.abs(wrapped(yaws[self._middles] - self._angles))
-        median = float(np.median(errors))
-        return min(median, pi - median)
+        most = _MOST_TURNS if self.count >= _FEW_WAYS else _ONE_TURN
+        if float(np.abs(values).max()) > most * heading.turn:
+            return Fit(heading, pi / 2, is_reversed=False)
+        if self.count < _FEW_WAYS:
+            return Fit(heading, 0.0, is_reversed=False)
+        # What never changes is no heading of a path that turns now and then.
+        share = _MOST_WAYS if float(np.ptp(values)) == 0.0 else 0.5
+        yaws = heading.yaws(values)
+        errors = [self._errors(yaws[at]) for at in self._beside]
+        ahead = min(float(np.quantile(found, share)) for found in errors)
+        back = min(float(np.quantile(pi - found, share)) for found in errors)
+        return Fit(heading, min(ahead, back, pi / 2), is_reversed=back < ahead)
+
+    def best_fit(self, values: Floats, among: Iterable[Heading]) -> Fit:
+        """Return the fit of the unit that these headings probably have.
+
+        Radians within a turn that fit are radians. Otherwise headings along the path are preferred
+        to reversed ones, and earlier units to later ones.
+
+        Args:
+            values: As for `fit`.
+            among: Possible units, at least one.
+        """
+        fits = [self.fit(values, heading) for heading in among]
+        first = fits[0]
+        is_within_a_turn = float(np.abs(values).max()) <= _ONE_TURN * tau
+        if first.heading is Heading.RAD and first.fits and is_within_a_turn:
+            return first
+        return min(fits, key=lambda fit: (not fit.fits, fit.is_reversed, fit.misfit_rad))
+
+    def first_misfit(self, values: Floats, heading: Heading) -> int:
+        """Return the index of the first waypoint whose heading differs too much from the path."""
+        at = self._beside[1]
+        errors = self._errors(heading.yaws(values)[at])
+        beyond = np.minimum(errors, pi - errors) > MAX_MISFIT_RAD
+        return int(at[int(beyond.argmax())]) if beyond.any() else 0
+
+    def _errors(self, yaws: Floats) -> Floats:
+        return np.abs(wrapped(yaws - self._angles))
 
 
-def wrapped(angles: NDArray[np.float64]) -> NDArray[np.float64]:
+def along(places: Floats) -> Floats:
+    """Return the directions of a path at its waypoints, rad; shape (n,).
+
+    At a waypoint it is the direction from the one before to the next one. Where these are at the
+    same position it is that of the waypoint before; 0 if there is none.
+
+    Args:
+        places: Positions of the waypoints, shape (n, 2), n >= 2: x m, y m; finite.
+    """
+    steps = places[np.minimum(np.arange(len(places)) + 1, len(places) - 1)]
+    steps = steps - places[np.maximum(np.arange(len(places)) - 1, 0)]
+    moved = np.hypot(steps[:, 0], steps[:, 1]) > 0
+    if not moved.any():
+        return np.zeros(len(places))
+    last = np.maximum.accumulate(np.where(moved, np.arange(len(places)), int(moved.argmax())))
+    return np.asarray(np.arctan2(steps[last, 1], steps[last, 0]))
+
+
+def wrapped(angles: Floats) -> Floats:
     """Return angles wrapped to [-pi, pi), rad; same shape."""
     return np.asarray((angles + pi) % (2 * pi) - pi)
 
 
-def _apart(places: NDArray[np.float64]) -> NDArray[np.int64]:
+def _apart(places: Floats) -> NDArray[np.int64]:
     """Return the indices of waypoints at least a chord apart, from the first one; shape (k,)."""
     extent = float(np.hypot(*(places - places[0]).T).max())
     chord = min(_CHORD_M, extent / 10)

@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 
 from domain.errors import InvalidValueError
 from domain.paths.waypoints import check_waypoints
-from domain.vehicle import Point
+from domain.vehicle import Point, VehicleLimits
 
 SPACING_M = 0.1
 """Minimum distance between two positions of a path longer than 10 m; else a hundredth of it."""
@@ -56,11 +56,14 @@ class Projection:
 
 
 _Array: TypeAlias = NDArray[np.float64]
-_State: TypeAlias = tuple[_Array, _Array, _Array, _Array, tuple[float, float]]
+_State: TypeAlias = tuple[_Array, _Array, _Array, _Array, tuple[float, float], float]
 
 
 class Path:
-    """The immutable line through waypoints. Distances count from waypoint 0, in metres."""
+    """The immutable line through waypoints. Distances count from waypoint 0, in metres.
+
+    Positions are kept relative to waypoint 0, so that coordinates of UTM cost no accuracy.
+    """
 
     def __init__(self, waypoints: NDArray[np.float64]) -> None:
         """Prepare the geometry; 100,000 waypoints take some 40 ms.
@@ -89,7 +92,21 @@ class Path:
         recorded = np.concatenate(([0.0], np.cumsum(_lengths(np.diff(places, axis=0)))))
         self._distances = np.interp(recorded, recorded[kept], self._along)
         self._origin = (float(knots[0, 0]), float(knots[0, 1]))
+        self._scale = 1.0
         self._take_numbers()
+
+    def for_vehicle(self, limits: VehicleLimits) -> "Path":
+        """Return this path as a vehicle sees it.
+
+        A vehicle with a wheelbase of less than `REFERENCE_WHEELBASE_M` drives tighter bends, and
+        so headings and curvatures are smoothed, and the projection searches, over less.
+        """
+        scale = min(limits.scale, 1.0)
+        if scale == self._scale:
+            return self
+        seen = Path.__new__(Path)
+        seen.__dict__.update(self.__dict__ | {"_scale": scale})
+        return seen
 
     def _take_numbers(self) -> None:
         """Copy the arrays into a form from which single numbers are read fastest."""
@@ -100,10 +117,24 @@ class Path:
 
     def __getstate__(self) -> _State:
         # Computed arrays are pickled as well: the receiving process has no time to compute them.
-        return self.waypoints, self._along, self._knots, self._distances, self._origin
+        return (
+            self.waypoints,
+            self._along,
+            self._knots,
+            self._distances,
+            self._origin,
+            self._scale,
+        )
 
     def __setstate__(self, state: _State) -> None:
-        self.waypoints, self._along, self._knots, self._distances, self._origin = state
+        (
+            self.waypoints,
+            self._along,
+            self._knots,
+            self._distances,
+            self._origin,
+            self._scale,
+        ) = state
         self.waypoints.flags.writeable = False
         self._take_numbers()
 
@@ -140,9 +171,10 @@ class Path:
 
     def heading_at(self, distance_m: float) -> float:
         """Return the heading at `distance_m`, rad, smoothed over `SMOOTHING_M`."""
-        x0, y0 = self._sums(distance_m - SMOOTHING_M)
+        over_m = SMOOTHING_M * self._scale
+        x0, y0 = self._sums(distance_m - over_m)
         x1, y1 = self._sums(distance_m)
-        x2, y2 = self._sums(distance_m + SMOOTHING_M)
+        x2, y2 = self._sums(distance_m + over_m)
         dx, dy = x2 - 2 * x1 + x0, y2 - 2 * y1 + y0
         if hypot(dx, dy) > _LEAST_EXTENT_M:
             return atan2(dy, dx)
@@ -156,15 +188,15 @@ class Path:
         It is the change of `heading_at` over `CURVATURE_OVER_M`; for a recording with centimetres
         of noise it is accurate to some 0.01 1/m.
         """
-        half = CURVATURE_OVER_M / 2
+        half = CURVATURE_OVER_M * self._scale / 2
         turn = self.heading_at(distance_m + half) - self.heading_at(distance_m - half)
-        return ((turn + pi) % (2 * pi) - pi) / CURVATURE_OVER_M
+        return ((turn + pi) % (2 * pi) - pi) / (2 * half)
 
     def curvatures_at(self, distances_m: NDArray[np.float64]) -> NDArray[np.float64]:
         """Return `curvature_at` for many distances at once; shape (n,) each, 1/m."""
-        half = CURVATURE_OVER_M / 2
+        half = CURVATURE_OVER_M * self._scale / 2
         turn = self._headings(distances_m + half) - self._headings(distances_m - half)
-        return np.asarray((turn + pi) % (2 * pi) - pi) / CURVATURE_OVER_M
+        return np.asarray((turn + pi) % (2 * pi) - pi) / (2 * half)
 
     def project(self, x_m: float, y_m: float, start_index: int) -> Projection:
         """Project a vehicle onto the path, as the nearest point ahead.
@@ -179,21 +211,21 @@ class Path:
         """
         start_index = min(max(start_index, 1), self.count - 1)
         passed = float(self._distances[start_index - 1])
-        until = float(self._distances[start_index]) + WINDOW_M
+        until = float(self._distances[start_index]) + WINDOW_M * self._scale
         distance, error = self._nearest(x_m - self._origin[0], y_m - self._origin[1], passed, until)
         return Projection(distance, error, self.heading_at(distance))
 
     def _nearest(self, x: float, y: float, passed: float, until: float) -> tuple[float, float]:
         """Return distance and cross-track error of the nearest point not before `passed`, m."""
         s, xs, ys, uxs, uys = self._s, self._x, self._y, self._ux, self._uy
-        last = len(s) - 2
+        last, window = len(s) - 2, WINDOW_M * self._scale
         first = min(self._segment(passed), last)
         best, best_at, error = inf, passed, 0.0
         for k in range(first, last + 1):
             begin = s[k]
             gap = begin - best_at
             # Nothing behind such a gap can be nearer; for a vehicle on the path this ends soon.
-            if begin > until or gap > WINDOW_M or gap * SKIP_PRICE >= best:
+            if begin > until or gap > window or gap * SKIP_PRICE >= best:
                 break
             rx, ry, ux, uy = x - xs[k], y - ys[k], uxs[k], uys[k]
             end = s[k + 1]
@@ -225,7 +257,7 @@ class Path:
 
     def _headings(self, distances_m: NDArray[np.float64]) -> NDArray[np.float64]:
         """Return `heading_at` for many distances; shape (n,) each, rad."""
-        at = distances_m[:, np.newaxis] + np.array([-SMOOTHING_M, 0.0, SMOOTHING_M])
+        at = distances_m[:, np.newaxis] + np.array([-1.0, 0.0, 1.0]) * (SMOOTHING_M * self._scale)
         k = np.maximum(self._along.searchsorted(at, side="right") - 1, 0)
         ahead = (at - self._along[k])[..., np.newaxis]
         near = self._knots[k]

@@ -6,16 +6,16 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from domain.paths.approach import MAY_MISS_SHARE, Approach, ApproachLimits, plan_approach
 from domain.paths.path import Path
-from domain.paths.speed_profile import SpeedLimits, SpeedProfile
-from domain.vehicle import Pose, VehicleLimits
+from domain.paths.speed_profile import SpeedProfile
+from domain.vehicle import Pose
 
 _STEP_M = 0.5
 _MAX_STEPS = 200_000
 _SPARSE_M = 5.0
 _STANDING_M = 1e-3
 _MANY_STANDING = 10
-_FAR_START_M = 5.0
 _TURNED_RAD = math.pi / 2
 _LEAST_SPEED_MPS = 0.1
 
@@ -29,6 +29,8 @@ class PathWarning:
     message: str
     index: int | None = None
     """Index of the waypoint concerned; None: none in particular."""
+    hint: str | None = None
+    """What to do."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -63,8 +65,10 @@ class PathPreview:
     """Whether the vehicle can steer the tightest bend."""
     start: StartDistance | None
     """None: the pose of the vehicle is unknown."""
+    approach: Approach | None
+    """None: the vehicle is on the path, too far from it, or its pose is unknown."""
     duration_s: float
-    """Estimated driving time from standstill to standstill."""
+    """Estimated driving time from standstill to standstill, with the approach."""
     warnings: tuple[PathWarning, ...]
 
 
@@ -72,8 +76,8 @@ def preview(
     path: Path,
     cruise_mps: float,
     pose: Pose | None,
-    vehicle: VehicleLimits,
-    limits: SpeedLimits,
+    limits: ApproachLimits,
+    start_index: int = 0,
 ) -> PathPreview:
     """Return the properties of a path and warnings about it.
 
@@ -81,46 +85,67 @@ def preview(
         path: The path to be driven.
         cruise_mps: Speed where nothing else limits it; > 0.
         pose: Pose of the vehicle; None: unknown.
-        vehicle: Limits of the vehicle.
-        limits: Limits of its acceleration.
+        limits: What the vehicle can do, and from how far it approaches a path.
+        start_index: Waypoint at which the task begins.
     """
-    steps = min(max(math.ceil(path.length_m / _STEP_M), 1), _MAX_STEPS)
+    vehicle = limits.vehicle
+    path = path.for_vehicle(vehicle)
+    step_m = _STEP_M * min(vehicle.scale, 1.0)
+    steps = min(max(math.ceil(path.length_m / step_m), 1), _MAX_STEPS)
     at = np.linspace(0.0, path.length_m, steps + 1)
     bends = np.abs(path.curvatures_at(at))
     tightest = int(bends.argmax())
     curvature = float(bends[tightest])
     radius = 1 / curvature if curvature > 1e-6 else None
-    vehicle_radius = vehicle.wheelbase_m / math.tan(vehicle.max_steering_angle_rad)
-    steerable = radius is None or radius >= vehicle_radius
-    start = None if pose is None else _start(path, pose)
+    start = None if pose is None else _start(path, pose, start_index)
+    approach = None if pose is None else _approach(path, pose, cruise_mps, limits, start_index)
     distances = np.hypot(*np.diff(path.waypoints[:, :2], axis=0).T)
     spacing = Spacing(float(distances.min()), float(np.median(distances)), float(distances.max()))
-    warnings = [*_spacing_warnings(distances), *_start_warnings(start)]
-    if not steerable and radius is not None:
-        message = (
-            f"a bend of {radius:.1f} m radius; the vehicle needs {vehicle_radius:.1f} m "
-            "and will leave the path there"
-        )
+    warnings = [*_spacing_warnings(distances), *_start_warnings(start, limits, start_index)]
+    if radius is not None and radius < vehicle.min_radius_m:
         index = path.index_after(float(at[tightest]))
-        warnings.insert(0, PathWarning("TOO_TIGHT", message, index))
+        warnings.insert(0, _too_tight(radius, vehicle.min_radius_m, index))
+    begun_m = path.distance_of(start_index) if approach is None else approach.meets_m
+    duration_s = _duration(path, cruise_mps, limits, at) * (1 - begun_m / path.length_m)
+    if approach is not None:
+        duration_s += approach.length_m / approach.speed_mps
     return PathPreview(
         path.count,
         path.length_m,
         spacing,
         radius,
-        vehicle_radius,
-        steerable,
+        vehicle.min_radius_m,
+        radius is None or radius >= vehicle.min_radius_m,
         start,
-        _duration(path, cruise_mps, vehicle, limits, at),
+        approach,
+        duration_s,
         tuple(warnings),
     )
 
 
-def _start(path: Path, pose: Pose) -> StartDistance:
-    first = path.waypoint(0)
+def _start(path: Path, pose: Pose, index: int) -> StartDistance:
+    first = path.waypoint(index)
     distance = math.hypot(first.x_m - pose.x_m, first.y_m - pose.y_m)
-    turned = math.remainder(pose.yaw_rad - path.heading_at(0.0), math.tau)
+    turned = math.remainder(pose.yaw_rad - path.heading_at(path.distance_of(index)), math.tau)
     return StartDistance(distance, turned)
+
+
+def _approach(
+    path: Path, pose: Pose, cruise_mps: float, limits: ApproachLimits, index: int
+) -> Approach | None:
+    if _start(path, pose, index).distance_m > limits.from_m:
+        return None
+    begin_m = path.distance_of(index)
+    may_miss_m = MAY_MISS_SHARE * (path.length_m - begin_m)
+    return plan_approach(path, pose, index, begin_m, cruise_mps, may_miss_m, limits)
+
+
+def _too_tight(radius_m: float, least_m: float, index: int) -> PathWarning:
+    message = (
+        f"a bend of {radius_m:.1f} m radius; the vehicle needs {least_m:.1f} m "
+        "and will leave the path there"
+    )
+    return PathWarning("TOO_TIGHT", message, index)
 
 
 def _spacing_warnings(distances: NDArray[np.float64]) -> list[PathWarning]:
@@ -137,29 +162,33 @@ def _spacing_warnings(distances: NDArray[np.float64]) -> list[PathWarning]:
     return warnings
 
 
-def _start_warnings(start: StartDistance | None) -> list[PathWarning]:
+def _start_warnings(
+    start: StartDistance | None, limits: ApproachLimits, index: int
+) -> list[PathWarning]:
     warnings = []
-    if start is not None and start.distance_m > _FAR_START_M:
-        message = f"the path begins {start.distance_m:.1f} m from the vehicle"
-        warnings.append(PathWarning("FAR_START", message, 0))
+    if start is not None and start.distance_m > limits.from_m:
+        message = (
+            f"the path begins {start.distance_m:.1f} m from the vehicle, and is approached "
+            f"from at most {limits.from_m:g} m"
+        )
+        warnings.append(PathWarning("FAR_START", message, index))
     if start is not None and abs(start.heading_error_rad) > _TURNED_RAD:
         message = "the vehicle faces away from the direction of the path"
-        warnings.append(PathWarning("TURNED_AWAY", message, 0))
+        warnings.append(PathWarning("TURNED_AWAY", message, index))
     return warnings
 
 
 def _duration(
     path: Path,
     cruise_mps: float,
-    vehicle: VehicleLimits,
-    limits: SpeedLimits,
+    limits: ApproachLimits,
     at: NDArray[np.float64],
 ) -> float:
     """Estimate the driving time from standstill to standstill, s."""
-    profile = SpeedProfile(path, cruise_mps, limits, vehicle)
+    profile = SpeedProfile(path, cruise_mps, limits.speed, limits.vehicle, float(at[1]))
     allowed = np.array([profile.speed_at(distance) for distance in at.tolist()])
     # From standstill, v^2 rises by at most 2 a per metre from the slowest position before.
-    gained = 2 * limits.acceleration_mps2 * at
+    gained = 2 * limits.speed.acceleration_mps2 * at
     squares = np.minimum.accumulate(np.concatenate(([0.0], (allowed**2 - gained)[1:]))) + gained
     speeds = np.maximum(np.sqrt(np.maximum(squares, 0.0)), _LEAST_SPEED_MPS)
     return float((np.diff(at) * 2 / (speeds[1:] + speeds[:-1])).sum())

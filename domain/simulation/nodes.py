@@ -128,6 +128,7 @@ class SimulatedNodes:
         self, model: SmhModel, settings: Mapping[PartName, NodeSettings], start: Instant
     ) -> None:
         self._nodes: dict[PartName, _Node] = {}
+        self._systems = frozenset(model.systems)
         self._due: list[tuple[Instant, int, _Work]] = []
         self._issues = 0
         self._messages: list[NodeMessage] = []
@@ -226,6 +227,8 @@ class SimulatedNodes:
         return dict(self._require(node).parameters)
 
     def _require(self, name: PartName) -> _Node:
+        if name in self._systems:
+            raise UnknownPartError.of_other_kind(name, "node")
         if name not in self._nodes:
             raise UnknownPartError("node", name, tuple(self._nodes))
         return self._nodes[name]

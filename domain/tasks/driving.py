@@ -4,6 +4,8 @@ from collections.abc import Iterator, Mapping
 
 from domain.concern import Concern, Takers
 from domain.events.driving import (
+    DriveAvailable,
+    DriveUnavailable,
     GoalEnded,
     GoalProgressed,
     HoldReleaseRequested,
@@ -17,6 +19,7 @@ from domain.health.emergency_stop import EmergencyStop
 from domain.health.health import Health
 from domain.inputs import (
     CancelTaskRequest,
+    DriveStatus,
     GoalFeedback,
     GoalResult,
     HoldRequest,
@@ -27,7 +30,7 @@ from domain.inputs import (
 from domain.outbox import Outbox
 from domain.paths.path import Path
 from domain.snapshot import HoldView, TaskStatus, TaskView, VehicleView
-from domain.tasks.holds import ERROR_HOLD, VEHICLE_HOLD
+from domain.tasks.holds import DRIVE_HOLD, ERROR_HOLD, VEHICLE_HOLD
 from domain.tasks.settings import TaskSettings
 from domain.tasks.task_planner import TaskPlanner
 from domain.tasks.vehicle_watch import VehicleWatch
@@ -38,7 +41,7 @@ _REASONS_TOLD = 3
 
 
 class Driving(Concern):
-    """Feeds the task planner, and sets the holds `error` and `vehicle`."""
+    """Feeds the task planner, and sets the holds of Pilothouse itself."""
 
     def __init__(
         self,
@@ -80,6 +83,7 @@ class Driving(Concern):
         """Return the handler of each class of input."""
         return {
             VehicleReport: self._take_report,
+            DriveStatus: self._take_drive_status,
             GoalFeedback: self._take_feedback,
             GoalResult: self._take_result,
             TaskRequest: self._take_task,
@@ -126,6 +130,14 @@ class Driving(Concern):
             self._planner.release(VEHICLE_HOLD, now)
         if self.watch.stands:
             self._emergency_stop.note_standstill(now)
+
+    def _take_drive_status(self, status: DriveStatus, now: Instant) -> None:
+        if status.available:
+            self._outbox.begin(now, DriveAvailable())
+            self._planner.release(DRIVE_HOLD, now)
+        else:
+            self._outbox.begin(now, DriveUnavailable(status.reason))
+            self._planner.hold(DRIVE_HOLD, status.reason, "", now)
 
     def _take_feedback(self, feedback: GoalFeedback, now: Instant) -> None:
         self._outbox.begin(now, GoalProgressed(feedback.goal))

@@ -13,8 +13,10 @@ ERROR_HOLD = "error"
 """Set while the robot is in ERROR."""
 VEHICLE_HOLD = "vehicle"
 """Set while the pose of the vehicle is unknown or stale."""
+DRIVE_HOLD = "drive_process"
+"""Set while drive commands do not reach the vehicle."""
 
-RESERVED = frozenset({ERROR_HOLD, VEHICLE_HOLD})
+RESERVED = frozenset({ERROR_HOLD, VEHICLE_HOLD, DRIVE_HOLD})
 MAX_HOLDS = 64
 
 

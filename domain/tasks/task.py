@@ -23,6 +23,8 @@ class Task:
     phase: TaskPhase = TaskPhase.PAUSED
     goal: GoalId | None = None
     """The goal that navigation is following; None: none of this task."""
+    stopping: GoalId | None = None
+    """The goal that was preempted last: what the vehicle rolls over while it stops is driven."""
     has_run: bool = False
     target_index: int = 0
     distance_m: float = 0.0
@@ -56,7 +58,7 @@ class Task:
     def end(self, phase: TaskPhase, reason: str | None, now: Instant) -> None:
         """Record the end of the task."""
         self.phase, self.reason, self.ended_at = phase, reason, now
-        self.goal = None
+        self.goal = self.stopping = None
 
     def view(self) -> TaskView:
         """Return this task as it is now."""

@@ -54,6 +54,19 @@ def check_cruise(speed_mps: float, limits: VehicleLimits) -> None:
         raise InvalidValueError(message, "speed_mps")
 
 
+def check_start(path: Path, index: int) -> None:
+    """Reject a waypoint at which no task can begin.
+
+    Raises:
+        InvalidValueError: It does not exist, or leaves no path.
+    """
+    if not 0 <= index < path.count - 1:
+        message = f"start_index {index} is not within 0 to {path.count - 2}"
+        raise InvalidValueError(message, "start_index")
+    if path.distance_of(index) >= path.length_m:
+        raise InvalidValueError("no path is left after this waypoint", "start_index")
+
+
 class TaskPlanner:
     """The current task, if any, the holds, and the goal of navigation."""
 
@@ -88,11 +101,7 @@ class TaskPlanner:
         if request.controller not in TRACKERS:
             raise UnknownControllerError("controller", request.controller, tuple(TRACKERS))
         path, index = request.path, request.start_index
-        if not 0 <= index < path.count - 1:
-            message = f"start_index {index} is not within 0 to {path.count - 2}"
-            raise InvalidValueError(message, "start_index")
-        if path.distance_of(index) >= path.length_m:
-            raise InvalidValueError("no path is left after this waypoint", "start_index")
+        check_start(path, index)
         check_cruise(request.speed_mps, self._limits)
         if (distance := self._too_far(path.waypoint(index))) is not None:
             limit_m = self._settings.max_start_distance_m
@@ -175,10 +184,11 @@ class TaskPlanner:
     def take_feedback(self, feedback: GoalFeedback) -> None:
         """Update the progress of the task; late feedback of another goal is ignored."""
         task = self._current
-        if task is None or task.goal != feedback.goal:
+        if task is None or feedback.goal not in (task.goal, task.stopping):
             return
         task.advance(feedback)
-        self._vehicle.told(feedback.command, feedback.lookahead)
+        is_driving = feedback.goal == task.goal
+        self._vehicle.told(feedback.command, feedback.lookahead if is_driving else None)
         self._outbox.task_changed = True
 
     def take_result(self, result: GoalResult, now: Instant) -> None:
@@ -247,7 +257,7 @@ class TaskPlanner:
             self._end(task, TaskPhase.ABORTED, reason, now, cause)
             return
         self._goals_sent += 1
-        task.goal = GoalId(self._goals_sent)
+        task.goal, task.stopping = GoalId(self._goals_sent), None
         task.phase, task.reason = TaskPhase.RUNNING, None
         kind = TaskResumed if task.has_run else TaskStarted
         task.has_run = True
@@ -284,7 +294,7 @@ class TaskPlanner:
         if task.goal is None:
             return False
         self._outbox.command(PreemptGoal(task.goal))
-        task.goal = None
+        task.goal, task.stopping = None, task.goal
         return True
 
     def _stop(self) -> None:

@@ -2,9 +2,12 @@
 
 Source: G. M. Hoffmann, C. J. Tomlin, M. Montemerlo, S. Thrun, "Autonomous Automobile Trajectory
 Tracking for Off-Road Driving", American Control Conference 2007, including damping and softening.
+
+The constants are those of a vehicle with `REFERENCE_WHEELBASE_M`. Lengths grow with the wheelbase,
+times and speeds with its square root, as those of a scale model with the same accelerations.
 """
 
-from math import atan, cos, pi, sin
+from math import atan, cos, pi, sin, sqrt
 
 from domain.paths.path import Path
 from domain.tracking.tracker import ControlStep
@@ -38,23 +41,26 @@ class Stanley:
 
     def __init__(self, limits: VehicleLimits) -> None:
         self._limits = limits
+        self._slower = sqrt(limits.scale)
+        """By which times and speeds are scaled."""
 
     def control_step(self, state: VehicleState, path: Path, start_index: int) -> ControlStep:
         """Do one control step; see `PathTracker`."""
         pose, speed, wheelbase = state.pose, abs(state.speed_mps), self._limits.wheelbase_m
+        slower, scale = self._slower, self._limits.scale
         here = path.project(pose.x_m, pose.y_m, start_index)
         foot, heading = path.point_at(here.distance_m), here.heading_rad
         aim = Point(foot.x_m + wheelbase * cos(heading), foot.y_m + wheelbase * sin(heading))
-        bend = atan(wheelbase * path.curvature_at(here.distance_m + PREVIEW_S * speed))
+        bend = atan(wheelbase * path.curvature_at(here.distance_m + PREVIEW_S * slower * speed))
         dx = pose.x_m + wheelbase * cos(pose.yaw_rad) - aim.x_m
         dy = pose.y_m + wheelbase * sin(pose.yaw_rad) - aim.y_m
         off = cos(heading + bend) * dy - sin(heading + bend) * dx
-        approach = atan(GAIN_PER_S * off / (speed + SOFTENING_MPS))
+        approach = atan(GAIN_PER_S / slower * off / (speed + SOFTENING_MPS * slower))
         approach = min(max(approach, -MAX_APPROACH_RAD), MAX_APPROACH_RAD)
         turn = (heading - pose.yaw_rad + pi) % (2 * pi) - pi - approach
-        turn -= DAMPING_S * speed / wheelbase * (state.steering_angle_rad - bend)
-        gain = min(1.0, TURN_PER_S * wheelbase / max(speed, SOFTENING_MPS))
-        far = abs(here.cross_track_error_m)
+        turn -= DAMPING_S * slower * speed / wheelbase * (state.steering_angle_rad - bend)
+        gain = min(1.0, TURN_PER_S / slower * wheelbase / max(speed, SOFTENING_MPS * slower))
+        far = abs(here.cross_track_error_m) / scale
         gain /= 1 + min(CALM_NEAR_PER_M * far, CALM_OFF + CALM_OFF_PER_M * far)
         most = self._limits.max_steering_angle_rad
         return ControlStep(

@@ -1,14 +1,16 @@
 """Settings of tasks and navigation, and the start task."""
 
-from typing import Annotated, TypeAlias
+from typing import Annotated, Literal, TypeAlias
 
 from pydantic import AfterValidator, Field
 
+from domain.errors import InvalidValueError
 from domain.navigation import NavigationSettings
 from domain.paths.speed_profile import SpeedLimits
 from domain.tasks.settings import TaskSettings
 from domain.timebase import seconds
 from domain.tracking.trackers import TRACKERS
+from service.files.csv_columns import column_names
 from service.files.robot_settings import Seconds, SettingsBlock
 
 Positive: TypeAlias = Annotated[float, Field(gt=0, le=1_000, allow_inf_nan=False)]
@@ -22,8 +24,9 @@ class DrivingBlock(SettingsBlock):
     """Largest distance from the vehicle to the start of a path, in m; others are rejected."""
     pose_stale_after_s: SomeSeconds = 0.3
     """A pose older than this, in seconds, holds the task."""
-    max_cross_track_m: Positive = 3.0
-    """A larger cross-track error, in m, for `max_cross_track_for_s` aborts the task."""
+    max_cross_track_m: Positive | None = None
+    """A larger cross-track error, in m, for `max_cross_track_for_s` aborts the task. Default: 3 m,
+    and less for a wheelbase below 1.75 m, in proportion."""
     max_cross_track_for_s: Seconds = 1.0
     """Time with a larger cross-track error after which the task is aborted, in seconds."""
     no_progress_for_s: SomeSeconds = 20.0
@@ -69,11 +72,23 @@ Controller: TypeAlias = Annotated[
 ]
 
 
+def _known_columns(text: str) -> str:
+    try:
+        column_names(text)
+    except InvalidValueError as error:
+        raise ValueError(error.message) from error
+    return text
+
+
 class StartTaskBlock(SettingsBlock):
     """A task that is submitted when the service starts; it waits until there are no holds."""
 
     file: str = Field(min_length=1, max_length=1_000)
-    """CSV file with `x,y,yaw` in m, m and rad; a relative path is relative to the robot file."""
+    """CSV file of waypoints; a relative path is relative to the robot file."""
+    heading: Literal["rad", "deg", "compass", "rad_north", "rad_compass"] | None = None
+    """Unit of the headings. Default: the one that is named in the file, or fits the path."""
+    columns: Annotated[str, AfterValidator(_known_columns)] | None = None
+    """Names of the columns, such as `s,x,y,yaw`. Default: those in the file, or `x,y,yaw`."""
     controller: Controller = "pure_pursuit"
     """Path tracker."""
     speed_mps: Positive = 2.8

@@ -8,10 +8,10 @@ from collections.abc import Mapping as AnyMapping
 from pathlib import Path
 from typing import Any, Literal
 
-from pydantic import Field, ValidationError
+from pydantic import Field, ValidationError, field_validator
 
 from domain.changes.settings import ChangeSettings
-from domain.errors import InvalidValueError, PilothouseError
+from domain.errors import InvalidValueError, PilothouseError, UnknownPartError, near_match
 from domain.findings import Finding
 from domain.health.signals import SignalSettings
 from domain.navigation import NavigationSettings
@@ -23,7 +23,13 @@ from domain.vehicle import VehicleLimits
 from service.files.driving_block import DrivingBlock, StartTaskBlock
 from service.files.limits_block import LimitsBlock
 from service.files.parameter_file import scalar_value
-from service.files.robot_settings import ChangesBlock, NodeBlock, SettingsBlock, SignalsBlock
+from service.files.robot_settings import (
+    ChangesBlock,
+    NodeBlock,
+    SettingsBlock,
+    SignalsBlock,
+    bare_names,
+)
 from service.files.ros2_block import Ros2Block
 from service.files.text_file import read_text_file
 from service.files.vehicle_block import VehicleBlock
@@ -68,6 +74,11 @@ class RobotSettings(SettingsBlock):
     start_task: StartTaskBlock | None = None
     """A task that is submitted when the service starts. Not allowed in simulations, which do not
     read files."""
+
+    @field_validator("nodes")
+    @classmethod
+    def _without_leading_slashes(cls, nodes: dict[str, NodeBlock]) -> dict[str, NodeBlock]:
+        return bare_names(nodes)
 
     def to_signal_settings(self) -> tuple[SignalSettings, ...]:
         """Return all signals: the five default ones with these settings, then the declared ones.
@@ -155,10 +166,18 @@ def robot_settings_of(data: AnyMapping[str, object], model: SmhModel) -> RobotSe
         raise InvalidValueError(error.message, f"/signals/{error.pointer}") from error
     for name in settings.nodes:
         if name not in model.nodes:
-            raise InvalidValueError(f"there is no node {name!r}", _pointer("nodes", name))
+            raise InvalidValueError(_no_node(name, model), _pointer("nodes", name))
     for keys, _, message in _faults_of_topics(settings):
         raise InvalidValueError(message, _pointer(*keys))
     return settings
+
+
+def _no_node(name: str, model: SmhModel) -> str:
+    """Return why the settings of a node are of none: there is none, or it is a system."""
+    if name in model.systems:
+        return UnknownPartError.of_other_kind(name, "node").message
+    near = near_match(name, tuple(model.nodes))
+    return f"there is no node {name!r}" + (f"; did you mean {near}?" if near else "")
 
 
 def _pointer(*keys: int | str) -> str:
@@ -185,10 +204,8 @@ def _settings(
         return None
     for name in settings.nodes:
         if name not in model.nodes:
-            what = "a system" if name in model.systems else "not in the model"
-            message = f"there is no node {name!r}: it is {what}"
             place = _place(root, ("nodes", name))
-            findings.append(finding_at(place, "UNKNOWN_NODE", message))
+            findings.append(finding_at(place, "UNKNOWN_NODE", _no_node(name, model)))
     for keys, code, message in _faults_of_topics(settings):
         findings.append(finding_at(_place(root, keys), code, message))
     return settings
@@ -230,7 +247,9 @@ def _place(root: Node, location: tuple[int | str, ...]) -> Node:
     for step in location:
         if not isinstance(tree, Mapping):
             break
-        found = next(((key, value) for key, value in tree.entries if key.text == step), None)
+        named = str(step).lstrip("/")
+        entries = ((key, value) for key, value in tree.entries if key.text.lstrip("/") == named)
+        found = next(entries, None)
         if found is None:
             break
         place = found[0]

@@ -4,9 +4,9 @@ A robot file and the `robot` of a simulation have the same keys. Omitted keys ke
 the core.
 """
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import replace
-from typing import Annotated, Literal, Self, TypeAlias
+from typing import Annotated, Any, Literal, Self, TypeAlias
 
 from pydantic import BaseModel, ConfigDict, Field, model_validator
 
@@ -27,6 +27,21 @@ Number: TypeAlias = Annotated[float, Field(allow_inf_nan=False)]
 
 _SignalName: TypeAlias = Annotated[str, Field(pattern=r"^[a-z][a-z0-9_]{0,63}$")]
 _ErrorName: TypeAlias = Annotated[str, Field(pattern=r"^[A-Z][A-Z0-9_]{0,63}$")]
+
+
+def bare_names(named: Mapping[str, Any]) -> dict[str, Any]:
+    """Return what is named, without the leading slashes that names have in ROS.
+
+    Raises:
+        ValueError: A name occurs both with and without one.
+    """
+    found: dict[str, Any] = {}
+    for name, value in named.items():
+        bare = name.lstrip("/")
+        if bare in found:
+            raise ValueError(f"{bare} is named twice, with and without a leading slash")
+        found[bare] = value
+    return found
 
 
 class SettingsBlock(BaseModel):
@@ -75,7 +90,8 @@ class NumberSignal(AnySignal):
     clear_threshold: Number | None = None
     """Threshold at which an active error clears, in the signal's unit. Default: `threshold`."""
     for_s: Seconds | None = None
-    """Time in seconds after the last good reading until the error is raised."""
+    """Time in seconds until the error is raised: for `gps_accuracy` after the last good reading,
+    else after the first bad one."""
 
     def _condition(self, condition: Condition) -> Condition:
         threshold = condition.threshold if self.threshold is None else self.threshold
@@ -124,7 +140,8 @@ class DeclaredSignal(AnySignal):
     clear_threshold: Number | None = None
     """Threshold at which an active error clears. Default: `above` or `below`."""
     for_s: Seconds = 0.0
-    """Time in seconds after the last good reading until the error is raised."""
+    """Time in seconds after the first bad reading until the error is raised. A good reading, or a
+    stale signal, begins it anew."""
 
     @model_validator(mode="after")
     def _is_whole(self) -> Self:
@@ -181,6 +198,12 @@ class SignalsBlock(SettingsBlock):
     """Radio connection; SIGNAL_LOST and SIGNAL_LOW."""
     temperature: NumberSignal = NumberSignal()
     """Temperature in degrees Celsius; TEMPERATURE_HIGH above 55."""
+
+    @model_validator(mode="before")
+    @classmethod
+    def _without_leading_slashes(cls, named: object) -> object:
+        # What is no mapping of names is told by the validation that follows.
+        return bare_names(named) if isinstance(named, dict) else named
 
     def to_domain(self) -> tuple[SignalSettings, ...]:
         """Return the settings of all signals; see `RobotSettings.to_signal_settings`."""

@@ -4,10 +4,10 @@ import re
 from collections.abc import Iterator, Mapping
 from typing import Annotated, Literal, Self, TypeAlias
 
-from pydantic import AfterValidator, Field, model_validator
+from pydantic import AfterValidator, Field, field_validator, model_validator
 
 from domain.health.signals import SignalKind
-from service.files.robot_settings import Number, SettingsBlock
+from service.files.robot_settings import Number, SettingsBlock, bare_names
 
 NAV_SAT_FIX = "sensor_msgs/msg/NavSatFix"
 """The only type from which a signal is computed if no field is given."""
@@ -131,6 +131,13 @@ class Ros2Block(SettingsBlock):
     """Topic of the vehicle's odometry. Without it the pose is unknown and no task runs."""
     command: CommandBlock | None = None
     """Topic of the drive commands. Without it no commands are published."""
+
+    @field_validator("signals")
+    @classmethod
+    def _without_leading_slashes(
+        cls, signals: dict[str, SignalTopicBlock]
+    ) -> dict[str, SignalTopicBlock]:
+        return bare_names(signals)
 
     def faults(self, kinds: Mapping[str, SignalKind]) -> Iterator[tuple[tuple[str, ...], str, str]]:
         """Yield what does not match the signals.

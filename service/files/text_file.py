@@ -1,5 +1,6 @@
 """Reads a text file that a person names, with clear reasons if it cannot be read."""
 
+import codecs
 from pathlib import Path
 
 from domain.errors import PilothouseError
@@ -17,11 +18,11 @@ class UnreadableFileError(PilothouseError):
         self.path = path
 
 
-def read_text_file(path: Path) -> str:
-    """Return the text of a UTF-8 file of at most `MAX_BYTES`.
+def read_bytes(path: Path) -> bytes:
+    """Return the content of a file of at most `MAX_BYTES`.
 
     Raises:
-        UnreadableFileError: There is no such file, it is too large, or it is not UTF-8.
+        UnreadableFileError: There is no such file, or it is too large.
     """
     try:
         with path.open("rb") as file:
@@ -32,8 +33,36 @@ def read_text_file(path: Path) -> str:
         raise UnreadableFileError(path, reason) from error
     if len(content) > MAX_BYTES:
         raise UnreadableFileError(path, f"it is larger than {MAX_BYTES // 1024 // 1024} MiB")
+    return content
+
+
+def read_text_file(path: Path) -> str:
+    """Return the text of a UTF-8 file of at most `MAX_BYTES`.
+
+    Raises:
+        UnreadableFileError: There is no such file, it is too large, or it is not UTF-8.
+    """
+    content = read_bytes(path)
     try:
         return content.decode("utf-8-sig")
     except UnicodeDecodeError as error:
         line = content.count(b"\n", 0, error.start) + 1
         raise UnreadableFileError(path, f"it is not UTF-8 text (line {line})") from error
+
+
+def decode_csv(raw: bytes) -> str:
+    """Return a CSV as text: UTF-8, UTF-16 with a byte order mark, or else Latin-1.
+
+    Numbers are the same in UTF-8 and Latin-1; names of columns may have a degree sign.
+    """
+    if raw.startswith((codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE)):
+        return raw.decode("utf-16", errors="replace")
+    try:
+        return raw.decode("utf-8-sig")
+    except UnicodeDecodeError:
+        return raw.decode("latin-1")
+
+
+def lines_of(text: str) -> list[str]:
+    """Return the lines of a file, which end with LF, CRLF or CR."""
+    return text.replace("\r\n", "\n").replace("\r", "\n").split("\n")

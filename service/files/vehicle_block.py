@@ -38,7 +38,11 @@ class NoiseBlock(SettingsBlock):
 
 
 class PlantBlock(SettingsBlock):
-    """Dynamics of the simulated vehicle. Limits that are not set do not apply."""
+    """Dynamics of the vehicle; limits that are not set do not apply.
+
+    A simulated vehicle responds so. The speed of tasks takes braking and steering of any vehicle
+    into account.
+    """
 
     acceleration_mps2: Rate | None = None
     """Largest acceleration, in m/s2."""
@@ -68,8 +72,16 @@ class VehicleBlock(SettingsBlock):
     pose: PoseBlock = PoseBlock()
     """Initial pose of the simulated vehicle."""
     plant: PlantBlock = PlantBlock()
-    """Dynamics of the simulated vehicle. Default: ideal."""
+    """Dynamics of the vehicle. Default: ideal."""
 
     def to_limits(self) -> VehicleLimits:
         """Return the limits of the vehicle, real or simulated."""
-        return VehicleLimits(self.wheelbase_m, self.max_steering_angle_rad, self.max_speed_mps)
+        plant = self.plant
+        return VehicleLimits(
+            self.wheelbase_m,
+            self.max_steering_angle_rad,
+            self.max_speed_mps,
+            plant.braking_mps2,
+            plant.steering_rate_radps,
+            plant.steering_lag_s + plant.delay_s,
+        )

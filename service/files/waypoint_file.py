@@ -1,229 +1,306 @@
-"""Waypoint files: a CSV without a header, `x,y,yaw[,...]` in each line.
+"""Waypoint files: CSV as recorders, planners and spreadsheets write it, read as x, y and yaw.
 
-Source: smart_polaris, `waypoint_logger` and recorded tracks, which use three heading conventions.
+`csv_dialect` finds the separator, `csv_table` header and rows, `csv_columns` what the columns mean,
+`csv_numbers` the numbers, and `csv_suspects` columns that are something else. Here headings are
+read, and checked against the path.
 """
 
-from collections.abc import Iterator
-from enum import StrEnum
-from math import pi, tau
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
-from domain.errors import PilothouseError
-from domain.findings import Finding
-from domain.paths.headings import Ways, wrapped
-from domain.paths.waypoints import MAX_COORDINATE_M, MAX_WAYPOINTS
+from domain.paths.headings import Fit, Heading, Ways, along, wrapped
+from domain.paths.preview import PathWarning
+from service.files.csv_columns import (
+    EXAMPLE,
+    Columns,
+    UnknownColumnsError,
+    named,
+    unnamed,
+)
+from service.files.csv_names import Meaning
+from service.files.csv_numbers import Numbers, first_rows, read_numbers
+from service.files.csv_reading import CsvReading, reading_of
+from service.files.csv_suspects import COLUMNS, ROWS, Suspect, no_place_in, other_format_in
+from service.files.csv_table import (
+    MAX_FINDINGS,
+    CsvTable,
+    InvalidWaypointsError,
+    Names,
+    finding,
+    read_table,
+    refused,
+    shown,
+)
 
-MAX_FINDINGS = 20
+Floats = NDArray[np.float64]
 
-_NAMES = ("x", "y", "yaw")
-_FORM = "each line must be x,y,yaw in m, m and rad, separated by commas, without a header"
-_TURN_RAD = 1.001 * tau
-"""A larger value is not a heading in radians, unless headings are unwrapped over several turns."""
-_FEW_WAYS = 3
-_MISFIT_RAD = 0.3
-_GAIN = 4.0
-"""How much better another unit must fit than headings of 0, since small degrees are close to 0."""
-
-
-class Heading(StrEnum):
-    """Unit and direction of the third column."""
-
-    RAD = "rad"
-    """Radians counter-clockwise from the x axis."""
-    DEG = "deg"
-    """Degrees counter-clockwise from the x axis."""
-    COMPASS = "compass"
-    """Degrees clockwise from north, which is the y axis."""
-
-
-class InvalidWaypointsError(PilothouseError):
-    """An invalid waypoint file; `findings` hold the first errors, at most `MAX_FINDINGS`."""
-
-    code = "INVALID_WAYPOINTS"
-
-    def __init__(self, findings: list[Finding], hint: str = _FORM) -> None:
-        first = findings[0]
-        more = f" (and {len(findings) - 1} more)" if len(findings) > 1 else ""
-        super().__init__(f"the waypoints are invalid: line {first.line}: {first.message}{more}")
-        self.findings = tuple(findings)
-        self.hint = hint
+_CLOSE_RAD = 0.1
+"""A heading that fits so well is one, whatever else the first three columns might be."""
+_NO_ROTATION = 1e-6
+_QUATERNION = (Heading.RAD,)
 
 
-def read_waypoints_csv(text: str, heading: Heading = Heading.RAD) -> NDArray[np.float64]:
-    """Read waypoints; 100,000 of them take some 0.2 s.
+@dataclass(frozen=True, slots=True)
+class WaypointFile:
+    """The waypoints of a file, and how it was read."""
 
-    Lines end with LF or CRLF; empty lines are allowed only at the end. Further columns are ignored.
+    waypoints: Floats
+    """Shape (n, 3): x m, y m, yaw rad."""
+    reading: CsvReading
+    refusal: InvalidWaypointsError | None
+    """Why no task is made of it until somebody says what the columns are; None: it is clear."""
+
+
+@dataclass(frozen=True, slots=True)
+class _Headings:
+    """Headings of all waypoints, and what is to be told of them."""
+
+    yaws: Floats
+    unit: Heading | None = None
+    from_path: bool = False
+    warning: PathWarning | None = None
+    misfit_at: int | None = None
+    """Index of the first waypoint whose heading does not fit; None: they fit, or have to."""
+
+
+def read_waypoints_csv(
+    text: str, heading: Heading | None = None, columns: Names | None = None
+) -> Floats:
+    """Return the waypoints of a file of which it is clear what its columns are.
 
     Args:
         text: The CSV.
-        heading: Unit and direction of the third column.
+        heading: Unit of the headings; None: the one that is named, or fits the path.
+        columns: Names of the columns; None: those in the file, or `x,y[,yaw[,...]]`.
 
     Returns:
         Shape (n, 3): x m, y m, yaw rad.
 
     Raises:
-        InvalidWaypointsError: There are fewer than 2 or more than 100,000 points, a cell is not a
-            number or out of range, or headings that should be radians are degrees.
+        InvalidWaypointsError: As for `read_waypoint_file`; or the headings fit in no unit.
     """
-    # Spreadsheets write a byte order mark before the first number.
-    lines = text.removeprefix("\ufeff").rstrip().split("\n")
-    if lines == [""]:
-        raise InvalidWaypointsError([_finding("EMPTY_FILE", "the file has no waypoints", 1)])
-    if len(lines) > MAX_WAYPOINTS:
-        message = f"the file has {len(lines)} lines; a path has at most {MAX_WAYPOINTS} waypoints"
-        finding = _finding("TOO_MANY_POINTS", message, MAX_WAYPOINTS + 1)
-        raise InvalidWaypointsError([finding], "thin the points out: one every 0.1 m is enough")
-    rows, findings = _numbers(lines)
-    waypoints = np.array(rows, dtype=np.float64)
-    findings.extend(_out_of_range(waypoints, lines))
-    if not findings and len(rows) < 2:
-        message = "the file has one waypoint; a path needs at least 2"
-        findings = [_finding("TOO_FEW_POINTS", message, 1)]
-    if findings:
-        findings.sort(key=lambda finding: (finding.line or 0, finding.column or 0))
-        raise InvalidWaypointsError(findings[:MAX_FINDINGS])
-    if heading is Heading.RAD:
-        _check_radians(waypoints, lines)
-    else:
-        waypoints[:, 2] = _yaws(waypoints[:, 2], heading)
-    return waypoints
+    found = read_waypoint_file(text, heading, columns)
+    if found.refusal is not None:
+        raise found.refusal
+    return found.waypoints
 
 
-def _numbers(lines: list[str]) -> tuple[list[tuple[float, float, float]], list[Finding]]:
-    """Return the numbers of each line, zeros for an invalid one, and the findings.
+def read_waypoint_file(
+    text: str, heading: Heading | None = None, columns: Names | None = None
+) -> WaypointFile:
+    """Read a file; 100,000 waypoints take some 0.3 s.
 
-    Stops early once there are enough findings.
-    """
-    rows: list[tuple[float, float, float]] = []
-    findings: list[Finding] = []
-    for number, line in enumerate(lines, 1):
-        cells = line.split(",", 3)
-        try:
-            rows.append((_number(cells[0]), _number(cells[1]), _number(cells[2])))
-        except (ValueError, IndexError):
-            rows.append((0.0, 0.0, 0.0))
-            findings.extend(_faults(number, line))
-            if len(findings) >= MAX_FINDINGS:
-                break
-    return rows, findings
-
-
-def _number(cell: str) -> float:
-    # float() also accepts "1_0" and the digits of other scripts.
-    if "_" in cell or not cell.isascii():
-        raise ValueError
-    return float(cell)
-
-
-def _faults(number: int, line: str) -> Iterator[Finding]:
-    """Yield the findings of a line that does not begin with three numbers."""
-    cells = _columns(line)
-    if not line.strip():
-        yield _finding("EMPTY_LINE", "empty line; empty lines are allowed only at the end", number)
-    elif number == 1 and all(map(_is_text, cells)):
-        message = f"{_shown(line)} looks like a header; remove it"
-        yield _finding("HEADER", message, number)
-    elif len(cells) < len(_NAMES):
-        message = f"{len(cells)} columns; x, y and yaw are required, separated by commas"
-        yield _finding("TOO_FEW_COLUMNS", message, number)
-    else:
-        for name, cell, column in zip(_NAMES, cells, _starts(cells), strict=False):
-            if _is_text(cell):
-                what = f"{_shown(cell)} is not a number" if cell.strip() else "missing number"
-                yield _finding("NOT_A_NUMBER", f"{name}: {what}", number, column)
-
-
-def _out_of_range(waypoints: NDArray[np.float64], lines: list[str]) -> Iterator[Finding]:
-    """Yield the numbers that are not finite or out of range, at most `MAX_FINDINGS`."""
-    limits = np.array([MAX_COORDINATE_M, MAX_COORDINATE_M, np.inf])
-    wrong = np.argwhere(~(np.isfinite(waypoints) & (np.abs(waypoints) <= limits)))
-    for row, k in wrong[:MAX_FINDINGS].tolist():
-        cells = _columns(lines[row])
-        if np.isfinite(waypoints[row, k]):
-            code, what = "TOO_FAR", f"is not within +-{MAX_COORDINATE_M:,.0f} m"
-        else:
-            code, what = "NOT_FINITE", "is not finite"
-        message = f"{_NAMES[k]}: {_shown(cells[k])} {what}"
-        yield _finding(code, message, row + 1, _starts(cells)[k])
-
-
-def _check_radians(waypoints: NDArray[np.float64], lines: list[str]) -> None:
-    """Check that headings are radians.
-
-    Headings within one turn count as degrees only if they fit the path as degrees and not as
-    radians: headings that are all 0, or noise, are not rejected.
+    Args:
+        text: The CSV.
+        heading: As for `read_waypoints_csv`.
+        columns: As for `read_waypoints_csv`; see `csv_columns.column_names`.
 
     Raises:
-        InvalidWaypointsError: They are degrees.
+        InvalidWaypointsError: There are fewer than 2 or more than 100,000 points, rows differ in
+            length, a cell is not a number or out of range, or the columns cannot be a path.
     """
-    yaws = waypoints[:, 2]
-    beyond = np.abs(yaws) > _TURN_RAD
-    ways = Ways(waypoints[:, :2])
-    unit = _better_unit(ways, yaws, within_a_turn=not beyond.any())
-    if unit is None:
-        return
-    row = int(beyond.argmax())
-    cell, column = _columns(lines[row])[2], _starts(_columns(lines[row]))[2]
-    why = "is more than a turn" if beyond.any() else "does not fit the direction of the path"
-    message = f"yaw: {_shown(cell)} {why} in radians; these look like {_UNITS[unit]}"
-    other = Heading.COMPASS if unit is Heading.DEG else Heading.DEG
-    hint = f"set ?heading={unit} ({_UNITS[unit]}) or ?heading={other} ({_UNITS[other]})"
-    raise InvalidWaypointsError([_finding("NOT_RADIANS", message, row + 1, column)], hint)
+    table = read_table(text, _is_header if columns is None else None)
+    names = columns or (() if table.header is None else table.header.names)
+    where = _columns_of(table, names)
+    sample = None if names else first_rows(table, ROWS, COLUMNS)
+    if sample is not None:
+        _refuse(table, other_format_in(sample))
+    labels = [where.names[index].meaning for index in where.used]
+    numbers = read_numbers(table, where.used, labels)
+    ways = Ways(numbers.values[:, :2])
+    is_given = heading is not None or columns is not None
+    headings = _headings(numbers, where, ways, heading, is_given=is_given)
+    if sample is not None:
+        fits = _fits_closely(headings, ways, sample)
+        _refuse(table, no_place_in(sample, numbers.values[:, :2], heading_fits=fits))
+    reading = reading_of(
+        table,
+        names,
+        where,
+        headings.unit,
+        has_decimal_comma=numbers.has_decimal_comma,
+        headings_from_path=headings.from_path,
+        warnings=() if headings.warning is None else (headings.warning,),
+    )
+    waypoints = np.column_stack((numbers.values[:, :2], headings.yaws))
+    return WaypointFile(waypoints, reading, _refusal(table, numbers, where, headings))
 
 
-_UNITS = {
-    Heading.DEG: "degrees counter-clockwise from east",
-    Heading.COMPASS: "degrees clockwise from north",
-}
+# --- columns -------------------------------------------------------------------------------------
 
 
-def _better_unit(ways: Ways, yaws: NDArray[np.float64], *, within_a_turn: bool) -> Heading | None:
-    """Return the unit of the headings; None: radians."""
-    if not ways.count:
-        return None if within_a_turn else Heading.DEG
-    own = ways.misfit(yaws)
-    misfits = {unit: ways.misfit(_yaws(yaws, unit)) for unit in _UNITS}
-    best = min(misfits, key=lambda unit: misfits[unit])
-    if not within_a_turn:
-        return None if own < min(misfits[best], _MISFIT_RAD) else best
-    silent = ways.misfit(_yaws(np.zeros_like(yaws), best))
-    clear = misfits[best] * _GAIN < silent
-    return best if clear and own > _MISFIT_RAD and ways.count >= _FEW_WAYS else None
-
-
-def _yaws(degrees: NDArray[np.float64], unit: Heading) -> NDArray[np.float64]:
-    """Return headings in rad, wrapped to [-pi, pi); shape (n,)."""
-    radians = np.radians(degrees)
-    return wrapped(pi / 2 - radians if unit is Heading.COMPASS else radians)
-
-
-def _columns(line: str) -> list[str]:
-    return line.rstrip("\r").split(",")
-
-
-def _starts(cells: list[str]) -> list[int]:
-    """Return the column of the line in which each cell begins, from 1."""
-    starts, at = [], 1
-    for cell in cells:
-        starts.append(at + len(cell) - len(cell.lstrip()))
-        at += len(cell) + 1
-    return starts
-
-
-def _is_text(cell: str) -> bool:
+def _is_header(names: Names) -> bool:
+    """Return whether a line names x and y, or latitude and longitude, or several of them."""
     try:
-        _number(cell)
-    except ValueError:
-        return True
-    return False
+        named(names)
+    except UnknownColumnsError as error:
+        return error.are_columns
+    return True
 
 
-def _shown(text: str) -> str:
-    text = text.strip()
-    return repr(text if len(text) <= 40 else f"{text[:37]}...")
+def _columns_of(table: CsvTable, names: Names) -> Columns:
+    """Return what the columns mean.
+
+    Raises:
+        InvalidWaypointsError: Header or number of columns do not say where x and y are.
+    """
+    first = table.first + 1
+    if table.least < 2:
+        message = "one column; x and y are needed, separated by comma, semicolon, tab or blanks"
+        raise refused("TOO_FEW_COLUMNS", message, first)
+    if not names:
+        if table.title is not None:
+            line = shown(table.lines[table.title])
+            message = f"{line} does not name {table.least} columns with x and y among them"
+            raise refused("HEADER", message, table.title + 1, _say_columns())
+        return unnamed(table.least)
+    try:
+        where = named(names)
+    except UnknownColumnsError as error:
+        line_number = first if table.header is None else table.header.line
+        raise refused(error.code, error.message, line_number, error.hint) from error
+    if max(where.used) >= table.most:
+        message = f"{table.most} columns, and x, y or the heading was said to be in a later one"
+        raise refused("TOO_FEW_COLUMNS", message, first, _say_columns())
+    return where
 
 
-def _finding(code: str, message: str, line: int, column: int = 1) -> Finding:
-    return Finding("error", code, message, line=line, column=column)
+def _say_columns(example: str = EXAMPLE) -> str:
+    return f"say what the columns are, such as {example}; _ stands for any other"
+
+
+def _refuse(table: CsvTable, suspect: Suspect | None) -> None:
+    """Refuse a file whose columns are something else.
+
+    Raises:
+        InvalidWaypointsError: They are.
+    """
+    if suspect is not None:
+        raise refused("NOT_A_PATH", suspect.message, table.first + 1, suspect.hint)
+
+
+def _fits_closely(headings: "_Headings", ways: Ways, sample: Floats) -> bool:
+    """Return whether the third column is a heading beyond doubt.
+
+    Degrees also have to be the same everywhere: y in m is within 30 degrees of a way along x soon.
+    """
+    if headings.unit is None or headings.misfit_at is not None:
+        return False
+    is_steady = headings.unit is Heading.RAD or float(np.ptp(sample[:, 2])) == 0.0
+    return is_steady and ways.fit(headings.yaws, Heading.RAD).misfit_rad <= _CLOSE_RAD
+
+
+# --- headings ------------------------------------------------------------------------------------
+
+
+def _headings(
+    numbers: Numbers, where: Columns, ways: Ways, heading: Heading | None, *, is_given: bool
+) -> _Headings:
+    """Read the headings.
+
+    Args:
+        numbers: The columns of `where.used`.
+        where: What they mean.
+        ways: Directions of the path.
+        heading: Unit of the headings, if it was said.
+        is_given: Whether somebody said what the columns or headings are: then they are taken.
+
+    Raises:
+        InvalidWaypointsError: A quaternion is 0.
+    """
+    places = numbers.values[:, :2]
+    among: tuple[Heading, ...]
+    if where.quaternion is not None:
+        values, among = _yaws_of_quaternions(numbers, where), _QUATERNION
+    elif where.yaw is not None:
+        values, among = numbers.values[:, 2], where.headings
+    else:
+        return _Headings(along(places), from_path=True)
+    if heading is not None and where.yaw is not None:
+        among = (heading,)
+    is_empty = not is_given and not values.any()
+    fit = ways.fit(values, Heading.RAD) if is_empty else ways.best_fit(values, among)
+    if is_empty and not fit.fits:
+        message = "all headings are 0 and do not fit the path; the directions of the path are used"
+        warning = PathWarning("HEADINGS_ZERO", message)
+        return _Headings(along(places), from_path=True, warning=warning)
+    unit = None if where.quaternion is not None else fit.heading
+    yaws = fit.heading.yaws(values)
+    if fit.fits:
+        warning_or_none = _reversed_warning() if fit.is_reversed else None
+        return _Headings(yaws, unit, warning=warning_or_none)
+    at = ways.first_misfit(values, fit.heading)
+    misfit = _misfit_warning(fit, where, at, is_given=is_given)
+    if is_given:
+        return _Headings(yaws, unit, warning=misfit)
+    return _Headings(yaws, unit if len(among) == 1 else None, warning=misfit, misfit_at=at)
+
+
+def _yaws_of_quaternions(numbers: Numbers, where: Columns) -> Floats:
+    """Return headings of rotations, which need not be normalised; shape (n,), rad.
+
+    Raises:
+        InvalidWaypointsError: A quaternion is 0.
+    """
+    columns = dict(zip(where.used, numbers.values.T, strict=True))
+    zeros = np.zeros(len(numbers.values))
+    parts = np.array(
+        [zeros if index is None else columns[index] for index in where.quaternion or ()]
+    )
+    largest = np.abs(parts).max(axis=0)
+    wrong = np.flatnonzero(largest < _NO_ROTATION)[:MAX_FINDINGS].tolist()
+    if wrong:
+        message = "a quaternion of 0 is no rotation"
+        found = [finding("NO_ROTATION", message, numbers.lines[row]) for row in wrong]
+        raise InvalidWaypointsError(found, _say_columns("?columns=x,y"))
+    x, y, z, w = parts / largest
+    return wrapped(np.arctan2(2 * (w * z + x * y), w * w + x * x - y * y - z * z))
+
+
+def _reversed_warning() -> PathWarning:
+    message = (
+        "the headings point backwards along the path, as of a vehicle that reversed;"
+        " the path is driven forwards"
+    )
+    return PathWarning("HEADINGS_REVERSED", message)
+
+
+def _misfit_warning(fit: Fit, where: Columns, at: int, *, is_given: bool) -> PathWarning:
+    angle = f"{np.degrees(fit.misfit_rad):.0f} degrees off"
+    if where.yaw is None:
+        message = f"the quaternions do not fit the path as headings: {angle}"
+    elif is_given or len(where.headings) == 1:
+        message = f"the headings do not fit the path in {fit.heading.words}: {angle}"
+    else:
+        which = "third" if not where.is_named else "heading"
+        message = f"the {which} column fits the path as a heading in no unit: {angle} at best"
+    hint = None if is_given else _hint_without_headings(where)
+    return PathWarning("HEADINGS_MISFIT", message, at, hint)
+
+
+def _refusal(
+    table: CsvTable, numbers: Numbers, where: Columns, headings: _Headings
+) -> InvalidWaypointsError | None:
+    """Return why the file is not driven as it is; None: it is."""
+    if headings.misfit_at is None or headings.warning is None:
+        return None
+    line = numbers.lines[headings.misfit_at]
+    column = (where.quaternion or (0, 0, 0, 0))[2] if where.yaw is None else where.yaw
+    place = table.dialect.place(table.lines[line - 1], column)
+    found = finding(headings.warning.code, headings.warning.message, line, place)
+    return InvalidWaypointsError([found], _hint_without_headings(where))
+
+
+def _hint_without_headings(where: Columns) -> str:
+    """Return how to say that a column is no heading, or that it is one."""
+    last = max(where.x, where.y)
+    roles = {where.x: Meaning.X, where.y: Meaning.Y}
+    names = ",".join(roles.get(index, "_") for index in range(last + 1))
+    if where.quaternion is not None:
+        return f"?columns={names} leaves the quaternions out"
+    return (
+        f"?columns={names} if it is no heading, or all columns, such as ?columns=s,x,y;"
+        f" ?heading=rad, deg or compass if it is one"
+    )

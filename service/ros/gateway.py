@@ -8,6 +8,7 @@ import asyncio
 import logging
 import re
 from collections.abc import Collection
+from contextlib import suppress
 from functools import partial
 
 from domain.actor import Actor
@@ -53,8 +54,6 @@ class RosGateway:
         self._graph = graph
         self._mapped_topics = mapped_topics
         self._nodes: dict[str, RosNode] = {}
-        self._refusing: set[str] = set()
-        """Topics whose last message was rejected."""
         self._missing_types: set[str] = set()
         self._odd_names: set[str] = set()
 
@@ -118,18 +117,9 @@ class RosGateway:
         self._node(OWN_NODE).subscribe(heard.name, heard.type, Qos.SENSOR, fields_of, take)
 
     def _take(self, heard: SubscribedTopic, message: Fields) -> None:
-        """Submit a message; a rejected one must neither end the subscription nor flood the log.
-
-        Of several rejected messages in a row only the first is logged.
-        """
-        try:
+        """Submit a message; a rejected one, which is logged, must not end the subscription."""
+        with suppress(PilothouseError):
             heard.take(message, CALLER)
-        except PilothouseError as error:
-            if heard.name not in self._refusing:
-                log.warning("rejected a message on %s: %s", heard.name, error)
-            self._refusing.add(heard.name)
-        else:
-            self._refusing.discard(heard.name)
 
     def _node(self, name: str) -> RosNode:
         if name not in self._nodes:

@@ -3,7 +3,7 @@
 from collections.abc import Callable, Sequence
 
 from domain.actor import NOBODY, Actor
-from domain.health.signals import ESTOP_SIGNAL
+from domain.health.signals import ESTOP_SIGNAL, asks_for_stop
 from domain.inputs import Reading, Readings, SignalValue
 from domain.outbox import Outputs
 from domain.simulation.mock_signals import MOCK_SOURCE, MockSignal, MockSignals
@@ -114,5 +114,6 @@ class MockedReadings:
         outputs = self._submit(Readings(tuple(items), own, actor))
         for item in items:
             if mock.holds(item.signal) and (stands_in or item.signal != ESTOP_SIGNAL):
-                mock.hold(item.signal, item.value)
+                presses = item.signal == ESTOP_SIGNAL and asks_for_stop(item.value)
+                mock.hold(item.signal, presses or item.value)
         return outputs

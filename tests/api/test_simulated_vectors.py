@@ -11,7 +11,8 @@ from typing import Any
 
 import pytest
 
-from service.files.waypoint_file import InvalidWaypointsError, read_waypoints_csv
+from service.files.csv_table import InvalidWaypointsError
+from service.files.waypoint_file import read_waypoints_csv
 from tests.conformance.test_polaris_vectors import OVERRULED, expectation
 from tests.support.blocking_service import BlockingService
 from tests.support.planner_vectors import Seen, looks_of, wrong_keys

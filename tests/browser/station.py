@@ -84,16 +84,19 @@ class Service:
         pose: dict[str, float] = self.request("GET", "/vehicle")["pose"]
         return pose
 
-    def track_ahead(self, length_m: int, *, degrees: bool = False) -> bytes:
+    def track_ahead(self, length_m: int, *, scans: bool = False) -> bytes:
         """Return the CSV of a straight track that begins where the vehicle is, a point each 0.5 m.
 
-        It leads through the heading of the vehicle; `degrees`: its third column is not in rad.
+        It leads through the heading of the vehicle; `scans`: its third column is no heading.
         """
         pose = self.pose()
         yaw = pose["yaw_rad"]
-        written = math.degrees(yaw % math.tau) + 360.0 * degrees if degrees else yaw
         points = [
-            (pose["x_m"] + 0.5 * n * math.cos(yaw), pose["y_m"] + 0.5 * n * math.sin(yaw), written)
+            (
+                pose["x_m"] + 0.5 * n * math.cos(yaw),
+                pose["y_m"] + 0.5 * n * math.sin(yaw),
+                37.0 * n % 360.0 if scans else yaw,
+            )
             for n in range(2 * length_m + 1)
         ]
         return "".join(f"{x:.4f},{y:.4f},{third:.4f}\n" for x, y, third in points).encode()

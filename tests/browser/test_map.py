@@ -188,15 +188,30 @@ def test_an_empty_file_is_refused_in_words(desktop: Page) -> None:
     expect(desktop.locator("ph-task-form").get_by_role("alert")).to_contain_text("Rejected: ")
 
 
-def test_headings_in_degrees_are_asked_about_and_then_taken(
+def test_a_preview_tells_how_the_columns_were_read(desktop: Page, service: Service) -> None:
+    rows = service.track_ahead(30).decode().replace(",", "; ").replace("\n", "\r")
+    choose(desktop, ("\ufeffX [m]; Y [m]; yaw\r" + rows).encode("utf-16-le"))
+    expect(panel(desktop)).to_contain_text(
+        "Semicolon-separated, named in line 1: x from X [m] (column 1), y from Y [m] (column 2),"
+        " heading from yaw (column 3), radians counter-clockwise from east"
+    )
+    expect(desktop.get_by_label("Headings in")).to_be_hidden()
+
+
+def test_a_column_that_is_no_heading_is_asked_about_and_can_be_left_out(
     desktop: Page, service: Service
 ) -> None:
-    heading = desktop.get_by_label("Headings in")
+    heading, columns = desktop.get_by_label("Headings in"), desktop.get_by_label("Columns")
     expect(heading).to_be_hidden()
-    choose(desktop, service.track_ahead(30, degrees=True))
+    choose(desktop, service.track_ahead(30, scans=True))
+    expect(panel(desktop)).to_contain_text("the third column fits the path as a heading in no unit")
     expect(heading).to_be_visible()
-    heading.select_option("deg")
-    expect(panel(desktop)).to_contain_text("30 m, 61 waypoints")
+    button(desktop, "Start").click()
+    expect(desktop.locator("ph-task-form").get_by_role("alert")).to_contain_text("no unit")
+    columns.fill("x,y")
+    columns.blur()
+    expect(panel(desktop)).to_contain_text("headings from the path")
+    expect(panel(desktop)).not_to_contain_text("in no unit")
     expect(desktop.get_by_role("button", name="Start", exact=True)).to_be_enabled()
 
 

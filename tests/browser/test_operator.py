@@ -310,17 +310,19 @@ def test_messages_have_no_words_of_the_interface(desktop: Page, service: Service
     form = desktop.locator("ph-task-form")
     form.get_by_label("Speed, m/s").fill("99")
     form.get_by_label("Speed, m/s").blur()
-    degrees: Any = {
+    scans: Any = {
         "name": "field.csv",
         "mimeType": "text/csv",
-        "buffer": service.track_ahead(30, degrees=True),
+        "buffer": service.track_ahead(30, scans=True),
     }
-    desktop.get_by_label("Choose a CSV").set_input_files(degrees)
+    desktop.get_by_label("Choose a CSV").set_input_files(scans)
     expect(form).to_contain_text("The speed must be a number from 0.1 to 11.2 m/s.")
     form.get_by_label("Speed, m/s").fill("2.8")
     form.get_by_label("Speed, m/s").blur()
-    expect(form).to_contain_text("choose below what the headings are in")
-    assert not re.search(r"/speed_mps|\?heading|start_index", form.inner_text())
+    expect(form).to_contain_text(
+        "say above what the columns are, such as x,y, or what its headings are in"
+    )
+    assert not re.search(r"/speed_mps|\?heading|\?columns|start_index", form.inner_text())
 
 
 @pytest.mark.parametrize(
@@ -332,7 +334,7 @@ def test_messages_have_no_words_of_the_interface(desktop: Page, service: Service
             "",
         ),
         ({"detail": "query speed_mps: not a number"}, "Speed: not a number", ""),
-        ({"detail": "x", "hint": "set ?columns=x,y,yaw"}, "x", "say below what the columns are"),
+        ({"detail": "x", "hint": "set ?columns=x,y,yaw"}, "x", "say above what the columns are"),
         ({"detail": "x", "hint": "there is none now; see GET /tasks"}, "x", ""),
         (
             {"detail": "x", "hint": "waypoint 1 is 0.0 m away: start there with start_index"},

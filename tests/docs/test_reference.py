@@ -20,7 +20,7 @@ from domain.actor import Actor
 from domain.changes.admission import ADVISORY
 from domain.events.event import RecordedEvent
 from domain.events.kinds import EVENTS
-from domain.inputs import BackendStatus, Input, ServiceStall, WriteRecord
+from domain.inputs import BackendStatus, DriveStatus, Input, ServiceStall, WriteRecord
 from domain.supervision import Supervision, SupervisionSettings
 from tests.support.good import GOOD
 from tests.support.http_robot import ACTUATION
@@ -184,6 +184,10 @@ def a_lost_backend() -> list[RecordedEvent]:
     return told(BackendStatus(available=False, reason="no network"), BackendStatus(available=True))
 
 
+def a_lost_drive_process() -> list[RecordedEvent]:
+    return told(DriveStatus(available=False, reason="it has ended"), DriveStatus(available=True))
+
+
 def a_write() -> list[RecordedEvent]:
     return told(
         WriteRecord("PUT", "/holds/operator", 200, "10.0.0.7:50000", Actor("http:10.0.0.7"))
@@ -220,7 +224,16 @@ def _example(path: Path) -> list[RecordedEvent]:
 
 def test_events_that_happen_are_listed_with_what_they_carry() -> None:
     seen: dict[str, list[set[str]]] = {}
-    stories = (a_drive, soft_brakes, a_sick_robot, a_lost_backend, a_write, a_stall, the_examples)
+    stories = (
+        a_drive,
+        soft_brakes,
+        a_sick_robot,
+        a_lost_backend,
+        a_lost_drive_process,
+        a_write,
+        a_stall,
+        the_examples,
+    )
     for event in (event for story in stories for event in story()):
         seen.setdefault(event.kind, []).append(set(event.data))
 

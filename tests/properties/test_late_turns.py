@@ -17,6 +17,7 @@ from domain.state_and_mode import PartName
 from domain.timebase import Instant, seconds
 from domain.vehicle import Pose, VehicleState
 from service.catch_up import MOST_WINDOWS, WINDOW, CatchUp
+from service.refused_readings import RefusedReadings
 from service.submitter import Submitter
 from tests.support.good import GOOD
 from tests.support.live_robot import make_onboard
@@ -53,9 +54,9 @@ class Robot:
         self.clock = ManualClock()
         self.ticked_at: Instant = 0
         self.onboard = make_onboard(actuation_model(), 0)
-        self.submitter = Submitter(
-            self.onboard, self.clock, self._note, CatchUp(self.clock, self._tick_due)
-        )
+        catch_up = CatchUp(self.clock, self._tick_due)
+        refused = RefusedReadings()
+        self.submitter = Submitter(self.onboard, self.clock, self._note, catch_up, refused)
         self.kinds: list[str] = []
         everything = Arrived(frozenset(GOOD), True, frozenset({BASE, ARM}), 0)
         self.take(everything)

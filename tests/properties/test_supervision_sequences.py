@@ -15,6 +15,7 @@ from domain.errors import PilothouseError
 from domain.events.event import RecordedEvent
 from domain.inputs import (
     AcknowledgeRequest,
+    BackendStatus,
     CancelRequest,
     Input,
     ModeRequest,
@@ -102,6 +103,15 @@ class Sequences(RuleBasedStateMachine):
     @rule(node=NODES, fault=st.sampled_from([None, None, *Fault]))
     def break_or_mend(self, node: PartName, fault: Fault | None) -> None:
         self.robot.fault(node, fault)
+
+    @rule(available=st.booleans())
+    def lose_or_regain_the_backend(self, *, available: bool) -> None:
+        self.robot.give(BackendStatus(available, "" if available else "no network"))
+        for part in MODEL.parts:
+            for view in self.robot.core.modes(part):
+                codes = [blocker.code for blocker in view.blockers if blocker.refuses]
+                assert view.can_enter is not bool(codes)
+                assert ("BACKEND_UNAVAILABLE" in codes) is not available
 
     @rule(engaged=st.booleans())
     def press_or_release_the_emergency_stop(self, *, engaged: bool) -> None:

@@ -55,6 +55,12 @@ class Robot:
         await until(client.is_ready, POLL_S)
         return fields_of(await client.call(request, WITHIN_S))
 
+    def writes(self) -> list[object]:
+        """Return the audit trail: what was called, and with what status."""
+        events = self.supervisor.events.oldest_first()
+        trail = [event.data for event in events if event.kind == "audit.write"]
+        return [(written["path"], written["status"]) for written in trail]
+
     def fault(self, fault: Fault) -> None:
         """Let something be wrong with the manipulator."""
         self._backend.set_fault(ARM, fault)
@@ -135,6 +141,14 @@ async def test_a_mode_is_asked_read_and_heard_in_types_that_every_installation_h
     mode = await robot.call("/actuation/get_mode", GET_STATE, {})
     assert mode == {"current_state": {"id": 3, "label": "active.PERFORMANCE"}}
     assert [event["goal_state"]["label"] for event in events] == ["active.PERFORMANCE"]
+
+
+async def test_a_call_is_in_the_audit_trail_with_its_outcome(robot: Robot) -> None:
+    asked = {"transition": {"label": "active.PERFORMANCE"}}
+    await robot.call("/actuation/change_mode", CHANGE_STATE, asked)
+    await robot.call("/actuation/get_mode", GET_STATE, {})
+
+    assert robot.writes() == [("/actuation/change_mode", 200)]
 
 
 async def test_who_comes_late_hears_the_last_request(robot: Robot) -> None:

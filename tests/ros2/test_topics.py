@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 import pytest
 
 from domain.commands import Drive
-from domain.inputs import Readings, SignalValue, VehicleReport
+from domain.inputs import DriveStatus, Readings, SignalValue, VehicleReport
 from domain.vehicle import DriveCommand, VehicleLimits
 from service.clock import MonotonicClock
 from service.files.robot_file import robot_settings_of
@@ -132,6 +132,39 @@ async def test_each_signal_is_read_from_messages_of_its_type(
     assert sources == {name: f"ros:{topic['topic']}" for name, (topic, _, _) in SIGNALS.items()}
 
 
+FULL = 1.0000001
+"""The next number above 1 in single precision, which is the type of the message."""
+
+
+@pytest.mark.parametrize(
+    ("signal", "topic", "fields", "value"),
+    [
+        ("battery_level", SIGNALS["battery_level"][0], {"percentage": FULL}, 1.0),
+        ("estop", {**SIGNALS["estop"][0], "type": "std_msgs/msg/UInt8"}, {"data": 1}, True),
+        (
+            "estop",
+            {"topic": "/estop", "type": "std_msgs/msg/String", "field": "data"},
+            {"data": "TRUE"},
+            True,
+        ),
+    ],
+)
+async def test_the_rounding_of_a_full_battery_and_other_types_of_a_stop_are_taken(
+    link: "RosLink",
+    somebody: RosNode,
+    signal: str,
+    topic: dict[str, object],
+    fields: dict[str, Any],
+    value: SignalValue,
+) -> None:
+    heard: list[Readings] = []
+    signal_topics(link, **{signal: topic}).start(heard.append)
+    publish = publishes(somebody, topic, fields)
+    await until(every_time(publish, until_it_is=lambda: bool(heard)), PAUSE_S)
+
+    assert heard[0].items[0].value == value
+
+
 async def test_a_reading_has_the_stamp_of_its_header(link: "RosLink", somebody: RosNode) -> None:
     clock = MonotonicClock()
     topic, fields, _ = SIGNALS["temperature"]
@@ -157,7 +190,7 @@ async def test_what_was_not_measured_is_no_reading(link: "RosLink", somebody: Ro
 
 
 async def test_odometry_says_how_the_vehicle_moves(link: "RosLink", somebody: RosNode) -> None:
-    heard: list[VehicleReport] = []
+    heard: list[VehicleReport | DriveStatus] = []
     vehicle(link, odometry={"topic": "/odom"}).start(heard.append)
     turn = {"z": math.sin(0.6), "w": math.cos(0.6)}
     fields = {
@@ -167,7 +200,9 @@ async def test_odometry_says_how_the_vehicle_moves(link: "RosLink", somebody: Ro
     publish = publishes(somebody, {"topic": "/odom", "type": "nav_msgs/msg/Odometry"}, fields)
     await until(every_time(publish, until_it_is=lambda: bool(heard)), PAUSE_S)
 
-    state = heard[0].state
+    report = heard[0]
+    assert isinstance(report, VehicleReport)
+    state = report.state
     assert (state.pose.x_m, state.pose.y_m, state.speed_mps) == (12.0, -3.0, 2.0)
     assert state.pose.yaw_rad == pytest.approx(1.2)
     assert state.steering_angle_rad == pytest.approx(0.3)

@@ -2,9 +2,10 @@
 
 import asyncio
 from collections.abc import Callable
+from typing import Any, cast
 
 import uvicorn
-from starlette.types import Receive, Scope, Send
+from starlette.types import ASGIApp, Receive, Scope, Send
 from uvicorn.server import ServerState
 
 from api.serving.closings import Closings
@@ -94,18 +95,46 @@ async def answer(scope: Scope, receive: Receive, send: Send) -> None:
     await send({"type": "http.response.body", "body": b"ok"})
 
 
-class FloodedService:
-    """The layers between network and application."""
+class _CountedProtocol(HttpProtocol):
+    """Notes the bytes of each piece."""
 
-    def __init__(self, most: int = 1_000) -> None:
+    handed_on: list[int]
+
+    def data_received(self, data: bytes) -> None:
+        self.handed_on.append(len(data))
+        super().data_received(data)
+
+
+class _CountedWebSocket(WebSocketProtocol):
+    """Notes the bytes of each piece."""
+
+    handed_on: list[int]
+
+    def data_received(self, data: bytes) -> None:
+        self.handed_on.append(len(data))
+        super().data_received(data)
+
+
+class FloodedService:
+    """The layers between network and application.
+
+    Args:
+        most: Connections at the same time.
+        app: The application.
+        turns: Of the connections; None: those of `loop`, whose turns the test runs itself.
+    """
+
+    def __init__(
+        self, most: int = 1_000, app: ASGIApp = answer, turns: Turns | None = None
+    ) -> None:
         self.loop = CountedLoop()
         self.closings = Closings()
         self.connections = Connections(most, self.closings)
         self.state = ServerState()
-        self._turns = Turns(self.loop.call_soon)
+        self._turns = turns or Turns(self.loop.call_soon)
         self._config = uvicorn.Config(
-            answer,
-            ws=WebSocketProtocol,
+            app,
+            ws=cast("type[WebSocketProtocol]", self._make_socket),
             ws_per_message_deflate=False,
             ws_ping_interval=None,
             interface="asgi3",
@@ -114,21 +143,20 @@ class FloodedService:
         )
         self._config.load()
         self.handed_on: list[int] = []
-        """Bytes of each piece."""
+        """Bytes of each piece, in order."""
 
     def connect(self) -> "Client":
         """Return a new client."""
         return Client(self.make(), self)
 
+    def _make_socket(self, **options: Any) -> WebSocketProtocol:  # noqa: ANN401
+        socket = _CountedWebSocket(**options, closings=self.closings)
+        socket.handed_on = self.handed_on
+        return socket
+
     def make(self) -> Intake:
-        inner = HttpProtocol(self._config, self.state, {}, self.closings)
-        take = inner.data_received
-
-        def count_and_take(data: bytes) -> None:
-            self.handed_on.append(len(data))
-            take(data)
-
-        inner.data_received = count_and_take  # type: ignore[method-assign]
+        inner = _CountedProtocol(self._config, self.state, {}, self.closings)
+        inner.handed_on = self.handed_on
         return Intake(inner, self._turns, self.connections, is_stop)
 
 

@@ -6,8 +6,16 @@ Only for signals of which a value meets one condition at most, as those of smart
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
+from itertools import zip_longest
 
-from domain.health.signals import STALE_DATA, Comparison, Condition, Recovery, SignalSettings
+from domain.health.signals import (
+    STALE_DATA,
+    Comparison,
+    Condition,
+    CountsFrom,
+    Recovery,
+    SignalSettings,
+)
 from domain.inputs import Reading, Readings
 from domain.timebase import Instant
 
@@ -20,7 +28,8 @@ class Moment:
 
     errors: frozenset[tuple[str, str]]
     """Signal and error."""
-    pending: Mapping[str, str | None]
+    pending: Mapping[str, tuple[str, Instant] | None]
+    """By signal, the error that will be raised, and since when its time counts."""
     stale: frozenset[str]
 
 
@@ -45,6 +54,7 @@ class _Signal:
     stale: bool = False
     stale_on: bool = False
     stale_since: Instant = 0
+    counting: Instant | None = None
 
     def __post_init__(self) -> None:
         self.stale = self.stale_on = self.settings.stale_after > 0
@@ -80,15 +90,29 @@ class _Signal:
                 return condition
         return None
 
-    def last_good(self) -> Instant:
-        return max((a.at for a in self.arrived if a.was_good), default=self.start)
+    def counts_since(self, now: Instant) -> Instant | None:
+        """Return from when "for" counts; None: nothing counts."""
+        if self.settings.counts_from is CountsFrom.LAST_GOOD:
+            return max((a.at for a in self.arrived if a.was_good), default=self.start)
+        first_bad = None
+        for arrived, following in zip_longest(self.arrived, self.arrived[1:]):
+            if arrived.was_good:
+                first_bad = None
+            elif first_bad is None:
+                first_bad = arrived.at
+            limit, until = self.settings.stale_after, now if following is None else following.at
+            if limit and until - arrived.at > limit:
+                first_bad = None
+        return first_bad
 
     def look(self, now: Instant) -> None:
         bad = self.settings.conditions[0] if self.engaged else self.bad()
         had_cause = self.cause
+        self.counting = since = self.counts_since(now)
+        is_due = bad is not None and since is not None and now - since >= bad.for_
         if bad is None:
             self.cause = None
-        elif self.engaged or self.cause is not None or now - self.last_good() >= bad.for_:
+        elif self.engaged or self.cause is not None or is_due:
             self.cause = bad
         if self.cause is not None:
             if self.cause is not had_cause:
@@ -110,9 +134,11 @@ class _Signal:
         if not self.stale and now - self.stale_since >= self.settings.min_on:
             self.stale_on = False
 
-    def pending(self) -> str | None:
+    def pending(self) -> tuple[str, Instant] | None:
         bad = None if self.engaged else self.bad()
-        return bad.error if bad is not None and self.cause is None else None
+        if bad is None or self.cause is not None or self.counting is None:
+            return None
+        return bad.error, self.counting
 
 
 class HealthReference:

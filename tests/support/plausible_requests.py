@@ -60,8 +60,14 @@ _NUMBERS = st.one_of(
 )
 _PLACES = st.integers(-30, 30).map(str)
 _ROWS = st.lists(_PLACES, min_size=3, max_size=3) | st.lists(_NUMBERS, max_size=4)
+_HEADERS = st.sampled_from(["", "x,y,yaw", "# s_m,x_m,y_m", "a,b,c", "lat,lon,alt", "x,y,width"])
+_TABLES = st.tuples(_HEADERS, st.lists(_ROWS.map(",".join), max_size=12)).map(
+    lambda file: "\n".join(line for line in (file[0], *file[1]) if line)
+)
 WAYPOINT_FILES = st.one_of(
-    st.lists(_ROWS.map(",".join), max_size=12).map("\n".join).map(str.encode),
+    st.tuples(_TABLES, st.sampled_from([",", ";", "\t", " "])).map(
+        lambda file: file[0].replace(",", file[1]).encode()
+    ),
     st.binary(max_size=200),
 )
 """Text that may be a waypoint file."""

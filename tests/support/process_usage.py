@@ -28,6 +28,11 @@ class ProcessUsage:
             ticks += int(fields[11]) + int(fields[12])
         return ticks / _CLOCK_HZ
 
+    def loop_cpu_s(self) -> float:
+        """Return the processor time of the main thread, in which the event loop runs."""
+        path = _PROC / str(self._pid) / "task" / str(self._pid) / "schedstat"
+        return int(path.read_text().split()[0]) / 1e9
+
     def figures(self) -> dict[str, float]:
         """Return the memory of the process and of all, and how many they are.
 

@@ -102,6 +102,8 @@ class FakeGraph:
         self.servers: Counter[str] = Counter()
         """How many servers of each service are known."""
         self.drive_outputs: list[FakeDriveOutput] = []
+        self.drive_trouble = ""
+        """Why new outputs for drive commands do not work at first; empty: they work."""
         """Every output for drive commands."""
         self.closed = False
         self._published: defaultdict[str, list[Fields]] = defaultdict(list)
@@ -350,7 +352,8 @@ class FakeDriveOutput:
         self._type_name = type_name
         self._wheelbase_m = wheelbase_m
         self._deadman = Deadman()
-        self.works = True
+        self.trouble = graph.drive_trouble
+        self._changed: Callable[[], None] = lambda: None
         self._alarm = Alarm(self._deadman.wake_at, self._advance, graph.clock)
 
     def send(self, command: DriveCommand) -> None:
@@ -359,8 +362,14 @@ class FakeDriveOutput:
         self._deadman.take(command, self._graph.clock.now())
         self._alarm.check()
 
-    async def run(self) -> None:
+    def fail(self, trouble: str) -> None:
+        """Lose commands from now on for this reason, or work again without one."""
+        self.trouble = trouble
+        self._changed()
+
+    async def run(self, changed: Callable[[], None]) -> None:
         """Command speed 0 when a command expires, until cancelled."""
+        self._changed = changed
         try:
             await self._alarm.run()
         finally:

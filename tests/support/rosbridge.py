@@ -12,6 +12,7 @@ from api.streaming.websocket_frames import Connection
 from domain.actor import Actor
 from domain.errors import InvalidValueError
 from service.frame_feed import FrameFeed
+from service.refused_readings import RefusedReadings
 from service.ros.interface.endpoints import Fields, OfferedService, OfferedTopic, SubscribedTopic
 from tests.support.manual_clock import ManualClock
 from tests.support.websocket import WebSocketClient
@@ -117,7 +118,8 @@ def make_bridge(
     interface: SmallInterface, clock: ManualClock | None = None, calls_per_s: int = 1_000
 ) -> Bridge:
     """Return what clients share, over a small interface."""
-    return Bridge(interface, FrameFeed(), clock or ManualClock(), calls_per_s)
+    clock = clock or ManualClock()
+    return Bridge(interface, FrameFeed(), clock, calls_per_s, RefusedReadings())
 
 
 class Pipe(asyncio.WriteTransport):

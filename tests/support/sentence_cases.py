@@ -130,6 +130,13 @@ CASES = (
         ),
     ),
     Case(
+        "a vehicle that cannot be commanded",
+        "IDLE",
+        "attention",
+        "no task; a new one would be held by drive_process (the drive process has ended)",
+        members=members(holds=(told.hold("drive_process", "the drive process has ended"),)),
+    ),
+    Case(
         "a hold without a task",
         "IDLE",
         "calm",
@@ -311,6 +318,7 @@ def combinations() -> Iterator[dict[str, Any]]:
         (),
         (GATE,),
         (told.hold("vehicle", "no pose"),),
+        (told.hold("drive_process", "it has ended"),),
         (told.hold("error", "low"), GATE, told.hold("b"), told.hold("c")),
     )
     errors = (None, LOW, reason("STILL_MOVING", "still moving"))

@@ -22,6 +22,7 @@ PREVIEW: dict[str, Any] = {
     "vehicle_min_radius_m": 2.5,
     "steerable": True,
     "start": {"distance_m": 0.3, "heading_error_rad": -0.1},
+    "approach": None,
     "duration_s": 289.4,
     "warnings": [],
 }

@@ -84,6 +84,16 @@ def disturbed(plant: Plant, seed: int) -> Plant:
     return replace(plant, delay=seconds(0.1), noise=Noise(0.02, radians(0.5), seed=seed))
 
 
+def limits_of(plant: Plant, limits: VehicleLimits = LIMITS) -> VehicleLimits:
+    """Return limits with what is known of a plant, as a robot file tells it."""
+    return replace(
+        limits,
+        braking_mps2=plant.braking_mps2,
+        steering_rate_radps=plant.steering_rate_radps,
+        steering_delay_s=plant.steering_lag_s + to_seconds(plant.delay),
+    )
+
+
 def beside_start(path: Path, left_m: float) -> Pose:
     """Return the pose beside the start of a path, along it."""
     place, heading = path.point_at(0.0), path.heading_at(0.0)
@@ -110,7 +120,7 @@ def drive(
     """
     vehicle = SimulatedVehicle(VehicleSettings(start or beside_start(path, 0.0), plant, LIMITS), 0)
     watch = VehicleWatch(TaskSettings(), Outbox())
-    navigation = Navigation(LIMITS, NavigationSettings(), watch)
+    navigation = Navigation(limits_of(plant), NavigationSettings(), watch)
     rows: list[tuple[float, ...]] = []
     result, feedback, driven, before = None, None, 0.0, vehicle.state
     while to_seconds(now := vehicle.wake_at()) <= time_limit_s:

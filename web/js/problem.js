@@ -46,7 +46,11 @@ export function detailWords({ detail, title }) {
 /** The hint as one can follow it on the page; empty without one. */
 export function hintWords({ hint }) {
   if (!hint) return "";
-  if (hint.includes("?columns=")) return "say below what the columns are, such as x,y,yaw";
-  if (hint.includes("?heading=")) return "choose below what the headings are in";
+  if (hint.includes("?columns=")) {
+    const [, example] = /\?columns=([\w,-]+)/.exec(hint) ?? [null, "x,y,yaw"];
+    const heading = hint.includes("?heading=") ? ", or what its headings are in" : "";
+    return `say above what the columns are, such as ${example}${heading}`;
+  }
+  if (hint.includes("?heading=")) return "choose above what the headings are in";
   return OF_THE_API.test(hint) ? "" : hint;
 }

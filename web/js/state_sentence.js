@@ -48,7 +48,8 @@ export function robotSentence(state) {
   }
   const { word, text } = activity(state, task);
   const [first, ...more] = [...reasonTexts, ...found];
-  const isCalm = !first && !aborted(state).length && !state.holds.vehicle;
+  const { vehicle, drive_process: undriven } = state.holds;
+  const isCalm = !first && !aborted(state).length && !vehicle && !undriven;
   const level = alarm ? "error" : isCalm ? "calm" : "attention";
   const sign = alarm ? "error" : word.toLowerCase();
   return sentence([level, sign], alarm ?? word, first ? `${first}; ${text}` : text, more);

@@ -130,5 +130,10 @@ export function previewLines(preview, speed_mps) {
       `Starts ${metres(preview.start.distance_m)} from the vehicle, ${turn}° off its heading`,
     );
   }
+  if (preview.csv) lines.push(sentence(preview.csv.message));
   return lines;
+}
+
+function sentence(text) {
+  return text.charAt(0).toUpperCase() + text.slice(1);
 }

@@ -19,8 +19,11 @@ if TYPE_CHECKING:
 
 _TEXT = """\
 Submit the waypoints of a CSV file as a task, which replaces the current one,
-and follow it to its end. Each line is x,y,yaw in m, m and rad; --heading sets
-another unit of yaw.
+and follow it to its end. Each line is x,y or x,y,yaw in m and rad, unless a
+header or a # line names the columns, such as s_m, x_m, y_m, psi_rad. Commas,
+semicolons, tabs or blanks separate them. --columns names the columns of a file
+that does not, and --heading the unit of its headings; --preview says how they
+were read.
 
 While there are holds, such as during an error, the task waits. After Ctrl-C
 the task continues; --cancel cancels it.
@@ -46,9 +49,14 @@ def _add_options(parser: argparse.ArgumentParser) -> None:
     )
     parser.add_argument(
         "--heading",
-        choices=("rad", "deg", "compass"),
-        help="unit of the third column: rad (default) or deg, counter-clockwise from east;"
-        " compass: degrees clockwise from north",
+        choices=("rad", "deg", "compass", "rad_north", "rad_compass"),
+        help="unit of the headings: rad or deg, counter-clockwise from east; compass: degrees"
+        " clockwise from north; rad_north, rad_compass: radians from north; default: what fits",
+    )
+    parser.add_argument(
+        "--columns",
+        metavar="NAMES",
+        help="names of the columns, such as s,x,y,yaw; _ is any other",
     )
     parser.add_argument(
         "--start-index", type=int, metavar="N", help="waypoint to start with; default: 0"
@@ -71,6 +79,7 @@ def _run(options: argparse.Namespace) -> int:
         controller=options.controller,
         speed_mps=options.speed,
         heading=options.heading,
+        columns=options.columns,
         start_index=options.start_index,
         preview=options.preview,
         wait=options.wait,
@@ -93,6 +102,8 @@ class TaskOptions:
     speed_mps: float | None = None
     heading: str | None = None
     """`rad`, `deg` or `compass`."""
+    columns: str | None = None
+    """Names of the columns, separated by commas."""
     start_index: int | None = None
     preview: bool = False
     """Only show the preview; submit nothing."""
@@ -106,6 +117,7 @@ class TaskOptions:
             "controller": self.controller,
             "speed_mps": self.speed_mps,
             "heading": self.heading,
+            "columns": self.columns,
             "start_index": self.start_index,
         }
         return {name: value for name, value in given.items() if value is not None}
@@ -174,10 +186,10 @@ def _drive(
 
 def _text_of(file: str, complaints: TextIO) -> str | None:
     """Return the text of a file; None: it cannot be read, and the reason was printed."""
-    from service.files.text_file import UnreadableFileError, read_text_file
+    from service.files.text_file import UnreadableFileError, decode_csv, read_bytes
 
     try:
-        return read_text_file(_STANDARD_INPUT if file == "-" else Path(file))
+        return decode_csv(read_bytes(_STANDARD_INPUT if file == "-" else Path(file)))
     except UnreadableFileError as error:
         print(f"pilothouse: {error}", file=complaints)
         return None
@@ -211,7 +223,10 @@ def preview_lines(file: str, found: Json) -> Iterator[str]:
         found: The response to `POST /tasks/preview`.
     """
     count, length_m = found["waypoint_count"], found["length_m"]
+    read = found.get("csv")
     yield f"{file}: {count} waypoints, {length_m:.1f} m, some {found['duration_s']:.0f} s"
+    if read is not None:
+        yield f"  {read['message']}"
     radius_m = found["min_radius_m"]
     if radius_m is None:
         yield "  straight"
@@ -224,9 +239,14 @@ def preview_lines(file: str, found: Json) -> Iterator[str]:
     else:
         off = f"heading off by {abs(degrees(start['heading_error_rad'])):.0f} degrees"
         yield f"  start {start['distance_m']:.1f} m from the vehicle, {off}"
+    if (approach := found["approach"]) is not None:
+        way = f"{approach['length_m']:.1f} m at {approach['speed_mps']:.1f} m/s"
+        yield f"  the vehicle drives onto the path first: {way}"
     for warning in found["warnings"]:
         place = "" if warning["index"] is None else f" (waypoint {warning['index']})"
         yield f"  warning {warning['code']}: {warning['message']}{place}"
+        if warning.get("hint"):
+            yield f"  hint: {_in_options(warning)['hint']}"
 
 
 def fault_lines(file: str, text: str, problem: Json) -> Iterator[str]:
@@ -237,7 +257,9 @@ def fault_lines(file: str, text: str, problem: Json) -> Iterator[str]:
         text: Content of the file.
         problem: The problem document of the response.
     """
-    lines = text.split("\n")
+    from service.files.text_file import lines_of
+
+    lines = lines_of(text)
     for finding in problem["findings"]:
         number, column = finding["line"] or 1, finding["column"] or 1
         yield f"{file}:{number}:{column}: {finding['code']} {finding['message']}"
@@ -251,7 +273,12 @@ def fault_lines(file: str, text: str, problem: Json) -> Iterator[str]:
 def _in_options(problem: Json) -> Json:
     """Return the problem with a hint that names command line options instead of parameters."""
     hint = problem.get("hint") or ""
-    for member, option in (("?heading=", "--heading "), ("start_index", "--start-index")):
+    options = (
+        ("?heading=", "--heading "),
+        ("?columns=", "--columns "),
+        ("start_index", "--start-index"),
+    )
+    for member, option in options:
         hint = hint.replace(member, option)
     return {**problem, "hint": hint}
 

@@ -124,7 +124,8 @@ def _calm_sentence(robot: Robot) -> Sentence:
     more = tuple(found[1:])
     if alarm := alarm_of(state):
         return Sentence(alarm, text, more, "error")
-    is_calm = not found and not [*_aborted(robot)] and "vehicle" not in _holds(robot)
+    is_unable = not _holds(robot).keys().isdisjoint(_UNABLE)
+    is_calm = not found and not [*_aborted(robot)] and not is_unable
     return Sentence(word, text, more, "calm" if is_calm else "attention")
 
 
@@ -201,6 +202,8 @@ def _holds(robot: Robot) -> Mapping[str, Json]:
 
 
 _STANDS = {"RUNNING": "running", "PAUSING": "stopping", "PAUSED": "paused"}
+_UNABLE = ("vehicle", "drive_process")
+"""The holds of a vehicle that cannot be driven: without a pose, or without commands."""
 _UNKNOWN_TASKS = {
     "RUNNING_TASK": ("RUNNING", "the task is running"),
     "PAUSED_TASK": ("PAUSED", "the task is paused"),

@@ -13,7 +13,7 @@ from api.http.schemas.changes import ChangeJson, ChangesJson
 from domain.errors import UnknownPartError
 from domain.identifiers import ChangeId
 from domain.inputs import CancelRequest
-from domain.state_and_mode import PartName
+from domain.state_and_mode import part_name
 from service.supervisor import Supervisor
 
 router = APIRouter(prefix="/changes", tags=["changes"])
@@ -36,10 +36,11 @@ async def list_changes(
     ] = None,
 ) -> Response:
     """List changes, the newest first."""
-    if part is not None and part not in supervisor.model:
-        raise UnknownPartError("part", part, supervisor.model.parts)
+    name = None if part is None else part_name(part)
+    if name is not None and name not in supervisor.model:
+        raise UnknownPartError("part", name, supervisor.model.parts)
     clock = supervisor.clock
-    views = supervisor.core.changes(limit, None if part is None else PartName(part))
+    views = supervisor.core.changes(limit, name)
     texts = []
     for view in views:
         texts.append(await change_text(view, clock))

@@ -3,12 +3,16 @@
 from fastapi import APIRouter
 
 from api.http.dependencies import ActorDep, SupervisorDep
-from api.http.request_body import JsonRoute
 from api.http.route_policy import Permission, policy
-from api.http.schemas.health import EmergencyStopBody, EmergencyStopJson
+from api.http.schemas.health import (
+    EmergencyStopAnswerJson,
+    EmergencyStopBody,
+    EmergencyStopJson,
+)
+from api.http.stop_route import IgnoredDep, StopRoute
 from domain.inputs import EmergencyStopRequest
 
-router = APIRouter(prefix="/emergency_stop", tags=["health"], route_class=JsonRoute)
+router = APIRouter(prefix="/emergency_stop", tags=["health"], route_class=StopRoute)
 
 
 @router.get("")
@@ -18,15 +22,18 @@ async def get_emergency_stop(supervisor: SupervisorDep) -> EmergencyStopJson:
     return EmergencyStopJson.of(supervisor.core.emergency_stop(), supervisor.clock)
 
 
-@router.put("")
+@router.put("", response_model_exclude_unset=True)
 @policy(Permission.STOP)
 async def set_emergency_stop(
-    body: EmergencyStopBody, supervisor: SupervisorDep, actor: ActorDep
-) -> EmergencyStopJson:
+    body: EmergencyStopBody, supervisor: SupervisorDep, actor: ActorDep, ignored: IgnoredDep
+) -> EmergencyStopAnswerJson:
     """Engage or release the emergency stop; repeating a request changes nothing.
+
+    A request to engage is taken whatever else is in the body; `ignored` tells what was not.
 
     This is a software stop. It is not safety-rated and does not replace a hardware stop. In this
     version a restart of the service releases it, since it is not stored.
     """
     supervisor.submit(EmergencyStopRequest(body.engaged, body.reason or "", actor))
-    return EmergencyStopJson.of(supervisor.core.emergency_stop(), supervisor.clock)
+    shown = EmergencyStopJson.of(supervisor.core.emergency_stop(), supervisor.clock)
+    return EmergencyStopAnswerJson(**dict(shown)).model_copy(update=ignored)

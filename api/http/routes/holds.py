@@ -6,12 +6,12 @@ from typing import Annotated
 from fastapi import APIRouter, Path, Response
 
 from api.http.dependencies import ActorDep, SupervisorDep
-from api.http.request_body import JsonRoute
 from api.http.route_policy import Permission, policy
-from api.http.schemas.tasks import HoldBody, HoldJson, HoldsJson
+from api.http.schemas.tasks import HoldAnswerJson, HoldBody, HoldJson, HoldsJson
+from api.http.stop_route import IgnoredDep, StopRoute
 from domain.inputs import HoldRequest, ReleaseRequest
 
-router = APIRouter(prefix="/holds", tags=["drive"], route_class=JsonRoute)
+router = APIRouter(prefix="/holds", tags=["drive"], route_class=StopRoute)
 
 OwnerPath = Annotated[
     str,
@@ -31,20 +31,23 @@ async def list_holds(supervisor: SupervisorDep) -> HoldsJson:
     return HoldsJson(items=[HoldJson.of(hold, clock) for hold in holds])
 
 
-@router.put("/{owner}")
+@router.put("/{owner}", response_model_exclude_unset=True)
 @policy(Permission.STOP)
 async def set_hold(
     owner: OwnerPath,
     supervisor: SupervisorDep,
     actor: ActorDep,
+    ignored: IgnoredDep,
     body: HoldBody | None = None,
-) -> HoldJson:
+) -> HoldAnswerJson:
     """Hold the task: speed 0 is commanded at once. Repeating the request only updates the reason.
 
-    A hold stays in force until it is released, also if another task is submitted meanwhile.
+    A hold stays in force until it is released, also if another task is submitted meanwhile. It is
+    set whatever else is in the body; `ignored` tells what was not taken.
     """
     supervisor.submit(HoldRequest(owner, body.reason if body else "", actor))
-    return HoldJson.of(supervisor.core.driving.holds[owner], supervisor.clock)
+    shown = HoldJson.of(supervisor.core.driving.holds[owner], supervisor.clock)
+    return HoldAnswerJson(**dict(shown)).model_copy(update=ignored)
 
 
 @router.delete("/{owner}", status_code=HTTPStatus.NO_CONTENT, response_class=Response)

@@ -8,15 +8,16 @@ from fastapi import APIRouter, Path
 from api.http.body_parsing import InvalidBodyError
 from api.http.dependencies import ActorDep, SupervisorDep
 from api.http.problems import HttpError
-from api.http.request_body import JsonRoute
 from api.http.route_policy import Permission, policy
 from api.http.schemas.health import MockBody, MockJson, MockSignalJson
+from api.http.schemas.sent_values import SentSignalName
+from api.http.stop_route import StopRoute
 from domain.errors import InvalidValueError, UnknownSignalError
 from domain.inputs import Reading
 from service.readings import Mock
 from service.supervisor import Supervisor
 
-router = APIRouter(prefix="/mock", tags=["health"], route_class=JsonRoute)
+router = APIRouter(prefix="/mock", tags=["health"], route_class=StopRoute)
 
 
 @router.get("")
@@ -26,10 +27,10 @@ async def get_mock(supervisor: SupervisorDep) -> MockJson:
     return MockJson(items=_signals(_mock_of(supervisor)))
 
 
-@router.patch("/{signal}")
+@router.patch("/{signal:path}")
 @policy(Permission.OPERATE)
 async def change_mock(
-    signal: Annotated[str, Path(description="One of those in `GET /mock`")],
+    signal: Annotated[SentSignalName, Path(description="One of those in `GET /mock`")],
     body: MockBody,
     supervisor: SupervisorDep,
     actor: ActorDep,

@@ -12,7 +12,7 @@ from api.http.metrics import Metrics
 from api.http.problems import make_problem, problem_response
 from api.http.route_policy import Permission, policy
 from api.http.schemas.base import Json
-from domain.tasks.holds import VEHICLE_HOLD
+from domain.tasks.holds import DRIVE_HOLD, VEHICLE_HOLD
 from domain.timebase import to_seconds
 from service.supervisor import Supervisor
 
@@ -127,6 +127,9 @@ def _warnings(supervisor: Supervisor, *, exposed: bool) -> Iterator[WarningJson]
     lost = supervisor.core.driving.holds.get(VEHICLE_HOLD)
     if lost is not None:
         yield WarningJson(code="NO_POSE", message=lost.reason)
+    undriven = supervisor.core.driving.holds.get(DRIVE_HOLD)
+    if undriven is not None:
+        yield WarningJson(code="NO_DRIVE", message=undriven.reason)
     if late := supervisor.publisher.late_ticks:
         message = f"{late} ticks skipped since the start: the machine is too slow"
         yield WarningJson(code="LATE_TICKS", message=message)

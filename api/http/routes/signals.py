@@ -1,12 +1,12 @@
 """Signals and their readings."""
 
+from collections.abc import Mapping
 from typing import Annotated
 
 from fastapi import APIRouter, Body, Path
 
 from api.http.body_parsing import InvalidBodyError
 from api.http.dependencies import ActorDep, SupervisorDep
-from api.http.request_body import JsonRoute
 from api.http.route_policy import Permission, policy
 from api.http.routes.system_state import current_system_state
 from api.http.schemas.health import (
@@ -14,15 +14,18 @@ from api.http.schemas.health import (
     ReadingBody,
     SignalJson,
     SignalsJson,
-    SystemStateJson,
+    TakenReadingsJson,
 )
-from api.http.schemas.sent_values import SentSignalValue
+from api.http.schemas.sent_values import SentSignalName, SentSignalValue
+from api.http.stop_route import IgnoredDep, StopRoute
 from domain.errors import InvalidValueError, UnknownSignalError
-from domain.inputs import Reading
+from domain.health.signals import signal_name
+from domain.inputs import Reading, SignalValue
+from service.supervisor import Supervisor
 
-router = APIRouter(prefix="/signals", tags=["health"], route_class=JsonRoute)
+router = APIRouter(prefix="/signals", tags=["health"], route_class=StopRoute)
 
-SignalPath = Annotated[str, Path(description="One of those in `GET /signals`")]
+SignalPath = Annotated[SentSignalName, Path(description="One of those in `GET /signals`")]
 
 
 @router.get("")
@@ -34,7 +37,7 @@ async def list_signals(supervisor: SupervisorDep) -> SignalsJson:
     return SignalsJson(items=[SignalJson.at(view, clock, now) for view in views])
 
 
-@router.get("/{signal}")
+@router.get("/{signal:path}")
 @policy(Permission.OBSERVE)
 async def get_signal(signal: SignalPath, supervisor: SupervisorDep) -> SignalJson:
     """Show one signal: its value and errors."""
@@ -42,7 +45,7 @@ async def get_signal(signal: SignalPath, supervisor: SupervisorDep) -> SignalJso
     return SignalJson.at(supervisor.core.signal(signal), clock, clock.now())
 
 
-@router.post("")
+@router.post("", response_model_exclude_unset=True)
 @policy(Permission.REPORT)
 async def post_readings(
     body: Annotated[
@@ -51,14 +54,17 @@ async def post_readings(
     ],
     supervisor: SupervisorDep,
     actor: ActorDep,
-) -> SystemStateJson:
+    ignored: IgnoredDep,
+) -> TakenReadingsJson:
     """Submit readings of several signals; all or none are accepted.
+
+    If `estop` asks for a stop, it is taken even if the rest is rejected; then `ignored` tells why.
 
     They are evaluated on arrival; the answer is the resulting system state. A text named `source`
     is the source of the readings, unless there is a signal of that name. The default source is
     `api`, or the mock if it is running.
     """
-    values, source = dict(body), None
+    values, source = _named(body), None
     if "source" not in supervisor.core.signals() and isinstance(values.get("source"), str):
         source = str(values.pop("source"))
         if not 0 < len(source) <= MAX_SOURCE:
@@ -69,23 +75,49 @@ async def post_readings(
         supervisor.readings.submit(readings, source, actor)
     except UnknownSignalError as error:
         raise InvalidBodyError.at(error.name, error) from error
-    return current_system_state(supervisor)
+    return _taken(supervisor, ignored)
 
 
-@router.post("/{signal}")
+@router.post("/{signal:path}", response_model_exclude_unset=True)
 @policy(Permission.REPORT)
 async def post_reading(
-    signal: SignalPath, body: ReadingBody, supervisor: SupervisorDep, actor: ActorDep
-) -> SystemStateJson:
+    signal: SignalPath,
+    body: ReadingBody,
+    supervisor: SupervisorDep,
+    actor: ActorDep,
+    ignored: IgnoredDep,
+) -> TakenReadingsJson:
     """Submit a reading; it is evaluated on arrival, and the answer is the resulting system state.
 
     `stamp` is only shown; it does not change the age of a reading. A reading older than the current
     one is rejected, unless it is worse. The default `source` is `api`, or the mock if it is
-    running.
+    running. What asks for a stop of `estop` is taken whatever else is in the body; `ignored` tells
+    what was not.
     """
     reading = body.reading(signal, supervisor.clock)
     try:
         supervisor.readings.submit([reading], body.source, actor)
     except InvalidValueError as error:
         raise InvalidBodyError.at("value", error) from error
-    return current_system_state(supervisor)
+    return _taken(supervisor, ignored)
+
+
+def _named(body: Mapping[str, SignalValue]) -> dict[str, SignalValue]:
+    """Return values by the names of their signals, without leading slashes.
+
+    Raises:
+        InvalidBodyError: A signal is named both with and without one.
+    """
+    values: dict[str, SignalValue] = {}
+    for name, value in body.items():
+        signal = signal_name(name)
+        if signal in values:
+            error = InvalidValueError(f"{signal!r} is named twice, with and without a slash")
+            raise InvalidBodyError.at(signal, error)
+        values[signal] = value
+    return values
+
+
+def _taken(supervisor: Supervisor, ignored: Mapping[str, object]) -> TakenReadingsJson:
+    answer = TakenReadingsJson(**dict(current_system_state(supervisor)))
+    return answer.model_copy(update=ignored)

@@ -28,14 +28,15 @@ from api.http.task_jobs import (
 from domain.actor import Actor
 from domain.errors import FarStartError, InvalidValueError, UnknownControllerError, UnknownTaskError
 from domain.inputs import CancelTaskRequest, TaskRequest
+from domain.paths.headings import Heading
 from domain.tracking.trackers import TRACKERS
-from service.files.waypoint_file import Heading
+from service.files.csv_columns import column_names
 from service.supervisor import Supervisor
 from service.worker import Jobs
 
 router = APIRouter(prefix="/tasks", tags=["drive"])
 
-_MAX_BYTES_HERE = 8_192
+_MAX_BYTES_HERE = 4_096
 _MAX_POINTS_HERE = 500
 """Up to these limits the job takes less than 5 ms, and is not worth sending to the worker."""
 
@@ -67,7 +68,15 @@ async def _csv_options(
         int | None, Query(ge=0, description="Of a CSV: index of the first waypoint, from 0")
     ] = None,
     heading: Annotated[
-        Heading | None, Query(description="Of a CSV: unit of its third column, by default `rad`")
+        Heading | None,
+        Query(description="Of a CSV: unit of its headings, by default the one that fits the path"),
+    ] = None,
+    columns: Annotated[
+        str | None,
+        Query(
+            max_length=2_000,
+            description="Of a CSV: names of its columns, such as `s,x,y,yaw`; `_` is any other",
+        ),
     ] = None,
 ) -> TaskOptions | None:
     """Return the options for a CSV; None: the body is JSON, and holds them itself."""
@@ -77,14 +86,29 @@ async def _csv_options(
             controller or DEFAULT_CONTROLLER,
             DEFAULT_SPEED_MPS if speed_mps is None else speed_mps,
             start_index or 0,
-            heading or Heading.RAD,
+            heading,
+            None if columns is None else _names_in(columns),
         )
     named = {"controller": controller, "speed_mps": speed_mps, "start_index": start_index}
-    given = [name for name, value in {**named, "heading": heading}.items() if value is not None]
+    more = {"heading": heading, "columns": columns}
+    given = [name for name, value in {**named, **more}.items() if value is not None]
     if given:
         message = f"{given[0]} in the query is for a CSV (Content-Type: text/csv)"
         raise InvalidBodyError.at("", InvalidValueError(message))
     return None
+
+
+def _names_in(columns: str) -> tuple[str, ...]:
+    """Return the names in `?columns=`.
+
+    Raises:
+        InvalidBodyError: They do not say where x and y are.
+    """
+    try:
+        return column_names(columns)
+    except InvalidValueError as error:
+        message = f"query columns: {error.message}"
+        raise InvalidBodyError.at("", InvalidValueError(message)) from error
 
 
 TaskPath = Annotated[str, Path(description="Its id, as in `Location` of `POST /tasks`")]
@@ -102,8 +126,10 @@ async def post_task(
 ) -> Response:
     """Submit a task along waypoints; it replaces the current task.
 
-    The waypoints are JSON, or CSV with `x,y,yaw` in m, m and rad (`Content-Type: text/csv`). If
-    there are holds, for example because of an error, the task is accepted and waits.
+    The waypoints are JSON, or CSV (`Content-Type: text/csv`): `x,y[,yaw]` in m and rad, or with a
+    header or a `#` line that names the columns, separated by commas, semicolons, tabs or blanks.
+    Headings that fit the path in no unit are rejected until `?columns=` or `?heading=` says what
+    they are. If there are holds, for example because of an error, the task is accepted and waits.
     """
     raw = await read_body(request, limits_of(request).waypoints_bytes)
     posted = await _read(raw, csv, worker)
@@ -140,12 +166,9 @@ async def preview_task(
 ) -> Response:
     """Check waypoints and preview their path; nothing is started."""
     raw = await read_body(request, limits_of(request).waypoints_bytes)
-    driving = supervisor.core.driving
-    state = driving.vehicle.state
+    state = supervisor.core.driving.vehicle.state
     pose = None if state is None else state.pose
-    content = await worker.call(
-        preview_posted, raw, csv, pose, driving.limits, supervisor.speed_limits
-    )
+    content = await worker.call(preview_posted, raw, csv, pose, supervisor.approach_limits)
     return Response(content, media_type="application/json")
 
 

@@ -5,7 +5,7 @@ client sends. Field names contain their unit; times end in `_at`.
 """
 
 from datetime import datetime
-from typing import Annotated, Literal
+from typing import Annotated, Any, Literal
 
 from pydantic import BaseModel, ConfigDict, Field
 
@@ -34,6 +34,11 @@ class Body(BaseModel):
     """A message that a client sends; unknown fields and values of the wrong type are rejected."""
 
     model_config = ConfigDict(extra="forbid", frozen=True, strict=True, allow_inf_nan=False)
+
+
+def left_out(schema: dict[str, Any]) -> None:
+    """Describe a member that can be omitted, which differs from null."""
+    del schema["default"]
 
 
 def rfc3339(moment: datetime) -> str:

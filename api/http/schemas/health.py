@@ -6,9 +6,11 @@ from datetime import datetime
 from pydantic import Field
 
 from api.http.schemas.base import BlockerJson, Body, Json, Timestamp, timestamp, timestamp_or_none
+from api.http.schemas.problem import WithIgnored
 from api.http.schemas.sent_values import SentSignalValue
 from domain.errors import InvalidValueError
 from domain.findings import Fact
+from domain.health.signals import signal_name
 from domain.inputs import Reading, SignalValue
 from domain.snapshot import (
     EmergencyStopView,
@@ -23,6 +25,9 @@ from service.clock import Clock
 MAX_SOURCE = 64
 """Largest length of the name of a source, in characters."""
 
+MAX_REASON = 500
+"""Largest length of the reason of an emergency stop, in characters."""
+
 
 class PendingJson(Json):
     """An error that will be raised if the signal stays bad."""
@@ -33,7 +38,7 @@ class PendingJson(Json):
 
 
 class AgedPendingJson(PendingJson):
-    """An error that will be raised if the signal stays bad, and how long it has been bad."""
+    """An error that will be raised if the signal stays bad, and how long that has counted."""
 
     for_s: float
 
@@ -156,6 +161,10 @@ class SystemStateJson(Json):
         )
 
 
+class TakenReadingsJson(SystemStateJson, WithIgnored):
+    """The system state that follows from readings."""
+
+
 class EmergencyStopJson(Json):
     """The latch that only a person releases."""
 
@@ -175,6 +184,10 @@ class EmergencyStopJson(Json):
             since_at=timestamp_or_none(clock, view.since),
             standstill_at=timestamp_or_none(clock, view.standstill_at),
         )
+
+
+class EmergencyStopAnswerJson(EmergencyStopJson, WithIgnored):
+    """The latch after a request."""
 
 
 class MockSignalJson(Json):
@@ -217,7 +230,7 @@ class ReadingBody(Body):
             InvalidValueError: The stamp is not a time with an offset.
         """
         stamp = None if self.stamp is None else read_stamp(self.stamp, clock)
-        return Reading(signal, self.value, stamp)
+        return Reading(signal_name(signal), self.value, stamp)
 
 
 def read_stamp(text: str, clock: Clock) -> Instant:
@@ -239,7 +252,7 @@ class EmergencyStopBody(Body):
     """Engage or release the emergency stop."""
 
     engaged: bool
-    reason: str | None = Field(default=None, max_length=500)
+    reason: str | None = Field(default=None, max_length=MAX_REASON)
 
 
 class MockBody(Body):

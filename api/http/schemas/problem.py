@@ -1,8 +1,9 @@
 """Problem documents: the answer to every rejection and failure (RFC 9457)."""
 
 from pydantic import Field
+from pydantic.json_schema import SkipJsonSchema
 
-from api.http.schemas.base import BlockerJson, FindingJson, Json
+from api.http.schemas.base import BlockerJson, FindingJson, Json, left_out
 
 
 class BodyFault(Json):
@@ -11,6 +12,16 @@ class BodyFault(Json):
     pointer: str = Field(description="JSON pointer (RFC 6901); empty: the whole body, or the query")
     code: str
     message: str
+
+
+class WithIgnored(Json):
+    """What was taken although a part of it is invalid."""
+
+    ignored: list[BodyFault] | SkipJsonSchema[None] = Field(
+        default=None,
+        description="What was ignored, so that a stop or hold could be taken; left out: nothing",
+        json_schema_extra=left_out,
+    )
 
 
 class Problem(Json):

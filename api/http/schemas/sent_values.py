@@ -3,9 +3,10 @@
 import math
 from typing import Annotated, Any
 
-from pydantic import PlainValidator, WithJsonSchema
+from pydantic import AfterValidator, PlainValidator, WithJsonSchema
 from pydantic_core import PydanticCustomError
 
+from domain.health.signals import signal_name
 from domain.inputs import SignalValue
 from domain.parameters import ParameterValue
 
@@ -96,6 +97,9 @@ _PARAMETER_SCALARS: list[dict[str, Any]] = [
     {"type": "number"},
     {"type": "string", "maxLength": MAX_TEXT},
 ]
+
+SentSignalName = Annotated[str, AfterValidator(signal_name)]
+"""The name of a signal, also with the leading slash of its topic."""
 
 SentSignalValue = Annotated[
     bool | float | str,

@@ -5,7 +5,7 @@ from typing import Any, Literal
 from pydantic import ConfigDict, Field
 from pydantic.json_schema import SkipJsonSchema
 
-from api.http.schemas.base import Body, Json, Timestamp
+from api.http.schemas.base import Body, Json, Timestamp, left_out
 from api.http.schemas.health import (
     EmergencyStopJson,
     ReadingBody,
@@ -35,11 +35,6 @@ class HelloJson(Json):
     version: str = Field(description="Version of Pilothouse")
 
 
-def _left_out(schema: dict[str, Any]) -> None:
-    """Describe a member that can be omitted, which differs from null."""
-    del schema["default"]
-
-
 class StateFrame(Json):
     """The robot at one moment; always with `system_state`, the rest if it has changed.
 
@@ -55,12 +50,12 @@ class StateFrame(Json):
     parts: dict[str, PartJson] | SkipJsonSchema[None] = Field(
         default=None,
         description="Systems and nodes that have changed; all of them in a full frame",
-        json_schema_extra=_left_out,
+        json_schema_extra=left_out,
     )
     signals: dict[str, StreamedSignalJson] | SkipJsonSchema[None] = Field(
         default=None,
         description="Signals that have changed; all of them in a full frame",
-        json_schema_extra=_left_out,
+        json_schema_extra=left_out,
     )
     task: TaskJson | None = Field(
         default=None,
@@ -68,18 +63,18 @@ class StateFrame(Json):
             "The current task, or the one that ended last (then `ended_at` is set); null: there"
             " never was one; left out: as it was"
         ),
-        json_schema_extra=_left_out,
+        json_schema_extra=left_out,
     )
     vehicle: VehicleJson | SkipJsonSchema[None] = Field(
-        default=None, description="Left out: as it was", json_schema_extra=_left_out
+        default=None, description="Left out: as it was", json_schema_extra=left_out
     )
     holds: dict[str, HoldJson] | SkipJsonSchema[None] = Field(
         default=None,
         description="All holds, by owner, the oldest first; left out: as they were",
-        json_schema_extra=_left_out,
+        json_schema_extra=left_out,
     )
     emergency_stop: EmergencyStopJson | SkipJsonSchema[None] = Field(
-        default=None, description="Left out: as it was", json_schema_extra=_left_out
+        default=None, description="Left out: as it was", json_schema_extra=left_out
     )
 
 

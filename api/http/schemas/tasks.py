@@ -5,6 +5,7 @@ from typing import Annotated
 from pydantic import Field
 
 from api.http.schemas.base import BlockerJson, Body, Json, Timestamp, timestamp, timestamp_or_none
+from api.http.schemas.problem import WithIgnored
 from domain.snapshot import HoldView, TaskPhase, TaskView, VehicleView
 from domain.tracking.trackers import TRACKERS
 from domain.vehicle import DriveCommand, Point, Pose, VehicleLimits
@@ -223,6 +224,10 @@ class HoldJson(Json):
             by=view.by,
             since_at=timestamp(clock, view.since),
         )
+
+
+class HoldAnswerJson(HoldJson, WithIgnored):
+    """A hold after it was set."""
 
 
 class HoldsJson(Json):

@@ -4,7 +4,7 @@ import asyncio
 from enum import IntEnum
 
 from domain.health.signals import ESTOP_SIGNAL
-from domain.inputs import NodesBehind, Readings, VehicleReport
+from domain.inputs import DriveStatus, NodesBehind, Readings, VehicleReport
 from service.ports import BackendMessage, Deliver
 
 _AT_ONCE = 5
@@ -16,7 +16,7 @@ class _Urgency(IntEnum):
 
     ESTOP = 0
     SENSORS = 1
-    """All other readings, and reports of the vehicle."""
+    """All other readings, and reports of the vehicle and of what drives it."""
     NODES = 2
 
 
@@ -68,4 +68,5 @@ def _urgency(message: BackendMessage) -> _Urgency:
     if isinstance(message, Readings):
         is_estop = any(reading.signal == ESTOP_SIGNAL for reading in message.items)
         return _Urgency.ESTOP if is_estop else _Urgency.SENSORS
-    return _Urgency.SENSORS if isinstance(message, VehicleReport) else _Urgency.NODES
+    is_driving = isinstance(message, VehicleReport | DriveStatus)
+    return _Urgency.SENSORS if is_driving else _Urgency.NODES

@@ -36,9 +36,9 @@ _EAST, _NORTH = 0, 4
 class SignalTopics:
     """Reads each signal that has a topic in the robot file.
 
-    A publisher must repeat its value before the signal becomes stale. Invalid values, and messages
-    without a measurement (a receiver without a fix), are ignored: the signal becomes stale if no
-    valid one follows.
+    A publisher must repeat its value before the signal becomes stale. Invalid values are rejected,
+    and messages without a measurement (a receiver without a fix) are ignored: the signal becomes
+    stale if no valid one follows.
     """
 
     def __init__(self, robot: RobotSettings, graph: RosGraph, clock: Clock) -> None:
@@ -102,9 +102,6 @@ class _Source:
         except (AttributeError, IndexError, TypeError) as error:
             self._complain(f"no such field: {error}")
             return None
-        except InvalidValueError as error:
-            self._complain(error.message)
-            return None
         if value is None or not self._is_wanted(value):
             return None
         return _Sample(value, _stamp_ns(message))
@@ -112,17 +109,21 @@ class _Source:
     def _value(self, message: Message) -> SignalValue | None:
         """Return the value of the signal; None: it was not measured.
 
-        Raises:
-            InvalidValueError: The value is not valid for the signal.
+        An invalid value is returned too: the service rejects, logs and counts it, as those that
+        come in another way.
         """
-        value = _accuracy_mm(message) if self._path is None else _found(message, self._path)
-        if self.spec.kind is SignalKind.BOOLEAN and isinstance(value, bool):
-            return self.spec.checked(value is not self.topic.invert)
+        value: Any = _accuracy_mm(message) if self._path is None else _found(message, self._path)
+        if self.spec.kind is SignalKind.BOOLEAN and self.topic.invert:
+            # Of what is neither true nor false nobody knows the opposite.
+            value = not value if isinstance(value, bool) else f"{value!r:.40}, inverted"
         if self.spec.kind is SignalKind.NUMBER and _is_number(value):
             value = value * self.topic.scale + self.topic.offset
             if not math.isfinite(value):
                 return None
-        return self.spec.checked(value)
+        try:
+            return self.spec.checked(value)
+        except InvalidValueError:
+            return value if isinstance(value, bool | int | float | str) else f"{value!r:.40}"
 
     def _is_wanted(self, value: SignalValue) -> bool:
         """Tell whether a reading is passed on; a change of a non-numeric value always is."""
@@ -174,6 +175,5 @@ def _is_number(value: object) -> bool:
 def _stamp_ns(message: Message) -> int | None:
     """Return the time stamp of a message; None: it has none, or it is 0."""
     stamp = getattr(getattr(message, "header", None), "stamp", None)
-    if stamp is None:
-        return None
-    return (stamp.sec * NANOSECONDS_PER_SECOND + stamp.nanosec) or None
+    sec, nanosec = getattr(stamp, "sec", 0), getattr(stamp, "nanosec", 0)
+    return (sec * NANOSECONDS_PER_SECOND + nanosec) or None

@@ -7,7 +7,7 @@ from collections.abc import Callable
 from dataclasses import dataclass, replace
 
 from domain.commands import Drive
-from domain.inputs import VehicleReport
+from domain.inputs import DriveStatus, VehicleReport
 from domain.timebase import Duration, Instant, seconds
 from domain.vehicle import DriveCommand, Pose, VehicleLimits, VehicleState
 from service.clock import Clock
@@ -33,8 +33,7 @@ _AT_REST = DriveCommand(0.0, 0.0)
 class RosVehicle:
     """Reports the motion of the vehicle, and passes drive commands to the output of the graph.
 
-    While commands do not reach the vehicle, its motion is not reported either: a vehicle that
-    cannot be commanded must not be driven on, and the core holds the task as without a pose.
+    A vehicle that cannot be commanded must not be driven on, so that is reported, too.
     """
 
     def __init__(
@@ -46,9 +45,12 @@ class RosVehicle:
         self._odometry = _Odometry(clock, settings.odometry.topic if settings.odometry else "")
         self._output: DriveOutput | None = None
         self._told = _AT_REST
+        self._deliver: Callable[[VehicleReport | DriveStatus], None] | None = None
 
-    def start(self, deliver: Callable[[VehicleReport], None]) -> None:
+    def start(self, deliver: Callable[[VehicleReport | DriveStatus], None]) -> None:
         """Subscribe, and deliver the motion of the vehicle at 25 Hz at most until the graph closes.
+
+        Also whether commands reach it is delivered, now and whenever that changes.
 
         Raises:
             UnknownTypeError: The type of a topic is not installed.
@@ -56,15 +58,16 @@ class RosVehicle:
         odometry, command = self._settings.odometry, self._settings.command
         if odometry is None and command is None:
             return
+        self._deliver = deliver
         if command is not None:
             self._output = self._graph.drive_output(
                 command.topic, command.type, self._limits.wheelbase_m
             )
+            self._tell_drive_status()
         if odometry is not None:
 
             def take(motion: _Motion) -> None:
-                if self._output is None or self._output.works:
-                    deliver(VehicleReport(self._state(motion)))
+                deliver(VehicleReport(self._state(motion)))
 
             node = self._graph.node(NODE, Lane.SENSORS)
             node.subscribe(odometry.topic, ODOMETRY, Qos.SENSOR, self._odometry.pick, take)
@@ -74,13 +77,18 @@ class RosVehicle:
         if self._output is None:
             await asyncio.Event().wait()
         else:
-            await self._output.run()
+            await self._output.run(self._tell_drive_status)
 
     def send(self, drive: Drive) -> None:
         """Publish a drive command, clipped to the limits; a value that is not finite is a stop."""
         self._told = self._possible(drive.command)
         if self._output is not None:
             self._output.send(self._told)
+
+    def _tell_drive_status(self) -> None:
+        if self._output is not None and self._deliver is not None:
+            trouble = self._output.trouble
+            self._deliver(DriveStatus(available=not trouble, reason=trouble))
 
     def _possible(self, command: DriveCommand) -> DriveCommand:
         """Return a command clipped to the limits of the vehicle."""

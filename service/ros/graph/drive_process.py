@@ -55,6 +55,9 @@ class DriveProcess:
         self._clock = clock or MonotonicClock()
         self._channel: socket.socket | None = None
         self._told = DriveCommand(0.0, 0.0)
+        self._changed: Callable[[], None] = _nobody
+        self.trouble = "the drive process is starting"
+        """Why commands do not reach the topic; empty: they do."""
         self.pid: int | None = None
         """Number of the process while it works."""
 
@@ -68,20 +71,26 @@ class DriveProcess:
         with suppress(BlockingIOError, ConnectionError):
             self._channel.send(record)
 
-    @property
-    def works(self) -> bool:
-        """Tell whether the process publishes what it is sent."""
-        return self._channel is not None
+    async def run(self, changed: Callable[[], None]) -> None:
+        """Keep the process running until cancelled; then it stops the vehicle and ends.
 
-    async def run(self) -> None:
-        """Keep the process running until cancelled; then it stops the vehicle and ends."""
+        Args:
+            changed: Called whenever `trouble` changed.
+        """
+        self._changed = changed
         while True:
             try:
                 async with self._started() as channel:
                     await self._attend(channel)
             except OSError as error:
-                log.error("the process that commands the vehicle cannot be started: %s", error)
+                log.error("the drive process cannot be started: %s", error)
+                self._tell(f"the drive process cannot be started: {error}")
             await asyncio.sleep(_RESTART_S)
+
+    def _tell(self, trouble: str) -> None:
+        if trouble != self.trouble:
+            self.trouble = trouble
+            self._changed()
 
     @asynccontextmanager
     async def _started(self) -> AsyncIterator[socket.socket]:
@@ -101,15 +110,15 @@ class DriveProcess:
 
     async def _attend(self, channel: socket.socket) -> None:
         """Listen to the process until it ends or is silent, and stop the vehicle then."""
-        within_s, why = _START_S, "does not start"
-        while await _speaks(channel, within_s):
-            if self._channel is None:
-                self._channel = channel
-                within_s, why = SILENT_S, "ended or hangs"
-        log.error("the process that commands the vehicle %s; it is started again", why)
+        within_s = _START_S
+        while not (why := await _silence(channel, within_s)):
+            self._channel, within_s = channel, SILENT_S
+            self._tell("")
+        log.error("the drive process %s; it is started again", why)
         if self._told.speed_mps != 0.0:
             self._told = replace(self._told, speed_mps=0.0)
             self._publish(self._told)
+        self._tell(f"the drive process {why}, and is started again")
 
 
 async def _start(channel: socket.socket, arguments: tuple[str, ...]) -> Process:
@@ -140,16 +149,23 @@ async def _end(process: Process) -> None:
         await process.wait()
 
 
-async def _speaks(channel: socket.socket, within_s: float) -> bool:
-    """Wait for the next word of the process; False: it ended, or said nothing in time."""
+async def _silence(channel: socket.socket, within_s: float) -> str:
+    """Wait for the next word of the process; return why there is none, or nothing."""
     try:
         async with asyncio.timeout(within_s):
-            return bool(await asyncio.get_running_loop().sock_recv(channel, _WORD_BYTES))
+            heard = await asyncio.get_running_loop().sock_recv(channel, _WORD_BYTES)
     except TimeoutError:
         # After a stall of our own, what it said meanwhile is there.
         try:
-            return bool(channel.recv(_WORD_BYTES))
+            heard = channel.recv(_WORD_BYTES)
+        except BlockingIOError:
+            return f"has said nothing for {within_s:g} s"
         except OSError:
-            return False
+            heard = b""
     except ConnectionError:
-        return False
+        heard = b""
+    return "" if heard else "has ended"
+
+
+def _nobody() -> None:
+    """Nobody is told before the process runs."""

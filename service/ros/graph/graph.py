@@ -122,12 +122,16 @@ class DriveOutput(Protocol):
         ...
 
     @property
-    def works(self) -> bool:
-        """Tell whether commands reach the topic; else they are lost."""
+    def trouble(self) -> str:
+        """Return why commands do not reach the topic, and are lost; empty: they reach it."""
         ...
 
-    async def run(self) -> None:
-        """Work until cancelled; then command speed 0, unless the vehicle was told to stop."""
+    async def run(self, changed: Callable[[], None]) -> None:
+        """Work until cancelled; then command speed 0, unless the vehicle was told to stop.
+
+        Args:
+            changed: Called whenever `trouble` changed; must return at once.
+        """
         ...
 
 

@@ -36,6 +36,8 @@ class OfferedService:
     Raises:
         InvalidValueError: A field is unknown or has a wrong type.
     """
+    writes: bool = False
+    """Whether it changes something, so that its calls are in the audit trail."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -62,8 +64,8 @@ class SubscribedTopic:
     """Full name, as `/battery_level`."""
     type: str
     """As `gem_state_msgs/msg/BatteryLevelStamped`."""
-    take: Callable[[Fields, Actor], None]
-    """Takes a message and its sender.
+    take: Callable[[Fields, Actor], str | None]
+    """Takes a message and its sender; returns what it ignored of a message that asks for a stop.
 
     Raises:
         PilothouseError: The message is rejected; nothing was changed.

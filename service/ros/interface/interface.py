@@ -8,6 +8,7 @@ from itertools import chain
 
 from domain.timebase import seconds
 from service.event_log import EventReader, Gap
+from service.ros.interface.audit import audited
 from service.ros.interface.endpoints import (
     Fields,
     Listeners,
@@ -44,7 +45,10 @@ class RosInterface:
             robot_services(supervisor),
         )
         topics = chain(self._part_topics.offered(), self._robot_topics.offered())
-        self.services: Mapping[str, OfferedService] = {s.name: s for s in services}
+        self.services: Mapping[str, OfferedService] = {
+            service.name: audited(supervisor, service) if service.writes else service
+            for service in services
+        }
         """By full name."""
         self.topics: Mapping[str, OfferedTopic] = {topic.name: topic for topic in topics}
         """By full name."""

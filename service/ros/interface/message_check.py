@@ -22,7 +22,17 @@ Shape: TypeAlias = "Mapping[str, Kind | Shape]"
 """Fields of a message, in the order of its definition."""
 
 EMPTY: Shape = {}
-HEADER: Shape = {"stamp": {"sec": Kind.INT32, "nanosec": Kind.UINT32}, "frame_id": Kind.TEXT}
+HEADER: Shape = {
+    "stamp": {
+        "sec": Kind.INT32,
+        "nanosec": Kind.UINT32,
+        "secs": Kind.UINT32,
+        "nsecs": Kind.UINT32,
+    },
+    "frame_id": Kind.TEXT,
+    "seq": Kind.UINT32,
+}
+"""The headers of ROS 2 and of ROS 1, whose clients are in use with rosbridge."""
 CHANGE_STATE: Shape = {"transition": {"id": Kind.UINT8, "label": Kind.TEXT}}
 CHANGE_MODE: Shape = {"mode_name": Kind.TEXT}
 

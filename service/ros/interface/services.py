@@ -81,6 +81,7 @@ class LifecycleServices:
                 node=OWN_NODE if is_node else self._part,
                 of_a_node=is_node,
                 call=call,
+                writes=name == "change_state",
             )
             for name, (type_name, call) in calls.items()
         )
@@ -169,6 +170,7 @@ class ModeServices:
                 node=self._part if self._part in self._supervisor.model.systems else OWN_NODE,
                 of_a_node=False,
                 call=call,
+                writes=name == "change_mode",
             )
             for name, (type_name, call) in calls.items()
         )
@@ -207,6 +209,7 @@ def robot_services(supervisor: Supervisor) -> tuple[OfferedService, ...]:
         node=OWN_NODE,
         of_a_node=False,
         call=partial(_cancel_tasks, supervisor),
+        writes=True,
     )
     return (cancel,)
 

@@ -30,14 +30,14 @@ async def drive() -> None:
     """Drive until `end`."""
     link = RosLink()
     output = link.drive_output("/cmd_vel", "geometry_msgs/msg/Twist", 2.0)
-    running = asyncio.create_task(output.run())
+    running = asyncio.create_task(output.run(lambda: None))
     orders: asyncio.Queue[str] = asyncio.Queue()
     asyncio.get_running_loop().add_reader(
         sys.stdin, lambda: orders.put_nowait(sys.stdin.readline().strip())
     )
     told = None
     while True:
-        if output.works and output.pid != told:
+        if not output.trouble and output.pid != told:
             told = output.pid
             print(f"driving {told}", flush=True)
         output.send(DriveCommand(1.5, 0.0))

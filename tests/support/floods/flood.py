@@ -2,6 +2,7 @@
 
 from dataclasses import dataclass
 
+NUMBER = b"NUMBER"
 HOST = b"Host: 127.0.0.1\r\n"
 
 
@@ -11,13 +12,16 @@ class Flood:
 
     connections: int
     opening: bytes = b""
-    """What each sends first; the answer's head is awaited before the rest is sent."""
+    """What each sends first; the answer's head is awaited before the rest is sent. `NUMBER` in it
+    becomes 40 times the number of the connection, such as the id of an event."""
     again: bytes = b""
     """What is sent without end, as fast as it is taken; empty: nothing."""
     every_s: float = 0.0
     """Time between two times of `again`, s; 0: none."""
     reads: bool = True
     """Whether answers are read."""
+    lasts_s: float = 0.0
+    """After which time a connection is closed and opened again, s; 0: never."""
 
 
 def websocket_handshake(path: str) -> bytes:

@@ -20,9 +20,11 @@ _LIVE = b'{"from": "live", "until_s": 0}'
 REQUEST_FLOODS = MappingProxyType(
     {
         "a path of 60,000 bytes": Flood(14, again=_request("GET", "/nodes/" + "a/" * 30_000)),
-        "a path of 8,000 bytes": Flood(14, again=_request("GET", "/nodes/" + "a/" * 3_990)),
-        "a body of 20,000 members": Flood(
-            4, again=_request("PATCH", "/mock/temperature", _members(20_000))
+        "a path of 30,000 bytes": Flood(14, again=_request("GET", "/nodes/" + "a/" * 15_000)),
+        "a path of 4,000 bytes": Flood(14, again=_request("GET", "/nodes/" + "a/" * 1_990)),
+        "a query of 8,000 bytes": Flood(14, again=_request("GET", "/events?" + "a&" * 3_990)),
+        "a body of 24,000 members": Flood(
+            4, again=_request("PATCH", "/mock/temperature", _members(24_000))
         ),
         "a body of 1,000 members": Flood(
             4, again=_request("PATCH", "/mock/temperature", _members(1_000))
@@ -31,7 +33,12 @@ REQUEST_FLOODS = MappingProxyType(
         "/metrics": Flood(4, again=_request("GET", "/metrics")),
         "/events?limit=1000": Flood(4, again=_request("GET", "/events?limit=1000")),
         "copies of the live robot": Flood(20, again=_request("POST", "/simulations", _LIVE)),
-        "holds of 50 clients": Flood(50, again=_request("PUT", "/holds/flood")),
-        "200 clients that resume": Flood(200, websocket_handshake("/ws?after=0")),
+        "holds of 50 clients": Flood(
+            50, again=_request("PUT", "/holds/flood") + _request("DELETE", "/holds/flood")
+        ),
+        "200 clients that resume": Flood(200, websocket_handshake("/ws?after=0"), lasts_s=0.5),
+        "200 clients that resume, each elsewhere": Flood(
+            200, websocket_handshake("/ws?after=NUMBER"), lasts_s=0.5
+        ),
     }
 )

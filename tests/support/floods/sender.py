@@ -10,7 +10,7 @@ import resource
 import sys
 from contextlib import suppress
 
-from tests.support.floods.flood import Flood
+from tests.support.floods.flood import NUMBER, Flood
 
 _RETRY_S = 0.01
 
@@ -20,26 +20,29 @@ async def _flood(host: str, flood: Flood) -> None:
     tried = asyncio.Event()
     left = flood.connections
 
-    async def one() -> None:
+    async def one(number: int) -> None:
         nonlocal left
         while True:
-            with suppress(OSError, EOFError):
+            with suppress(OSError, EOFError, TimeoutError):
                 reader, writer = await asyncio.open_connection(address, int(port))
                 left -= 1
                 if not left:
                     tried.set()
-                await _send(flood, reader, writer)
+                async with asyncio.timeout(flood.lasts_s or None):
+                    await _send(flood, number, reader, writer)
             await asyncio.sleep(_RETRY_S)
 
     async with asyncio.TaskGroup() as tasks:
-        for _ in range(flood.connections):
-            tasks.create_task(one())
+        for number in range(flood.connections):
+            tasks.create_task(one(40 * number))
         with suppress(TimeoutError):
             await asyncio.wait_for(tried.wait(), 5.0)
         print("flooding", flush=True)
 
 
-async def _send(flood: Flood, reader: asyncio.StreamReader, writer: asyncio.StreamWriter) -> None:
+async def _send(
+    flood: Flood, number: int, reader: asyncio.StreamReader, writer: asyncio.StreamWriter
+) -> None:
     """Send until the connection is closed.
 
     Raises:
@@ -47,7 +50,7 @@ async def _send(flood: Flood, reader: asyncio.StreamReader, writer: asyncio.Stre
     """
     try:
         if flood.opening:
-            writer.write(flood.opening)
+            writer.write(flood.opening.replace(NUMBER, b"%d" % number))
             await reader.readuntil(b"\r\n\r\n")
         reading = asyncio.create_task(_read(reader if flood.reads else None))
         sending = asyncio.create_task(_repeat(flood, writer))

@@ -3,8 +3,9 @@
 import asyncio
 import subprocess
 import time
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+from dataclasses import dataclass
 
 from tests.support.bench import PROJECT
 from tests.support.floods.flood import HOST
@@ -35,30 +36,41 @@ def flooding(host: str, floods: str, name: str) -> Iterator[None]:
             sender.kill()
 
 
-async def stops(host: str, seconds: float, token: str = "") -> list[float]:
+@dataclass(frozen=True, slots=True)
+class Stop:
+    """One emergency stop."""
+
+    took_s: float
+    """From connecting to the head of its answer."""
+    cpu_s: float
+    """What the service worked meanwhile: it does not depend on what else the machine does."""
+
+
+async def stops(
+    host: str, seconds: float, cpu_s: Callable[[], float], token: str = ""
+) -> list[Stop]:
     """Stop the robot again and again, each time over a new connection from this address.
 
     Args:
         host: Address and port.
         seconds: For how long.
+        cpu_s: Returns the processor time of the service's event loop so far.
         token: Of the service.
-
-    Returns:
-        How long each took from connecting to the head of its answer, s.
     """
-    took: list[float] = []
+    done: list[Stop] = []
     until = time.perf_counter() + seconds
     while time.perf_counter() < until:
-        begin = time.perf_counter()
+        begin, worked = time.perf_counter(), cpu_s()
         try:
             async with asyncio.timeout(PATIENCE_S):
                 await _stop(host, token)
         except (TimeoutError, OSError, EOFError):
-            took.append(PATIENCE_S)
+            took = PATIENCE_S
         else:
-            took.append(time.perf_counter() - begin)
+            took = time.perf_counter() - begin
+        done.append(Stop(took, cpu_s() - worked))
         await asyncio.sleep(_EVERY_S)
-    return took
+    return done
 
 
 async def _stop(host: str, token: str) -> None:

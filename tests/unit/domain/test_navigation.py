@@ -128,14 +128,53 @@ def test_without_a_goal_nothing_is_due(drive: Drive20Hz) -> None:
     assert drive.act() == []
 
 
-def test_after_a_preemption_not_one_command_follows(drive: Drive20Hz) -> None:
+def test_after_a_preemption_it_only_steers_until_the_vehicle_stands(drive: Drive20Hz) -> None:
+    drive.report()
+    drive.send()
+    drive.step(1.0)
+    drive.said.clear()
+    drive.navigation.handle(PreemptGoal(GoalId(1)), drive.now)
+    drive.stay(2, 2.0)
+
+    assert set(drive.speeds) == {0.0}
+    drive.step(2.0, speed_mps=0.0)
+    drive.said.clear()
+    drive.stay(2, 2.0)
+    assert drive.said == []
+
+
+def test_what_a_preempted_goal_rolls_over_is_passed(drive: Drive20Hz) -> None:
+    drive.report(5.0, speed_mps=2.8)
+    drive.send(start_index=5)
+    drive.navigation.handle(PreemptGoal(GoalId(1)), drive.now)
+    for x_m in (5.5, 6.0, 6.5):
+        (_, feedback) = drive.step(x_m)
+
+    assert isinstance(feedback, GoalFeedback)
+    assert (feedback.target_index, feedback.left_out_m) == (7, 0.0)
+
+
+def test_a_goal_preempted_at_standstill_commands_nothing_more(drive: Drive20Hz) -> None:
     drive.report()
     drive.send()
     drive.said.clear()
     drive.navigation.handle(PreemptGoal(GoalId(1)), drive.now)
-    drive.stay(2, 1.0)
+    drive.stay(2, 0.0, speed_mps=0.0)
 
     assert drive.said == []
+
+
+def test_a_preempted_goal_without_a_pose_just_ends(drive: Drive20Hz) -> None:
+    drive.report()
+    drive.send()
+    drive.step(1.0)
+    drive.navigation.handle(PreemptGoal(GoalId(1)), drive.now)
+    drive.said.clear()
+    drive.now += seconds(0.4)
+    drive.act()
+
+    assert drive.said == []
+    assert drive.navigation.wake_at() is None
 
 
 def test_the_preemption_of_an_older_goal_leaves_the_newer_one(drive: Drive20Hz) -> None:
@@ -232,9 +271,9 @@ def test_standing_near_the_end_of_a_short_path_is_not_arriving_before_95_percent
 
 
 def test_more_than_three_metres_beside_the_path_for_a_second_is_given_up(drive: Drive20Hz) -> None:
-    drive.report(5.0, y_m=3.01)
+    drive.report(5.0)
     drive.send(start_index=5)
-    drive.stay(0.95, 5.0, y_m=3.01)
+    drive.stay(1.0, 5.0, y_m=3.01)
     assert drive.result is None
     drive.step(5.0, y_m=3.01)
 
@@ -242,7 +281,7 @@ def test_more_than_three_metres_beside_the_path_for_a_second_is_given_up(drive: 
 
 
 def test_one_moment_back_within_three_metres_begins_the_second_anew(drive: Drive20Hz) -> None:
-    drive.report(5.0, y_m=3.5)
+    drive.report(5.0)
     drive.send(start_index=5)
     drive.stay(0.9, 5.0, y_m=3.5)
     drive.step(5.0, y_m=3.0)
@@ -389,8 +428,10 @@ def test_a_vehicle_beside_the_path_leaves_out_what_it_passes(drive: Drive20Hz) -
     drive.report()
     drive.send()
     drive.step(0.5, y_m=3.1)
-    (_, feedback) = drive.step(1.0, y_m=3.1)
+    drive.step(1.0, y_m=3.1)
+    (_, feedback) = drive.step(1.5, y_m=3.1)
 
+    # It began on the path, and so was near the first half metre.
     assert isinstance(feedback, GoalFeedback)
     assert feedback.left_out_m == pytest.approx(1.0)
 

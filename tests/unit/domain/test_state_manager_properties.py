@@ -1,5 +1,6 @@
 """Whatever is read and whenever time passes, the state manager agrees with a slow, plain model."""
 
+import re
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from typing import TypeAlias
@@ -9,10 +10,20 @@ from hypothesis import strategies as st
 
 from domain.errors import OutdatedReadingError
 from domain.findings import Blocker
-from domain.health.signals import STALE_DATA, Recovery, SignalSettings, default_signals
+from domain.health.signals import (
+    STALE_DATA,
+    Comparison,
+    Condition,
+    Recovery,
+    SignalKind,
+    SignalSettings,
+    SignalSpec,
+    default_signals,
+)
 from domain.health.state_manager import HealthChanges, StateManager
 from domain.inputs import Reading, Readings, SignalValue
 from domain.snapshot import SignalView, SystemState, TaskStatus
+from domain.timebase import Instant, seconds, to_seconds
 from tests.support.health_reference import SECOND, HealthReference, Moment
 
 START = 1_000
@@ -23,8 +34,14 @@ VALUES: Mapping[str, Sequence[SignalValue]] = {
     "gps_accuracy": [100.0, 150.0, 170.0, 200.0, 201.0, 300.0],
     "signal_strength": ["CONNECTED", "LOW_SIGNAL", "NOT_CONNECTED"],
     "temperature": [20.0, 55.0, 56.0],
+    "load": [1000.0, 1400.0, 1500.0, 1600.0, 1800.0],
 }
 
+
+LOAD = SignalSettings(
+    SignalSpec("load", SignalKind.NUMBER, "kg"),
+    (Condition("OVERLOAD", Comparison.ABOVE, 1500.0),),
+)
 
 Seen: TypeAlias = tuple[tuple[str, ...], tuple[Blocker, ...], Mapping[str, SignalView]]
 
@@ -49,11 +66,13 @@ min_ons = st.sampled_from([0, 1, 4])
 
 @st.composite
 def signal_settings(draw: st.DrawFn) -> tuple[SignalSettings, ...]:
-    durations = {"GPS_LOST": 15, "SIGNAL_LOST": 10, "SIGNAL_LOW": 20}
+    durations = {"GPS_LOST": 15, "SIGNAL_LOST": 10, "SIGNAL_LOW": 20, "OVERLOAD": 7}
+    durations["BATTERY_LOW"] = draw(st.sampled_from([0, 5]))
     # Without and with hysteresis.
-    clear = draw(st.sampled_from([{}, {"BATTERY_LOW": 0.6, "GPS_LOST": 150.0}]))
+    hysteresis = {"BATTERY_LOW": 0.6, "GPS_LOST": 150.0, "OVERLOAD": 1300.0}
+    clear = draw(st.sampled_from([{}, hysteresis]))
     made = []
-    for item in default_signals():
+    for item in (*default_signals(), LOAD):
         conditions = tuple(
             replace(
                 condition,
@@ -93,7 +112,9 @@ def stories(draw: st.DrawFn) -> list[tuple[int, Act]]:
     story: list[tuple[int, Act]] = []
     for _ in range(draw(st.integers(1, 12))):
         now += draw(st.sampled_from([0, 0, 1, 2, 4, 5, 8, 9, 10, 16]))
-        error = st.sampled_from(["ESTOP", "BATTERY_LOW", "GPS_LOST", "SIGNAL_LOST", STALE_DATA])
+        error = st.sampled_from(
+            ["ESTOP", "BATTERY_LOW", "GPS_LOST", "SIGNAL_LOST", "OVERLOAD", STALE_DATA]
+        )
         act = draw(
             st.one_of(
                 readings(now),
@@ -114,7 +135,7 @@ class Told:
     raised: list[str] = field(default_factory=list)
     cleared: list[str] = field(default_factory=list)
     pending: list[tuple[str, str]] = field(default_factory=list)
-    settled: list[tuple[str, str]] = field(default_factory=list)
+    settled: list[tuple[str, str, bool]] = field(default_factory=list)
     skewed: list[str] = field(default_factory=list)
     signals: set[str] = field(default_factory=set)
 
@@ -163,9 +184,15 @@ def moment_of(health: StateManager) -> Moment:
     reasons = health.system_state(TaskStatus.NO_TASK).reasons
     return Moment(
         frozenset((reason.path[0], reason.code) for reason in reasons),
-        {name: view.pending_error for name, view in views.items()},
+        {name: _pending(view) for name, view in views.items()},
         frozenset(name for name, view in views.items() if view.stale),
     )
+
+
+def _pending(view: SignalView) -> tuple[str, Instant] | None:
+    if view.pending_error is None or view.pending_since is None:
+        return None
+    return view.pending_error, view.pending_since
 
 
 @given(signal_settings(), stories())
@@ -250,6 +277,50 @@ def test_the_robot_is_in_error_exactly_when_it_has_a_reason(
         assert (view.state is SystemState.ERROR) is (view.error_code != 0)
         assert {reason.code for reason in view.reasons} == set(view.errors)
         assert not {"SIGNAL_LOST", "SIGNAL_LOW"} <= set(view.errors)
+
+
+PIECES = st.lists(
+    st.tuples(st.floats(0.01, 5.0), st.sampled_from([100.0, 1500.0, 1501.0, 1800.0])), max_size=30
+)
+
+
+@given(PIECES, st.sampled_from([0.5, 1.0, 3.0]), st.sampled_from([0.0, 2.0]))
+def test_a_message_tells_only_what_was_measured(
+    pieces: list[tuple[float, float]], for_s: float, stale_after_s: float
+) -> None:
+    """Whenever OVERLOAD is on, all readings of the time that is told were bad, and none too old."""
+    condition = replace(LOAD.conditions[0], for_=seconds(for_s))
+    load = replace(LOAD, conditions=(condition,), stale_after=seconds(stale_after_s), min_on=0)
+    health, now = StateManager((*default_signals(), load), START), START
+    read: list[tuple[Instant, float]] = []
+    for after_s, value in pieces:
+        now += seconds(after_s)
+        health.receive(Readings((Reading("load", value),), "pad"), now)
+        read.append((now, value))
+        found = [reason for reason in health.reasons if reason.code == "OVERLOAD"]
+        since = _bad_since(read, seconds(stale_after_s))
+        if since is not None and now - since >= seconds(for_s):
+            assert found, "bad for long enough"
+        for reason in found:
+            told = re.fullmatch(
+                r"load \d+ kg has been above 1500 kg for ([\d.]+) s", reason.message
+            )
+            assert told is not None
+            assert reason.since is not None
+            earlier = [item for item in read if item[0] <= reason.since]
+            began = _bad_since(earlier, seconds(stale_after_s))
+            assert began is not None
+            assert for_s <= float(told[1]) <= to_seconds(reason.since - began)
+
+
+def _bad_since(read: Sequence[tuple[Instant, float]], stale_after: int) -> Instant | None:
+    """Return since when all readings are bad, without a gap in which they were stale."""
+    since, last = None, None
+    for at, value in read:
+        is_gap = bool(stale_after) and last is not None and at - last > stale_after
+        since = None if value <= 1500 else at if since is None or is_gap else since
+        last = at
+    return since
 
 
 def _steps(

@@ -2,17 +2,17 @@ import pytest
 
 from domain.paths.path import Path
 from domain.paths.preview import preview
-from domain.paths.speed_profile import SpeedLimits
 from domain.simulation.vehicle_settings import VehicleSettings
 from service.example_tracks import TRACKS, track_text
 from service.files.waypoint_file import read_waypoints_csv
+from tests.support.approach_limits import approach_limits
 
 
 @pytest.mark.parametrize("name", TRACKS)
 def test_each_track_is_one_that_the_vehicle_at_the_origin_can_drive(name: str) -> None:
     vehicle = VehicleSettings()
     path = Path(read_waypoints_csv(track_text(name)))
-    found = preview(path, 2.8, vehicle.pose, vehicle.limits, SpeedLimits())
+    found = preview(path, 2.8, vehicle.pose, approach_limits(vehicle.limits))
 
     assert found.warnings == ()
     assert found.start is not None

@@ -1,6 +1,8 @@
 from pathlib import Path
 
+import numpy as np
 import pytest
+from pydantic import ValidationError
 
 from domain.snapshot import TaskPhase
 from service.files.driving_block import StartTaskBlock
@@ -25,6 +27,22 @@ def test_a_start_task_is_taken_and_waits_until_the_robot_knows_itself(tmp_path: 
 
     assert task is not None
     assert task.status is TaskPhase.PAUSING
+
+
+def test_columns_and_headings_of_its_file_may_be_told(tmp_path: Path) -> None:
+    supervisor = make_supervisor()
+    block = StartTaskBlock(file="tracks/line.csv", columns="s,x,y,yaw", heading="compass")
+    submit_start_task(supervisor, block, robot_file(tmp_path, "0 0 0 90\n5 5 0 90\n9 9 0 90\n"))
+    task = supervisor.core.driving.current_task
+
+    assert task is not None
+    waypoints = supervisor.core.driving.path_of(task.id).waypoints
+    assert waypoints == pytest.approx(np.array([[0, 0, 0], [5, 0, 0], [9, 0, 0]]))
+
+
+def test_columns_without_x_are_refused() -> None:
+    with pytest.raises(ValidationError, match="no column is named x"):
+        StartTaskBlock(file="a.csv", columns="s,y")
 
 
 async def test_it_is_driven_once_nothing_holds_it(tmp_path: Path) -> None:

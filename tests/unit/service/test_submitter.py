@@ -11,6 +11,7 @@ from domain.outbox import Outputs
 from domain.state_and_mode import PartName
 from domain.timebase import Instant
 from service.catch_up import CatchUp
+from service.refused_readings import RefusedReadings
 from service.submitter import Submitter
 from service.supervisor import Supervisor
 from tests.support.live_robot import make_onboard, make_supervisor, running
@@ -27,7 +28,10 @@ class Given:
         self.carried_out: list[Outputs] = []
         self.tick_due: Instant | None = None
         catch_up = CatchUp(self.clock, lambda: self.tick_due)
-        self.submitter = Submitter(self.onboard, self.clock, self.carried_out.append, catch_up)
+        self.refused = RefusedReadings()
+        self.submitter = Submitter(
+            self.onboard, self.clock, self.carried_out.append, catch_up, self.refused
+        )
 
 
 @pytest.fixture
@@ -70,6 +74,14 @@ def test_a_report_that_is_refused_is_logged(caplog: pytest.LogCaptureFixture) ->
 
     assert "rejected NodeReport" in caplog.text
     assert given.onboard.core.part(BASE).reachable is False
+
+
+def test_a_refused_reading_of_a_topic_is_counted(caplog: pytest.LogCaptureFixture) -> None:
+    given = Given()
+    given.submitter.deliver(Readings((Reading("battery_level", 7.0),), "ros:/battery"))
+
+    assert given.refused.counts == {"ros": 1}
+    assert "rejected a reading of ros:/battery" in caplog.text
 
 
 async def test_what_time_makes_due_happens_at_its_time() -> None:

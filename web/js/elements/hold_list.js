@@ -52,7 +52,11 @@ class HoldList extends HTMLElement {
 }
 
 /** What ends the holds of Pilothouse itself. */
-const UNTIL = { error: ", until the errors end", vehicle: ", until there is a pose" };
+const UNTIL = {
+  error: ", until the errors end",
+  vehicle: ", until there is a pose",
+  drive_process: ", until the vehicle can be commanded",
+};
 
 function keyOf({ owner, by, since_at }) {
   return JSON.stringify([owner, by, since_at]);

@@ -6,18 +6,22 @@
 
 import { ProblemError, request, requestText } from "/web/js/api.js";
 import { el, renderOnce, setAttribute, setText } from "/web/js/dom.js";
-import { problemLines } from "/web/js/problem.js";
+import { hintWords, problemLines } from "/web/js/problem.js";
 import { whileSending } from "/web/js/sending.js";
 import { controllerName, previewLines, waypointName } from "/web/js/task_words.js";
+import { linesOf, textOf } from "/web/js/text_file.js";
 
 const UPLOAD_MS = 30_000;
 // More than the largest valid track; a video dropped by mistake is not even read.
 const MOST_BYTES = 32 * 2 ** 20;
 const LINE_SHOWN = 60;
 const HEADINGS = {
+  "": "what fits the path",
   rad: "radians",
   deg: "degrees",
   compass: "compass degrees (clockwise from north)",
+  rad_north: "radians from north",
+  rad_compass: "compass radians (clockwise from north)",
 };
 
 class TaskForm extends HTMLElement {
@@ -82,8 +86,8 @@ class TaskForm extends HTMLElement {
     const track = this.#track();
     setAttribute(this.example, "hidden", !track || task !== null || this.#file !== null);
     setText(this.example.firstChild, `Drive the example ${track?.name ?? ""}`);
-    const hint = this.#problem?.hint ?? "";
-    const asksHeading = hint.includes("?heading=") || this.heading.value !== "rad";
+    const hint = this.#hints().join(" ");
+    const asksHeading = hint.includes("?heading=") || this.heading.value !== "";
     setAttribute(this.headingField, "hidden", !asksHeading);
     const asksColumns = hint.includes("?columns=") || this.columns.value !== "";
     setAttribute(this.columnsField, "hidden", !asksColumns);
@@ -94,6 +98,12 @@ class TaskForm extends HTMLElement {
     renderOnce(this.refused, this.#problem, () => this.#refusal());
     setAttribute(this.found, "hidden", this.#preview === null);
     renderOnce(this.found, this.#preview, () => this.#findings());
+  }
+
+  /** What is to be said of the file, in words of the interface. */
+  #hints() {
+    const warnings = this.#preview?.warnings ?? [];
+    return [this.#problem, ...warnings].map((told) => told?.hint ?? "");
   }
 
   #zone() {
@@ -109,7 +119,7 @@ class TaskForm extends HTMLElement {
       { class: "drop" },
       this.choose,
       el("span", { class: "as-button" }, "Choose a CSV"),
-      el("span", { class: "quiet" }, "or drop one here or on the map: x, y in m and yaw in rad"),
+      el("span", { class: "quiet" }, "or drop one here or on the map: x and y in m, perhaps headings"),
     );
   }
 
@@ -145,14 +155,14 @@ class TaskForm extends HTMLElement {
 
   async #take(file) {
     this.#discard();
-    this.heading.value = "rad";
+    this.heading.value = "";
     this.columns.value = "";
     const taken = { name: file.name, text: null };
     this.#file = taken;
     this.dispatchEvent(new CustomEvent("ph-file", { bubbles: true }));
     if (file.size > MOST_BYTES) return this.#refuse(`${file.name} is too large for a track.`);
     try {
-      taken.text = await file.text();
+      taken.text = textOf(await file.arrayBuffer());
     } catch {
       // A folder, or a file that was deleted meanwhile.
       return this.#refuse(`${file.name} cannot be read.`);
@@ -235,7 +245,7 @@ class TaskForm extends HTMLElement {
     const query = new URLSearchParams({
       controller: this.controller.value,
       speed_mps: this.speed.value,
-      heading: this.heading.value,
+      ...(this.heading.value ? { heading: this.heading.value } : {}),
       ...(this.columns.value ? { columns: this.columns.value } : {}),
       ...more,
     });
@@ -259,7 +269,7 @@ class TaskForm extends HTMLElement {
   #refusal() {
     if (this.#problem === null) return [];
     const { detail, findings = [] } = this.#problem;
-    const lines = (this.#file?.text ?? "").split("\n");
+    const lines = linesOf(this.#file?.text ?? "");
     const items = findings.map(({ line, message }) => {
       const text = (lines[line - 1] ?? "").trim().slice(0, LINE_SHOWN);
       const said = detail?.includes(message) ? "" : `: ${message}`;
@@ -272,9 +282,10 @@ class TaskForm extends HTMLElement {
   #findings() {
     if (this.#preview === null) return [];
     const lines = previewLines(this.#preview, this.speed.value);
-    const warnings = this.#preview.warnings.map(({ message, index }) => {
+    const warnings = this.#preview.warnings.map(({ message, index, hint }) => {
       const place = typeof index === "number" ? ` (${waypointName(index)})` : "";
-      return el("li", { class: "warning" }, `⚠ ${message}${place}`);
+      const todo = hint ? `: ${hintWords({ hint })}` : "";
+      return el("li", { class: "warning" }, `⚠ ${message}${place}${todo}`);
     });
     return [
       el("h3", {}, `Preview of ${this.#file.name}`),

@@ -58,11 +58,24 @@ def test_a_name_with_slashes_keeps_them_and_nothing_else_gets_into_the_path(
     assert service.client().path_of("left/arm?x #") == "/systems/left/arm%3Fx%20%23"
 
 
-def test_a_part_that_does_not_exist_is_told_as_the_service_tells_it(service: Service) -> None:
-    service.answers["GET /nodes/drive_base"] = problem(404, "UNKNOWN_PART")
+def test_a_part_that_does_not_exist_is_said_of_both_kinds(service: Service) -> None:
+    hint = "known: drive_base, manipulator; did you mean drive_base?"
+    service.answers["GET /systems/drivebase"] = problem(
+        404, "UNKNOWN_PART", hint="known: actuation"
+    )
+    service.answers["GET /nodes/drivebase"] = problem(404, "UNKNOWN_PART", hint=hint)
 
-    with pytest.raises(ServiceProblemError, match="it is so"):
-        service.client().path_of("drive_base")
+    with pytest.raises(ServiceProblemError, match="no system or node 'drivebase'") as unknown:
+        service.client().path_of("drivebase")
+
+    assert unknown.value.problem["hint"] == (
+        "systems: actuation; nodes: drive_base, manipulator; did you mean drive_base?"
+    )
+
+
+@pytest.mark.parametrize("name", ["/drive_base", "drive_base"])
+def test_a_leading_slash_of_a_name_is_left_out(service: Service, name: str) -> None:
+    assert service.client().path_of(name) == "/nodes/drive_base"
 
 
 def test_another_problem_than_an_unknown_name_is_not_mistaken_for_one(service: Service) -> None:

@@ -142,5 +142,25 @@ def test_members_are_counted_at_every_depth() -> None:
         require_few_members(many)
 
 
+@pytest.mark.parametrize("items", [[{}] * 1_001, [[]] * 1_001, [[[]] * 500] * 3])
+def test_objects_and_arrays_in_arrays_are_members(items: list[object]) -> None:
+    with pytest.raises(InvalidBodyError, match="more than 1000 members"):
+        require_few_members({"gains": items})
+
+
 def test_long_lists_of_numbers_are_no_members() -> None:
     require_few_members({"gains": [1.0] * 100_000})
+
+
+@pytest.mark.parametrize(
+    ("text", "name"),
+    [
+        ('{"a":1,"a":1}', "a"),
+        ('{"a":1,"b":2,"a":3,"b":4}', "a"),
+        ('{"x":[{"b":1,"c":2,"c":null}]}', "c"),
+        ('{"a":1,"\\u0061":2}', "a"),
+    ],
+)
+def test_a_member_that_occurs_twice_is_refused(text: str, name: str) -> None:
+    with pytest.raises(MalformedBodyError, match=f"the body has the member '{name}' twice"):
+        parse_json(text.encode())

@@ -45,7 +45,7 @@ async def test_a_body_of_just_the_limit_is_read(robot: HttpRobot) -> None:
     assert (await robot.http.put(PATH, content=body)).status_code == 200
 
 
-@pytest.mark.parametrize("body", [b"{", b"[" * 100_000, b"\xff", b'{"engaged": true}x'])
+@pytest.mark.parametrize("body", [b"{", b"[" * 100_000, b"\xff", b'{"engaged": false}x'])
 async def test_what_is_no_json_is_malformed(body: bytes, robot: HttpRobot) -> None:
     answer = await robot.http.put(PATH, content=body)
 

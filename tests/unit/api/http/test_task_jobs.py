@@ -2,6 +2,7 @@
 
 import json
 import pickle
+from dataclasses import replace
 
 import pytest
 
@@ -13,13 +14,13 @@ from api.http.task_jobs import (
     read_posted_task,
     thinned,
 )
-from domain.paths.speed_profile import SpeedLimits
-from domain.vehicle import Pose, VehicleLimits
-from service.files.waypoint_file import Heading, InvalidWaypointsError
+from domain.vehicle import Pose
+from service.files.csv_table import InvalidWaypointsError
+from tests.support.approach_limits import approach_limits
 from tests.support.paths import straight
 
 LINE = b"0,0,0\n5,0,0\n10,0,0\n"
-OPTIONS = TaskOptions("stanley", 2.8, 1, Heading.RAD)
+OPTIONS = TaskOptions("stanley", 2.8, 1)
 
 
 def test_a_csv_takes_what_the_query_says() -> None:
@@ -52,17 +53,55 @@ def test_a_file_that_is_none_is_refused_with_its_lines() -> None:
 
 
 def test_a_preview_of_an_impossible_speed_is_refused() -> None:
-    fast = TaskOptions("stanley", 99.0, 0, Heading.RAD)
+    fast = TaskOptions("stanley", 99.0, 0)
     with pytest.raises(InvalidBodyError, match=r"11\.2 m/s"):
-        preview_posted(LINE, fast, None, VehicleLimits(), SpeedLimits())
+        preview_posted(LINE, fast, None, approach_limits())
+
+
+def test_a_preview_tells_how_the_file_was_read() -> None:
+    text = b"# s_m; x_m; y_m; yaw_deg\n0;0;0;90\n1;0;1;90\n2;0;2;90\n"
+    shown = json.loads(preview_posted(text, OPTIONS, None, approach_limits()))["csv"]
+
+    assert (shown["separator"], shown["decimal"], shown["header_line"]) == ("semicolon", "point", 1)
+    assert (shown["heading"], shown["headings_from"]) == ("deg", "column")
+    assert shown["columns"][0] == {
+        "name": "s_m",
+        "meaning": "distance",
+        "used": False,
+        "unit": "m",
+    }
+    assert shown["columns"][3]["unit"] == "deg"
+    assert "degrees counter-clockwise" in shown["message"]
+
+
+def test_a_preview_shows_what_a_task_would_be_refused_for() -> None:
+    text = b"0,0,2\n0,1,2\n0,2,2\n1,3,2\n2,3,2\n3,3,2\n4,2,2\n4,1,2\n"
+    shown = json.loads(preview_posted(text, OPTIONS, None, approach_limits()))
+
+    assert shown["waypoint_count"] == 8
+    assert shown["warnings"][0]["code"] == "HEADINGS_MISFIT"
+    assert "?columns=x,y" in shown["warnings"][0]["hint"]
+    with pytest.raises(InvalidWaypointsError, match="third column"):
+        read_posted_task(text, OPTIONS)
+
+
+def test_a_preview_of_json_has_no_columns() -> None:
+    body = json.dumps({"waypoints": [{"x_m": x, "y_m": 0, "yaw_rad": 0} for x in (0, 3)]})
+    shown = json.loads(preview_posted(body.encode(), None, None, approach_limits()))
+
+    assert shown["csv"] is None
 
 
 def test_a_preview_knows_how_far_the_vehicle_is() -> None:
-    pose = Pose(0.0, 3.0, 0.0)
-    shown = json.loads(preview_posted(LINE, OPTIONS, pose, VehicleLimits(), SpeedLimits()))
+    pose, options = Pose(0.0, 2.5, 0.0), replace(OPTIONS, start_index=0)
+    shown = json.loads(preview_posted(LINE, options, pose, approach_limits()))
 
-    assert shown["start"]["distance_m"] == 3.0
-    assert shown["duration_s"] == pytest.approx(10 / 2.8 + 2.8, rel=0.1)
+    assert shown["start"]["distance_m"] == 2.5
+    assert shown["approach"]["distance_m"] == pytest.approx(2.5)
+    assert shown["approach"]["turn_rad"] == 0.0
+    # It drives onto the path at 1 m/s, and then the rest of it.
+    assert shown["approach"]["speed_mps"] == pytest.approx(1.0)
+    assert shown["approach"]["length_m"] <= shown["duration_s"] < 10 / 2.8 + 2.8 + 10
 
 
 def test_thinned_points_keep_the_first_and_the_last() -> None:

@@ -60,6 +60,50 @@ def test_whatever_is_said_is_done_or_answered(said: list[dict[str, Any]]) -> Non
     assert {answer["op"] for answer in answers} <= {"status", "service_response", "publish"}
 
 
+_STOP_AROUND = st.dictionaries(_FIELDS | st.sampled_from(["seq", "data"]), _MESSAGES, max_size=3)
+
+
+@given(
+    _STOP_AROUND,
+    st.dictionaries(st.sampled_from(["id", "type", "latch", "throttle_rate"]), _JSON, max_size=3),
+    st.sampled_from(["enabled", "data"]),
+    st.sampled_from([True, 1, "true"]),
+    st.booleans(),
+)
+def test_whatever_stands_around_it_a_stop_is_taken(
+    inner: dict[str, Any], outer: dict[str, Any], field: str, asking: object, again: bool
+) -> None:
+    message = {**inner, field: asking}
+    text = json.dumps({"op": "publish", "topic": "/estop", **outer, "msg": message})
+    if again:
+        text = f'{text[:-1]},"msg":{{"enabled":false}}}}'
+
+    assert asyncio.run(_is_stopped_by([text]))
+
+
+@given(_STOP_AROUND, _JSON)
+def test_only_exactly_false_releases_a_stop(inner: dict[str, Any], value: object) -> None:
+    pressed = json.dumps({"op": "publish", "topic": "/estop", "msg": {"enabled": True}})
+    said = json.dumps({"op": "publish", "topic": "/estop", "msg": {**inner, "enabled": value}})
+
+    assert asyncio.run(_is_stopped_by([pressed, said])) or value is False
+
+
+async def _is_stopped_by(texts: list[str]) -> bool:
+    supervisor = make_supervisor()
+    bridge = Bridge(
+        RosInterface(supervisor),
+        supervisor.frames,
+        supervisor.clock,
+        1_000,
+        supervisor.refused_readings,
+    )
+    session = Session(bridge, SendQueue(lambda: None), Actor("test"), asyncio.ensure_future)
+    for text in texts:
+        session.hear({"text": text})
+    return supervisor.core.signal("estop").value is True
+
+
 async def _say(texts: list[str]) -> tuple[list[dict[str, Any]], list[Exception]]:
     """Return what was sent back, and what calls raised."""
     supervisor = make_supervisor()
@@ -70,7 +114,13 @@ async def _say(texts: list[str]) -> tuple[list[dict[str, Any]], list[Exception]]
         calls.append(asyncio.ensure_future(call))
         return calls[-1]
 
-    bridge = Bridge(RosInterface(supervisor), supervisor.frames, supervisor.clock, 1_000)
+    bridge = Bridge(
+        RosInterface(supervisor),
+        supervisor.frames,
+        supervisor.clock,
+        1_000,
+        supervisor.refused_readings,
+    )
     session = Session(bridge, queue, Actor("rosbridge:test"), spawn)
     for text in texts:
         session.hear({"text": text})

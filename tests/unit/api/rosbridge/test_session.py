@@ -28,8 +28,9 @@ class Talk:
         self.interface = SmallInterface()
         self.calls: list[asyncio.Task[None]] = []
         self._queue = SendQueue(lambda: None)
+        self.bridge = make_bridge(self.interface, calls_per_s=calls_per_s)
         self.session = Session(
-            make_bridge(self.interface, calls_per_s=calls_per_s),
+            self.bridge,
             self._queue,
             Actor(way="rosbridge", address="test"),
             self._spawn,
@@ -390,6 +391,86 @@ async def test_a_token_that_nobody_asked_for_is_passed_over(talk: Talk) -> None:
     assert talk.heard() == []
 
 
+# --- a stop is taken whatever stands around it ---------------------------------------------------
+
+STOPS = [
+    '{"op":"publish","topic":"/estop","msg":{"enabled":true,"enabled":false}}',
+    '{"op":"publish","topic":"/estop","msg":{"enabled":true},"msg":{"enabled":false}}',
+    '{"op":"publish","topic":"/temperature","topic":"estop","msg":{"data":1}}',
+    '{"op":"publish","topic":"/estop","msg":{"enabled":true},"id":{"of":[]}}',
+    '{"op":"publish","op":"subscribe","topic":"/estop","msg":{"enabled":"true"}}',
+    '{"op":"publish","topic":"/estop","msg":{"enabled":true,"frame_id":"\\ud800"}}',
+    '{"op":"publish","topic":"/estop","msg":{"enabled":true,"x":' + "1" * 5_000 + "}}",
+    '{"op":"publish","topic":"/estop","msg":{"enabled":true}',
+    '{"topic":"/estop","msg":{"enabled":true}}',
+    '{"op":"publish","topic":"/estop","enabled":true}',
+    '[{"op":"publish","topic":"//estop","msg":{"data":true}}]',
+]
+
+
+@pytest.mark.parametrize("text", STOPS)
+def test_a_stop_is_taken_and_what_was_ignored_is_told(talk: Talk, text: str) -> None:
+    talk.session.hear({"text": text})
+
+    assert [fields for fields, _ in talk.interface.readings] == [{"enabled": True}]
+    told = talk.only()
+    assert (told["level"], told["msg"][:29]) == ("warning", "the stop was taken; ignored: ")
+
+
+def test_a_stop_in_a_binary_message_is_taken(talk: Talk) -> None:
+    talk.session.hear({"bytes": b'{"op":"publish","topic":"/estop","msg":{"enabled":true}}'})
+
+    assert [fields for fields, _ in talk.interface.readings] == [{"enabled": True}]
+
+
+@pytest.mark.parametrize("type_name", [None, "std_msgs/Bool", "gem_state_msgs/EstopStamped"])
+def test_a_stop_is_taken_whatever_type_was_advertised(talk: Talk, type_name: str | None) -> None:
+    talk.say("advertise", topic="/estop", type=type_name)
+    talk.say("publish", topic="estop", msg={"enabled": True})
+
+    assert [fields for fields, _ in talk.interface.readings] == [{"enabled": True}]
+
+
+def test_a_release_that_a_stop_has_overtaken_is_void(talk: Talk) -> None:
+    release = {"op": "publish", "topic": "/estop", "msg": {"enabled": False}}
+    talk.session.hear({"text": json.dumps(release)}, overtaken=True)
+    talk.session.hear({"text": json.dumps({**release, "msg": {"enabled": True}})}, overtaken=True)
+
+    assert [fields for fields, _ in talk.interface.readings] == [{"enabled": True}]
+
+
+@pytest.mark.parametrize(
+    ("text", "response"),
+    [
+        ('{"op":"call_service","service":7,"id":"a"}', ("", "a")),
+        ('{"op":"call_service","service":"/x","args":"?","id":[1]}', ("/x", None)),
+        ('{"op":"call_service","service":"/x","id":"a","id":"b"}', ("/x", "a")),
+        ('{"op":"call_service","service":"/x","id":12345678901234567}', None),
+        ('{"op":"call_service","id":7}', ("", 7)),
+        ('{"op":"call_service","service":"\\ud800","id":"a"}', ("?", "a")),
+        ('{"op":"call_service"}', ("", None)),
+        ('{"op":"call_service","service":["/x"],"id":{}}', ("", None)),
+        ('{"op":"call_service","service":"/x","id":"a","args":{"mode_name":', ("/x", "a")),
+        ('{\'op\':\'x\', "op": "call_service", "id": 7,}', ("", 7)),
+    ],
+)
+async def test_a_call_that_cannot_be_read_is_answered_as_a_call(
+    talk: Talk, text: str, response: tuple[str, object] | None
+) -> None:
+    talk.session.hear({"text": text})
+    told = talk.only()
+
+    assert (told["op"], told["result"]) == ("service_response", False)
+    if response is not None:
+        assert (told["service"], told.get("id")) == response
+
+
+def test_a_message_that_cannot_be_read_is_counted_as_a_refused_reading(talk: Talk) -> None:
+    talk.session.hear({"text": '{"op":"publish","topic":"/battery_level","msg":7}'})
+
+    assert talk.bridge.refused.counts == {"rosbridge": 1}
+
+
 # --- a page of another origin, without a token ---------------------------------------------------
 
 
@@ -403,6 +484,10 @@ async def test_who_may_only_read_subscribes_and_changes_nothing() -> None:
         ("call_service", {"service": MODE_REQUEST.name, "args": {}}),
     ):
         talk.say(op, **members)
-        assert "may only read" in talk.only()["msg"]
+        told = talk.only()
+        assert "may only read" in told["msg" if op == "publish" else "values"]
+    talk.session.hear({"text": '{"op":"publish","topic":"/estop","msg":{"enabled":true},"x"'})
+    assert "not JSON" in talk.only()["msg"]
     assert not talk.calls
+    assert not talk.interface.readings
     talk.session.end()

@@ -178,7 +178,7 @@ async def test_the_live_robot_is_not_copied_for_a_queue_that_is_full(
     def refuse() -> None:
         raise WorkerBusyError
 
-    monkeypatch.setattr(route, "copy_of", lambda *parts: copies.append(parts))
+    monkeypatch.setattr(route, "forked_call", copies.append)
     monkeypatch.setattr(robot.app.state.simulator, "require_room", refuse)
 
     answer = await robot.http.post("/simulations", json={"from": "live", "until_s": 1})

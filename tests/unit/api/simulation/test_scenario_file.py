@@ -134,6 +134,17 @@ def test_headings_may_be_degrees(folder: Folder) -> None:
     assert step.task.waypoints[0].yaw_rad == pytest.approx(1.5708, abs=1e-4)
 
 
+def test_columns_may_be_named(folder: Folder) -> None:
+    folder.write("track.csv", "0;0;0\n1;0;1\n2;0;2\n")
+    task = "{file: track.csv, columns: 's,x,y'}"
+    scenario = folder.load(f"until_s: 1\nsteps: [{{t_s: 0, task: {task}}}]")
+
+    (step,) = scenario.body.steps
+    assert isinstance(step, TaskStep)
+    assert step.task is not None
+    assert [(point.x_m, point.y_m) for point in step.task.waypoints] == [(0, 0), (0, 1), (0, 2)]
+
+
 def test_scalars_mean_what_they_mean_in_a_model(folder: Folder) -> None:
     scenario = folder.load(
         "until_s: 1\nsteps: [{t_s: 0, expect: {a: on, b: 'on', c: '1', d: null, e: 'null', f: }}]"
@@ -208,6 +219,8 @@ def test_what_is_wrong_is_told_with_its_place(text: str, told: str, folder: Fold
             "s.yaml:3:21: INVALID_VALUE waypoints are given as well",
         ),
         ("{t_s: 0, task: {file: a.csv, heading: up}}", "s.yaml:3:34: INVALID_VALUE heading: one"),
+        ("{t_s: 0, task: {file: a.csv, columns: 3}}", "s.yaml:3:34: INVALID_VALUE columns: names"),
+        ("{t_s: 0, task: {file: a.csv, columns: s}}", "s.yaml:3:34: INVALID_VALUE columns: no col"),
         ("{t_s: 0, task: {heading: deg}}", "s.yaml:3:21: INVALID_VALUE steps.0.task.heading"),
     ],
 )
@@ -228,13 +241,15 @@ def test_all_faults_are_told_at_once(folder: Folder) -> None:
 
 def test_waypoints_that_are_none_are_told_with_line_and_hint(folder: Folder) -> None:
     folder.write("bad.csv", "0,0,0\n1,0,x\n")
-    folder.write("deg.csv", "0,0,90\n0,1,90\n0,2,90\n0,3,90\n")
+    folder.write("noise.csv", "0,0,2\n0,1,2\n0,2,2\n1,3,2\n2,3,2\n3,3,2\n4,2,2\n4,1,2\n")
     text = "until_s: 1\nsteps: [{{t_s: 0, task: {{file: {}}}}}]"
 
     assert (
         "bad.csv: the waypoints are invalid: line 2: " in folder.refused(text.format("bad.csv"))[0]
     )
-    assert "heading: deg" in folder.refused(text.format("deg.csv"))[0]
+    told = folder.refused(text.format("noise.csv"))[0]
+    assert "columns: x,y" in told
+    assert "heading: rad, deg or compass" in told
 
 
 def test_faults_of_a_robot_file_are_placed_in_that_file(folder: Folder) -> None:

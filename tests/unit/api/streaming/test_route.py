@@ -1,10 +1,12 @@
 """`WS /ws` as a client sees it, over the real supervisor in virtual time."""
 
+import asyncio
 import json
 from collections.abc import AsyncIterator
 
 import pytest
 from fastapi import FastAPI
+from hypothesis import given
 
 from api.app import create_app
 from api.http.access import Access
@@ -17,6 +19,7 @@ from domain.actor import Actor
 from domain.inputs import EmergencyStopRequest, ModeRequest
 from domain.state_and_mode import PartName
 from service.supervisor import Supervisor
+from tests.support.around_a_stop import ANY, ASKING, MEMBERS, WRAPPED, object_of
 from tests.support.live_robot import make_supervisor, running
 from tests.support.manual_clock import ManualClock, settle
 from tests.support.waiting import until
@@ -321,8 +324,90 @@ async def test_a_reading_over_the_stream_counts_like_any_other(
     assert supervisor.core.signal("battery_level").value == 0.2
 
 
+STOPS = [
+    '{"type":"reading","signal":"estop","value":true,"stamp":"garbage"}',
+    '{"type":"reading","signal":"estop","value":true,"more":{"of":[null]}}',
+    '{"type":"reading","signal":"estop","value":true,"value":false}',
+    '{"type":"reading","signal":"estop","signal":"temperature","value":1}',
+    '{"signal":"estop","value":"true"}',
+    '{"type":7,"signal":"/estop","value":true}',
+    '{"type":"reading","signal":"estop","value":true,"source":"\\ud800"}',
+    '{"type":"reading","signal":"estop","value":true',
+]
+
+
+@pytest.mark.parametrize("text", STOPS)
+async def test_a_stop_is_taken_whatever_stands_around_it_and_the_rest_is_told(
+    app: FastAPI, supervisor: Supervisor, text: str
+) -> None:
+    async with WebSocketClient(app, topics="events") as client:
+        await client.frame("hello")
+        client.send_text(text)
+        problem = await client.frame("problem")
+
+    assert problem["code"] == "STOP_TAKEN"
+    assert problem["detail"].startswith("the stop was taken; ignored: ")
+    assert supervisor.core.signal("estop").value is True
+
+
+@given(MEMBERS, ASKING, MEMBERS, WRAPPED)
+def test_whatever_json_stands_around_it_a_stop_is_taken(
+    before: list[tuple[str, object]],
+    asking: object,
+    after: list[tuple[str, object]],
+    wrapped: str,
+) -> None:
+    asks = [("type", "reading"), ("signal", "estop"), ("value", asking)]
+    text = wrapped % object_of([*before, *asks, *after])
+
+    assert asyncio.run(_value_after([text])) is True
+
+
+@given(MEMBERS, ANY, WRAPPED)
+def test_only_exactly_false_releases_a_stop(
+    around: list[tuple[str, object]], value: object, wrapped: str
+) -> None:
+    said = [*around, ("type", "reading"), ("signal", "estop"), ("value", value)]
+    pressed = '{"type":"reading","signal":"estop","value":true}'
+
+    assert asyncio.run(_value_after([pressed, wrapped % object_of(said)])) or value is False
+
+
+async def _value_after(texts: list[str]) -> object:
+    """Return the value of the e-stop after messages of one client."""
+    supervisor = make_supervisor()
+    app = create_app(supervisor, allowed_hosts=[])
+    async with running(supervisor), WebSocketClient(app, topics="events") as client:
+        await client.frame("hello")
+        for text in texts:
+            client.send_text(text)
+        await settle()
+    return supervisor.core.signal("estop").value
+
+
+async def test_a_stop_in_a_binary_message_is_taken(app: FastAPI, supervisor: Supervisor) -> None:
+    async with WebSocketClient(app, topics="events") as client:
+        await client.frame("hello")
+        client.send_bytes(b'{"type":"reading","signal":"estop","value":true,"source":"panel"}')
+        await client.frame("problem")
+
+    assert supervisor.core.signal("estop").source == "panel"
+
+
+async def test_a_rejected_reading_is_counted(app: FastAPI, supervisor: Supervisor) -> None:
+    async with WebSocketClient(app, topics="events") as client:
+        await client.frame("hello")
+        client.send({"type": "reading", "signal": "battery_level", "value": 7})
+        await client.frame("problem")
+
+    assert supervisor.refused_readings.counts == {"websocket": 1}
+
+
 BAD = [
     ("{", 400),
+    ('{"type":"reading","signal":"estop","value":false,"value":false}', 400),
+    ('{"type":"reading","signal":"estop","value":false,"more":1}', 422),
+    ('{"type":"reading","signal":"estop","value":"maybe"}', 422),
     ("", 400),
     ("[" * 30_000, 400),
     ('{"type":"reading","signal":"battery_level","value":"\\ud800"}', 400),
@@ -477,7 +562,9 @@ async def test_a_page_of_another_origin_reads_and_sends_no_reading_without_a_tok
     async with WebSocketClient(app, headers=headers) as client:
         await settle()
         client.send({"type": "reading", "signal": "estop", "value": True})
+        client.send({"type": "reading", "signal": "estop", "value": True, "more": 1})
         await settle()
         problems = [frame for frame in client.frames() if frame["type"] == "problem"]
 
-    assert [problem["code"] for problem in problems] == ["READS_ONLY"]
+    assert [problem["code"] for problem in problems] == ["READS_ONLY", "INVALID_BODY"]
+    assert supervisor.core.signal("estop").value is not True

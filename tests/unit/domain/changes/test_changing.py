@@ -11,6 +11,8 @@ from domain.inputs import BackendStatus, Input, ModeRequest, NodeReport
 from domain.lifecycle import LifecycleState
 from domain.outbox import Outbox, Outputs
 from domain.parts.parts import Parts
+from domain.snapshot import ModeView
+from domain.state_and_mode import PartName
 from tests.support.models import ARM, BASE, FAST, actuation_model
 
 
@@ -32,6 +34,9 @@ class Robot:
         while self.parts.settle(now) or self.changing.settle(now):
             pass
         return self.outbox.take()
+
+    def modes(self, part: PartName) -> list[ModeView]:
+        return [self.changing.mode(part, mode) for mode in self.parts.model.modes_of(part)]
 
 
 def test_a_report_is_judged_after_the_parts_took_it_in() -> None:
@@ -67,3 +72,30 @@ def test_while_the_backend_is_unavailable_nothing_is_asked_of_nodes() -> None:
     with pytest.raises(BackendUnavailableError):
         robot.hand_in(ModeRequest(ARM, "STRONG"))
     assert robot.hand_in(BackendStatus(available=False)).events == ()
+
+
+def test_without_a_backend_no_mode_can_be_entered_and_that_is_said_first() -> None:
+    robot = Robot()
+    robot.hand_in(NodeReport(BASE, state=LifecycleState.FINALIZED))
+    robot.hand_in(BackendStatus(available=False, reason="no network"), 7)
+
+    for view in robot.modes(BASE):
+        down = view.blockers[0]
+        assert not view.can_enter
+        assert (down.code, down.message) == (
+            "BACKEND_UNAVAILABLE",
+            "the nodes cannot be reached: no network",
+        )
+        assert (down.path, down.since, down.refuses) == ((BASE,), 7, True)
+        assert [blocker.code for blocker in view.blockers[1:]] == ["FINALIZED"]
+    assert robot.changing.available_transitions(ARM) == ()
+
+
+def test_with_its_backend_back_a_mode_can_be_entered_again() -> None:
+    robot = Robot()
+    robot.hand_in(NodeReport(BASE, state=LifecycleState.INACTIVE))
+    robot.hand_in(BackendStatus(available=False, reason="no network"))
+    robot.hand_in(BackendStatus(available=True))
+
+    assert all(view.can_enter and not view.blockers for view in robot.modes(BASE))
+    assert robot.changing.available_transitions(BASE)

@@ -39,7 +39,9 @@ def test_each_turn_starts_a_bounded_number_of_nodes(robot: CoreRobot) -> None:
     turns = [asked(request(robot, FAST))]
     while robot.core.wake_at() == robot.now:
         turns.append(asked(robot.give(TimePassed())))
-    assert turns == [STARTS_AT_ONCE] * 10
+    first, telling, *others = turns
+    assert telling == 0, "deviations are told before further nodes are started"
+    assert [first, *others] == [STARTS_AT_ONCE] * 10
 
 
 def test_all_targets_are_in_force_before_the_first_node_moves(robot: CoreRobot) -> None:
@@ -59,7 +61,10 @@ def test_an_input_in_between_is_not_delayed_by_the_rest(robot: CoreRobot) -> Non
 
 def test_later_portions_are_consequences_of_the_request(robot: CoreRobot) -> None:
     request(robot, FAST)
-    events = robot.give(TimePassed()).events
+    while (
+        not (events := robot.give(TimePassed()).events) or events[0].kind != "change.step_started"
+    ):
+        assert {event.kind for event in events} == {"part.deviation_began"}
     cause = robot.core.change("c1").cause
     started = [e for e in events if isinstance(e.event, StepStarted)]
     assert len(started) == STARTS_AT_ONCE
@@ -90,6 +95,30 @@ def test_a_large_change_succeeds(robot: CoreRobot) -> None:
     assert robot.change(change).status is ChangeStatus.SUCCEEDED
     assert len(robot.change(change).steps) == 3 * NODES
     assert {part.actual.mode for part in robot.core.parts().values()} == {FAST}
+
+
+def test_a_large_change_that_is_over_is_shown_as_it_ended(robot: CoreRobot) -> None:
+    change = robot.ask_mode(robot.model.parts[0], FAST)
+    robot.advance(0)
+    running = robot.change(change)
+    statuses = [step.status for step in running.steps]
+    robot.advance(5)
+    assert [step.status for step in running.steps] == statuses, "a view does not change"
+    ended = robot.change(change)
+    assert {step.status for step in ended.steps} == {StepStatus.SUCCEEDED}
+    assert {step.node for step in ended.steps} == set(robot.model.nodes)
+    assert robot.change(change).steps is ended.steps, "nothing is made anew for each reader"
+
+
+def test_steps_in_flight_of_a_canceled_change_are_shown_with_how_they_end(robot: CoreRobot) -> None:
+    change = robot.ask_mode(robot.model.parts[0], FAST)
+    robot.advance(0.01)
+    robot.give(CancelRequest(change))
+    begun = [step for step in robot.change(change).steps if step.status is StepStatus.RUNNING]
+    robot.advance(5)
+    statuses = [step.status for step in robot.change(change).steps]
+    assert statuses.count(StepStatus.SUCCEEDED) == len(begun) > 0
+    assert set(statuses) == {StepStatus.SUCCEEDED, StepStatus.CANCELED}
 
 
 def test_no_more_nodes_are_under_way_at_once_than_can_be_heard_in_time() -> None:

@@ -4,7 +4,7 @@ import pytest
 
 from domain.actor import Actor
 from domain.changes.plan import Action, NodeGoal, SetParameters
-from domain.changes.record import Change, Pursuit, Step
+from domain.changes.record import Change, Pursuit, Step, StepTable
 from domain.changes.settings import ChangeSettings
 from domain.identifiers import ChangeId
 from domain.inputs import ModeRequest
@@ -37,10 +37,12 @@ def test_the_deadlines_of_the_brief_are_the_defaults() -> None:
 )
 def test_a_step_is_shown_with_its_action_its_times_and_its_end(action: Action, name: str) -> None:
     step = Step(C1, BASE, action)
-    assert step.view() == StepView(BASE, name, StepStatus.PENDING, None, None, None)  # type: ignore[arg-type]
+    (before,) = StepTable([step])
+    assert before == StepView(BASE, name, StepStatus.PENDING, None, None, None)  # type: ignore[arg-type]
     step.status, step.started_at = StepStatus.RUNNING, 5
     step.end(StepStatus.FAILED, 7, "refused")
-    assert step.view() == StepView(BASE, name, StepStatus.FAILED, 5, 7, "refused")  # type: ignore[arg-type]
+    (after,) = StepTable([step])
+    assert after == StepView(BASE, name, StepStatus.FAILED, 5, 7, "refused")  # type: ignore[arg-type]
     assert step.action_name == name
 
 
@@ -101,6 +103,26 @@ def test_a_change_is_shown_with_the_steps_of_all_nodes_in_their_order() -> None:
         (ARM, CONFIGURE),
         (ARM, ACTIVATE),
     ]
+
+
+def test_a_table_of_steps_is_read_as_any_sequence() -> None:
+    steps = [Step(C1, node, action) for node in (BASE, ARM) for action in (CONFIGURE, ACTIVATE)]
+    table = StepTable(steps)
+    assert (len(table), table[-1].node, table[1].action) == (4, ARM, ACTIVATE)
+    assert [step.node for step in table[1:3]] == [BASE, ARM]
+    assert table == tuple(table)
+    assert table != tuple(table)[:3]
+    with pytest.raises(IndexError):
+        table[4]
+
+
+def test_a_packed_change_is_shown_as_before() -> None:
+    change = _change()
+    change.pursuits[BASE] = _pursuit(CONFIGURE, ACTIVATE)
+    before = change.view()
+    change.pack()
+    assert change.view() == before
+    assert not change.pursuits
 
 
 def test_a_change_that_ended_is_shown_with_its_status_its_reason_and_its_time() -> None:

@@ -65,7 +65,7 @@ def test_an_unknown_part_is_told(request_: ChangeRequest) -> None:
 
 
 def test_a_system_has_no_parameters() -> None:
-    with pytest.raises(UnknownPartError, match="no node 'actuation'"):
+    with pytest.raises(UnknownPartError, match="'actuation' is a system, not a node"):
         _check(ParametersRequest(ACTUATION, {"max_speed": 0.4}))
 
 

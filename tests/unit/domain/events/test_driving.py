@@ -4,6 +4,8 @@ import pytest
 
 from domain.events.driving import (
     TASK_ENDS,
+    DriveAvailable,
+    DriveUnavailable,
     GoalEnded,
     HoldReleased,
     HoldSet,
@@ -36,6 +38,11 @@ T1 = TaskId("t1")
             VehicleStandstillUnknown(4.5),
             "the vehicle should stand, but there was no pose to show it, "
             "4.5 s after the stop began",
+        ),
+        (DriveAvailable(), "drive commands reach the vehicle"),
+        (
+            DriveUnavailable("the drive process has ended"),
+            "drive commands do not reach the vehicle: the drive process has ended",
         ),
         (VehicleStopped(55.0), "the vehicle stands, 55.0 s after the stop began"),
         (GoalEnded(GoalId(3), False, "off the path"), "goal 3 aborted: off the path"),

@@ -34,7 +34,11 @@ IDLE, ERROR = SystemState.IDLE, SystemState.ERROR
             SignalPending("gps_accuracy", "GPS_LOST"),
             "gps_accuracy is bad; GPS_LOST follows if it lasts",
         ),
-        (SignalSettled("gps_accuracy", "GPS_LOST"), "gps_accuracy recovered; no GPS_LOST"),
+        (SignalSettled("gps_accuracy", "GPS_LOST", False), "gps_accuracy recovered; no GPS_LOST"),
+        (
+            SignalSettled("load", "OVERLOAD", True),
+            "load is stale; the time of OVERLOAD begins anew",
+        ),
         (ErrorRaised("ESTOP", "it is pressed", True, None), "ESTOP: it is pressed"),
         (ErrorCleared("ESTOP"), "ESTOP cleared"),
         (ErrorAcknowledged("ESTOP"), "ESTOP acknowledged"),

@@ -137,7 +137,11 @@ def test_an_error_that_needs_time_is_told_when_it_begins_to_count(health: Robot)
 def test_what_stopped_counting_is_told(health: Robot) -> None:
     health.read(gps_accuracy=300.0)
     events = health.read(gps_accuracy=100.0)
-    assert _only(events, "signal.settled").data == {"signal": "gps_accuracy", "error": "GPS_LOST"}
+    assert _only(events, "signal.settled").data == {
+        "signal": "gps_accuracy",
+        "error": "GPS_LOST",
+        "stale": False,
+    }
 
 
 def test_an_error_that_time_raised_is_caused_by_the_reading_that_first_was_bad(
@@ -226,3 +230,25 @@ def test_a_task_that_pauses_is_told_though_the_robot_goes_on_running(health: Rob
 
     assert health.read(**GOOD) == []
     assert health.last.system_state
+
+
+def test_a_reading_that_releases_a_stop_is_in_the_audit_trail(health: Robot) -> None:
+    health.read(**{**GOOD, "estop": True})
+    assert "audit.write" not in [event.kind for event in health.events.values()]
+
+    events = health.read(estop=False)
+
+    (written,) = [event for event in events if event.kind == "audit.write"]
+    assert written.data == {
+        "method": "READING",
+        "path": "/signals/estop",
+        "status": 200,
+        "address": "test",
+    }
+    assert health.root(written) == "signal.read"
+
+
+def test_a_reading_that_releases_nothing_is_not(health: Robot) -> None:
+    health.read(**GOOD)
+
+    assert [event.kind for event in health.read(estop=False)] == []

@@ -1,8 +1,10 @@
 from typing import NamedTuple
 
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 
-from domain.health.held_readings import MAX_PRESSING_SOURCES, MAX_QUIET_SOURCES, HeldReadings
+from domain.health.held_readings import FURTHER_SOURCES, MAX_SOURCES, HeldReadings
 from domain.health.signals import SignalSettings, default_signals
 from domain.inputs import Reading, SignalValue
 from domain.timebase import seconds
@@ -198,7 +200,7 @@ def test_a_sender_that_invents_source_names_cannot_release_a_stop_or_fill_the_me
     held = estop()
     held.take(pressed(True, NOW), "pad", NOW)
     held.take(pressed(False, NOW), "old", NOW)
-    for number in range(MAX_QUIET_SOURCES):
+    for number in range(MAX_SOURCES):
         held.take(pressed(False, NOW), f"invented {number}", NOW)
 
     assert held.value is True
@@ -207,16 +209,61 @@ def test_a_sender_that_invents_source_names_cannot_release_a_stop_or_fill_the_me
     assert held.behind(pressed(False, NOW - 1), "invented 0") == 1
 
 
-def test_a_sender_that_presses_by_ever_new_names_is_heard_and_cannot_fill_the_memory() -> None:
+def test_further_sources_share_one_that_each_of_them_releases() -> None:
     held = estop()
-    for number in range(MAX_PRESSING_SOURCES + MAX_QUIET_SOURCES):
-        held.take(pressed(True, NOW), f"invented {number}", NOW)
-    held.take(pressed(True, NOW), "one more", NOW)
-    held.take(pressed(True, NOW), "another", NOW)
+    for number in range(MAX_SOURCES):
+        held.take(pressed(True), f"known {number}", NOW)
+    for number in range(1_066):
+        held.take(pressed(True, NOW + number), f"invented {number}", NOW)
+    assert len(held.pressing) == MAX_SOURCES + 1
 
-    for number in range(MAX_PRESSING_SOURCES + MAX_QUIET_SOURCES):
-        held.take(pressed(False, NOW), f"invented {number}", NOW)
-    for name in ("one more", "another", "further sources"):
-        held.take(pressed(False, NOW), name, NOW)
+    held.take(pressed(False, NOW), "invented 7", NOW)
+    for number in range(MAX_SOURCES):
+        held.take(pressed(False), f"known {number}", NOW)
 
-    assert [reading.source for reading in held.pressing] == ["further sources"]
+    assert held.value is False
+
+
+def test_the_shared_source_is_released_by_its_own_name() -> None:
+    held = estop()
+    for number in range(MAX_SOURCES + 1):
+        held.take(pressed(True), f"invented {number}", NOW)
+    for number in range(MAX_SOURCES):
+        held.take(pressed(False), f"invented {number}", NOW)
+    assert [reading.source for reading in held.pressing] == [FURTHER_SOURCES]
+
+    held.take(pressed(False), FURTHER_SOURCES, NOW)
+
+    assert held.value is False
+
+
+def test_a_known_sender_that_repeats_false_does_not_release_the_shared_source() -> None:
+    held = estop()
+    held.take(pressed(False), "mock", NOW)
+    for number in range(MAX_SOURCES + 1):
+        held.take(pressed(True), f"invented {number}", NOW)
+    for number in range(MAX_SOURCES):
+        held.take(pressed(False), "mock", NOW)
+        held.take(pressed(False), f"invented {number}", NOW)
+
+    assert held.value is True
+
+
+_SOURCES = st.integers(0, 3 * MAX_SOURCES).map("source {}".format) | st.just(FURTHER_SOURCES)
+
+
+@given(st.lists(st.tuples(_SOURCES, st.booleans()), max_size=400))
+def test_whatever_was_pressed_is_released_by_those_who_pressed_it(
+    sent: list[tuple[str, bool]],
+) -> None:
+    held = estop()
+    for source, value in sent:
+        held.take(pressed(value), source, NOW)
+        assert held.value is True or not value
+        assert len(held.pressing) <= 2 * MAX_SOURCES + 1
+
+    for source in {source for source, value in sent if value}:
+        assert held.behind(pressed(False, 0), source) is None
+        held.take(pressed(False), source, NOW)
+
+    assert held.pressing == ()

@@ -74,6 +74,88 @@ def test_one_good_reading_starts_the_time_again() -> None:
     assert gps.wakes_at_s == 29
 
 
+LOAD = SignalSettings(
+    SignalSpec("load", SignalKind.NUMBER, "kg"),
+    (Condition("OVERLOAD", Comparison.ABOVE, 1500.0, for_=seconds(3)),),
+)
+
+
+def test_for_a_further_signal_silence_before_the_first_bad_reading_does_not_count() -> None:
+    load = Story(LOAD)
+    load.read(0, 100.0)
+    load.read(6, 1800.0)
+    assert load.monitor.view.error is None
+    assert load.monitor.view.pending_since == START + seconds(6)
+    assert load.wakes_at_s == 9
+
+    load.monitor.judge(START + seconds(9) - 1)
+    assert load.monitor.view.error is None
+    assert load.error(9) == "OVERLOAD"
+    assert told(load.monitor) == [("OVERLOAD", "load 1800 kg has been above 1500 kg for 3 s")]
+
+
+def test_its_first_reading_of_all_may_be_the_first_bad_one() -> None:
+    load = Story(LOAD)
+    load.read(60, 1800.0)
+
+    assert load.wakes_at_s == 63
+
+
+def test_its_time_goes_on_with_further_bad_readings_and_begins_anew_after_a_good_one() -> None:
+    load = Story(LOAD)
+    for at_s, value in ((1, 1800.0), (2, 1900.0), (3.5, 1500.0), (3.6, 1600.0)):
+        load.read(at_s, value)
+
+    assert load.wakes_at_s == pytest.approx(6.6)
+
+
+def test_a_signal_that_was_not_heard_meanwhile_is_not_known_to_have_been_bad() -> None:
+    load = SignalMonitor(replace(LOAD, stale_after=seconds(2)), START)
+    load.receive(Reading("load", 1800.0), "pad", START)
+    stale_at = START + seconds(2) + 1
+    assert load.wake_at() == stale_at
+
+    load.judge(stale_at)
+    assert (load.view.stale, load.view.pending_error) == (True, None)
+    assert load.wake_at() is None
+    load.receive(Reading("load", 1800.0), "pad", START + seconds(5))
+    assert load.view.pending_since == START + seconds(5)
+    load.receive(Reading("load", 1800.0), "pad", START + seconds(6.5))
+    load.judge(START + seconds(8))
+
+    assert load.view.error == "OVERLOAD"
+
+
+def test_an_error_outlasts_that_its_signal_is_not_heard() -> None:
+    load = SignalMonitor(replace(LOAD, stale_after=seconds(4)), START)
+    load.receive(Reading("load", 1800.0), "pad", START)
+    load.judge(START + seconds(3))
+    load.judge(START + seconds(9))
+    load.receive(Reading("load", 1700.0), "pad", START + seconds(10))
+
+    assert load.view.error == "OVERLOAD"
+    assert load.view.pending_error is None
+    assert dict(told(load))["OVERLOAD"] == "load 1700 kg has been above 1500 kg for 3 s"
+
+
+def test_the_time_that_is_told_is_what_was_measured() -> None:
+    gps, radio = Story(DEFAULTS["gps_accuracy"]), Story(DEFAULTS["signal_strength"])
+    gps.read(0, 100.0)
+    gps.read(100.17, 300.0)
+    radio.read(0, "CONNECTED")
+    radio.read(1, "NOT_CONNECTED")
+    radio.error(10)
+    assert [message for _, message in (*told(gps.monitor), *told(radio.monitor))] == [
+        "GPS accuracy 300 mm is above 200 mm, no good reading for 100.1 s",
+        "signal strength is NOT_CONNECTED, no CONNECTED reading for 10 s",
+    ]
+    radio.read(12.34, "LOW_SIGNAL")
+
+    assert told(radio.monitor) == [
+        ("SIGNAL_LOW", "signal strength is LOW_SIGNAL, no CONNECTED reading for 12.3 s")
+    ]
+
+
 def test_what_is_counted_is_shown_with_how_long_it_takes() -> None:
     gps = Story(DEFAULTS["gps_accuracy"])
     gps.read(3, 100.0)
@@ -160,9 +242,9 @@ def test_a_graver_error_of_the_same_signal_has_its_own_time() -> None:
     motor.read(1, 95.0)
     assert motor.monitor.view.error == "MOTOR_HOT"
     assert motor.monitor.view.pending_error == "MOTOR_BURNING"
-    assert motor.wakes_at_s == 5
+    assert motor.wakes_at_s == 6
 
-    assert motor.error(5) == "MOTOR_BURNING"
+    assert motor.error(6) == "MOTOR_BURNING"
     assert motor.wakes_at_s is None
 
 
@@ -185,7 +267,7 @@ def test_readings_go_on_being_judged_while_the_stop_is_engaged() -> None:
     stop.monitor.set_engaged(engaged=False, now=START + seconds(9.1))
     stop.read(9.5, True)
 
-    assert stop.wakes_at_s == 10
+    assert stop.wakes_at_s == 10.5
 
 
 def test_engaging_twice_keeps_when_it_was_engaged_first() -> None:
@@ -287,7 +369,7 @@ def test_an_error_that_was_waited_for_is_told_with_how_long_it_took() -> None:
     gps.read(1, 201.0)
     gps.error(15)
 
-    message = "GPS accuracy 201 mm has been above 200 mm for 15 s"
+    message = "GPS accuracy 201 mm is above 200 mm, no good reading for 15 s"
     assert told(gps.monitor) == [("GPS_LOST", message)]
 
 

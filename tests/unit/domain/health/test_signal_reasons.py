@@ -52,20 +52,20 @@ class Judged(NamedTuple):
             signal="gps_accuracy",
             value=250.0,
             bad_for_s=15,
-            words="GPS accuracy 250 mm has been above 200 mm for 15 s",
+            words="GPS accuracy 250 mm is above 200 mm, no good reading for 15 s",
         ),
         "a lost connection": Judged(
             signal="signal_strength",
             value="NOT_CONNECTED",
             bad_for_s=10,
-            words="signal strength is NOT_CONNECTED, not CONNECTED for 10 s",
+            words="signal strength is NOT_CONNECTED, no CONNECTED reading for 10 s",
         ),
         "a weak connection, by its second condition": Judged(
             signal="signal_strength",
             condition=1,
             value="LOW_SIGNAL",
             bad_for_s=10,
-            words="signal strength is LOW_SIGNAL, not CONNECTED for 10 s",
+            words="signal strength is LOW_SIGNAL, no CONNECTED reading for 10 s",
         ),
     }
 )
@@ -91,6 +91,36 @@ def test_a_declared_boolean_is_told_by_its_name(for_s: float, words: str) -> Non
     settings = SignalSettings(SignalSpec("bumper", SignalKind.BOOLEAN), (condition,))
 
     assert value_reason(settings, condition, True, condition.for_) == words
+
+
+@pytest.mark.parametrize(
+    ("for_s", "counted_s", "time"),
+    [
+        (3, 3, "3 s"),
+        (0.25, 0.25, "0.25 s"),
+        (0.25, 0.29, "0.25 s"),
+        (3, 1234.567, "1234.5 s"),
+        (3, 2.99, "2.9 s"),
+        (3, 3.099_999_999, "3 s"),
+    ],
+)
+def test_a_time_is_never_told_longer_than_it_was(for_s: float, counted_s: float, time: str) -> None:
+    condition = Condition("OVERLOAD", Comparison.ABOVE, 1500.0, for_=seconds(for_s))
+    settings = SignalSettings(SignalSpec("load", SignalKind.NUMBER, "kg"), (condition,))
+    told = value_reason(settings, condition, 1800.0, seconds(counted_s))
+
+    assert told == f"load 1800 kg has been above 1500 kg for {time}"
+
+
+def test_no_time_is_told_of_an_error_that_did_not_have_to_wait() -> None:
+    condition = Condition("SLOW", Comparison.EQUAL, "LOW", for_=seconds(20))
+    spec = SignalSpec("radio", SignalKind.ENUMERATION, members=("GOOD", "LOW"))
+    settings = SignalSettings(spec, (condition,))
+
+    assert value_reason(settings, condition, "LOW", seconds(0.05)) == "radio is LOW"
+    assert (
+        value_reason(settings, condition, "LOW", seconds(20)) == "radio is LOW, not GOOD for 20 s"
+    )
 
 
 def test_an_enumeration_that_is_an_error_at_once_is_told_without_a_time() -> None:

@@ -1,6 +1,9 @@
 import math
 
+import numpy as np
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 
 from domain.errors import InvalidValueError
 from domain.health.signals import (
@@ -75,15 +78,15 @@ REFUSED: list[tuple[str, object, str]] = [
     ("temperature", -math.inf, "temperature must be a finite number, not -inf"),
     ("temperature", 10**400, "temperature must be a finite number, not inf"),
     ("battery_level", 1.5, "battery_level must be at most 1, not 1.5"),
-    ("battery_level", math.nextafter(1, 2), "battery_level must be at most 1, not"),
-    ("battery_level", -5e-324, "battery_level must be at least 0, not -5e-324"),
+    ("battery_level", 1.000001, "battery_level must be at most 1, not 1.000001"),
+    ("battery_level", -1e-6, "battery_level must be at least 0, not -1e-06"),
     ("gps_accuracy", -1, "gps_accuracy must be at least 0, not -1.0"),
     ("battery_level", True, "battery_level must be a number, not True"),
     ("battery_level", "0.5", "battery_level must be a number, not '0.5'"),
     ("battery_level", None, "battery_level must be a number, not None"),
-    ("estop", 1, "estop must be true or false, not 1"),
+    ("estop", 2, "estop must be true or false, not 2"),
     ("estop", 0.0, "estop must be true or false, not 0.0"),
-    ("estop", "true", "estop must be true or false, not 'true'"),
+    ("estop", "false", "estop must be true or false, not 'false'"),
     ("signal_strength", 7, "must be one of CONNECTED, LOW_SIGNAL, NOT_CONNECTED, not 7"),
     ("signal_strength", "connected", "must be one of CONNECTED, LOW_SIGNAL, NOT_CONNECTED, not"),
     ("signal_strength", ["CONNECTED"], "must be one of CONNECTED, LOW_SIGNAL, NOT_CONNECTED"),
@@ -338,3 +341,55 @@ def test_a_boolean_without_conditions_is_never_worse() -> None:
     settings = SignalSettings(RELAY)
 
     assert not settings.is_worse(True, False)
+
+
+@pytest.mark.parametrize("value", [True, 1, 1.0, "true", "True", " TRUE ", "1", "yes", "ON"])
+def test_all_that_asks_for_a_stop_stops(value: object) -> None:
+    assert _spec("estop").checked(value) is True
+
+
+@pytest.mark.parametrize(
+    "value", [None, 0, 0.0, "", "false", "0", "off", "maybe", [], {}, [True], math.nan]
+)
+def test_only_false_releases_a_stop(value: object) -> None:
+    assert _spec("estop").checked(False) is False
+    with pytest.raises(InvalidValueError, match="estop must be true or false"):
+        _spec("estop").checked(value)
+
+
+@pytest.mark.parametrize(
+    ("name", "value", "taken"),
+    [
+        ("battery_level", 1.0000001, 1.0),
+        ("battery_level", float(np.nextafter(np.float32(1), np.float32(2))), 1.0),
+        ("battery_level", -5.96e-8, 0.0),
+        ("gps_accuracy", -1e-7, 0.0),
+    ],
+)
+def test_the_rounding_of_single_precision_is_taken_at_each_limit(
+    name: str, value: float, taken: float
+) -> None:
+    assert _spec(name).checked(value) == taken
+
+
+@given(st.floats(-1e6, 1e6, width=32), st.booleans())
+def test_a_limit_in_single_precision_is_taken_and_a_percent_beyond_it_is_not(
+    limit: float, is_maximum: bool
+) -> None:
+    spec = SignalSpec(
+        "load",
+        SignalKind.NUMBER,
+        minimum=None if is_maximum else limit,
+        maximum=limit if is_maximum else None,
+    )
+    beyond = np.float32(math.inf if is_maximum else -math.inf)
+    off = max(abs(limit), 1.0) * (0.01 if is_maximum else -0.01)
+
+    if abs(limit) > 1e-30:
+        assert spec.checked(float(np.nextafter(np.float32(limit), beyond))) == limit
+    with pytest.raises(InvalidValueError):
+        spec.checked(limit + off)
+
+
+def _spec(name: str) -> SignalSpec:
+    return next(item.spec for item in default_signals() if item.spec.name == name)

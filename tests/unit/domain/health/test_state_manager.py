@@ -230,13 +230,13 @@ def test_a_bad_time_is_told_when_it_begins_and_when_it_becomes_an_error(robot: R
     assert [reason.code for reason in raised.raised] == ["GPS_LOST"]
     assert (raised.pending, raised.settled) == ((), ())
     assert raised.signals == {"gps_accuracy"}
-    assert robot.words == ["GPS accuracy 250 mm has been above 200 mm for 15 s"]
+    assert robot.words == ["GPS accuracy 250 mm is above 200 mm, no good reading for 15 s"]
 
 
 def test_a_bad_time_that_ends_well_is_told_too(robot: Robot) -> None:
     robot.read(1, gps_accuracy=250.0)
 
-    assert robot.read(2, gps_accuracy=100.0).settled == (("gps_accuracy", "GPS_LOST"),)
+    assert robot.read(2, gps_accuracy=100.0).settled == (("gps_accuracy", "GPS_LOST", False),)
 
 
 def test_an_error_due_long_ago_is_told_with_its_own_time(robot: Robot) -> None:
@@ -289,7 +289,7 @@ def test_the_signals_are_the_same_object_until_one_changes(robot: Robot) -> None
 REFUSALS: list[tuple[Reading, type[PilothouseError]]] = [
     (Reading("fuel", 1.0), UnknownSignalError),
     (Reading("temperature", math.nan), InvalidValueError),
-    (Reading("estop", 1.0), InvalidValueError),
+    (Reading("estop", 2.0), InvalidValueError),
     (Reading("temperature", 19.0, START - 1), OutdatedReadingError),
 ]
 

@@ -1,5 +1,7 @@
 """What parts are in, inferred from what nodes report and what was asked."""
 
+from random import Random
+
 import hypothesis.strategies as st
 import pytest
 from hypothesis import Phase, find, given, settings
@@ -598,3 +600,36 @@ def test_a_node_that_turns_out_to_have_a_lifecycle_counts_again() -> None:
     inference.report(NodeReport(BASE, has_lifecycle=True))
 
     assert _label(inference) == "deactivating"
+
+
+def test_modes_follow_every_target_and_report_as_if_all_had_been_told_at_once() -> None:
+    """A node whose parameters match two modes at once, and one with a list."""
+    node, lists = PartName("node"), PartName("lists")
+    both: Parameters = {"speed": 1.0}
+    modes = {DEFAULT_MODE: both, ModeName("TWIN"): both, ModeName("FAST"): {"speed": 2.0}}
+    with_list: dict[ModeName, Parameters] = {
+        DEFAULT_MODE: both,
+        ModeName("LIST"): {"speed": 1.0, "gains": (1.0, 2.0)},
+    }
+    model = SmhModel({node: NodeModel(node, modes), lists: NodeModel(lists, with_list)}, {})
+    drawn = Random(12)
+    told = ModeInference(model)
+    for _ in range(400):
+        name = drawn.choice((node, lists))
+        if drawn.random() < 0.4:
+            mode = drawn.choice((*model.nodes[name].modes, None))
+            told.set_targets({name: StateAndMode(LifecycleState.ACTIVE, mode)})
+        else:
+            values = {
+                "speed": drawn.choice((1.0, 2.0)),
+                "gains": drawn.choice(((1.0, 2.0), (3.0,))),
+            }
+            state = drawn.choice((LifecycleState.ACTIVE, LifecycleState.INACTIVE, None))
+            told.report(NodeReport(name, state=state, parameters=drawn.choice((values, None))))
+        anew = ModeInference(model)
+        anew.set_targets({part: told.target(part) for part in model.nodes})
+        for part, facts in told.facts.items():
+            anew.report(NodeReport(part, state=facts.state, parameters=facts.parameters))
+        assert [told.actual(part) for part in model.nodes] == [
+            anew.actual(part) for part in model.nodes
+        ]

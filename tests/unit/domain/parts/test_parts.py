@@ -8,10 +8,11 @@ from domain.identifiers import ChangeId
 from domain.inputs import NodeReport
 from domain.lifecycle import LifecycleState
 from domain.outbox import Outbox
-from domain.parts.parts import Parts
+from domain.parts.parts import LOOKS_AT_ONCE, Parts
 from domain.parts.system_model import NodeModel, SmhModel, SystemModel
 from domain.snapshot import EffectiveTarget, ParameterView
 from domain.state_and_mode import DEFAULT_MODE, ModeName, PartName, StateAndMode
+from tests.support.big_model import big_model
 from tests.support.models import ACTUATION, ARM, BASE, active, inactive, nested_model
 
 LIDAR, ROBOT = PartName("lidar"), PartName("robot")
@@ -324,3 +325,75 @@ def test_what_a_node_was_in_before_its_report_is_known_after_it(robot: Robot) ->
     robot.report(NodeReport(LIDAR, state=S.ACTIVE))
     robot.report(NodeReport(LIDAR, state=S.UNCONFIGURED))
     assert robot.parts.state_before is S.ACTIVE
+
+
+# --- a large robot -------------------------------------------------------------------------------
+
+BIG = big_model(2_500)
+ROOT = BIG.parts[0]
+
+
+class LargeRobot(Robot):
+    """A robot of which a request moves more parts than one turn tells."""
+
+    def __init__(self) -> None:
+        super().__init__(BIG)
+        self.told: list[RecordedEvent] = []
+
+    def ask_all(self, now: int) -> int:
+        """Ask all parts to be active; return the event of the request."""
+        self.outbox.begin(now, ChangeRequested(ROOT))
+        cause = self.outbox.record_input()
+        self.parts.ask(dict.fromkeys(BIG.parts, active("FAST")))
+        self.parts.settle(now)
+        self.told += self.outbox.take().events
+        return cause
+
+    def go_on(self, now: int) -> tuple[RecordedEvent, ...]:
+        """Let one turn pass."""
+        self.parts.go_on(now)
+        self.parts.settle(now)
+        events = self.outbox.take().events
+        self.told += events
+        return events
+
+    def began(self) -> list[object]:
+        """Return the parts whose deviation was told, in that order."""
+        return [data["part"] for data in _told(tuple(self.told), "part.deviation_began")]
+
+
+def test_the_deviations_of_a_large_robot_are_told_in_several_turns_and_in_order() -> None:
+    robot = LargeRobot()
+    robot.ask_all(now=7)
+    assert len(robot.began()) == LOOKS_AT_ONCE
+    while robot.parts.has_more:
+        assert len(robot.go_on(now=9)) <= LOOKS_AT_ONCE
+    assert robot.began() == sorted(BIG.parts)
+
+
+def test_deviations_that_are_told_later_began_with_the_request() -> None:
+    robot = LargeRobot()
+    cause = robot.ask_all(now=7)
+    at_once = robot.parts.views()
+    while robot.parts.has_more:
+        assert {event.cause for event in robot.go_on(now=9)} == {cause}
+    assert robot.parts.views() == at_once
+    assert {view.deviation_since for view in at_once.values()} == {7}
+    assert not any(view.converged for view in at_once.values())
+
+
+def test_a_node_that_reports_before_its_turn_is_told_to_have_deviated_first() -> None:
+    robot = LargeRobot()
+    cause = robot.ask_all(now=7)
+    last = max(BIG.nodes)
+    events = robot.report(NodeReport(last, state=S.ACTIVE, mode=ModeName("FAST")), now=8)
+    of_it = [event for event in events if event.data.get("part") == last]
+    assert [(event.kind, event.cause == cause) for event in of_it] == [
+        ("part.deviation_began", True),
+        ("part.actual_changed", False),
+        ("part.deviation_ended", False),
+    ]
+    robot.told += events
+    while robot.parts.has_more:
+        robot.go_on(now=9)
+    assert sorted(map(str, robot.began())) == sorted(BIG.parts), "each once"

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from domain.errors import InvalidValueError
 from domain.paths.path import SPACING_M, WINDOW_M, Path
-from domain.vehicle import Point
+from domain.vehicle import Point, VehicleLimits
 
 
 def path(*places: tuple[float, float]) -> Path:
@@ -76,6 +76,14 @@ def test_a_path_is_the_same_in_another_process() -> None:
     assert np.array_equal(sent.waypoints, BEND.waypoints)
     assert sent.length_m == BEND.length_m
     assert sent.project(3.0, 1.0, 5) == BEND.project(3.0, 1.0, 5)
+
+
+def test_a_copy_of_a_path_is_seen_as_by_the_same_vehicle() -> None:
+    """A simulation that goes on with a copy of a small vehicle smooths its bends no more."""
+    small = BEND.for_vehicle(VehicleLimits(wheelbase_m=0.33))
+    sent = pickle.loads(pickle.dumps(small))
+
+    assert sent.heading_at(3.0) == small.heading_at(3.0) != BEND.heading_at(3.0)
 
 
 def test_distances_are_those_along_the_line() -> None:

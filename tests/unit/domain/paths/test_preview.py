@@ -11,6 +11,7 @@ from domain.paths.path import Path
 from domain.paths.preview import PathPreview, preview
 from domain.paths.speed_profile import REACTION_S, SpeedLimits
 from domain.vehicle import Pose, VehicleLimits
+from tests.support.approach_limits import approach_limits
 from tests.support.shared import shared_folder
 from tests.support.tables import table
 
@@ -36,7 +37,7 @@ def seen(
     pose: Pose | None = None,
     limits: SpeedLimits | None = None,
 ) -> PathPreview:
-    return preview(Path(waypoints), cruise_mps, pose, VEHICLE, limits or SpeedLimits())
+    return preview(Path(waypoints), cruise_mps, pose, approach_limits(VEHICLE, limits))
 
 
 def codes(found: PathPreview) -> list[tuple[str, int | None]]:
@@ -214,7 +215,7 @@ def test_warnings_say_how_much_in_words() -> None:
     assert words[1:] == [
         "8.0 m between two waypoints; the path is straight in between",
         "11 waypoints are at the position of the one before",
-        "the path begins 9.0 m from the vehicle",
+        "the path begins 9.0 m from the vehicle, and is approached from at most 5 m",
         "the vehicle faces away from the direction of the path",
     ]
 

@@ -4,12 +4,17 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from numpy.typing import NDArray
 
 from domain.paths.path import Path
 from domain.paths.speed_profile import (
     BRAKING_SHARE,
     CRAWL_MPS,
+    LATERAL_SHARE,
     REACTION_S,
+    STEP_M,
+    STRETCH_STEPS,
+    TURNING_MPS,
     SpeedLimits,
     SpeedProfile,
 )
@@ -76,7 +81,7 @@ def test_a_path_too_short_for_the_cruise_is_braked_on_from_its_start(length: flo
 def test_in_a_bend_the_lateral_acceleration_is_kept() -> None:
     speeds = profile(bend_between_straights(10.0), 7.0)
 
-    assert speeds.speed_at(50 + 5 * pi) == pytest.approx(sqrt(2 * 10), rel=0.02)
+    assert speeds.speed_at(50 + 5 * pi) == pytest.approx(sqrt(LATERAL_SHARE * 2 * 10), rel=0.01)
 
 
 def test_a_bend_is_braked_for_in_time() -> None:
@@ -85,14 +90,16 @@ def test_a_bend_is_braked_for_in_time() -> None:
 
     assert speeds.speed_at(50 - 25) == pytest.approx(7.0)
     assert speeds.speed_at(50 - 10) < 7.0
-    assert speeds.speed_at(50) == pytest.approx(sqrt(2 * 10), abs=0.5)
+    assert speeds.speed_at(50) == pytest.approx(sqrt(LATERAL_SHARE * 2 * 10), abs=0.5)
 
 
 def test_a_corner_of_a_polygon_is_driven_as_the_tightest_bend() -> None:
     corner = Path(np.array([[0.0, 0.0, 0.0], [50.0, 0.0, 0.0], [50.0, 50.0, 0.0]]))
     tightest = tan(VEHICLE.max_steering_angle_rad) / VEHICLE.wheelbase_m
 
-    assert profile(corner, 7.0).speed_at(50.0) == pytest.approx(sqrt(2 / tightest), rel=0.05)
+    assert profile(corner, 7.0).speed_at(50.0) == pytest.approx(
+        sqrt(LATERAL_SHARE * 2 / tightest), rel=0.05
+    )
 
 
 @given(
@@ -113,3 +120,78 @@ def test_it_never_asks_for_more_braking_than_allowed(
     fallen = squares[:-1] - squares[1:]
     assert (fallen <= 2 * braking * np.diff(at) + CRAWL_MPS**2 + 1e-9).all()
     assert squares.max() <= cruise**2 + 1e-9
+
+
+# --- slow front wheels ---------------------------------------------------------------------------
+
+
+def slowest(path: Path, vehicle: VehicleLimits) -> float:
+    return SpeedProfile(path, 7.0, LIMITS, vehicle).slowest_mps
+
+
+def test_slow_wheels_slow_a_corner_down() -> None:
+    corner = Path(np.array([[0.0, 0.0, 0.0], [50.0, 0.0, 0.0], [50.0, 50.0, 0.0]]))
+    quick, slow = VehicleLimits(), VehicleLimits(steering_rate_radps=0.3)
+
+    assert slowest(corner, slow) < 0.6 * slowest(corner, quick)
+
+
+def test_late_wheels_slow_a_corner_down() -> None:
+    corner = Path(np.array([[0.0, 0.0, 0.0], [50.0, 0.0, 0.0], [50.0, 50.0, 0.0]]))
+
+    assert slowest(corner, VehicleLimits(steering_delay_s=0.5)) < slowest(corner, VEHICLE)
+
+
+def test_slow_wheels_do_not_slow_a_straight_with_the_noise_of_a_recording() -> None:
+    x = np.arange(0.0, 100.0, 0.5)
+    noise = np.random.default_rng(3).normal(0.0, 0.005, len(x))
+    line = Path(np.column_stack((x, noise, np.zeros_like(x))))
+
+    assert slowest(line, VehicleLimits(steering_rate_radps=0.11)) == pytest.approx(
+        slowest(line, VEHICLE)
+    )
+
+
+def test_however_slow_the_wheels_it_goes_on() -> None:
+    corner = Path(np.array([[0.0, 0.0, 0.0], [50.0, 0.0, 0.0], [50.0, 50.0, 0.0]]))
+
+    assert slowest(corner, VehicleLimits(steering_rate_radps=1e-6)) == pytest.approx(TURNING_MPS)
+
+
+def test_who_brakes_weakly_brakes_earlier() -> None:
+    weak = SpeedProfile(line(100), 5.0, LIMITS, VehicleLimits(braking_mps2=0.2))
+
+    assert weak.speed_at(90.0) == pytest.approx(sqrt(2 * BRAKING_SHARE * 0.2 * 10), abs=0.1)
+
+
+def test_a_goal_on_a_path_of_any_length_begins_at_the_cost_of_a_short_one(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """Planning 100,000 waypoints at once would hold up the loop for 0.2 s."""
+    samples: list[int] = []
+    curvatures_at = Path.curvatures_at
+
+    def counted(path: Path, distances_m: NDArray[np.float64]) -> NDArray[np.float64]:
+        samples.append(len(distances_m))
+        return curvatures_at(path, distances_m)
+
+    monkeypatch.setattr(Path, "curvatures_at", counted)
+    speeds = profile(line(100_000.0), 11.0)
+    for distance_m in np.linspace(49_000.0, 51_000.0, 2_000).tolist():
+        speeds.speed_at(distance_m)
+
+    # 11 m/s are braked within 76 m.
+    assert max(samples) <= STRETCH_STEPS + 2 * 76 + 2 * 8 + 3
+    assert len(samples) <= 2_000 / (STRETCH_STEPS * STEP_M) + 2
+
+
+def test_a_stretch_brakes_for_what_the_next_one_demands() -> None:
+    """A bend just beyond the end of the first stretch of 250 m."""
+    bend = bend_between_straights(10.0).waypoints + np.array([205.0, 0.0, 0.0])
+    speeds = profile(Path(np.vstack(([0.0, 0.0, 0.0], bend))), 7.0)
+
+    assert speeds.speed_at(STRETCH_STEPS * STEP_M - 1.0) < 7.0
+    begin = np.linspace(200.0, 270.0, 500)
+    allowed = np.array([speeds.speed_at(distance) for distance in begin.tolist()])
+    braking = -np.diff(allowed**2) / np.diff(begin) / 2
+    assert braking.max() <= BRAKING_SHARE + 1e-6

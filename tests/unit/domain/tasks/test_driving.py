@@ -3,7 +3,7 @@ import math
 import pytest
 
 from domain.errors import InvalidValueError, ReservedHoldError, TooManyHoldsError
-from domain.inputs import VehicleReport
+from domain.inputs import DriveStatus, VehicleReport
 from domain.parts.system_model import SmhModel
 from domain.snapshot import HoldView, TaskPhase
 from domain.supervision import Supervision, SupervisionSettings
@@ -68,7 +68,7 @@ def test_a_vehicle_that_is_lost_is_not_known_to_stand(robot: ScriptedRobot) -> N
     assert robot.task.status is TaskPhase.PAUSING
 
 
-@pytest.mark.parametrize("owner", ["error", "vehicle"])
+@pytest.mark.parametrize("owner", ["error", "vehicle", "drive_process"])
 def test_nobody_else_sets_or_clears_the_holds_of_pilothouse(
     robot: ScriptedRobot, owner: str
 ) -> None:
@@ -225,3 +225,45 @@ def test_what_ended_an_error_is_why_its_hold_goes(robot: ScriptedRobot) -> None:
 
     assert released.cause is not None
     assert by_id[released.cause] == "error.cleared"
+
+
+def test_a_vehicle_that_cannot_be_commanded_is_held_with_words_of_its_own(
+    robot: ScriptedRobot,
+) -> None:
+    robot.submit_task()
+    robot.advance(1.0, 2.0)
+    robot.give(DriveStatus(available=False, reason="the drive process has ended"))
+
+    assert robot.core.driving.holds == {
+        "drive_process": HoldView("drive_process", "the drive process has ended", "", robot.now)
+    }
+    assert robot.task.status is TaskPhase.PAUSING
+    assert robot.task.reason == "the drive process has ended"
+    (held,) = (event for event in robot.events if event.kind == "hold.set")
+    (told,) = (event for event in robot.events if event.kind == "drive.unavailable")
+    assert held.cause == told.id
+    assert told.event.words == (
+        "drive commands do not reach the vehicle: the drive process has ended"
+    )
+
+
+def test_it_is_driven_on_once_it_can_be_commanded_again(robot: ScriptedRobot) -> None:
+    robot.submit_task()
+    robot.give(DriveStatus(available=False, reason="the drive process has ended"))
+    robot.give(DriveStatus(available=True))
+
+    assert robot.task.status is TaskPhase.RUNNING
+    assert robot.happened("hold.released") == [{"owner": "drive_process"}]
+
+
+def test_that_a_vehicle_can_be_commanded_is_no_news(robot: ScriptedRobot) -> None:
+    assert robot.give(DriveStatus(available=True)).events == ()
+
+
+def test_a_vehicle_that_rolls_on_without_commands_is_told(robot: ScriptedRobot) -> None:
+    robot.submit_task()
+    robot.advance(1.0, 2.0)
+    robot.give(DriveStatus(available=False, reason="the drive process has ended"))
+    robot.advance(5.0, 2.0)
+
+    assert robot.core.system_state().reasons[0].code == "STILL_MOVING"

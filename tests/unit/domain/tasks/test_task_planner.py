@@ -287,14 +287,22 @@ def test_a_goal_that_is_given_up_ends_the_task_with_the_reason(robot: ScriptedRo
     assert robot.stops == 1
 
 
-def test_what_navigation_says_late_of_a_goal_taken_back_is_void(robot: ScriptedRobot) -> None:
+def test_what_the_vehicle_rolls_over_while_it_stops_is_driven(robot: ScriptedRobot) -> None:
     robot.submit_task()
     robot.hold()
-    robot.feedback(15)
+    robot.feedback(15, robot.goals[0])
+    robot.release()
+
+    assert robot.task.target_index == 15
+    assert robot.goals[-1].start_index == 15
+
+
+def test_a_goal_taken_back_has_no_result(robot: ScriptedRobot) -> None:
+    robot.submit_task()
+    robot.hold()
     robot.arrive()
 
     assert robot.task.status is TaskPhase.PAUSING
-    assert robot.task.target_index == 0
 
 
 def test_what_navigation_says_late_does_not_touch_the_task_that_came_after(

@@ -96,7 +96,7 @@ start_task: {file: tracks/loop.csv, controller: stanley, speed_mps: 2}
         MODEL,
     )
 
-    assert settings.to_vehicle_limits() == VehicleLimits(max_speed_mps=5.0)
+    assert settings.to_vehicle_limits() == VehicleLimits(max_speed_mps=5.0, steering_delay_s=0.25)
     assert settings.vehicle.pose == PoseBlock(x_m=1.0, y_m=-2.0, yaw_rad=1.5)
     assert settings.vehicle.plant == PlantBlock(steering_lag_s=0.15, delay_s=0.1)
     assert settings.to_task_settings() == TaskSettings(max_start_distance_m=8.0)
@@ -239,7 +239,9 @@ def test_of_a_robot_of_which_nothing_is_sent_all_is_as_usual() -> None:
         ({"vehicle": {"plant": {"delay_s": -1}}}, "/vehicle/plant/delay_s", "greater than"),
         ({"driving": {"speed": 3}}, "/driving/speed", "unknown key"),
         ({"nodes": {"tail": {}}}, "/nodes/tail", "there is no node 'tail'"),
-        ({"nodes": {"actuation": {}}}, "/nodes/actuation", "there is no node 'actuation'"),
+        ({"nodes": {"actuation": {}}}, "/nodes/actuation", "'actuation' is a system, not a node"),
+        ({"nodes": {"/tail": {}}}, "/nodes/tail", "there is no node 'tail'"),
+        ({"nodes": {"x": {}, "/x": {}}}, "/nodes", "x is named twice"),
         ({"nodes": {"manipulator": {"fault": "x"}}}, "/nodes/manipulator/fault", "'slow'"),
         ({"signals": {"motor": {"above": 3}}}, "/signals/motor", "error requires"),
         (
@@ -274,6 +276,37 @@ def test_a_slash_in_the_name_of_a_node_does_not_lead_elsewhere(
         robot_settings_of(sent, model)
 
     assert caught.value.pointer == pointer
+
+
+def test_names_are_taken_with_the_leading_slash_of_ros() -> None:
+    settings = read_robot_file(
+        """
+signals: {/estop: {stale_after_s: 9}, /load: {above: 3, error: LOAD}}
+nodes: {/drive_base: {configure_s: 0.5}}
+ros2: {signals: {/load: {topic: /load, type: std_msgs/msg/Float32, field: data}}}
+""",
+        MODEL,
+    )
+
+    assert settings.signals.estop.stale_after_s == 9
+    assert [*settings.signals.further] == ["load"]
+    assert settings.nodes["drive_base"].configure_s == 0.5
+    assert [*settings.ros2.signals] == ["load"]
+
+
+@pytest.mark.parametrize(
+    ("text", "place"),
+    [
+        ("nodes:\n  /drive_base: {}\n  drive_base: {}\n", (1, 1, "INVALID_VALUE")),
+        ("signals:\n  /estop: {}\n  estop: {}\n", (1, 1, "INVALID_VALUE")),
+        ("nodes:\n  a: {}\n  /actuation: {}\n", (3, 3, "UNKNOWN_NODE")),
+        ("signals:\n  /estop: {above: 3}\n", (2, 12, "UNKNOWN_KEY")),
+    ],
+)
+def test_a_fault_of_a_name_with_a_slash_is_told_where_it_is(
+    text: str, place: tuple[int, int, str]
+) -> None:
+    assert place in faults(text)
 
 
 @pytest.mark.parametrize("start_task", [{"file": "/etc/passwd"}, {}, None])

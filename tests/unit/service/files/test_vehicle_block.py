@@ -38,7 +38,12 @@ def test_a_vehicle_of_which_nothing_is_said_can_do_what_is_usual() -> None:
 
 def test_limits_that_are_said_hold() -> None:
     assert VehicleBlock.model_validate(EVERYTHING).to_limits() == VehicleLimits(
-        wheelbase_m=2.5, max_steering_angle_rad=0.5, max_speed_mps=6.5
+        wheelbase_m=2.5,
+        max_steering_angle_rad=0.5,
+        max_speed_mps=6.5,
+        braking_mps2=2.25,
+        steering_rate_radps=0.11,
+        steering_delay_s=0.2 + 0.1,
     )
 
 

@@ -118,7 +118,14 @@ def test_everything_that_is_said_holds() -> None:
             delay=seconds(0.1),
             noise=Noise(position_m=0.02, yaw_rad=0.01, speed_mps=0.05, seed=42),
         ),
-        VehicleLimits(wheelbase_m=2.5, max_steering_angle_rad=0.5, max_speed_mps=6.5),
+        VehicleLimits(
+            wheelbase_m=2.5,
+            max_steering_angle_rad=0.5,
+            max_speed_mps=6.5,
+            braking_mps2=2.25,
+            steering_rate_radps=0.11,
+            steering_delay_s=0.2 + 0.1,
+        ),
     )
 
 

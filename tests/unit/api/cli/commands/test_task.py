@@ -89,6 +89,7 @@ def test_the_file_is_sent_as_csv_with_what_was_asked(service: Service, track: Pa
         controller="stanley",
         speed_mps=1.5,
         heading="compass",
+        columns="s,x,y,yaw",
         start_index=3,
     )
 
@@ -99,6 +100,7 @@ def test_the_file_is_sent_as_csv_with_what_was_asked(service: Service, track: Pa
             "controller": "stanley",
             "speed_mps": "1.5",
             "heading": "compass",
+            "columns": "s,x,y,yaw",
             "start_index": "3",
         }
 
@@ -135,11 +137,38 @@ def test_a_file_that_is_not_there_is_told_before_anything_is_asked(
     assert service.asked == []
 
 
+def test_the_preview_tells_how_the_file_was_read_and_what_to_say_in_options() -> None:
+    warning = {"code": "HEADINGS_MISFIT", "message": "off", "index": 2, "hint": "?columns=x,y"}
+    read = {"message": "blank-separated: x from column 1"}
+    found = {**PREVIEW, "csv": read, "warnings": [warning]}
+
+    said = list(preview_lines("a.csv", found))
+    assert said[1] == "  blank-separated: x from column 1"
+    assert said[-2:] == [
+        "  warning HEADINGS_MISFIT: off (waypoint 2)",
+        "  hint: --columns x,y",
+    ]
+
+
+def test_a_file_of_a_spreadsheet_is_sent_as_utf_8(service: Service, track: Path) -> None:
+    track.write_bytes("x\ty [°]\r\n0\t0\r\n".encode("utf-16"))
+    Driven(service, track, preview=True)
+
+    assert service.asked[0].content == "x\ty [°]\r\n0\t0\r\n".encode()
+
+
+def test_lines_that_end_with_cr_are_counted() -> None:
+    findings = [{"code": "NOT_A_NUMBER", "message": "y: 'x'", "line": 2, "column": 3}]
+
+    assert list(fault_lines("a.csv", "0,0\r1,x\r", {"findings": findings}))[1] == "    1,x"
+
+
 def test_the_preview_tells_what_is_not_usual() -> None:
     found = {
         **PREVIEW,
         "min_radius_m": None,
         "start": None,
+        "approach": {"distance_m": 3.5, "turn_rad": 0.0, "speed_mps": 1.0, "length_m": 7.25},
         "warnings": [
             {"code": "TOO_TIGHT", "message": "a bend", "index": 41},
             {"code": "LONG", "message": "it is long", "index": None},
@@ -149,6 +178,7 @@ def test_the_preview_tells_what_is_not_usual() -> None:
     assert list(preview_lines("a.csv", found))[1:] == [
         "  straight",
         "  it is not known where the vehicle is",
+        "  the vehicle drives onto the path first: 7.2 m at 1.0 m/s",
         "  warning TOO_TIGHT: a bend (waypoint 41)",
         "  warning LONG: it is long",
     ]
@@ -270,12 +300,21 @@ def test_task_hands_on_what_it_was_told(monkeypatch: pytest.MonkeyPatch) -> None
     monkeypatch.setattr("api.cli.commands.task.run_task", run_task)
 
     assert main(["task", "a.csv"]) == 1
-    options = ["--controller", "stanley", "--speed", "1.5", "--heading", "deg"]
+    options = [
+        "--controller",
+        "stanley",
+        "--speed",
+        "1.5",
+        "--heading",
+        "deg",
+        "--columns",
+        "s,x,y",
+    ]
     main(["task", "-", *options, "--start-index", "3", "--preview", "--no-wait"])
 
     assert given == [
         TaskOptions("a.csv"),
-        TaskOptions("-", "stanley", 1.5, "deg", 3, preview=True, wait=False),
+        TaskOptions("-", "stanley", 1.5, "deg", "s,x,y", start_index=3, preview=True, wait=False),
     ]
 
 

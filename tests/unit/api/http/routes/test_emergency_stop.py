@@ -66,11 +66,11 @@ async def test_no_reading_releases_it_and_a_person_does(robot: HttpRobot) -> Non
     "body",
     [
         {},
-        {"engaged": "yes"},
-        {"engaged": 1},
+        {"engaged": "perhaps"},
+        {"engaged": 2},
         {"engaged": None},
-        {"engaged": True, "reason": "x" * 501},
-        {"engaged": True, "who": "me"},
+        {"engaged": False, "reason": "x" * 501},
+        {"engaged": False, "who": "me"},
     ],
 )
 async def test_what_is_not_clearly_a_stop_is_refused(body: object, robot: HttpRobot) -> None:

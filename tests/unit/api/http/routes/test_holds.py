@@ -39,12 +39,37 @@ async def test_a_hold_needs_no_body(robot: HttpRobot) -> None:
     assert (answer.status_code, answer.json()["reason"]) == (200, "")
 
 
-async def test_null_is_as_no_body_and_a_list_is_none(robot: HttpRobot) -> None:
+async def test_null_is_as_no_body(robot: HttpRobot) -> None:
     null = await robot.http.put("/holds/gate", content="null")
-    listed = await robot.http.put("/holds/gate", content="[]")
 
     assert (null.status_code, null.json()["reason"]) == (200, "")
-    assert listed.status_code == 422
+    assert "ignored" not in null.json()
+
+
+@pytest.mark.parametrize(
+    ("body", "reason"),
+    [
+        ('{"reason":"loading","reason":"x"}', "loading"),
+        ('{"reason":"loading","by":{"of":1,"of":2}}', "loading"),
+        ('{"reason":17}', ""),
+        ('{"reason":"' + "x" * 501 + '"}', "x" * 500),
+        ("[]", ""),
+        ("{", ""),
+        ("reason=loading", ""),
+        ("{" + ",".join(f'"m{number}":1' for number in range(1_500)) + "}", ""),
+        (b"\xff", ""),
+        ('{"reason":"\\ud800"}', "?"),
+    ],
+    ids=range(10),
+)
+async def test_a_hold_is_set_whatever_is_in_the_body(
+    robot: HttpRobot, body: str | bytes, reason: str
+) -> None:
+    answer = await robot.http.put("/holds/gate", content=body)
+
+    assert (answer.status_code, answer.json()["reason"]) == (200, reason)
+    assert answer.json()["ignored"]
+    assert "gate" in robot.supervisor.core.driving.holds
 
 
 async def test_releasing_what_is_not_held_is_right(robot: HttpRobot) -> None:

@@ -5,6 +5,7 @@ from typing import Any, NamedTuple
 
 import pytest
 
+from domain.inputs import BackendStatus
 from domain.simulation.node_settings import Fault, NodeSettings
 from domain.timebase import seconds
 from tests.support.http_robot import ACTUATION, HttpRobot, http_robot, http_scope
@@ -368,6 +369,25 @@ async def test_under_estop_a_refusal_carries_the_blockers_that_the_modes_show(
     assert shown["can_enter"] is False
 
 
+@pytest.mark.parametrize("part", ["systems/actuation", "nodes/drive_base"])
+async def test_what_is_answered_with_503_cannot_be_entered_and_says_so(
+    robot: HttpRobot, part: str
+) -> None:
+    robot.supervisor.deliver(BackendStatus(available=False, reason="no network"))
+
+    modes = (await robot.get(f"/{part}/modes"))["items"]
+    for shown in modes:
+        answer = await robot.http.post(f"/{part}/mode", json={"mode": shown["mode"]})
+        assert (answer.status_code, answer.json()["code"]) == (503, "BACKEND_UNAVAILABLE")
+        refusing = [each for each in shown["blockers"] if each["refuses"]]
+        assert shown["can_enter"] is False
+        assert [each["code"] for each in refusing] == ["BACKEND_UNAVAILABLE"]
+        assert refusing[0]["message"] == answer.json()["detail"]
+    answer = await robot.http.post(f"/{part}/state", json={"transition": "configure"})
+    assert answer.status_code == 503
+    assert (await robot.get(f"/{part}/state"))["available_transitions"] == []
+
+
 @pytest.mark.parametrize(
     ("path", "body", "pointer"),
     [
@@ -420,3 +440,19 @@ async def test_a_client_that_goes_while_it_waits_leaves_nothing_behind(robot: Ht
 def waiting_tasks() -> int:
     """Count the tasks that are not the robot's own, which come and go as its nodes do."""
     return sum(not task.get_name().startswith("rest of a pacer") for task in asyncio.all_tasks())
+
+
+@pytest.mark.parametrize("name", ["drive_base", "/drive_base", "%2Fdrive_base"])
+async def test_a_leading_slash_of_a_name_is_left_out(robot: HttpRobot, name: str) -> None:
+    assert (await robot.get(f"/nodes/{name}"))["name"] == "drive_base"
+    answer = await robot.http.post(f"/nodes/{name}/mode", json={"mode": "FAST"})
+    assert answer.json()["part"] == "drive_base"
+    assert (await robot.get(f"/changes?part={name}"))["items"][0]["part"] == "drive_base"
+
+
+@pytest.mark.parametrize("name", ["actuation", "/actuation"])
+async def test_a_system_is_not_said_to_be_missing(robot: HttpRobot, name: str) -> None:
+    problem = (await robot.http.get(f"/nodes/{name}/mode")).json()
+
+    assert problem["detail"] == "'actuation' is a system, not a node"
+    assert problem["hint"] == "actuation is a system: see /systems/actuation/mode"

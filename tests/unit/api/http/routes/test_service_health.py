@@ -8,7 +8,7 @@ from fastapi import FastAPI
 
 from domain.actor import Actor
 from domain.findings import Finding
-from domain.inputs import EmergencyStopRequest, Reading
+from domain.inputs import DriveStatus, EmergencyStopRequest, Reading
 from domain.timebase import seconds
 from service.simulation.simulated import SimulatedBackend
 from service.supervisor import Supervisor
@@ -132,3 +132,14 @@ async def test_a_vehicle_that_does_not_tell_where_it_is_is_a_warning(
         await clock.advance(1)
 
         assert (await warnings(http))["NO_POSE"] == "no pose of the vehicle for 0.3 s"
+
+
+async def test_a_vehicle_that_cannot_be_commanded_is_a_warning(
+    http: httpx.AsyncClient, live: tuple[Supervisor, SimulatedBackend]
+) -> None:
+    supervisor, _ = live
+    supervisor.deliver(DriveStatus(available=False, reason="the drive process has ended"))
+    assert (await warnings(http))["NO_DRIVE"] == "the drive process has ended"
+    supervisor.deliver(DriveStatus(available=True))
+
+    assert "NO_DRIVE" not in await warnings(http)

@@ -6,6 +6,7 @@ import pytest
 
 from domain.health.signals import SignalKind, SignalSettings, SignalSpec, default_signals
 from domain.supervision import SupervisionSettings
+from service.files.robot_settings import SignalsBlock
 from tests.support.http_robot import HttpRobot, http_robot
 
 GOOD = {
@@ -105,8 +106,8 @@ async def test_several_readings_are_taken_together(unmocked: HttpRobot) -> None:
         ("temperature", [1], "INVALID_VALUE"),
         ("battery_level", 1.5, "INVALID_VALUE"),
         ("gps_accuracy", -1, "INVALID_VALUE"),
-        ("estop", 1, "INVALID_VALUE"),
-        ("estop", "true", "INVALID_VALUE"),
+        ("estop", 2, "INVALID_VALUE"),
+        ("estop", "false", "INVALID_VALUE"),
         ("signal_strength", "GREAT", "INVALID_VALUE"),
         ("mood", 1, "UNKNOWN_SIGNAL"),
     ],
@@ -190,8 +191,8 @@ async def test_one_source_of_the_e_stop_cannot_release_anothers(unmocked: HttpRo
 
 @pytest.mark.parametrize("source", ["", "x" * 65])
 async def test_a_source_has_a_name_of_reasonable_length(source: str, unmocked: HttpRobot) -> None:
-    one = await unmocked.http.post("/signals/estop", json={"value": True, "source": source})
-    many = await unmocked.http.post("/signals", json={"estop": True, "source": source})
+    one = await unmocked.http.post("/signals/estop", json={"value": False, "source": source})
+    many = await unmocked.http.post("/signals", json={"estop": False, "source": source})
 
     assert (one.status_code, many.status_code) == (422, 422)
 
@@ -254,3 +255,29 @@ async def test_an_e_stop_that_came_with_another_signal_is_released_like_any_othe
         await robot.pass_time(1)
 
         assert (await robot.get("/system_state"))["errors"] == []
+
+
+async def test_what_is_pending_agrees_with_what_is_raised_and_with_what_it_says() -> None:
+    load = {"error": "OVERLOAD", "unit": "kg", "above": 1500.0, "for_s": 3.0, "stale_after_s": 0.0}
+    signals = SignalsBlock.model_validate({"stale_after_s": 0.0, "load": load}).to_domain()
+    async with http_robot(settings=SupervisionSettings(signals=signals)) as robot:
+        await robot.http.post("/signals/load", json={"value": 100})
+        await robot.pass_time(6)
+        answer = await robot.http.post("/signals/load", json={"value": 1800})
+        assert answer.json()["errors"] == []
+
+        await robot.pass_time(2.5)
+        shown = await robot.get("/signals/load")
+        assert shown["error"] is None
+        assert shown["pending"] == {
+            "error": "OVERLOAD",
+            "since_at": "2026-01-01T00:00:06.000Z",
+            "for_s": 2.5,
+            "needs_s": 3.0,
+        }
+
+        await robot.pass_time(0.5)
+        (reason,) = (await robot.get("/system_state"))["reasons"]
+        assert reason["message"] == "load 1800 kg has been above 1500 kg for 3 s"
+        assert reason["since_at"] == "2026-01-01T00:00:09.000Z"
+        assert (await robot.get("/signals/load"))["pending"] is None

@@ -1,5 +1,6 @@
 """`/tasks` as an operator uses it."""
 
+from math import pi
 from typing import Any
 
 import httpx
@@ -88,7 +89,7 @@ async def test_a_compass_is_converted_when_told(robot: HttpRobot) -> None:
 @pytest.mark.parametrize(
     ("csv", "line", "word"),
     [
-        ("x,y,yaw\n0,0,0\n", 1, "header"),
+        ("a,b,c\n0,0,0\n1,0,0\n", 1, "columns"),
         ("0,0,0\n1,zero,0\n", 2, "zero"),
         ("0,0,0\nnan,0,0\n2,0,0\n", 2, "nan"),
         ("0,0,0\n1,0\n", 2, "column"),
@@ -109,12 +110,43 @@ async def test_a_refused_file_names_the_line_and_changes_nothing(
     assert (await robot.get("/tasks"))["items"] == []
 
 
-async def test_headings_in_degrees_are_refused_with_what_to_say(robot: HttpRobot) -> None:
-    csv = "".join(f"{x},0,90.0\n" for x in range(11)).replace("3,0,90.0", "3,0,88.5")
-    answer = await post(robot, csv)
+async def test_headings_that_fit_in_no_unit_are_refused_until_it_is_said_what_they_are(
+    robot: HttpRobot,
+) -> None:
+    widths = "".join(f"{x},0,2.0\n" for x in range(6))
+    widths += "".join(f"5,{y},2.0\n" for y in range(1, 9))
+    answer = await post(robot, widths)
 
     assert answer.status_code == 422
-    assert "?heading=" in answer.json()["hint"]
+    assert answer.json()["findings"][0]["code"] == "HEADINGS_MISFIT"
+    assert "?columns=x,y" in answer.json()["hint"]
+    assert (await robot.get("/tasks"))["items"] == []
+    assert (await post(robot, widths, columns="x,y,width")).status_code == 201
+    assert (await post(robot, widths, heading="rad")).status_code == 201
+
+
+async def test_columns_are_taken_from_a_header_or_from_the_query(robot: HttpRobot) -> None:
+    rows = "".join(f"{x};{x},5;0,0\n" for x in range(11))
+    assert (await post(robot, "# s_m; x_m; y_m\n" + rows)).status_code == 201
+    assert (await post(robot, rows)).status_code == 422
+    assert (await post(robot, rows, columns="s,x,y")).status_code == 201
+    items = (await robot.get("/tasks/t2/waypoints"))["items"]
+
+    assert items[1] == {"x_m": 1.5, "y_m": 0.0, "yaw_rad": 0.0}
+
+
+async def test_columns_without_x_and_y_are_refused(robot: HttpRobot) -> None:
+    answer = await post(robot, LINE, columns="s,yaw")
+
+    assert answer.status_code == 422
+    assert "query columns: no column is named x" in answer.json()["detail"]
+
+
+async def test_columns_of_json_are_refused(robot: HttpRobot) -> None:
+    answer = await robot.http.post("/tasks?columns=x,y", json={"waypoints": WAYPOINTS})
+
+    assert answer.status_code == 422
+    assert "columns in the query is for a CSV" in answer.json()["detail"]
 
 
 @pytest.mark.parametrize(
@@ -267,6 +299,45 @@ async def test_a_preview_warns_of_a_bend_that_the_vehicle_cannot_steer(robot: Ht
 
     assert shown["steerable"] is False
     assert "TOO_TIGHT" in [warning["code"] for warning in shown["warnings"]]
+
+
+@pytest.mark.parametrize("yaw_rad", [0.0, pi / 2, pi])
+async def test_a_preview_says_how_a_path_beside_the_vehicle_is_approached(
+    robot: HttpRobot, yaw_rad: float
+) -> None:
+    beside = f"0,3.5,{yaw_rad}\n50,3.5,0\n100,3.5,0\n"
+    answer = await robot.http.post("/tasks/preview", content=beside, headers=CSV)
+    approach = answer.json()["approach"]
+
+    assert approach["distance_m"] == pytest.approx(3.5)
+    assert 0 < approach["speed_mps"] <= 1.0
+    assert 3.5 < approach["length_m"] < 15.0
+    assert (await post(robot, beside)).status_code == 201
+
+
+@pytest.mark.parametrize("start_index", [0, 5])
+async def test_a_preview_says_from_where_a_task_is_refused(
+    robot: HttpRobot, start_index: int
+) -> None:
+    far = "".join(f"{x},5.1,0\n" for x in range(11))
+    query = {"start_index": start_index}
+    answer = await robot.http.post("/tasks/preview", content=far, headers=CSV, params=query)
+    shown = answer.json()
+
+    assert shown["approach"] is None
+    (warning,) = [found for found in shown["warnings"] if found["code"] == "FAR_START"]
+    assert warning["index"] == start_index
+    assert warning["message"].endswith("and is approached from at most 5 m")
+    refused = await post(robot, far, start_index=start_index)
+    assert (refused.status_code, refused.json()["code"]) == (422, "FAR_START")
+
+
+async def test_a_preview_refuses_a_start_that_does_not_exist(robot: HttpRobot) -> None:
+    query = {"start_index": 10}
+    answer = await robot.http.post("/tasks/preview", content=LINE, headers=CSV, params=query)
+
+    assert answer.status_code == 422
+    assert answer.json()["errors"][0]["pointer"] == "/start_index"
 
 
 async def test_a_preview_refuses_what_a_task_would(robot: HttpRobot) -> None:

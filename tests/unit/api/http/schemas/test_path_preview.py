@@ -1,12 +1,11 @@
 from api.http.schemas.path_preview import PathPreviewJson
 from domain.paths.preview import preview
-from domain.paths.speed_profile import SpeedLimits
-from domain.vehicle import VehicleLimits
+from tests.support.approach_limits import approach_limits
 from tests.support.paths import straight
 
 
 def test_a_straight_path_of_an_unknown_vehicle_has_neither_radius_nor_start() -> None:
-    view = preview(straight(), 2.8, None, VehicleLimits(), SpeedLimits())
+    view = preview(straight(), 2.8, None, approach_limits())
     shown = PathPreviewJson.of(view, [[0.0, 0.0], [20.0, 0.0]])
 
     assert (shown.min_radius_m, shown.start, shown.steerable) == (None, None, True)

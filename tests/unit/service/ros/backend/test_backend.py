@@ -4,7 +4,14 @@ from collections.abc import AsyncIterator
 import pytest
 
 from domain.commands import AskTransition, Drive
-from domain.inputs import BackendStatus, NodeAnswer, NodeReport, NodesBehind, Readings
+from domain.inputs import (
+    BackendStatus,
+    DriveStatus,
+    NodeAnswer,
+    NodeReport,
+    NodesBehind,
+    Readings,
+)
 from domain.lifecycle import Transition
 from domain.vehicle import DriveCommand
 from service.files.robot_file import read_robot_file
@@ -61,8 +68,9 @@ async def robot() -> AsyncIterator[Listening]:
 
 
 async def test_it_is_there_before_its_nodes(robot: Listening) -> None:
-    assert robot.heard[:3] == [
+    assert robot.heard[:4] == [
         BackendStatus(available=True),
+        DriveStatus(available=True),
         NodeReport(BASE, reachable=False),
         NodeReport(ARM, reachable=False),
     ]

@@ -13,6 +13,7 @@ from service.clock import EPOCH, since_epoch
 from service.files.robot_file import robot_settings_of
 from service.ros.backend.signals import SignalTopics
 from service.ros.graph.graph import Lane, Qos, UnknownTypeError
+from tests.support.live_robot import make_supervisor
 from tests.support.manual_clock import START, ManualClock
 from tests.support.models import actuation_model
 from tests.support.ros_graph import FakeGraph
@@ -98,6 +99,7 @@ def test_a_reading_tells_its_value_its_topic_and_no_time_where_the_message_has_n
         ("temperature", TEMPERATURE, {"temperature": 31.5}, 31.5),
         ("temperature", {**TEMPERATURE, "offset": -273.15}, {"temperature": 300.0}, 26.85),
         ("estop", ESTOP, {"data": False}, False),
+        ("estop", ESTOP, {"data": 1}, True),
         ("estop", {**ESTOP, "invert": True}, {"data": False}, True),
         ("estop", {**ESTOP, "invert": True}, {"data": True}, False),
         ("signal_strength", STRENGTH, {"data": 0}, "NOT_CONNECTED"),
@@ -211,18 +213,44 @@ def test_what_was_not_measured_is_no_reading_and_nothing_to_complain_of(
     ("signal", "topic", "fields", "words"),
     [
         ("battery_level", BATTERY, {"percentage": 80.0}, "battery_level must be at most 1"),
-        ("wind", {**WIND, "field": "speed"}, {"speed": -1.0}, "wind must be at least 0"),
-        ("estop", ESTOP, {"data": 1}, "estop must be true or false, not 1"),
+        ("gps_accuracy", {**FIX, "field": "speed"}, {"speed": -1.0}, "must be at least 0"),
+        ("estop", ESTOP, {"data": 2}, "estop must be true or false, not 2"),
+        ("estop", {**ESTOP, "invert": True}, {"data": 1}, "not .1, inverted."),
+        ("estop", {**ESTOP, "invert": True}, {"data": 0}, "not .0, inverted."),
         ("temperature", TEMPERATURE, {"temperature": True}, "must be a number, not True"),
         ("signal_strength", STRENGTH, {"data": 3}, "must be one of CONNECTED"),
         ("signal_strength", STRENGTH, {"data": True}, "must be one of CONNECTED"),
+        ("temperature", {**TEMPERATURE, "field": "of"}, {"of": [{"x": 1.0}]}, "must be a number"),
+    ],
+)
+def test_what_a_signal_cannot_be_is_rejected_counted_and_logged_by_the_service(
+    signal: str,
+    topic: Topic,
+    fields: dict[str, object],
+    words: str,
+    caplog: pytest.LogCaptureFixture,
+) -> None:
+    supervisor = make_supervisor()
+    robot = running(**{signal: topic})
+    robot.publish_all(topic, fields)
+
+    supervisor.deliver(robot.heard[0])
+
+    assert supervisor.refused_readings.counts == {"ros": 1}
+    (complaint,) = complaints(caplog)
+    assert complaint.startswith(f"rejected a reading of ros:{topic['topic']}: ")
+    assert re.search(words, complaint)
+
+
+@pytest.mark.parametrize(
+    ("signal", "topic", "fields", "words"),
+    [
         ("battery_level", BATTERY, {"charge": 1.0}, "no such field: .*'percentage'"),
         ("wind", WIND, {"layers": [{"speed": 1.0}]}, "no such field: list index out"),
         ("wind", WIND, {"layers": 3}, "no such field: 'int'"),
-        ("wind", {**WIND, "field": "layers"}, {"layers": [{"speed": 1.0}]}, "must be a number"),
     ],
 )
-def test_what_a_signal_cannot_be_is_no_reading_and_is_told(
+def test_a_message_without_the_field_is_no_reading_and_is_told(
     signal: str,
     topic: Topic,
     fields: dict[str, object],
@@ -243,19 +271,11 @@ async def test_a_topic_is_complained_of_once_a_minute_and_others_by_themselves(
 ) -> None:
     robot = running(battery_level=BATTERY, estop=ESTOP)
     for _ in range(1_210):
-        robot.publish("/battery_state", percentage=80.0)
+        robot.publish("/battery_state", charge=0.8)
         await robot.clock.advance(0.1)
-    robot.publish("/estop", data=1)
+    robot.publish("/estop", on=True)
 
     assert ["battery" in complaint for complaint in complaints(caplog)] == [True, True, True, False]
-
-
-def test_after_a_value_that_cannot_be_the_next_one_is_taken() -> None:
-    robot = running(battery_level=BATTERY)
-    robot.publish("/battery_state", percentage=80.0)
-    robot.publish("/battery_state", percentage=0.8)
-
-    assert robot.values == [0.8]
 
 
 # --- what comes too often ------------------------------------------------------------------------

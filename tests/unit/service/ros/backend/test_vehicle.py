@@ -9,7 +9,7 @@ from typing import Any
 import pytest
 
 from domain.commands import Drive
-from domain.inputs import VehicleReport
+from domain.inputs import DriveStatus, VehicleReport
 from domain.timebase import to_seconds
 from domain.vehicle import DriveCommand, Pose, VehicleLimits, VehicleState
 from service.clock import since_epoch
@@ -40,6 +40,7 @@ class Robot:
         self.clock = ManualClock()
         self.graph = FakeGraph(self.clock, missing)
         self.heard: list[VehicleState] = []
+        self.drive_statuses: list[DriveStatus] = []
         block: dict[str, object] = {}
         if odometry:
             block["odometry"] = {"topic": "/odom"}
@@ -51,8 +52,11 @@ class Robot:
     def start(self) -> None:
         self.vehicle.start(self._hear)
 
-    def _hear(self, report: VehicleReport) -> None:
-        self.heard.append(report.state)
+    def _hear(self, report: VehicleReport | DriveStatus) -> None:
+        if isinstance(report, VehicleReport):
+            self.heard.append(report.state)
+        else:
+            self.drive_statuses.append(report)
 
     def drive(self, speed_mps: float, steering_angle_rad: float = 0.0) -> None:
         self.vehicle.send(Drive(DriveCommand(speed_mps, steering_angle_rad)))
@@ -320,16 +324,32 @@ async def test_it_can_be_driven_again_after_it_was_stopped() -> None:
     assert [speed for speed, _ in groupby(speeds)] == [2.0, 0.0, 1.0, 0.0]
 
 
-async def test_a_vehicle_that_commands_do_not_reach_is_not_heard_so_that_it_is_held() -> None:
-    robot = started()
-    (output,) = robot.graph.drive_outputs
-    output.works = False
-    robot.report(x=1.0)
-    await robot.clock.advance(0.1)
-    output.works = True
-    robot.report(x=2.0)
+async def test_a_vehicle_that_commands_do_not_reach_is_told_and_still_heard() -> None:
+    robot = Robot()
+    async with robot.running():
+        (output,) = robot.graph.drive_outputs
+        output.fail("the drive process has ended, and is started again")
+        robot.report(x=1.0)
+        output.fail("")
 
-    assert [state.pose.x_m for state in robot.heard] == [2.0]
+    assert [state.pose.x_m for state in robot.heard] == [1.0]
+    assert robot.drive_statuses == [
+        DriveStatus(available=True),
+        DriveStatus(available=False, reason="the drive process has ended, and is started again"),
+        DriveStatus(available=True),
+    ]
+
+
+def test_what_commands_a_vehicle_may_work_only_after_a_while() -> None:
+    robot = Robot()
+    robot.graph.drive_trouble = "the drive process is starting"
+    robot.start()
+
+    assert robot.drive_statuses == [DriveStatus(False, "the drive process is starting")]
+
+
+def test_a_vehicle_that_is_only_watched_says_nothing_of_commands() -> None:
+    assert started(command=None).drive_statuses == []
 
 
 async def test_a_vehicle_that_is_driven_when_we_end_is_told_to_stand_still() -> None:

@@ -41,12 +41,17 @@ class Output:
         self.received = received
         self.stops: list[DriveCommand] = []
         self.process = DriveProcess("/cmd_vel", "geometry_msgs/msg/Twist", 2.0, self.stops.append)
-        self.running = asyncio.create_task(self.process.run())
+        self.told: list[str] = []
+        """The troubles, in order; empty texts for none."""
+        self.running = asyncio.create_task(self.process.run(self._changed))
 
     async def until_it_works(self) -> int:
-        await until(lambda: self.process.works, PAUSE_S)
+        await until(lambda: not self.process.trouble, PAUSE_S)
         assert self.process.pid is not None
         return self.process.pid
+
+    def _changed(self) -> None:
+        self.told.append(self.process.trouble)
 
     def commands(self) -> list[DriveCommand]:
         data = self.received.read_bytes()
@@ -81,31 +86,55 @@ async def test_commands_are_passed_on(output: Output) -> None:
 
 
 async def test_a_command_before_the_start_is_lost_and_the_output_says_so(output: Output) -> None:
-    assert not output.process.works
+    assert output.process.trouble == "the drive process is starting"
     output.process.send(DRIVE)
     await output.until_it_works()
 
     assert output.commands() == []
 
 
-@pytest.mark.parametrize("how", [signal.SIGKILL, signal.SIGSTOP])
+@pytest.mark.parametrize(
+    ("how", "why"),
+    [
+        (signal.SIGKILL, "the drive process has ended, and is started again"),
+        (signal.SIGSTOP, "the drive process has said nothing for 1 s, and is started again"),
+    ],
+)
 async def test_a_process_that_fails_is_replaced_and_the_vehicle_stopped_from_here(
-    output: Output, how: signal.Signals
+    output: Output, how: signal.Signals, why: str
 ) -> None:
     first = await output.until_it_works()
     output.process.send(DRIVE)
     os.kill(first, how)
-    await until(lambda: not output.process.works, PAUSE_S)
+    await until(lambda: bool(output.process.trouble), PAUSE_S)
 
     assert output.stops == [DriveCommand(0.0, 0.1)]
     assert await output.until_it_works() != first
+    assert output.told == ["", why, ""]
+
+
+async def test_a_process_that_cannot_be_started_says_why(monkeypatch: pytest.MonkeyPatch) -> None:
+    async def start(
+        channel: socket.socket, arguments: tuple[str, ...]
+    ) -> asyncio.subprocess.Process:
+        raise OSError("no more processes")
+
+    monkeypatch.setattr(drive_process, "_start", start)
+    process = DriveProcess("/cmd_vel", "geometry_msgs/msg/Twist", 2.0, lambda _: None)
+    told: list[str] = []
+    running = asyncio.create_task(process.run(lambda: told.append(process.trouble)))
+    await until(lambda: bool(told), PAUSE_S)
+    running.cancel()
+    await asyncio.wait([running])
+
+    assert told == ["the drive process cannot be started: no more processes"]
 
 
 async def test_a_vehicle_that_stands_is_not_told_again(output: Output) -> None:
     first = await output.until_it_works()
     output.process.send(DriveCommand(0.0, 0.0))
     os.kill(first, signal.SIGKILL)
-    await until(lambda: not output.process.works, PAUSE_S)
+    await until(lambda: bool(output.process.trouble), PAUSE_S)
 
     assert output.stops == []
 

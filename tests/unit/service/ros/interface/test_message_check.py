@@ -13,7 +13,11 @@ def test_what_is_given_is_kept_and_what_is_left_out_has_the_default_of_ros() -> 
     message = checked(READING, {"header": {"stamp": {"sec": 7}}, "level": 2})
 
     assert message == {
-        "header": {"stamp": {"sec": 7, "nanosec": 0}, "frame_id": ""},
+        "header": {
+            "stamp": {"sec": 7, "nanosec": 0, "secs": 0, "nsecs": 0},
+            "frame_id": "",
+            "seq": 0,
+        },
         "enabled": False,
         "level": 2,
     }

@@ -64,7 +64,9 @@ async def test_one_sender_cannot_release_what_another_presses(robot: RosRobot) -
         ("/battery_level", {"battery_level": 1.5}, "battery_level"),
         ("/battery_level", {"battery_level": float("nan")}, "battery_level"),
         ("/battery_level", {"level": 0.5}, "level"),
-        ("/estop", {"enabled": 1}, "enabled"),
+        ("/estop", {"enabled": 2}, "enabled"),
+        ("/estop", {"enabled": False, "more": 1}, "more"),
+        ("/estop", {"data": False}, "data"),
         ("/signal_strength", {"strength": 3}, "strength"),
         ("/temperature", {"temperature": 1.0, "header": {"stamp": 7}}, "header/stamp"),
     ],
@@ -98,3 +100,81 @@ async def test_an_older_message_is_refused_by_the_core(robot: RosRobot) -> None:
 
     with pytest.raises(OutdatedReadingError):
         send(robot, "/temperature", older)
+
+
+SHAPES: list[dict[str, Any]] = [
+    {"header": {"seq": 1, "stamp": {"secs": 1, "nsecs": 0}, "frame_id": ""}},
+    {"header": {"stamp": {"secs": 1_767_225_600, "nsecs": 5}}},
+    {"header": {"stamp": {"sec": 1, "nanosec": 0}, "frame_id": "x"}},
+    {"header": {"stamp": None, "frame_id": None, "seq": None}},
+    {"header": {"stamp": {"secs": None, "nsecs": None}}},
+    {"header": {"stamp": {}}},
+    {"header": {}},
+    {"header": None},
+    {},
+]
+"""Headers as clients of ROS 1 and ROS 2 send them."""
+
+
+@pytest.mark.parametrize("header", SHAPES)
+@pytest.mark.parametrize(
+    ("topic", "field", "value"),
+    [("/battery_level", "battery_level", 0.7), ("/temperature", "temperature", 20.0),
+     ("/gps_accuracy", "accuracy", 5.0), ("/signal_strength", "strength", 1),
+     ("/estop", "enabled", False), ("/estop", "enabled", True)],
+)  # fmt: skip
+async def test_a_header_of_ros_1_or_2_is_taken_on_every_signal(
+    robot: RosRobot, header: dict[str, Any], topic: str, field: str, value: object
+) -> None:
+    assert robot.interface.heard[topic].take({**header, field: value}, SENDER) is None
+
+    assert robot.supervisor.core.signal(topic.removeprefix("/")).source == SENDER.label
+
+
+@pytest.mark.parametrize(
+    ("fields", "ignored"),
+    [
+        ({"header": 7}, "header must have fields by name"),
+        ({"header": {"stamp": "noon"}}, "header/stamp must have fields by name"),
+        ({"header": {"stamp": {"secs": -1}}}, "header/stamp/secs must be"),
+        ({"header": {"who": "me"}}, "there is no field 'who'"),
+        ({"more": [1]}, "there is no field 'more'"),
+    ],
+)
+async def test_a_stop_is_taken_whatever_its_header_and_what_was_ignored_is_told(
+    robot: RosRobot, fields: dict[str, Any], ignored: str
+) -> None:
+    told = robot.interface.heard["/estop"].take({**fields, "enabled": True}, SENDER)
+
+    assert told is not None
+    assert ignored in told
+    assert robot.supervisor.core.system_state().errors == ("ESTOP",)
+
+
+@pytest.mark.parametrize(
+    "fields",
+    [
+        {"data": True},
+        {"value": True},
+        {"enabled": 1},
+        {"msg": {"enabled": True}},
+        {"enabled": {"data": True}},
+        {"header": [{"enabled": "true"}], "enabled": False},
+    ],
+)
+async def test_a_stop_may_be_asked_in_the_fields_of_other_types(
+    robot: RosRobot, fields: dict[str, Any]
+) -> None:
+    send(robot, "/estop", fields)
+
+    assert robot.supervisor.core.signal("estop").value is True
+
+
+async def test_a_rejected_reading_is_counted_and_logged(
+    robot: RosRobot, caplog: pytest.LogCaptureFixture
+) -> None:
+    with pytest.raises(InvalidValueError):
+        send(robot, "/battery_level", {"battery_level": 7})
+
+    assert robot.supervisor.refused_readings.counts == {"rosbridge": 1}
+    assert "rejected a reading of rosbridge:192.0.2.7: battery_level" in caplog.text

@@ -1,0 +1,69 @@
+import pytest
+
+from domain.tracking.coverage import MAX_TRAIL, Coverage
+from domain.vehicle import Pose, VehicleState
+from tests.support.paths import straight
+
+
+def at(x_m: float, y_m: float = 0.0, speed_mps: float = 2.8) -> VehicleState:
+    return VehicleState(Pose(x_m, y_m, 0.0), speed_mps, 0.0)
+
+
+@pytest.fixture
+def coverage() -> Coverage:
+    return Coverage(straight(60.0), 0.0, 0.0, near_m=3.0, braking_mps2=1.0)
+
+
+def test_a_vehicle_on_its_path_leaves_nothing_out(coverage: Coverage) -> None:
+    for x_m in range(40):
+        coverage.note(at(x_m), float(x_m))
+
+    assert (coverage.reached_m, coverage.left_out_m) == (39.0, 0.0)
+
+
+def test_what_is_jumped_over_is_left_out(coverage: Coverage) -> None:
+    coverage.note(at(20.0), 20.0)
+
+    assert coverage.left_out_m == pytest.approx(17.0)
+
+
+def test_what_a_vehicle_rolls_over_while_nothing_is_heard_of_it_is_driven(
+    coverage: Coverage,
+) -> None:
+    """From 5 m/s, without commands for 0.5 s and then braking at 1 m/s2: 15 m."""
+    coverage.note(at(0.0, speed_mps=5.0), 0.0)
+    coverage.note(at(14.9, speed_mps=0.0), 14.9)
+
+    assert (coverage.reached_m, coverage.left_out_m) == (14.9, 0.0)
+
+
+def test_what_a_vehicle_was_carried_over_is_left_out(coverage: Coverage) -> None:
+    coverage.note(at(0.0, speed_mps=5.0), 0.0)
+    coverage.note(at(15.1, speed_mps=0.0), 15.1)
+
+    assert coverage.left_out_m == pytest.approx(15.1 - 2 * 3.0, abs=0.3)
+
+
+def test_what_was_passed_before_it_was_judged_counts(coverage: Coverage) -> None:
+    """An approach drives beside the path before it is on it."""
+    for x_m in range(20):
+        coverage.note(at(x_m, 2.5), None)
+    assert coverage.reached_m == 0.0
+    coverage.note(at(20.0), 20.0)
+
+    assert (coverage.reached_m, coverage.left_out_m) == (20.0, 0.0)
+
+
+def test_what_was_passed_too_far_beside_does_not(coverage: Coverage) -> None:
+    for x_m in range(20):
+        coverage.note(at(x_m, 3.5), None)
+    coverage.note(at(20.0), 20.0)
+
+    assert coverage.left_out_m == pytest.approx(17.0)
+
+
+def test_a_trail_of_any_length_takes_bounded_memory(coverage: Coverage) -> None:
+    for number in range(3 * MAX_TRAIL):
+        coverage.note(at(float(number), 10.0), None)
+
+    assert len(coverage._trail) <= MAX_TRAIL  # noqa: SLF001 - its memory is what is bounded
