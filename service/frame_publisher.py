@@ -41,6 +41,8 @@ class FramePublisher:
         self.last_tick_at: Instant | None = None
         self.published_at: Instant | None = None
         """When the newest frame was published."""
+        self.owing_since: Callable[[], Instant | None] = lambda: None
+        """Tells since when clients of a stream are not written what was published."""
         self.on_tick: list[Callable[[float], None]] = []
         """Called with the time since the previous tick, s; must return at once."""
         self._core = core

@@ -17,7 +17,7 @@ from domain.outbox import Outputs
 from domain.parts.system_model import SmhModel
 from domain.paths.approach import ApproachLimits
 from domain.supervision import Supervision
-from domain.timebase import Duration, Instant, seconds
+from domain.timebase import Duration, seconds
 from service.catch_up import CatchUp
 from service.change_ends import ChangeEnds
 from service.clock import Clock
@@ -86,8 +86,6 @@ class Supervisor:
         """Submits a report of an adapter, and logs it if it is rejected."""
         self.let_pass: Callable[[], None] = self._submitter.let_pass
         """Processes the deadlines that have expired by now."""
-        self.owing_since: Callable[[], Instant | None] = lambda: None
-        """Tells since when clients of a stream are not written what was published."""
         self.readings = readings(self.submit)
         """The input for external readings."""
 
@@ -139,7 +137,7 @@ class Supervisor:
             self._onboard.wake_at(),
             publisher.last_tick_at,
             publisher.published_at,
-            self.owing_since(),
+            publisher.owing_since(),
             self.clock.now(),
         )
 

@@ -32,7 +32,7 @@ class StreamServer:
         self.refusals = refusals
         self.encoder = StreamEncoder(supervisor)
         self.fan_out = FanOut(supervisor, self.encoder)
-        supervisor.owing_since = self.fan_out.owing_since
+        supervisor.publisher.owing_since = self.fan_out.owing_since
         self.clients = 0
         self._strangers: OrderedDict[asyncio.WriteTransport, None] = OrderedDict()
         """Connections that need the token and have not sent it yet, the oldest first."""

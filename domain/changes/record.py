@@ -58,9 +58,10 @@ class StepTable(Sequence[StepView]):
 
     def __init__(self, steps: Sequence[Step]) -> None:
         """Copy steps as they are now."""
+        actions: list[Transition | Literal["set_parameters"]] = [s.shown_action for s in steps]
         self._columns = (
             [step.node for step in steps],
-            [step.shown_action for step in steps],
+            actions,
             [step.status for step in steps],
             [step.started_at for step in steps],
             [step.ended_at for step in steps],

@@ -422,7 +422,7 @@ async def test_the_watchdog_learns_that_the_fan_out_hangs(
     clock: ManualClock,
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    supervisor.owing_since = fan_out.owing_since
+    supervisor.publisher.owing_since = fan_out.owing_since
 
     async def hang(*_: object) -> None:
         await asyncio.Event().wait()
@@ -444,7 +444,7 @@ async def test_the_watchdog_learns_that_the_fan_out_has_failed_and_that_it_write
     clock: ManualClock,
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    supervisor.owing_since = fan_out.owing_since
+    supervisor.publisher.owing_since = fan_out.owing_since
     with monkeypatch.context() as broken:
         broken.setattr(StreamEncoder, "frame", None)
         with fan_out.serve(Wire().connection, STATE, "page"):
