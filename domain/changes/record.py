@@ -106,7 +106,7 @@ class Pursuit:
     change: ChangeId
     node: PartName
     goal: NodeGoal
-    steps: list[Step] = field(default_factory=list)
+    steps: Sequence[Step] = ()
     waiting: bool = False
     """No step can start, because the node's state is unknown or transitional."""
     facts_asked: bool = False
@@ -124,7 +124,7 @@ class Pursuit:
         pending = [step.action for step in self.steps if step.status is StepStatus.PENDING]
         if pending != list(actions):
             new = [Step(self.change, self.node, action) for action in actions]
-            self.steps[:] = [*done, *new]
+            self.steps = (*done, *new)
 
     def next_step(self) -> Step | None:
         """Return the first pending step; None: there is none."""
