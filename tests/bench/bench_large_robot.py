@@ -30,6 +30,8 @@ SETTLE_S = 5.0
 STOP_EVERY_S = 0.1
 LARGEST = max(SIZES)
 CLIENTS = 8
+_COMPLETE_BYTES = 100 * LARGEST
+"""Less than a frame with all parts has, and more than any other."""
 MIDWAY_S = 0.8
 """After the start of a change of all nodes, while most of them have not begun."""
 NODE = ", ".join(
@@ -241,7 +243,8 @@ async def _connect(service: MeasuredService, clients: int, *, resync: bool) -> N
     async def follow() -> None:
         async with connect(f"ws://{service.host}/ws", max_size=None, close_timeout=0) as client:
             for _ in range(1 + resync):
-                while len(json.loads(await client.recv()).get("parts", ())) < LARGEST:
+                # Not parsed: who measures the stop would wait for that.
+                while len(await client.recv(decode=False)) < _COMPLETE_BYTES:
                     pass
                 await client.send('{"type":"resync"}')
 
