@@ -11,7 +11,7 @@ MESSAGE_COST = 200
 FRAME_COST = 30
 """Of a frame that is no whole message."""
 KIB_COST = 20
-CHECKED_KIB_COST = 100
+CHECKED_KIB_COST = 200
 """Of a body that is complete and parsed now, or of a head, whose path is compared with routes."""
 MAX_CHECKED_BYTES = 262_144
 """Larger bodies are parsed by a worker."""

@@ -201,6 +201,7 @@ _STREAMS = st.builds(
 
 # Not shrunk, which takes minutes here, and not printed in full, which takes megabytes: the message
 # says what the turn was busy with, and the note how each stream begins.
+@pytest.mark.filterwarnings("ignore:Generating overly large repr")
 @settings(phases=(Phase.explicit, Phase.generate), verbosity=Verbosity.quiet)
 @given(st.lists(_STREAMS, min_size=1, max_size=6))
 def test_whatever_is_sent_a_turn_is_bounded_and_a_stop_is_answered(
