@@ -6,6 +6,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from api.http import body_parsing
 from api.http.body_parsing import (
     MAX_FAULTS,
     BodyTooLargeError,
@@ -15,6 +16,7 @@ from api.http.body_parsing import (
     check_body,
     parse_body,
     parse_json,
+    parse_small_json,
     parse_text,
     pointer_to,
     read_limited,
@@ -164,3 +166,16 @@ def test_long_lists_of_numbers_are_no_members() -> None:
 def test_a_member_that_occurs_twice_is_refused(text: str, name: str) -> None:
     with pytest.raises(MalformedBodyError, match=f"the body has the member '{name}' twice"):
         parse_json(text.encode())
+
+
+def test_many_objects_are_refused_before_each_is_looked_at(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    monkeypatch.setattr(body_parsing, "parse_json", None)
+
+    with pytest.raises(InvalidBodyError, match="more than 1000 members"):
+        parse_small_json(b"[" + b"{}," * 30_000 + b"{}]")
+
+
+def test_a_small_json_text_is_parsed() -> None:
+    assert parse_small_json(b'{"reason": "{"}') == {"reason": "{"}
