@@ -6,6 +6,7 @@ the application behind them. What a turn does is counted and not timed.
 
 import asyncio
 import gc
+import os
 import weakref
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
@@ -144,18 +145,20 @@ class Flooded:
             Sender(service.connect(), stream) for stream in streams for _ in range(stream.clients)
         ]
         traces = [weakref.ref[object](each.client.intake) for each in senders]
-        for _ in range(TURNS):
-            await self._pass_turn(service, senders)
-        await self._stop(service, senders)
-        for _ in range(TURNS):
-            await self._pass_turn(service, senders)
-        traces += [
-            weakref.ref[object](each.client.intake.inner)
-            for each in senders
-            if hasattr(each.client.intake, "inner")
-        ]
-        for each in senders:
-            each.client.lose()
+        try:
+            for _ in range(TURNS):
+                await self._pass_turn(service, senders)
+            await self._stop(service, senders)
+            for _ in range(TURNS):
+                await self._pass_turn(service, senders)
+        finally:
+            traces += [
+                weakref.ref[object](each.client.intake.inner)
+                for each in senders
+                if hasattr(each.client.intake, "inner")
+            ]
+            for each in senders:
+                each.client.lose()
         return traces
 
     async def _stop(self, service: FloodedService, senders: list[Sender]) -> None:
@@ -201,8 +204,13 @@ _STREAMS = st.builds(
 
 # Not shrunk, which takes minutes here, and not printed in full, which takes megabytes: the message
 # says what the turn was busy with, and the note how each stream begins.
+@pytest.mark.timeout(300)
 @pytest.mark.filterwarnings("ignore:Generating overly large repr")
-@settings(phases=(Phase.explicit, Phase.generate), verbosity=Verbosity.quiet)
+@settings(
+    max_examples=60 if os.environ.get("PILOTHOUSE_SOAK") != "1" else 5_000,
+    phases=(Phase.explicit, Phase.generate),
+    verbosity=Verbosity.quiet,
+)
 @given(st.lists(_STREAMS, min_size=1, max_size=6))
 def test_whatever_is_sent_a_turn_is_bounded_and_a_stop_is_answered(
     flooded: Flooded, streams: list[Stream]

@@ -154,7 +154,7 @@ def test_what_is_too_much_is_refused_before_it_is_parsed(monkeypatch: pytest.Mon
     assert parse_small(b'{"colons":"' + b":" * 9_000 + b'"}')
 
     monkeypatch.setattr(body_parsing, "parse_json", pytest.fail)
-    for raw in (b"[" + b"{}," * 10_001, b'{"a"' + b":" * 10_000):
+    for raw in (b"[" + b"{}," * 2_001, b'{"a"' + b":" * 10_000):
         with pytest.raises(InvalidBodyError, match="more than 1000 members"):
             parse_small(raw)
 
