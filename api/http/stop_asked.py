@@ -21,6 +21,7 @@ _MOST_MARKS = 10_000
 
 _Members: TypeAlias = "tuple[tuple[str, Any], ...]"
 """All members of a JSON object, also those with the same name."""
+_CONTAINERS = (tuple, list)
 
 
 def stop_body(raw: bytes, member: str, kept: Mapping[str, int]) -> dict[str, object] | None:
@@ -157,9 +158,13 @@ def _asks_in(found: object, member: str) -> bool:
             return True
         # An array is a list, so only objects are tuples.
         if isinstance(item, tuple):
-            waiting += [(value, is_within or _bare(name) == member) for name, value in item]
+            waiting += [
+                (value, is_within or name.lstrip("/").lower() == member)
+                for name, value in item
+                if type(value) in _CONTAINERS
+            ]
         elif isinstance(item, list):
-            waiting += [(value, is_within) for value in item]
+            waiting += [(value, is_within) for value in item if type(value) in _CONTAINERS]
     return False
 
 
@@ -175,20 +180,17 @@ def _asks_named(found: object, member: str, fields: tuple[str, ...]) -> bool:
         if is_estop and any(map(asks_for_stop, _every(item, *fields))):
             return True
         if isinstance(item, tuple):
-            waiting += [(value, is_estop) for _, value in item]
+            waiting += [(value, is_estop) for _, value in item if type(value) in _CONTAINERS]
         elif isinstance(item, list):
-            waiting += [(value, is_estop) for value in item]
+            waiting += [(value, is_estop) for value in item if type(value) in _CONTAINERS]
     return False
 
 
 def _every(found: object, *names: str) -> Iterable[Any]:
-    """Yield the values of all members of an object with one of these names."""
+    """Return the values of all members of an object with one of these names."""
     members: _Members = found if isinstance(found, tuple) else ()
-    return (value for name, value in members if _bare(name) in names)
-
-
-def _bare(name: str) -> str:
-    return signal_name(name).lower()
+    # No function for the name without its slash: a call for each of 1,000 members takes too long.
+    return [value for name, value in members if name.lstrip("/").lower() in names]
 
 
 def _names_estop(text: str, member: str) -> bool:
