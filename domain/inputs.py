@@ -236,6 +236,16 @@ class ReleaseRequest:
     actor: Actor = NOBODY
 
 
+@dataclass(frozen=True, slots=True)
+class ReportBacklog:
+    """Reports and answers of nodes have arrived that are not taken in yet, or all are again."""
+
+    source: str
+    """What delivers them; each source has its own backlog."""
+    since: Instant | None
+    """All that arrived up to then is taken in; None: all that arrived at all."""
+
+
 ChangeRequest: TypeAlias = ModeRequest | TransitionRequest | ParametersRequest
 DriveRequest: TypeAlias = TaskRequest | CancelTaskRequest | HoldRequest | ReleaseRequest
 
@@ -246,6 +256,7 @@ Input: TypeAlias = (
     | VehicleReport
     | DriveStatus
     | BackendStatus
+    | ReportBacklog
     | GoalFeedback
     | GoalResult
     | TimePassed

@@ -37,6 +37,7 @@ from domain.tracking.coverage import Coverage
 from domain.tracking.leg import GivenUpError, Leg, LegLimits
 from domain.tracking.pace import PERIOD, Pace
 from domain.tracking.pure_pursuit import PurePursuit
+from domain.tracking.slow_down import SlowDown, is_slow
 from domain.tracking.tracker import ControlStep, PathTracker
 from domain.tracking.trackers import TRACKERS
 from domain.vehicle import DriveCommand, VehicleLimits, VehicleState
@@ -99,7 +100,17 @@ class _Run:
     is_preempted: bool = False
     """Whether it only stops."""
     was_approaching: bool = False
-    """Whether the goal that it takes up was preempted on the way onto the path."""
+    """Whether the goal that it takes up was preempted before it was on the path."""
+    slow_down: SlowDown | None = None
+    """It brakes, and its way onto the path begins thereafter."""
+    rolled_m: float = 0.0
+    """Length of the way on which it braked."""
+
+    @property
+    def is_approaching(self) -> bool:
+        """Tell whether it is not yet on the path."""
+        is_new = self.leg is None and self.was_approaching
+        return self.approach is not None or self.slow_down is not None or is_new
 
 
 class Navigation:
@@ -166,7 +177,7 @@ class Navigation:
             next_at=now,
             target_index=goal.start_index,
             distance_m=reached_m,
-            was_approaching=before is not None and before.approach is not None,
+            was_approaching=before is not None and before.is_approaching,
         )
 
     def _coverage(self, goal: SendGoal, path: Path, reached_m: float) -> Coverage:
@@ -176,7 +187,7 @@ class Navigation:
 
     def _preempt(self, run: _Run) -> None:
         self._preempted, run.is_preempted = run, True
-        if self._vehicle.stands or run.leg is None:
+        if self._vehicle.stands or (run.leg is None and run.slow_down is None):
             self._run = None
 
     def wake_at(self) -> Instant | None:
@@ -210,9 +221,12 @@ class Navigation:
             GivenUpError: A limit was reached.
         """
         state = self._fresh_state(now)
-        leg = self._leg(run, state, now)
-        step = leg.follow(state)
-        leg.judge(step, self._leg_limits, now)
+        self._prepare(run, state, now)
+        if run.slow_down is not None:
+            return self._brake(run, run.slow_down, state, now)
+        assert run.leg is not None
+        step = run.leg.follow(state)
+        run.leg.judge(step, self._leg_limits, now)
         error_m = self._locate(run, step, state)
         limit_mps = run.profile.speed_at(step.distance_m)
         if run.approach is not None:
@@ -228,6 +242,20 @@ class Navigation:
             return feedback, GoalResult(run.goal.goal, succeeded=True)
         return Drive(command), feedback
 
+    def _brake(
+        self, run: _Run, slow_down: SlowDown, state: VehicleState, now: Instant
+    ) -> tuple[NavigationMessage, ...]:
+        """Brake until the way onto the path can be driven.
+
+        Raises:
+            GivenUpError: The vehicle does not brake.
+        """
+        slow_down.judge(state, self.settings.no_progress_for, now)
+        step, steering_rad = slow_down.follow(state)
+        run.coverage.note(state, None)
+        command = run.pace.command(slow_down.speed_mps, steering_rad, 0.0, state, now)
+        return Drive(command), _feedback(run, step, step.cross_track_error_m, command)
+
     def _stop(self, run: _Run, now: Instant) -> tuple[NavigationMessage, ...]:
         """Steer along the path, without driving, until the vehicle is at standstill.
 
@@ -235,12 +263,19 @@ class Navigation:
             GivenUpError: There is nothing to steer by.
         """
         state = self._fresh_state(now)
-        if run.leg is None or self._vehicle.stands:
+        if self._vehicle.stands:
             self._run = None
             return ()
-        step = run.leg.follow(state)
-        error_m = self._locate(run, step, state)
-        command = run.pace.stop(step.steering_angle_rad, state)
+        if run.slow_down is not None:
+            run.coverage.note(state, None)
+            step, steering_rad = run.slow_down.follow(state)
+            error_m = step.cross_track_error_m
+        else:
+            assert run.leg is not None
+            step = run.leg.follow(state)
+            steering_rad = step.steering_angle_rad
+            error_m = self._locate(run, step, state)
+        command = run.pace.stop(steering_rad, state)
         return Drive(command), _feedback(run, step, error_m, command)
 
     def _fresh_state(self, now: Instant) -> VehicleState:
@@ -252,24 +287,39 @@ class Navigation:
 
     # --- what is followed ------------------------------------------------------------------------
 
-    def _leg(self, run: _Run, state: VehicleState, now: Instant) -> Leg:
-        """Return what is followed now: the way onto the path, and then the path.
+    def _prepare(self, run: _Run, state: VehicleState, now: Instant) -> None:
+        """Decide what is followed now: the way onto the path, and then the path.
 
         Raises:
             GivenUpError: The vehicle is too far from the path.
         """
+        if run.slow_down is not None:
+            if not run.slow_down.is_over(state):
+                return
+            run.rolled_m, run.slow_down = run.rolled_m + run.slow_down.rolled_m(state), None
         if run.leg is None:
             self._take_up(run, state)
             run.approach = self._plan(run, state)
             if run.approach is not None:
-                run.leg = self._leg_onto_the_path(run.approach, now)
+                self._begin_approach(run, run.approach, state, now)
         elif run.approach is not None and self._is_there(run, run.approach, run.leg, state):
             run.leg = run.approach = None
-        if run.leg is None:
-            name = run.goal.controller
-            tracker = self._trackers[name](self._limits)
-            run.leg = Leg(run.path, "the path", name, tracker, run.target_index, now)
-        return run.leg
+        if run.leg is None and run.slow_down is None:
+            run.leg = self._leg_along_the_path(run, now)
+
+    def _begin_approach(
+        self, run: _Run, approach: Approach, state: VehicleState, now: Instant
+    ) -> None:
+        if is_slow(state, approach.speed_mps):
+            run.leg = self._leg_onto_the_path(approach, now)
+            return
+        leg = self._leg_along_the_path(run, now)
+        run.slow_down, run.approach = SlowDown(leg, approach.speed_mps, state, now), None
+
+    def _leg_along_the_path(self, run: _Run, now: Instant) -> Leg:
+        name = run.goal.controller
+        tracker = self._trackers[name](self._limits)
+        return Leg(run.path, "the path", name, tracker, run.target_index, now)
 
     def _leg_onto_the_path(self, approach: Approach, now: Instant) -> Leg:
         # Whatever tracker the task has: this one also follows tight curves with slow wheels.
@@ -277,16 +327,16 @@ class Navigation:
         return Leg(approach.way, "its way onto the path", "pure_pursuit", tracker, 0, now)
 
     def _take_up(self, run: _Run, state: VehicleState) -> None:
-        """Find a vehicle that rolled on along its path while its pose was unknown."""
-        if run.was_approaching or not run.coverage.may_have_rolled(state):
-            return
+        """Find a vehicle that passed its path unseen, or while it braked, further on along it."""
+        run.coverage.note(state, None)
         pose, index = state.pose, run.target_index
         here = run.path.project(pose.x_m, pose.y_m, index)
         # A projection searches ahead within a window.
         while (ahead := run.path.index_after(here.distance_m)) > index:
             index = ahead
             here = run.path.project(pose.x_m, pose.y_m, index)
-        if is_on_path(here, pose, self._limits, TURNED_RAD):
+        missed_m = run.coverage.missed_m(here.distance_m)
+        if is_on_path(here, pose, self._limits, TURNED_RAD) and missed_m <= _may_miss_m(run):
             run.coverage.note(state, here.distance_m)
             run.target_index, run.distance_m = index, max(run.distance_m, here.distance_m)
 
@@ -296,16 +346,18 @@ class Navigation:
         Raises:
             GivenUpError: The vehicle is too far from the path.
         """
-        goal, path, limits = run.goal, run.path, self.approach_limits
+        limits, from_m = self.approach_limits, self.approach_limits.from_m + run.rolled_m
         if run.was_approaching:
-            loop_m = _LOOP_RADII * approach_radius_m(self._limits)
-            limits = replace(limits, from_m=limits.from_m + loop_m)
-        whole_m = path.length_m - path.distance_of(goal.first_index)
-        may_miss_m = max(MAY_MISS_SHARE * whole_m - run.coverage.left_out_m, 0.0)
-        begin_m, index = run.coverage.reached_m, run.target_index
+            from_m += _LOOP_RADII * approach_radius_m(self._limits)
         try:
             return plan_approach(
-                path, state.pose, index, begin_m, goal.speed_mps, may_miss_m, limits
+                run.path,
+                state.pose,
+                run.target_index,
+                run.coverage.reached_m,
+                run.goal.speed_mps,
+                _may_miss_m(run),
+                replace(limits, from_m=from_m),
             )
         except FarFromPathError as error:
             message = f"{error}, which is approached from at most {limits.from_m:g} m"
@@ -363,6 +415,12 @@ def _goes_on(goal: SendGoal, before: _Run) -> bool:
     """Tell whether a goal takes up the one that was preempted before."""
     is_same = goal.path is before.goal.path and goal.first_index == before.goal.first_index
     return is_same and goal.reached_m >= before.coverage.reached_m - _ROUNDING_M
+
+
+def _may_miss_m(run: _Run) -> float:
+    """Return the length of the path that may still be missing, m."""
+    whole_m = run.path.length_m - run.path.distance_of(run.goal.first_index)
+    return max(MAY_MISS_SHARE * whole_m - run.coverage.left_out_m, 0.0)
 
 
 def _feedback(run: _Run, step: ControlStep, error_m: float, command: DriveCommand) -> GoalFeedback:

@@ -57,7 +57,8 @@ class Onboard:
     def take_in(self, given: Input, now: Instant) -> Outputs:
         """Handle one input that is late by our own fault, before what was due before it.
 
-        The next `handle` judges what is due then. Missed control steps are not made up for.
+        The next `handle` judges what is due then. Of missed control steps one is made up for, once
+        there is a pose that is new enough.
 
         Args:
             given: A fact or a request.
@@ -69,8 +70,11 @@ class Onboard:
         Raises:
             PilothouseError: The input is rejected; it changed nothing.
         """
-        self.navigation.skip_missed(now)
         self._take(given, now, self.core.take_in)
+        if self.core.driving.watch.fresh_state(now) is None:
+            self.navigation.skip_missed(now)
+        else:
+            self._let_navigation_act(now, self.core.take_in)
         return self._told()
 
     def _told(self) -> Outputs:

@@ -46,6 +46,11 @@ class CatchUp:
         self.until = None
         return False
 
+    def note_tick(self, now: Instant) -> None:
+        """Note that a tick begins, which may be late; nobody may have asked since then."""
+        if self.until is None or self._windows < MOST_WINDOWS:
+            self.is_on(now)
+
     async def wait(self) -> None:
         """Return once what has arrived is taken in; at once unless the loop was late."""
         now = self._clock.now()

@@ -10,6 +10,7 @@ import os
 import signal
 import traceback
 from collections.abc import Callable
+from contextlib import suppress
 
 _PATIENCE_S = 30.0
 _FIRST_OTHER_FD = 3
@@ -77,9 +78,7 @@ async def _read(fd: int) -> bytes:
 def _do(function: Callable[[], bytes], writing: int) -> None:
     """Be the forked process: write the result, and end without cleaning up what is the parent's."""
     try:
-        # Connections that the service closes meanwhile must not stay open here.
-        os.closerange(_FIRST_OTHER_FD, writing)
-        os.closerange(writing + 1, os.sysconf("SC_OPEN_MAX"))
+        _close_all_but(writing)
         signal.set_wakeup_fd(-1)
         for ending in (signal.SIGTERM, signal.SIGHUP):
             signal.signal(ending, signal.SIG_DFL)
@@ -91,6 +90,15 @@ def _do(function: Callable[[], bytes], writing: int) -> None:
     finally:
         # The pipe ends with the process: whoever reads that need not wait for the process then.
         os._exit(0)
+
+
+def _close_all_but(kept: int) -> None:
+    """Close files: connections that the service closes meanwhile must not stay open here."""
+    # Only those that are open: the limit on descriptors may be a thousand million.
+    for fd in map(int, os.listdir("/dev/fd")):
+        if fd >= _FIRST_OTHER_FD and fd != kept:
+            with suppress(OSError):
+                os.close(fd)
 
 
 def _write(fd: int, *pieces: bytes) -> None:

@@ -1,7 +1,7 @@
 """Runs deterministic objects, which report when they are due next, in real time."""
 
 import asyncio
-from collections.abc import Callable, Sequence
+from collections.abc import Awaitable, Callable, Sequence
 from typing import Generic, Protocol, TypeVar
 
 from domain.timebase import Instant
@@ -26,7 +26,8 @@ class Paced(Protocol[MessageT_co]):
         ...
 
 
-_AT_ONCE = 25
+AT_ONCE = 25
+"""Messages delivered in one turn of the event loop."""
 
 
 class Pacer(Generic[MessageT]):
@@ -45,14 +46,29 @@ class Pacer(Generic[MessageT]):
         if self._resting is not None:
             self._resting.cancel()
 
-    async def run(self, deliver: Callable[[MessageT], None]) -> None:
-        """Pass messages to `deliver` in order when they are due, until cancelled."""
+    async def run(
+        self,
+        deliver: Callable[[MessageT], None],
+        deliver_many: Callable[[Sequence[MessageT], Instant], Awaitable[None]] | None = None,
+    ) -> None:
+        """Pass messages on in order when they are due, until cancelled.
+
+        Args:
+            deliver: Gets one message.
+            deliver_many: Gets more than `AT_ONCE` messages that are due together, and up to when
+                all that was due is delivered; lets other tasks run in between. None: there are
+                never so many.
+        """
+        delivered = self._clock.now()
         while True:
-            for number, message in enumerate(self._paced.advance(self._clock.now()), start=1):
-                deliver(message)
-                if number % _AT_ONCE == 0:
-                    # Thousands of nodes may appear at once; the other tasks must keep running.
-                    await asyncio.sleep(0)
+            now = self._clock.now()
+            due = self._paced.advance(now)
+            if deliver_many is not None and len(due) > AT_ONCE:
+                await deliver_many(due, delivered)
+            else:
+                for message in due:
+                    deliver(message)
+            delivered = now
             await self._rest()
 
     async def _rest(self) -> None:

@@ -14,11 +14,12 @@ from domain.inputs import (
     NodeAnswer,
     NodeReport,
     Readings,
+    ReportBacklog,
     VehicleReport,
 )
 
 BackendMessage: TypeAlias = (
-    NodeReport | NodeAnswer | BackendStatus | Readings | VehicleReport | DriveStatus
+    NodeReport | NodeAnswer | BackendStatus | ReportBacklog | Readings | VehicleReport | DriveStatus
 )
 Deliver: TypeAlias = Callable[[BackendMessage], None]
 
@@ -38,7 +39,8 @@ class NodeBackend(Adapter, Protocol):
     """The nodes; `tests/conformance/test_node_backend.py` specifies what an adapter must do.
 
     It delivers `BackendStatus`, `NodeReport` and `NodeAnswer`. A node that cannot be reached is
-    reported as unreachable; when it reappears, all its facts are reported.
+    reported as unreachable; when it reappears, all its facts are reported. If more has arrived than
+    it delivers in one turn, it says so by `ReportBacklog`: no node is late meanwhile.
     """
 
     def send(self, command: NodeCommand, /) -> None:

@@ -148,7 +148,8 @@ class Supervisor:
             self.submit(HoldRequest("service", "the service ends", Actor("service")))
 
     def _note_tick(self, since_s: float) -> None:
-        """Tell of a stall: of a tick that was too late by more than `STALL`."""
+        """Let deadlines wait after a tick that was late, and tell of one that was very late."""
+        self._catch_up.note_tick(self.clock.now())
         late = seconds(since_s) - PERIOD
         if late > STALL:
             self.submit(ServiceStall(late))

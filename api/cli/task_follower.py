@@ -91,6 +91,11 @@ class _Report:
             self._reported = status
             self._say(f"task {task['id']} at {distance_text(task)}: {status}")
 
+    def alarm(self, task: Json, message: str) -> None:
+        """Report that the vehicle should stand and does not; this line stays on a terminal."""
+        self._line.erase()
+        self._say(f"task {task['id']}: {message}")
+
     def show_lost(self, task: Json, why: str) -> None:
         """Report that the connection is lost; the next status is reported again."""
         self._reported = ""
@@ -111,6 +116,7 @@ class _Follower:
         self._task = task
         self._report = report
         self._speed_mps: float | None = None
+        self._alarm: str | None = None
         self._epoch: str | None = None
         self._why_lost = ""
         self._giving_up: asyncio.TimerHandle | None = None
@@ -152,7 +158,7 @@ class _Follower:
 
     def _take_state(self, frame: Json) -> None:
         if "vehicle" in frame:
-            self._speed_mps = frame["vehicle"]["speed_mps"]
+            self._take_vehicle(frame["vehicle"])
         if "task" in frame:
             shown = frame["task"]
             if shown is None or shown["id"] != self._task["id"]:
@@ -163,6 +169,13 @@ class _Follower:
                 self.ended.set_result(shown)
                 return
         self._report.show(self._task, self._speed_mps)
+
+    def _take_vehicle(self, vehicle: Json) -> None:
+        self._speed_mps = vehicle["speed_mps"]
+        found = vehicle.get("still_moving")
+        before, self._alarm = self._alarm, found and found["message"]
+        if self._alarm not in (None, before):
+            self._report.alarm(self._task, self._alarm)
 
     def _keep_following(self) -> None:
         if self._giving_up is not None:

@@ -6,7 +6,7 @@ from typing import Any
 from fastapi import Request, Response
 from fastapi.routing import APIRoute
 
-from api.http.body_parsing import BodyTooLargeError, parse_small_json, read_limited
+from api.http.body_parsing import BodyTooLargeError, parse_small, read_limited
 from api.http.limits import ServiceLimits
 
 
@@ -79,7 +79,7 @@ class JsonRequest(Request):
         Raises:
             PilothouseError: The body is not JSON or has too many members.
         """
-        return cls.of(request, raw, parse_small_json(raw) if raw else None)
+        return cls.of(request, raw, parse_small(raw) if raw else None)
 
     @classmethod
     def of(cls, request: Request, raw: bytes, parsed: object) -> "JsonRequest":

@@ -7,7 +7,7 @@ All that is found here can only engage a stop; only a valid message releases one
 
 import json
 import re
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable, Mapping
 from typing import Any, TypeAlias
 
 from domain.errors import InvalidValueError, PilothouseError
@@ -16,6 +16,8 @@ from service.ros.interface.reading_topics import STOP_FIELDS
 
 _MOST_DIGITS = 20
 """Enough for 64 bits."""
+_MOST_MARKS = 10_000
+"""Brackets and colons in what is parsed here, a few ms of work; other text is only searched."""
 
 _Members: TypeAlias = "tuple[tuple[str, Any], ...]"
 """All members of a JSON object, also those with the same name."""
@@ -35,7 +37,7 @@ def stop_body(raw: bytes, member: str, kept: Mapping[str, int]) -> dict[str, obj
     if found is None:
         asks = _writes(text, (member,))
     else:
-        asks = any(_asks(members, (member,)) for members in _objects(found))
+        asks = _asks_in(found, member) or _asks_named(found, "signal", ("value",))
     return {member: True, **texts_in(found, kept)} if asks else None
 
 
@@ -61,10 +63,7 @@ def is_stop_of_stream(message: Mapping[str, Any]) -> bool:
     found = _parsed(text)
     if found is None:
         return _names_estop(text, "signal") and _writes(text, ("value",))
-    return any(
-        _is_estop(members, "signal") and _asks_within(members, ("value",))
-        for members in _objects(found)
-    )
+    return _asks_named(found, "signal", ("value",))
 
 
 def source_of(message: Mapping[str, Any], longest: int) -> str | None:
@@ -113,10 +112,7 @@ def is_stop_of_rosbridge(message: Mapping[str, Any]) -> bool:
     found = _parsed(text)
     if found is None:
         return _names_estop(text, "topic") and _writes(text, STOP_FIELDS)
-    return any(
-        _is_estop(members, "topic") and _asks_within(members, STOP_FIELDS)
-        for members in _objects(found)
-    )
+    return _asks_named(found, "topic", STOP_FIELDS)
 
 
 def may_ask_rosbridge(text: str) -> bool:
@@ -136,7 +132,9 @@ def _text_in(message: Mapping[str, Any]) -> str:
 
 
 def _parsed(text: str) -> object | None:
-    """Return JSON with objects as tuples of all their members; None: it is no JSON."""
+    """Return JSON with objects as tuples of all their members; None: it is no JSON, or large."""
+    if sum(map(text.count, "{[:")) > _MOST_MARKS:
+        return None
     try:
         found: object = json.loads(text, object_pairs_hook=tuple, parse_int=_whole)
     except (ValueError, RecursionError):
@@ -149,36 +147,48 @@ def _whole(text: str) -> int | float:
     return int(text) if len(text) <= _MOST_DIGITS else float(text)
 
 
-def _objects(found: object) -> Iterator[_Members]:
-    """Yield all objects in what was parsed."""
-    waiting = [found]
+def _asks_in(found: object, member: str) -> bool:
+    """Tell whether a member of this name asks for a stop, by its value or by a field in that."""
+    waiting: list[tuple[object, bool]] = [(found, False)]
     while waiting:
-        item = waiting.pop()
+        item, is_within = waiting.pop()
+        names = (member, *STOP_FIELDS) if is_within else (member,)
+        if any(map(asks_for_stop, _every(item, *names))):
+            return True
         # An array is a list, so only objects are tuples.
         if isinstance(item, tuple):
-            yield item
-            waiting += (value for _, value in item)
+            waiting += [(value, is_within or _bare(name) == member) for name, value in item]
         elif isinstance(item, list):
-            waiting += item
+            waiting += [(value, is_within) for value in item]
+    return False
+
+
+def _asks_named(found: object, member: str, fields: tuple[str, ...]) -> bool:
+    """Tell whether an object whose member names the e-stop asks for a stop, or one within it."""
+    waiting: list[tuple[object, bool]] = [(found, False)]
+    while waiting:
+        item, is_within = waiting.pop()
+        is_estop = is_within or any(
+            isinstance(value, str) and signal_name(value) == ESTOP_SIGNAL
+            for value in _every(item, member)
+        )
+        if is_estop and any(map(asks_for_stop, _every(item, *fields))):
+            return True
+        if isinstance(item, tuple):
+            waiting += [(value, is_estop) for _, value in item]
+        elif isinstance(item, list):
+            waiting += [(value, is_estop) for value in item]
+    return False
 
 
 def _every(found: object, *names: str) -> Iterable[Any]:
     """Yield the values of all members of an object with one of these names."""
     members: _Members = found if isinstance(found, tuple) else ()
-    return (value for name, value in members if signal_name(name).lower() in names)
+    return (value for name, value in members if _bare(name) in names)
 
 
-def _asks(members: _Members, names: tuple[str, ...]) -> bool:
-    return any(map(asks_for_stop, _every(members, *names)))
-
-
-def _asks_within(members: _Members, names: tuple[str, ...]) -> bool:
-    return any(_asks(inner, names) for inner in _objects(members))
-
-
-def _is_estop(members: _Members, member: str) -> bool:
-    named = (value for value in _every(members, member) if isinstance(value, str))
-    return any(signal_name(value) == ESTOP_SIGNAL for value in named)
+def _bare(name: str) -> str:
+    return signal_name(name).lower()
 
 
 def _names_estop(text: str, member: str) -> bool:

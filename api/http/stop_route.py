@@ -50,14 +50,14 @@ class StopRoute(JsonRoute):
                 raw = await read_limited(request.stream(), limit)
                 return await handle(JsonRequest.parse(request, raw))
             except (PilothouseError, RequestValidationError) as error:
-                start = error.start if isinstance(error, BodyTooLargeError) else raw
-                asked = _asked(request, start)
+                cut = error.start if isinstance(error, BodyTooLargeError) else None
+                asked = _asked(request, raw if cut is None else cut)
+                # Not the error itself: with this frame it would be a cycle of garbage.
+                faults = _faults_of(error)
                 if asked is None:
-                    _note_refused(request, error)
+                    _note_refused(request, faults)
                     raise
-                # Not the error itself: it refers to this frame, which would refer to it.
-                faults, is_cut = _faults_of(error), isinstance(error, BodyTooLargeError)
-            return await _handle_again(handle, request, asked, faults, is_cut=is_cut)
+            return await _handle_again(handle, request, asked, faults, is_cut=cut is not None)
 
         return handle_stop
 
@@ -73,11 +73,11 @@ async def _handle_again(
     """Handle what is valid of a request that was rejected.
 
     Args:
-        handle: The framework's handler.
+        handle: Of the route.
         request: The request.
-        asked: What is valid of it.
-        faults: Why it was rejected.
-        is_cut: Whether its body was not read to the end.
+        asked: The body that is handled.
+        faults: Why it was rejected, shown in the answer.
+        is_cut: Whether the body is too large, so that its end was not read.
     """
     taken = JsonRequest.of(request, json.dumps(asked).encode(), asked)
     taken.scope[_IGNORED] = faults
@@ -89,10 +89,10 @@ async def _handle_again(
     return answer
 
 
-def _note_refused(request: Request, error: PilothouseError | RequestValidationError) -> None:
+def _note_refused(request: Request, faults: list[BodyFault]) -> None:
     """Count and log a reading that was rejected; other requests are answered, and audited."""
     if request.url.path.startswith("/signals"):
-        _refused(request).note(_sender(request), _told(_faults_of(error)))
+        _refused(request).note(_sender(request), _told(faults))
 
 
 # A coroutine, since the framework would call a plain function in a thread.

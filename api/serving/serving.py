@@ -17,7 +17,7 @@ from api.distribution import installed_version
 from api.http.access import MIN_GOOD_CHARACTERS, Access
 from api.http.gate.origins import AllowedOrigins, InvalidOriginError
 from api.serving.composition import EXAMPLE, Composition, MisuseError, ServeOptions, compose
-from api.serving.garbage import settle_heap
+from api.serving.garbage import Heap
 from api.serving.output import Output
 from api.serving.process_log import log_to
 from api.serving.service_manager import ServiceManager, UnknownManagerError
@@ -90,7 +90,7 @@ def _serve(options: ServeOptions, output: Output, errors: Output) -> int:
     prepare(app)
     greeting = "\n".join(greet(composition, options, url_of(sockets, options.host), access))
     server = web_server(app, lambda: _say_serving(output, greeting, manager, supervisor))
-    settle_heap()
+    Heap().settle()
     with asyncio.Runner(loop_factory=_new_event_loop) as runner:
         return runner.run(run_service(composition, server, sockets, manager))
 

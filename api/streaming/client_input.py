@@ -7,7 +7,7 @@ from typing import Any, TypeAlias
 
 from starlette.datastructures import ImmutableMultiDict
 
-from api.http.body_parsing import check_body, parse_small_json
+from api.http.body_parsing import check_body, parse_small
 from api.http.schemas.stream import AuthMessage, ReadingMessage, ResyncMessage
 from domain.errors import InvalidValueError, shortened
 
@@ -97,7 +97,7 @@ def read_client_message(message: Mapping[str, Any]) -> ClientMessage:
     text = message.get("text")
     if text is None:
         raise InvalidValueError("binary messages are not supported; send JSON as text")
-    said = parse_small_json(text.encode())
+    said = parse_small(text.encode())
     kind = said.get("type") if isinstance(said, dict) else None
     # A list is unhashable, so that a lookup would raise.
     message_class = _MESSAGES.get(kind) if isinstance(kind, str) else None

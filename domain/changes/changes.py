@@ -15,7 +15,7 @@ from domain.errors import UnknownChangeError
 from domain.events.changes import CHANGE_ENDS
 from domain.health.health import Health
 from domain.identifiers import ChangeId
-from domain.inputs import ChangeRequest, NodeAnswer, NodeReport
+from domain.inputs import ChangeRequest, NodeAnswer, NodeReport, ReportBacklog
 from domain.lifecycle import LifecycleState
 from domain.outbox import Outbox
 from domain.parts.convergence import is_there
@@ -145,6 +145,10 @@ class Changes:
     def answer(self, answer: NodeAnswer, now: Instant) -> None:
         """Fail the step in flight if the node rejected it."""
         self._steps.answer(answer, now)
+
+    def note_backlog(self, backlog: ReportBacklog) -> None:
+        """Note until when reports of nodes are taken in."""
+        self._steps.note_backlog(backlog.source, backlog.since)
 
     def pass_time(self, now: Instant) -> None:
         """Handle all deadlines up to `now`."""

@@ -30,6 +30,7 @@ from domain.inputs import (
     NodeAnswer,
     NodeReport,
     ParametersRequest,
+    ReportBacklog,
     TransitionRequest,
 )
 from domain.lifecycle import LifecycleState, Transition
@@ -69,6 +70,7 @@ class Changing(Concern):
             NodeReport: self._follow_report,
             NodeAnswer: self._take_answer,
             BackendStatus: self._take_backend_status,
+            ReportBacklog: self._take_backlog,
         }
 
     def wake_at(self) -> Instant | None:
@@ -129,6 +131,9 @@ class Changing(Concern):
             self._outbox.record_input()
             self._backend_since = now
         self._backend = status
+
+    def _take_backlog(self, backlog: ReportBacklog, now: Instant) -> None:
+        self._changes.note_backlog(backlog)
 
     # --- what can be seen ------------------------------------------------------------------------
 

@@ -60,6 +60,8 @@ class NodeSteps:
         self._pursuits: dict[PartName, Pursuit] = {}
         self._in_flight: dict[PartName, Step] = {}
         self._deadlines: Deadlines[PartName] = Deadlines()
+        self._backlogs: dict[str, Instant] = {}
+        """By source of reports that wait to be taken in, until when all are taken in."""
 
     # --- what can be seen ------------------------------------------------------------------------
 
@@ -82,8 +84,9 @@ class NodeSteps:
         return len(self._in_flight)
 
     def wake_at(self) -> Instant | None:
-        """Return the next deadline; None: there is none."""
-        return self._deadlines.next()
+        """Return the next deadline; None: there is none, or reports must be taken in before."""
+        due = self._deadlines.next()
+        return None if due is None or due > self._judged_until(due) else due
 
     # --- pursuits --------------------------------------------------------------------------------
 
@@ -136,9 +139,25 @@ class NodeSteps:
             self._end_step(step, StepStatus.FAILED, reason, now)
             self._advance(answer.node, now)
 
+    def note_backlog(self, source: str, since: Instant | None) -> None:
+        """Note until when reports are taken in: our own delay must not make a node late.
+
+        Args:
+            source: Of the reports.
+            since: All that arrived up to then are; None: all that arrived at all.
+        """
+        if since is None:
+            self._backlogs.pop(source, None)
+        else:
+            self._backlogs[source] = since
+
+    def _judged_until(self, now: Instant) -> Instant:
+        return min((now, *self._backlogs.values()))
+
     def pass_time(self, now: Instant) -> None:
-        """Handle all deadlines up to `now`."""
-        while (node := self._deadlines.pop_due(now)) is not None:
+        """Handle all deadlines up to `now`, unless a report may wait that came before them."""
+        until = self._judged_until(now)
+        while (node := self._deadlines.pop_due(until)) is not None:
             if node in self._in_flight:
                 self._step_is_late(self._in_flight[node], now)
             elif node in self._pursuits:

@@ -58,9 +58,10 @@ class StepTable(Sequence[StepView]):
 
     def __init__(self, steps: Sequence[Step]) -> None:
         """Copy steps as they are now."""
+        actions: list[Transition | Literal["set_parameters"]] = [s.shown_action for s in steps]
         self._columns = (
             [step.node for step in steps],
-            [step.shown_action for step in steps],
+            actions,
             [step.status for step in steps],
             [step.started_at for step in steps],
             [step.ended_at for step in steps],
@@ -105,7 +106,7 @@ class Pursuit:
     change: ChangeId
     node: PartName
     goal: NodeGoal
-    steps: list[Step] = field(default_factory=list)
+    steps: Sequence[Step] = ()
     waiting: bool = False
     """No step can start, because the node's state is unknown or transitional."""
     facts_asked: bool = False
@@ -123,7 +124,7 @@ class Pursuit:
         pending = [step.action for step in self.steps if step.status is StepStatus.PENDING]
         if pending != list(actions):
             new = [Step(self.change, self.node, action) for action in actions]
-            self.steps[:] = [*done, *new]
+            self.steps = (*done, *new)
 
     def next_step(self) -> Step | None:
         """Return the first pending step; None: there is none."""

@@ -239,4 +239,4 @@ def _joined(curve: DubinsCurve, path: Path, met_m: float, vehicle: VehicleLimits
     rows = curve.places(spacing_m)
     along = np.arange(met_m + spacing_m, met_m + beyond_m, spacing_m)
     onwards = [(place.x_m, place.y_m, 0.0) for place in map(path.point_at, along.tolist())]
-    return Path(np.concatenate((rows, np.array(onwards)))).for_vehicle(vehicle)
+    return Path.of_computed(np.concatenate((rows, np.array(onwards)))).for_vehicle(vehicle)

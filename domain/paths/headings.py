@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 MAX_MISFIT_RAD = pi / 6
 """Headings whose median differs by more from the path are none, or in another unit."""
 
+_CLOSE_RAD = pi / 18
 _CHORD_M = 0.5
 """Directions are taken over this chord, or a tenth of the path, since a receiver jitters."""
 _FEW_WAYS = 2
@@ -86,11 +87,28 @@ class Fit:
     """
     is_reversed: bool
     """Whether the headings point against the path, as of a vehicle that drove backwards."""
+    follows: bool
+    """Whether the headings turn with a path that turns: then these are headings beyond doubt."""
+    is_steady: bool
+    """Whether neither path nor headings turn, but for noise."""
 
     @property
     def fits(self) -> bool:
-        """Return whether these are headings along the path, or against it."""
+        """Return whether headings, known to be some, are along the path, or against it."""
         return self.misfit_rad <= MAX_MISFIT_RAD
+
+    @property
+    def is_close(self) -> bool:
+        """Return whether the headings are those of the path, but for noise."""
+        return self.misfit_rad <= _CLOSE_RAD
+
+    @property
+    def is_convincing(self) -> bool:
+        """Return whether numbers that may be anything are headings.
+
+        A speed or a width is within 30 degrees of half of any path, in one of several units.
+        """
+        return self.fits and (self.is_close or self.follows or self.is_steady)
 
 
 class Ways:
@@ -125,19 +143,29 @@ class Ways:
         """
         most = _MOST_TURNS if self.count >= _FEW_WAYS else _ONE_TURN
         if float(np.abs(values).max()) > most * heading.turn:
-            return Fit(heading, pi / 2, is_reversed=False)
+            return Fit(heading, pi / 2, is_reversed=False, follows=False, is_steady=False)
         if self.count < _FEW_WAYS:
-            return Fit(heading, 0.0, is_reversed=False)
+            return Fit(heading, 0.0, is_reversed=False, follows=False, is_steady=True)
         # What never changes is no heading of a path that turns now and then.
         share = _MOST_WAYS if float(np.ptp(values)) == 0.0 else 0.5
         yaws = heading.yaws(values)
-        errors = [self._errors(yaws[at]) for at in self._beside]
-        ahead = min(float(np.quantile(found, share)) for found in errors)
-        back = min(float(np.quantile(pi - found, share)) for found in errors)
-        return Fit(heading, min(ahead, back, pi / 2), is_reversed=back < ahead)
+        signed = [wrapped(yaws[at] - self._angles) for at in self._beside]
+        ahead = [float(np.quantile(np.abs(errors), share)) for errors in signed]
+        back = min(float(np.quantile(pi - np.abs(errors), share)) for errors in signed)
+        rest = _spread(signed[int(np.argmin(ahead))])
+        turning = _spread(self._angles)
+        return Fit(
+            heading,
+            min(*ahead, back, pi / 2),
+            is_reversed=back < min(ahead),
+            follows=turning > _CLOSE_RAD and rest <= turning / 2,
+            is_steady=turning <= _CLOSE_RAD and rest <= _CLOSE_RAD,
+        )
 
-    def best_fit(self, values: Floats, among: Iterable[Heading]) -> Fit:
-        """Return the fit of the unit that these headings probably have.
+    def best_fit(
+        self, values: Floats, among: Iterable[Heading], *, is_named: bool = True
+    ) -> tuple[Fit, bool]:
+        """Return the fit of the unit that these headings probably have, and whether they have it.
 
         Radians within a turn that fit are radians. Otherwise headings along the path are preferred
         to reversed ones, and earlier units to later ones.
@@ -145,23 +173,25 @@ class Ways:
         Args:
             values: As for `fit`.
             among: Possible units, at least one.
+            is_named: Whether these are known to be headings; otherwise the fit has to show it.
         """
         fits = [self.fit(values, heading) for heading in among]
-        first = fits[0]
+        taken = [fit.fits if is_named else fit.is_convincing for fit in fits]
         is_within_a_turn = float(np.abs(values).max()) <= _ONE_TURN * tau
-        if first.heading is Heading.RAD and first.fits and is_within_a_turn:
-            return first
-        return min(fits, key=lambda fit: (not fit.fits, fit.is_reversed, fit.misfit_rad))
+        if fits[0].heading is Heading.RAD and taken[0] and is_within_a_turn:
+            return fits[0], True
+        fit, is_taken = min(
+            zip(fits, taken, strict=True),
+            key=lambda found: (not found[1], found[0].is_reversed, found[0].misfit_rad),
+        )
+        return fit, is_taken
 
     def first_misfit(self, values: Floats, heading: Heading) -> int:
         """Return the index of the first waypoint whose heading differs too much from the path."""
         at = self._beside[1]
-        errors = self._errors(heading.yaws(values)[at])
+        errors = np.abs(wrapped(heading.yaws(values)[at] - self._angles))
         beyond = np.minimum(errors, pi - errors) > MAX_MISFIT_RAD
         return int(at[int(beyond.argmax())]) if beyond.any() else 0
-
-    def _errors(self, yaws: Floats) -> Floats:
-        return np.abs(wrapped(yaws - self._angles))
 
 
 def along(places: Floats) -> Floats:
@@ -185,6 +215,12 @@ def along(places: Floats) -> Floats:
 def wrapped(angles: Floats) -> Floats:
     """Return angles wrapped to [-pi, pi), rad; same shape."""
     return np.asarray((angles + pi) % (2 * pi) - pi)
+
+
+def _spread(angles: Floats) -> float:
+    """Return the median difference of angles from their mean, rad."""
+    mean = np.arctan2(np.sin(angles).mean(), np.cos(angles).mean())
+    return float(np.median(np.abs(wrapped(angles - mean))))
 
 
 def _apart(places: Floats) -> NDArray[np.int64]:

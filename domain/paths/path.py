@@ -75,8 +75,25 @@ class Path:
             InvalidValueError: The shape is wrong, there are too few or too many waypoints, one of
                 them is not finite or out of range (`check_waypoints`), or all are at one position.
         """
-        self.waypoints = _checked(waypoints)
+        self._prepare(_checked(waypoints))
+
+    @classmethod
+    def of_computed(cls, waypoints: NDArray[np.float64]) -> "Path":
+        """Return the line through computed waypoints.
+
+        Those of a way onto a path may be beyond the range that given ones have.
+
+        Args:
+            waypoints: Shape (n, 3): x m, y m, yaw rad; finite, and not all at one position.
+        """
+        path = cls.__new__(cls)
+        cls._prepare(path, waypoints)
+        return path
+
+    def _prepare(self, waypoints: NDArray[np.float64]) -> None:
+        self.waypoints = waypoints
         """Shape (n, 3): x m, y m, yaw rad; read only."""
+        waypoints.flags.writeable = False
         places = self.waypoints[:, :2]
         kept = _places_apart(places)
         knots = places[kept]
@@ -269,7 +286,7 @@ class Path:
 
 
 def _checked(waypoints: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Return a checked, read-only copy; shape (n, 3).
+    """Return a checked copy; shape (n, 3).
 
     Raises:
         InvalidValueError: See `Path`.
@@ -279,7 +296,6 @@ def _checked(waypoints: NDArray[np.float64]) -> NDArray[np.float64]:
         message = f"waypoints must be rows of x, y, yaw, not an array of shape {rows.shape}"
         raise InvalidValueError(message, "waypoints")
     check_waypoints(rows)
-    rows.flags.writeable = False
     return rows
 
 

@@ -35,6 +35,8 @@ class _Stop:
     since: Instant
     due: Instant
     """By then the vehicle has to stand."""
+    backwards: bool
+    """Direction in which the vehicle moved when it began."""
     cause: int | None
     """Id of the event that began it; None: the vehicle moved by itself."""
     found: Blocker | None = None
@@ -65,7 +67,8 @@ class Standstill(Concern):
         self._holds = driving.holds
         self._stop: _Stop | None = None
         self._rolls_until: Instant = 0
-        """A task that ended may have moved a vehicle that did not report it yet."""
+        """Until then it must stand in any case: a task that ended may have moved a vehicle that did
+        not report it yet, and one report of a standstill may be noise."""
 
     def wake_at(self) -> Instant | None:
         """Return by when the vehicle has to stand; None: no stop is watched, or it was told."""
@@ -102,7 +105,7 @@ class Standstill(Concern):
             return None
         by_us = was_driven or is_newly_held
         cause = self._outbox.record_input() if by_us else None
-        return _Stop(now, now + REACTION + self._braking_time(), cause)
+        return _Stop(now, now + REACTION + self._braking_time(), self._watch.is_backwards, cause)
 
     def _must_stand(self, now: Instant) -> bool:
         """Tell whether a vehicle that stood must not move again."""
@@ -118,16 +121,22 @@ class Standstill(Concern):
     def _judge(self, stop: _Stop, now: Instant) -> bool:
         """End the watch once the vehicle stands; tell anew when its pose is lost or is back."""
         speed_mps = self._watch.speed_since(stop.since)
-        if speed_mps is not None and self._watch.stands:
-            self._stop = None
-            if stop.found is None:
-                return False
-            self._watch.found(None)
-            self._outbox.emit(VehicleStopped(_s_between(stop.since, now)))
-            return True
+        # One that turned round stood in between: so the noise of a speed of 0 is no movement.
+        stood = self._watch.stands or self._watch.is_backwards is not stop.backwards
+        if speed_mps is not None and stood:
+            return self._end(stop, now)
         if stop.found is None or stop.found.code == _code(speed_mps):
             return False
         self._tell(stop, now)
+        return True
+
+    def _end(self, stop: _Stop, now: Instant) -> bool:
+        """End the watch of a vehicle that stood; return whether that told anything."""
+        self._stop, self._rolls_until = None, now + REACTION
+        if stop.found is None:
+            return False
+        self._watch.found(None)
+        self._outbox.emit(VehicleStopped(_s_between(stop.since, now)))
         return True
 
     def _tell(self, stop: _Stop, now: Instant) -> None:

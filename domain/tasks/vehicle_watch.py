@@ -89,6 +89,11 @@ class VehicleWatch:
             return False
         return abs(self._state.speed_mps) >= self.settings.standstill_mps
 
+    @property
+    def is_backwards(self) -> bool:
+        """Tell whether the vehicle moved backwards when it was last heard."""
+        return self._state is not None and self._state.speed_mps < 0.0
+
     def speed_since(self, since: Instant) -> float | None:
         """Return the present speed without its sign, in m/s.
 

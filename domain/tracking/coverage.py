@@ -81,23 +81,29 @@ class Coverage:
         if moved or is_ahead:
             self._trail.append(here)
         if distance_m is not None and is_ahead:
-            self._judge(distance_m)
+            self.left_out_m += self.missed_m(distance_m)
+            self.reached_m = distance_m
             self._trail.clear()
         elif len(self._trail) > MAX_TRAIL:
             del self._trail[::2]
 
-    def _judge(self, distance_m: float) -> None:
-        trail = np.array(self._trail) if len(self._trail) > 1 else None
+    def missed_m(self, distance_m: float) -> float:
+        """Return what was not passed of the path up to a distance along it, m."""
+        if not self._trail or distance_m <= self.reached_m:
+            return 0.0
+        trail = np.array(self._trail)
         x_m, y_m = self._trail[-1]
-        while self.reached_m < distance_m:
-            until_m = min(self.reached_m + self._step_m, distance_m)
-            middle = self.path.point_at((self.reached_m + until_m) / 2)
+        missed_m, begin_m = 0.0, self.reached_m
+        while begin_m < distance_m:
+            end_m = min(begin_m + self._step_m, distance_m)
+            middle = self.path.point_at((begin_m + end_m) / 2)
             away_m = hypot(middle.x_m - x_m, middle.y_m - y_m)
-            if away_m > self._near_m and trail is not None:
+            if away_m > self._near_m:
                 away_m = float(np.hypot(*(trail - (middle.x_m, middle.y_m)).T).min())
             if away_m > self._near_m:
-                self.left_out_m += until_m - self.reached_m
-            self.reached_m = until_m
+                missed_m += end_m - begin_m
+            begin_m = end_m
+        return missed_m
 
 
 def _place(state: VehicleState) -> _Place:

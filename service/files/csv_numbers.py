@@ -21,6 +21,9 @@ from service.files.csv_table import (
 
 Floats = NDArray[np.float64]
 
+_LARGEST = 1e20
+"""A time in ns is less, and its square is finite."""
+
 
 @dataclass(frozen=True, slots=True)
 class Numbers:
@@ -148,7 +151,7 @@ def read_numbers(table: CsvTable, used: Sequence[int], names: Sequence[str]) -> 
 
 
 def first_rows(table: CsvTable, rows: int, columns: int) -> Floats:
-    """Return the numbers of the first rows and columns; NaN where there is none.
+    """Return the numbers of the first rows and columns; NaN where there is none, or an endless one.
 
     Args:
         table: The file.
@@ -171,9 +174,10 @@ def first_rows(table: CsvTable, rows: int, columns: int) -> Floats:
 
 def _number_or_nan(cell: str) -> float:
     try:
-        return number_in(cell)
+        number = number_in(cell)
     except ValueError:
         return np.nan
+    return number if abs(number) < _LARGEST else np.nan
 
 
 def _out_of_range(

@@ -19,6 +19,7 @@ _FAR = 100.0
 """How many times its extent a path in degrees is away from 0."""
 _ENOUGH = 0.9
 _STEP_M = 0.02
+_SOME_ROWS = 10
 
 Floats = NDArray[np.float64]
 
@@ -50,17 +51,25 @@ def other_format_in(sample: Floats) -> Suspect | None:
     return None
 
 
-def no_place_in(sample: Floats, places: Floats, *, heading_fits: bool) -> Suspect | None:
+def no_place_in(
+    sample: Floats, places: Floats, *, is_heading: bool, may_be_heading: bool
+) -> Suspect | None:
     """Return what the first two columns are if they cannot be x and y in m; None: they can.
 
     Args:
         sample: As for `other_format_in`.
         places: The first two columns of all rows; finite.
-        heading_fits: Whether the third column is a heading that fits closely.
+        is_heading: Whether the third column is a heading beyond doubt.
+        may_be_heading: Whether it fits as one.
     """
-    if sample.shape[1] >= 3 and not heading_fits and _is_distance(sample[:, :3]):
-        message = "the first column is the distance along the path of the next two, not x"
-        return Suspect(message, "say what the columns are, such as ?columns=s,x,y")
+    if sample.shape[1] >= 3 and not is_heading:
+        if _is_distance(sample[:, :3]):
+            message = "the first column is the distance along the path of the next two, not x"
+            return Suspect(message, "say what the columns are, such as ?columns=s,x,y")
+        if _is_count(sample[:, :3]) or (not may_be_heading and _is_clock(sample[:, :3])):
+            message = "the first column grows evenly, like a time or a count"
+            hint = "say what the columns are, such as ?columns=t,x,y, or ?columns=x,y if it is x"
+            return Suspect(f"{message}, and the third is no heading", hint)
     if _are_degrees(places):
         message = "the first two columns look like latitude and longitude, not x and y in m"
         return Suspect(message, "project them, such as to UTM; ?columns=x,y if they are m")
@@ -95,6 +104,23 @@ def _is_distance(rows: Floats) -> bool:
     # Each step is rounded, to 1 cm in some files.
     close = np.abs(grown - moved)[steps] <= 0.25 * grown[steps]
     return float(close.mean()) >= _ENOUGH
+
+
+def _is_count(rows: Floats) -> bool:
+    """Return whether the first column counts the rows, while the other two change."""
+    return len(rows) > 2 and bool((np.diff(rows[:, 0]) == 1).all()) and _change(rows)
+
+
+def _is_clock(rows: Floats) -> bool:
+    """Return whether the first column grows evenly, while the other two change."""
+    grown = np.diff(rows[:, 0])
+    if len(rows) < _SOME_ROWS or not (grown > 0).all():
+        return False
+    return float(grown.std()) <= 0.2 * float(grown.mean()) and _change(rows)
+
+
+def _change(rows: Floats) -> bool:
+    return bool((np.ptp(rows[:, 1:], axis=0) > 0).all())
 
 
 def _are_degrees(places: Floats) -> bool:

@@ -3,6 +3,7 @@
 It knows nothing of what the columns mean.
 """
 
+import re
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 
@@ -19,6 +20,7 @@ _COMMENTS = ("#", "%")
 _MAX_TITLES = 20
 """Lines of text before the first number."""
 _MAX_NAME = 80
+_BEFORE_UNIT = re.compile(r"[ \t]+(?=[\[(])")
 _HINT = "each line must be x,y or x,y,yaw in m and rad; ?columns= names other columns"
 
 
@@ -174,7 +176,9 @@ def _header(
     for index in candidates:
         line = lines[index].lstrip().lstrip("".join(_COMMENTS))
         for separator in dict.fromkeys((dialect.separator, ",", ";", "\t", " ")):
-            cells = Dialect(separator).cells(line)
+            # Blanks before a unit separate nothing.
+            text = _BEFORE_UNIT.sub("", line) if separator == " " and '"' not in line else line
+            cells = Dialect(separator).cells(text)
             names = tuple(cell.strip().strip('"')[:_MAX_NAME] for cell in cells)
             fitting = len(names) == columns[1] or columns[0] <= len(_trimmed(names)) <= columns[1]
             if fitting and names_columns(names):

@@ -36,8 +36,6 @@ from service.files.csv_table import (
 
 Floats = NDArray[np.float64]
 
-_CLOSE_RAD = 0.1
-"""A heading that fits so well is one, whatever else the first three columns might be."""
 _NO_ROTATION = 1e-6
 _QUATERNION = (Heading.RAD,)
 
@@ -59,6 +57,8 @@ class _Headings:
 
     yaws: Floats
     unit: Heading | None = None
+    fit: Fit | None = None
+    """None: they do not fit, or are those of the path."""
     from_path: bool = False
     warning: PathWarning | None = None
     misfit_at: int | None = None
@@ -113,8 +113,14 @@ def read_waypoint_file(
     is_given = heading is not None or columns is not None
     headings = _headings(numbers, where, ways, heading, is_given=is_given)
     if sample is not None:
-        fits = _fits_closely(headings, ways, sample)
-        _refuse(table, no_place_in(sample, numbers.values[:, :2], heading_fits=fits))
+        fit = headings.fit
+        suspect = no_place_in(
+            sample,
+            numbers.values[:, :2],
+            is_heading=_is_heading(fit, sample),
+            may_be_heading=fit is not None and fit.is_close,
+        )
+        _refuse(table, suspect)
     reading = reading_of(
         table,
         names,
@@ -181,15 +187,14 @@ def _refuse(table: CsvTable, suspect: Suspect | None) -> None:
         raise refused("NOT_A_PATH", suspect.message, table.first + 1, suspect.hint)
 
 
-def _fits_closely(headings: "_Headings", ways: Ways, sample: Floats) -> bool:
+def _is_heading(fit: Fit | None, sample: Floats) -> bool:
     """Return whether the third column is a heading beyond doubt.
 
-    Degrees also have to be the same everywhere: y in m is within 30 degrees of a way along x soon.
+    Degrees also have to be the same everywhere: y in m is within 10 degrees of a way along x soon.
     """
-    if headings.unit is None or headings.misfit_at is not None:
-        return False
-    is_steady = headings.unit is Heading.RAD or float(np.ptp(sample[:, 2])) == 0.0
-    return is_steady and ways.fit(headings.yaws, Heading.RAD).misfit_rad <= _CLOSE_RAD
+    if fit is None or fit.follows:
+        return fit is not None
+    return fit.is_close and (fit.heading is Heading.RAD or float(np.ptp(sample[:, 2])) == 0.0)
 
 
 # --- headings ------------------------------------------------------------------------------------
@@ -221,16 +226,18 @@ def _headings(
     if heading is not None and where.yaw is not None:
         among = (heading,)
     is_empty = not is_given and not values.any()
-    fit = ways.fit(values, Heading.RAD) if is_empty else ways.best_fit(values, among)
-    if is_empty and not fit.fits:
+    among = (Heading.RAD,) if is_empty else among
+    is_known = where.is_named or heading is not None
+    fit, fits = ways.best_fit(values, among, is_named=is_known or is_empty)
+    if is_empty and not fits:
         message = "all headings are 0 and do not fit the path; the directions of the path are used"
         warning = PathWarning("HEADINGS_ZERO", message)
         return _Headings(along(places), from_path=True, warning=warning)
     unit = None if where.quaternion is not None else fit.heading
     yaws = fit.heading.yaws(values)
-    if fit.fits:
+    if fits:
         warning_or_none = _reversed_warning() if fit.is_reversed else None
-        return _Headings(yaws, unit, warning=warning_or_none)
+        return _Headings(yaws, unit, fit, warning=warning_or_none)
     at = ways.first_misfit(values, fit.heading)
     misfit = _misfit_warning(fit, where, at, is_given=is_given)
     if is_given:

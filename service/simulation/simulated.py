@@ -1,22 +1,31 @@
 """The simulated robot in real time: a backend without a real robot."""
 
+import asyncio
+from collections import deque
+from collections.abc import Sequence
+from functools import partial
+
 from domain.commands import Drive, NodeCommand
-from domain.inputs import BackendStatus
+from domain.inputs import BackendStatus, NodeAnswer, NodeReport, ReportBacklog
 from domain.parameters import Parameters
 from domain.simulation.node_settings import Fault
-from domain.simulation.robot import SimulatedRobot
+from domain.simulation.robot import RobotMessage, SimulatedRobot
 from domain.state_and_mode import PartName
+from domain.timebase import Instant
 from service.clock import Clock
-from service.pacing import Pacer
+from service.pacing import AT_ONCE, Pacer
 from service.ports import Deliver
 from service.readings import DirectReadings, ReadingInput, Submit
 from service.simulation.mock_source import MockHandle
+
+_SOURCE = "simulated nodes"
 
 
 class SimulatedBackend:
     """Runs a `SimulatedRobot` on a clock: nodes, vehicle and, if it has them, mock signals.
 
-    One adapter for all, since messages of the same instant have one order.
+    One adapter for all, since messages of the same instant have one order. Only of very many, those
+    of the nodes come last, as with ROS 2.
     """
 
     def __init__(self, robot: SimulatedRobot, clock: Clock) -> None:
@@ -29,7 +38,35 @@ class SimulatedBackend:
     async def run(self, deliver: Deliver) -> None:
         """Deliver the state of every node and of the vehicle, then changes, until cancelled."""
         deliver(BackendStatus(available=True))
-        await self._pacer.run(deliver)
+        await self._pacer.run(deliver, partial(self._deliver_in_turns, deliver))
+
+    async def _deliver_in_turns(
+        self, deliver: Deliver, due: Sequence[RobotMessage], delivered: Instant
+    ) -> None:
+        """Deliver very many messages, some at a time, those of the nodes last.
+
+        Other tasks must keep running, and a pose that comes behind the reports of thousands of
+        nodes must not become too old meanwhile.
+        """
+        urgent = deque[RobotMessage]()
+        others = deque[tuple[Instant, RobotMessage]]()
+        """Each with up to when all that was due before it was handed over."""
+        told, advanced = None, delivered
+        while due or urgent or others:
+            for message in due:
+                if isinstance(message, NodeReport | NodeAnswer):
+                    others.append((delivered, message))
+                else:
+                    urgent.append(message)
+            if others and others[0][0] != told:
+                told = others[0][0]
+                deliver(ReportBacklog(_SOURCE, told))
+            for _ in range(min(AT_ONCE, len(urgent) + len(others))):
+                deliver(urgent.popleft() if urgent else others.popleft()[1])
+            await asyncio.sleep(0)
+            delivered, advanced = advanced, self._clock.now()
+            due = self.robot.advance(advanced)
+        deliver(ReportBacklog(_SOURCE, None))
 
     def readings(self, submit: Submit) -> ReadingInput:
         """Return the input for external readings."""

@@ -1,6 +1,7 @@
 """The link to ROS 2, against real nodes in processes of their own."""
 
 import asyncio
+import sys
 import threading
 from typing import Any
 
@@ -30,6 +31,10 @@ async def configure(client: Client) -> bool:
 
 def threads() -> set[str]:
     return {thread.name for thread in threading.enumerate() if thread.name.startswith("ros2 ")}
+
+
+async def test_no_thread_of_ros_keeps_the_interpreter_from_the_event_loop(link: Link) -> None:
+    assert sys.getswitchinterval() <= 0.001
 
 
 async def test_a_node_is_asked_and_told_what_to_do(link: Link) -> None:

@@ -307,6 +307,18 @@ def small_distances_first() -> str:
     return rows((track.s, track.x, track.y))
 
 
+def counts_first() -> str:
+    """Index, x, y without a header, as data frames are saved."""
+    track = Track(0.2)
+    return rows((np.arange(float(COUNT)), track.x, track.y))
+
+
+def times_first() -> str:
+    """Seconds since the start, x, y without a header."""
+    track = Track()
+    return rows((track.t, track.x, track.y))
+
+
 def widths() -> str:
     """x, y and a width without a header."""
     track = Track()
@@ -377,6 +389,8 @@ FIELD_FILES: tuple[Callable[[], str], ...] = (
     exponents,
     distances_first,
     small_distances_first,
+    counts_first,
+    times_first,
     widths,
     speeds,
     times,

@@ -48,7 +48,7 @@ class Ros2Backend:
         limits = robot.to_vehicle_limits()
         self._vehicle = RosVehicle(robot.ros2, limits, graph, clock)
         room = _ROOM + _ROOM_PER_NODE * len(model.nodes)
-        self._delivery = Delivery(room)
+        self._delivery = Delivery(room, clock)
 
     async def run(self, deliver: Deliver) -> None:
         """Deliver the messages of nodes, signals and vehicle until cancelled; then leave the graph.

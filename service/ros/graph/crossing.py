@@ -17,6 +17,10 @@ from service.ros.graph.graph import Fields, Message
 MAX_UNANSWERED = 32
 """Most unanswered requests to one of our services; further ones get an empty response."""
 
+POSTS_AT_ONCE = 8
+"""Most calls from other threads in one pass of the event loop. Fifty nodes answer at the same time,
+and what follows from an answer takes a tenth of a millisecond and more."""
+
 _CANCEL_S = 0.5
 _AT_ONCE = 20
 """Most messages of a topic that are processed in one pass of the event loop."""
@@ -33,21 +37,31 @@ class Crossing:
         self.closed = False
         """Whether the crossing is closed: nothing is passed on any more."""
         self._loop: asyncio.AbstractEventLoop | None = None
+        self._posted: deque[tuple[Callable[..., object], tuple[object, ...]]] = deque()
+        self._lock = threading.Lock()
         self._tasks: set[asyncio.Task[None]] = set()
 
     def open(self) -> None:
         """Connect to the running event loop."""
-        self._loop = asyncio.get_running_loop()
+        loop = asyncio.get_running_loop()
+        if loop is not self._loop:
+            self._posted.clear()
+        self._loop = loop
 
     def post(self, callback: Callable[..., object], *arguments: object) -> None:
         """Call a function on the event loop's thread; may be used from any thread.
 
-        The function is not called once the crossing is closed.
+        The function is not called once the crossing is closed. Many calls wake the loop once.
         """
         if self.closed or self._loop is None:
             return
+        with self._lock:
+            first = not self._posted
+            self._posted.append((callback, arguments))
+        if not first:
+            return
         try:
-            self._loop.call_soon_threadsafe(self._call, callback, *arguments)
+            self._loop.call_soon_threadsafe(self._hand_on)
         except RuntimeError:
             # The loop is closed: nothing is left that could process the call.
             return
@@ -69,6 +83,18 @@ class Crossing:
             task.cancel()
         if self._tasks:
             await asyncio.wait(self._tasks, timeout=_CANCEL_S)
+
+    def _hand_on(self) -> None:
+        """Call some of the posted functions, and the others in the next passes of the loop."""
+        with self._lock:
+            count = min(len(self._posted), POSTS_AT_ONCE)
+            posted = [self._posted.popleft() for _ in range(count)]
+            has_more = bool(self._posted)
+        for callback, arguments in posted:
+            # One call each, so that an exception in one does not lose the others.
+            self.call_next(callback, *arguments)
+        if has_more:
+            asyncio.get_running_loop().call_soon(self._hand_on)
 
     def _call(self, callback: Callable[..., object], *arguments: object) -> None:
         if not self.closed:

@@ -9,6 +9,7 @@ while a client is joining or leaving; all other messages are published by a `Sen
 import asyncio
 import logging
 import os
+import sys
 import threading
 import time
 from collections.abc import Awaitable, Callable, Sequence
@@ -66,6 +67,8 @@ _DOMAINS = range(233)
 _JOIN_S = 1.0
 _STOP_NODE = "pilothouse_stop"
 """Commands speed 0 if the process that commands the vehicle ends."""
+_SWITCH_S = 0.0005
+"""For how long a lane may keep the interpreter from the event loop; by default it is 5 ms, each."""
 _REQUESTS_AT_ONCE = 2
 """Per pass of the event loop; one request takes 0.1 to 0.5 ms."""
 
@@ -85,6 +88,7 @@ class RosLink:
             RuntimeError: The middleware does not start, or ROS_DOMAIN_ID is invalid.
         """
         _check_domain()
+        sys.setswitchinterval(_SWITCH_S)
         self.context = rclpy.Context()
         # No arguments, since those of the command line are not for ROS; no signal handlers, since
         # `pilothouse serve` handles SIGTERM and SIGINT.

@@ -152,6 +152,38 @@ def test_a_path_3_5_m_beside_is_approached_slowly_and_driven(
     assert max(look.speed_mps for look in trip.looks[:beside]) <= 1.0
 
 
+@pytest.mark.parametrize("speed_mps", [2.8, 8.0])
+@pytest.mark.parametrize("turn_rad", [0.0, pi / 4, pi / 2, pi])
+@pytest.mark.parametrize("plant", sorted(PLANTS))
+def test_a_task_that_replaces_one_at_speed_brakes_before_it_turns(
+    plant: str, turn_rad: float, speed_mps: float
+) -> None:
+    trip = Trip(through((0, 0), (50, 0), (300, 0)), speed_mps=speed_mps, plant=PLANTS[plant])
+    trip.drive(12.0)
+    here = trip.robot.robot.vehicle.state.pose
+    begin = (here.x_m - 3.5 * sin(turn_rad), here.y_m + 3.5 * cos(turn_rad))
+    end = (begin[0] + 60 * cos(turn_rad), begin[1] + 60 * sin(turn_rad))
+    trip.robot.submit_task(through(begin, end), controller="stanley", speed_mps=speed_mps)
+    trip.drive()
+
+    assert trip.robot.task.status is TaskPhase.SUCCEEDED, trip.robot.task.reason
+    assert trip.lateral_mps2() <= 2.0 + 1e-6
+
+
+def test_a_hold_while_it_brakes_before_an_approach_changes_nothing() -> None:
+    trip = Trip(through((0, 0), (300, 0)), speed_mps=8.0, plant=PLANTS["gazebo-like"])
+    trip.drive(12.0)
+    here = trip.robot.robot.vehicle.state.pose
+    new = through((here.x_m, 0.0), (here.x_m, 60.0))
+    trip.robot.submit_task(new, controller="stanley", speed_mps=2.8)
+    for _ in range(4):
+        trip.drive(0.5)
+        trip.hold(0.2)
+    trip.drive()
+
+    assert trip.robot.task.status is TaskPhase.SUCCEEDED, trip.robot.task.reason
+
+
 def test_a_vehicle_whose_wheels_are_stuck_gives_up_with_the_reason() -> None:
     stuck = Plant(steering_rate_radps=1e-6)
     trip = Trip(through((0, 3.5), (50, 3.5), (100, 3.5)), plant=stuck, start=Pose(0.0, 0.0, pi))
@@ -224,6 +256,29 @@ def test_a_path_far_from_the_origin_is_driven_alike(
     for one, other in zip(here.looks, far.looks, strict=True):
         assert other.speed_mps == pytest.approx(one.speed_mps, abs=1e-6)
         assert other.commanded_rad == pytest.approx(one.commanded_rad, abs=1e-6)
+
+
+@pytest.mark.parametrize("yaw_rad", [0.0, pi / 2, pi, -pi / 2])
+def test_a_path_at_the_edge_of_the_range_is_approached_from_beyond_it(yaw_rad: float) -> None:
+    edge = 1e7
+    places = ((edge - 30.0, edge), (edge, edge))
+    trip = Trip(through(*places), start=Pose(edge - 30.0, edge - 2.0, yaw_rad))
+    trip.drive()
+
+    assert trip.robot.task.status is TaskPhase.SUCCEEDED, trip.robot.task.reason
+
+
+@pytest.mark.parametrize("x_m", [1e7, 1e15, -1e300])
+def test_a_pose_that_jumps_anywhere_ends_the_task_with_a_reason(x_m: float) -> None:
+    trip = Trip(through((0, 0), (50, 0), (100, 0)))
+    trip.drive(6.0)
+    vehicle = trip.robot.robot.vehicle
+    vehicle._state = type(vehicle.state)(Pose(x_m, x_m, 0.0), 0.0, 0.0)  # noqa: SLF001
+    trip.hold()
+    trip.drive()
+
+    assert trip.robot.task.status is TaskPhase.ABORTED
+    assert trip.robot.task.reason
 
 
 # --- any size ------------------------------------------------------------------------------------

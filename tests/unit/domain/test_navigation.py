@@ -371,7 +371,8 @@ def test_an_end_that_is_passed_with_a_part_left_out_is_no_success(drive: Drive20
     drive.step(20.5)
 
     assert not result_of(drive).succeeded
-    assert result_of(drive).reason == "the end is passed, but 9.5 m were skipped"
+    # What is within 3 m of the places where it was is passed.
+    assert result_of(drive).reason == "the end is passed, but 6.5 m were skipped"
 
 
 def test_what_an_earlier_goal_of_the_task_left_out_counts(drive: Drive20Hz) -> None:

@@ -249,10 +249,24 @@ def test_a_pose_that_is_late_by_our_own_fault_is_taken_before_its_age_is_judged(
     assert not {"hold.set", "task.pausing"} & {e.kind for e in (*taken.events, *outputs.events)}
 
 
-def test_missed_control_steps_are_not_made_up_for_after_a_stall(robot: CoreRobot) -> None:
+def test_of_missed_control_steps_one_is_made_up_for_with_the_first_pose(
+    robot: CoreRobot,
+) -> None:
     robot.submit_task(straight())
     robot.advance(1)
-    late = robot.now + seconds(0.7)
+    late = robot.now + seconds(0.71)
+    first = robot.onboard.take_in(at(robot), late)
+    second = robot.onboard.take_in(at(robot), late)
+    assert [type(command).__name__ for command in first.commands] == ["Drive"]
+    assert second.commands == ()
+
+
+def test_without_a_pose_no_missed_control_step_is_made_up_for(robot: CoreRobot) -> None:
+    robot.submit_task(straight())
+    robot.advance(1)
+    late = robot.now + seconds(0.71)
+    button = Readings((Reading("estop", False),), "pad")
+    assert robot.onboard.take_in(button, late).commands == ()
     assert robot.onboard.take_in(at(robot), late).commands == ()
     outputs = robot.onboard.handle(TimePassed(), late + seconds(0.05))
     assert [type(command).__name__ for command in outputs.commands] == ["Drive"]

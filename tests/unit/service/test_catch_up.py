@@ -261,6 +261,31 @@ def test_deadlines_wait_for_one_window_after_a_stall() -> None:
     assert ticking.catch_up.until is None
 
 
+def test_a_tick_that_is_late_lets_deadlines_wait_though_the_next_one_is_not() -> None:
+    ticking, stalled = Ticking(), LATE + 1
+    ticking.catch_up.note_tick(stalled)
+    ticking.tick_due = stalled + seconds(0.05)
+    assert ticking.catch_up.is_on(stalled)
+
+
+def test_a_window_that_passed_unused_does_not_hide_the_next_stall() -> None:
+    ticking, stalled = Ticking(), LATE + 1
+    ticking.catch_up.note_tick(stalled)
+    again = stalled + seconds(10)
+    ticking.catch_up.note_tick(again)
+    ticking.tick_due = again + seconds(0.05)
+    assert ticking.catch_up.is_on(again)
+
+
+def test_a_tick_does_not_end_a_window_that_no_deadline_was_judged_after() -> None:
+    ticking, now = Ticking(), LATE + 1
+    for _ in range(MOST_WINDOWS):
+        ticking.catch_up.is_on(now)
+        now += seconds(1)
+    ticking.catch_up.note_tick(now)
+    assert not ticking.catch_up.is_on(now)
+
+
 def test_deadlines_are_judged_in_the_end_however_late_the_loop_is() -> None:
     ticking, now, waited = Ticking(), LATE + 1, 0
     while ticking.catch_up.is_on(now):

@@ -1,10 +1,11 @@
 import asyncio
 import heapq
+from collections.abc import Sequence
 
 import pytest
 
 from domain.timebase import Instant, seconds, to_seconds
-from service.pacing import Alarm, Pacer
+from service.pacing import AT_ONCE, Alarm, Pacer
 from tests.support.manual_clock import ManualClock, settle
 
 
@@ -122,15 +123,21 @@ async def test_many_things_handed_in_at_once_wake_it_once() -> None:
     assert paced.alarms.advanced == 2
 
 
-async def test_the_rest_of_the_service_runs_while_thousands_of_things_are_delivered() -> None:
-    paced = Paced(*[0.0] * 1000)
-    heard_by_turn = []
-    while len(paced.heard) < 1000:
-        await asyncio.sleep(0)
-        heard_by_turn.append(len(paced.heard))
-    await paced.stop()
+async def test_very_many_things_that_are_due_together_are_delivered_by_who_can_do_that() -> None:
+    one, many = list[float](), list[tuple[int, Instant]]()
 
-    assert heard_by_turn == [25 * n for n in range(1, 41)]
+    async def take(due: Sequence[float], delivered: Instant) -> None:
+        many.append((len(due), delivered))
+
+    clock = ManualClock()
+    pacer = Pacer(Alarms(1.0, *[2.0] * (AT_ONCE + 1), *[3.0] * AT_ONCE), clock)
+    running = asyncio.create_task(pacer.run(one.append, take))
+    await clock.advance(3.0)
+    running.cancel()
+    await asyncio.wait([running])
+
+    assert many == [(AT_ONCE + 1, seconds(1.0))], "all that was due up to 1 s was delivered before"
+    assert len(one) == 1 + AT_ONCE
 
 
 async def test_what_the_listener_raises_ends_it() -> None:

@@ -124,6 +124,28 @@ def test_a_frame_without_news_of_the_task_still_brings_the_speed(service: Servic
     assert "5.0 of 10.0 m  1.5 m/s" in followed.shown
 
 
+@pytest.mark.parametrize("terminal", [False, True])
+def test_a_vehicle_that_should_stand_and_does_not_is_told_once_and_again_when_it_changes(
+    service: Service, terminal: bool
+) -> None:
+    def moving(message: str | None) -> Json:
+        found = None if message is None else {"code": "STILL_MOVING", "message": message}
+        return {"speed_mps": 2.0, "still_moving": found}
+
+    followed = Followed(
+        service,
+        shows(task("PAUSING", 3, reason="lunch"), vehicle=moving("it moved at 2.6 m/s")),
+        frame(vehicle=moving("it moved at 2.6 m/s")),
+        frame(vehicle=moving(None)),
+        frame(vehicle=moving("there was no pose")),
+        shows(task("SUCCEEDED", 10)),
+        terminal=terminal,
+    )
+
+    told = [line for line in followed.said if line.startswith("task t1: ")]
+    assert told == ["task t1: it moved at 2.6 m/s", "task t1: there was no pose"]
+
+
 def test_a_held_task_shows_its_reason_within_80_columns(
     service: Service, monkeypatch: pytest.MonkeyPatch
 ) -> None:

@@ -38,12 +38,17 @@ KEPT = {"source": 4}
         (b'{"in":[{"value":true}]}', {"value": True}),
         (b'[{"value":true,"source":"a"}]', {"value": True}),
         (b'{"value":{"value":true}}', {"value": True}),
+        (b'{"value":{"enabled":1}}', {"value": True}),
+        (b'{"value":[{"data":"on"}]}', {"value": True}),
+        (b'[{"signal":"door","value":7},{"signal":"/estop","value":true}]', {"value": True}),
         (b'{"Value":true}', {"value": True}),
         (b'{"/value":true}', {"value": True}),
         ('{"value":true}'.encode("utf-16"), {"value": True}),
         ('{"value":true,'.encode("utf-16-be"), {"value": True}),
         (b'["value",true]', None),
         (b"true", None),
+        (b'{"enabled":true}', None),
+        (b'{"value":[true]}', None),
         (b"", None),
     ],
 )
@@ -71,6 +76,24 @@ def test_a_long_text_is_looked_at_in_linear_time(part: str) -> None:
         assert not is_stop_of_stream({"text": text})
         assert not is_stop_of_rosbridge({"text": text})
         members_of({"text": text})
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        '{"value":' * 900 + "0" + "}" * 900,
+        '{"signal":"estop","x":' * 900 + "0" + "}" * 900,
+        '{"topic":"estop","msg":' * 900 + "0" + "}" * 900,
+        "[" + "{}," * 80_000 + "0]",
+        '{"value":[' + '{"b":1},' * 30_000 + "0]}",
+    ],
+)
+def test_each_object_of_what_is_nested_is_looked_at_once(text: str) -> None:
+    """If each were looked at from each one around it, this would take minutes."""
+    for _ in range(20):
+        assert stop_body(text.encode(), "value", KEPT) is None
+        assert not is_stop_of_stream({"text": text})
+        assert not is_stop_of_rosbridge({"text": text})
 
 
 def test_nothing_of_another_signal_or_topic_asks_for_a_stop() -> None:

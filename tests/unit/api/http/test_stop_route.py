@@ -62,9 +62,10 @@ def _is_stopped(robot: HttpRobot) -> bool:
         (STOP, '{"engaged":true}'.encode("utf-16"), ""),
         (STOP, '{"Engaged":true}', "/engaged"),
         (BATCH, '{"/estop":true,"estop":false}', "/estop"),
-        (BATCH, '{"estop":{"value":true},"x":{"estop":true}}', "/estop"),
+        (BATCH, '{"estop":{"value":true}}', "/estop"),
+        (BATCH, '{"signals":[{"signal":"estop","value":true}]}', "/signals"),
     ],
-    ids=range(36),
+    ids=range(37),
 )
 async def test_a_stop_is_taken_and_what_was_ignored_is_told(
     robot: HttpRobot, path: str, body: str | bytes, pointer: str

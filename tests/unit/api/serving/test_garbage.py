@@ -6,7 +6,7 @@ from collections.abc import Iterator
 
 import pytest
 
-from api.serving.garbage import keep_survivors, settle_heap
+from api.serving.garbage import Heap
 
 
 class Thing:
@@ -15,12 +15,18 @@ class Thing:
     other: "Thing | None" = None
 
 
+class Clock:
+    now_s = 0.0
+
+
 @pytest.fixture(autouse=True)
-def _settled_heap() -> Iterator[None]:
+def clock() -> Iterator[Clock]:
     thresholds = gc.get_threshold()
-    settle_heap()
-    yield
-    gc.callbacks.remove(keep_survivors)
+    clock = Clock()
+    heap = Heap(lambda: clock.now_s)
+    heap.settle()
+    yield clock
+    gc.callbacks.remove(heap.follow)
     gc.set_threshold(*thresholds)
     gc.unfreeze()
 
@@ -53,3 +59,32 @@ def test_what_is_frozen_is_released_by_its_reference_count() -> None:
     del thing
 
     assert seen() is None
+
+
+def old_garbage(count: int) -> list[weakref.ref[Thing]]:
+    """Return references to things that refer to each other, and were in use when frozen."""
+    things = [Thing() for _ in range(count)]
+    for thing in things:
+        thing.other = thing
+    gc.collect()
+    return [weakref.ref(thing) for thing in things]
+
+
+def test_when_what_is_frozen_has_grown_by_half_its_garbage_is_collected(clock: Clock) -> None:
+    garbage = old_garbage(gc.get_freeze_count())
+
+    gc.collect()
+    assert garbage[0]() is not None
+    clock.now_s += 600.0
+    gc.collect()
+
+    assert {seen() for seen in garbage} == {None}
+
+
+def test_garbage_that_is_little_makes_no_collection_long(clock: Clock) -> None:
+    garbage = old_garbage(100)
+
+    clock.now_s += 600.0
+    gc.collect()
+
+    assert garbage[0]() is not None

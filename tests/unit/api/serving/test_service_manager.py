@@ -167,12 +167,12 @@ def test_it_tells_that_it_stops(manager_socket: Socket) -> None:
 
 
 def test_without_a_manager_nobody_is_told_and_no_tick_is_watched(supervisor: Supervisor) -> None:
-    before = [*supervisor.publisher.on_tick]
+    watched = list(supervisor.publisher.on_tick)
     nobody = ServiceManager.of({"WATCHDOG_USEC": "2000000"})
     nobody.watch(supervisor)
     nobody.say_stopping()
 
-    assert supervisor.publisher.on_tick == before
+    assert supervisor.publisher.on_tick == watched
 
 
 async def test_a_manager_that_is_gone_is_complained_of_and_does_not_end_the_tick(

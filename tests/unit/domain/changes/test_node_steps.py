@@ -11,6 +11,7 @@ from domain.inputs import (
     ParametersRequest,
     Reading,
     Readings,
+    ReportBacklog,
     TimePassed,
     TransitionRequest,
 )
@@ -147,6 +148,31 @@ def test_a_node_that_answers_nothing_at_all_times_out_after_it_was_asked_for_its
         "drive_base: configure: not done within 10 s, and the node did not answer a query of"
         " its state"
     )
+
+
+def test_no_node_is_late_while_its_report_may_wait_to_be_taken_in() -> None:
+    core = _core()
+    _configure(core)
+    core.handle(ReportBacklog("nodes", since=seconds(9)), seconds(9.5))
+    core.handle(TimePassed(), seconds(30))
+    assert core.change("c1").status is ChangeStatus.RUNNING
+    due = core.wake_at()
+    assert due is None or due > seconds(30), "it does not become due again and again"
+    core.handle(NodeReport(BASE, state=LifecycleState.INACTIVE), seconds(30))
+    assert core.change("c1").status is ChangeStatus.SUCCEEDED
+
+
+def test_a_node_is_late_once_all_that_came_before_its_deadline_is_taken_in() -> None:
+    core = _core()
+    _configure(core)
+    core.handle(ReportBacklog("nodes", since=seconds(9)), seconds(9.5))
+    core.handle(ReportBacklog("others", since=seconds(40)), seconds(12))
+    assert core.handle(TimePassed(), seconds(12)).commands == ()
+    core.handle(ReportBacklog("nodes", since=seconds(11)), seconds(12))
+    assert core.handle(TimePassed(), seconds(12)).commands == (AskFacts(2, BASE),)
+    core.handle(ReportBacklog("nodes", since=None), seconds(14))
+    core.handle(TimePassed(), seconds(14))
+    assert core.change("c1").status is ChangeStatus.TIMED_OUT
 
 
 @pytest.mark.parametrize(

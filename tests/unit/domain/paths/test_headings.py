@@ -149,7 +149,7 @@ def test_the_unit_in_which_headings_fit_is_found(heading: Heading) -> None:
         Heading.RAD_NORTH: yaws - math.pi / 2,
         Heading.RAD_COMPASS: math.pi / 2 - yaws,
     }
-    fit = Ways(places).best_fit(turned[heading], list(Heading))
+    fit, _ = Ways(places).best_fit(turned[heading], list(Heading))
 
     assert (fit.heading, fit.fits, fit.is_reversed) == (heading, True, False)
 
@@ -157,13 +157,13 @@ def test_the_unit_in_which_headings_fit_is_found(heading: Heading) -> None:
 def test_headings_against_the_way_are_told_as_reversed() -> None:
     places, yaws = circle()
 
-    assert Ways(places).best_fit(wrapped(yaws + math.pi), [RAD, DEG, COMPASS]).is_reversed
+    assert Ways(places).best_fit(wrapped(yaws + math.pi), [RAD, DEG, COMPASS])[0].is_reversed
 
 
 def test_radians_against_the_way_are_no_degrees_along_it() -> None:
     places = np.column_stack((np.arange(60.0), np.zeros(60)))
     # 3.19 rad is the way back; 3.19 degrees are the way.
-    fit = Ways(places).best_fit(np.full(60, 3.19), [RAD, DEG, COMPASS])
+    fit, _ = Ways(places).best_fit(np.full(60, 3.19), [RAD, DEG, COMPASS])
 
     assert (fit.heading, fit.is_reversed) == (RAD, True)
 
@@ -171,7 +171,7 @@ def test_radians_against_the_way_are_no_degrees_along_it() -> None:
 def test_a_heading_along_the_way_is_preferred_to_one_against_it() -> None:
     places = np.column_stack((-np.arange(60.0), np.arange(60.0)))
     # North-west is 315 on a compass; in degrees from east it is south-east.
-    fit = Ways(places).best_fit(np.full(60, 315.0), [DEG, COMPASS])
+    fit, _ = Ways(places).best_fit(np.full(60, 315.0), [DEG, COMPASS])
 
     assert (fit.heading, fit.is_reversed) == (COMPASS, False)
 
@@ -180,15 +180,15 @@ def test_a_heading_along_the_way_is_preferred_to_one_against_it() -> None:
 def test_what_is_the_same_all_around_a_circle_fits_in_no_unit(values: float) -> None:
     places, yaws = circle()
 
-    assert not Ways(places).best_fit(np.full_like(yaws, values), list(Heading)).fits
+    assert not Ways(places).best_fit(np.full_like(yaws, values), list(Heading))[1]
 
 
 def test_what_never_changes_fits_no_path_that_turns_now_and_then() -> None:
     corner = [(float(x), 0.0) for x in range(30)] + [(29.0, float(y)) for y in range(1, 10)]
     ways = Ways(np.array(corner))
 
-    assert not ways.best_fit(np.full(39, 2.0), [RAD, DEG, COMPASS]).fits
-    assert ways.best_fit(np.r_[np.full(30, 2.0), np.full(9, 92.0)], [RAD, DEG, COMPASS]).fits
+    assert not ways.best_fit(np.full(39, 2.0), [RAD, DEG, COMPASS])[1]
+    assert ways.best_fit(np.r_[np.full(30, 2.0), np.full(9, 92.0)], [RAD, DEG, COMPASS])[1]
 
 
 def test_a_time_on_a_straight_is_no_heading_of_many_turns() -> None:
@@ -196,7 +196,7 @@ def test_a_time_on_a_straight_is_no_heading_of_many_turns() -> None:
     # In degrees it would turn by 6 from beginning to end.
     times = 1_600_000_200 + 0.1 * np.arange(60.0)
 
-    assert not Ways(places).best_fit(times, list(Heading)).fits
+    assert not Ways(places).best_fit(times, list(Heading))[1]
 
 
 def test_headings_of_the_way_to_a_corner_fit_as_well_as_those_of_the_way_from_it() -> None:
@@ -212,8 +212,8 @@ def test_headings_of_the_way_to_a_corner_fit_as_well_as_those_of_the_way_from_it
 def test_one_way_or_none_says_too_little_to_doubt_a_heading(places: list[list[float]]) -> None:
     ways = Ways(np.array(places, dtype=float))
 
-    assert ways.best_fit(np.full(len(places), 5.0), [RAD, DEG, COMPASS]).heading is RAD
-    assert ways.best_fit(np.full(len(places), 90.0), [RAD, DEG, COMPASS]).heading is DEG
+    assert ways.best_fit(np.full(len(places), 5.0), [RAD, DEG, COMPASS])[0].heading is RAD
+    assert ways.best_fit(np.full(len(places), 90.0), [RAD, DEG, COMPASS])[0].heading is DEG
 
 
 def test_the_first_heading_beside_the_way_is_found() -> None:

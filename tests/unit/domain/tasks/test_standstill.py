@@ -6,7 +6,7 @@ import pytest
 
 from domain.inputs import Reading, Readings
 from domain.parts.system_model import SmhModel
-from domain.simulation.vehicle_settings import Plant, VehicleSettings
+from domain.simulation.vehicle_settings import Noise, Plant, VehicleSettings
 from domain.supervision import SupervisionSettings
 from domain.tasks.settings import TaskSettings
 from domain.timebase import seconds
@@ -240,6 +240,43 @@ def test_a_nudge_that_ends_at_once_is_no_news() -> None:
         robot.advance(0.05, 0.0)
 
     assert told(robot) == []
+
+
+def test_the_noise_of_a_vehicle_that_stands_is_no_movement() -> None:
+    robot = CoreRobot(
+        SmhModel({}, {}),
+        SupervisionSettings(SignalsBlock(stale_after_s=0.0).to_domain()),
+        vehicle=VehicleSettings(plant=Plant(braking_mps2=1.0, noise=Noise(speed_mps=0.3))),
+    )
+    robot.read(**GOOD)
+    robot.submit_task(straight(300))
+    robot.advance(5.0)
+    robot.stop()
+    robot.advance(600.0)
+
+    assert told(robot) == []
+
+
+def test_one_report_of_a_standstill_does_not_end_the_stop_of_a_vehicle_that_rolls_on() -> None:
+    robot = driving(2.0)
+    robot.cancel_task()
+    robot.advance(1.0, 1.9)
+    robot.advance(0.05, 0.0)
+    robot.advance(5.0, 1.9)
+
+    assert told(robot) == ["vehicle.still_moving"]
+
+
+def test_a_vehicle_that_rolls_to_and_fro_stood_in_between() -> None:
+    robot = driving(2.0)
+    robot.stop()
+    for _ in range(20):
+        robot.advance(0.5, 0.4)
+        robot.advance(0.5, -0.4)
+    assert told(robot) == []
+    robot.advance(2.0, -0.4)
+
+    assert told(robot) == ["vehicle.still_moving"]
 
 
 def test_without_a_task_something_else_may_drive_a_vehicle_that_stood() -> None:

@@ -16,8 +16,10 @@ def table(*columns: Floats) -> Floats:
     return np.column_stack(columns)
 
 
-def doubt(sample: Floats, *, heading_fits: bool = False) -> str:
-    found = other_format_in(sample) or no_place_in(sample, sample[:, :2], heading_fits=heading_fits)
+def doubt(sample: Floats, *, is_heading: bool = False, may_be: bool = False) -> str:
+    found = other_format_in(sample) or no_place_in(
+        sample, sample[:, :2], is_heading=is_heading, may_be_heading=may_be
+    )
     return "" if found is None else f"{found.message}: {found.hint}"
 
 
@@ -45,11 +47,29 @@ def test_a_diagonal_is_no_distance_where_its_heading_fits() -> None:
     along = np.arange(50.0)
     sample = table(along, along, np.full(50, np.pi / 4))
 
-    assert doubt(sample, heading_fits=True) == ""
+    assert doubt(sample, is_heading=True) == ""
 
 
 def test_a_straight_along_x_is_no_distance() -> None:
     assert doubt(table(np.arange(50.0), np.zeros(50), np.zeros(50))) == ""
+
+
+@pytest.mark.parametrize("steps", [np.ones(121), np.full(121, 0.04)])
+def test_a_count_and_a_clock_before_x_and_y_are_told(steps: Floats) -> None:
+    track = Track(0.2)
+
+    assert "?columns=t,x,y" in doubt(table(np.cumsum(steps), track.x, track.y))
+
+
+def test_a_clock_may_be_x_where_the_third_column_fits_as_a_heading() -> None:
+    sample = table(np.linspace(0, 5, 121), 0.01 * TRACK.x, TRACK.y)
+
+    assert doubt(sample, may_be=True) == ""
+    assert doubt(sample, is_heading=True) == ""
+
+
+def test_x_in_even_steps_with_a_third_column_of_zeros_is_x() -> None:
+    assert doubt(table(np.arange(121.0), TRACK.y, TRACK.zero)) == ""
 
 
 def test_poses_as_matrices_are_told() -> None:

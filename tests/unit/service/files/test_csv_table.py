@@ -32,6 +32,7 @@ def refused(text: str) -> tuple[str, int | None]:
         ("x y\n1,2", 1, ("x", "y")),
         ("# x, y\n1 2", 1, ("x", "y")),
         ("Track of Monday\nx,y\n1,2", 2, ("x", "y")),
+        ("sep=;\nx;y\n1;2", 2, ("x", "y")),
         ('"x","y"\n1,2', 1, ("x", "y")),
         ("\ufeffx,y\r\n1,2\r\n", 1, ("x", "y")),
         ("x,y,\n1,2,\n", 1, ("x", "y", "")),
@@ -57,6 +58,13 @@ def test_a_comment_that_names_another_number_of_columns_is_no_header(text: str) 
 )
 def test_a_line_of_text_that_is_no_header_is_told(text: str, title: int) -> None:
     assert (table(text).header, table(text).title) == (None, title)
+
+
+def test_blanks_before_a_unit_separate_nothing() -> None:
+    header = read_table("x [m]  y (m)\n1   2", lambda names: names[0].startswith("x")).header
+
+    assert header is not None
+    assert header.names == ("x[m]", "y(m)")
 
 
 def test_no_header_is_looked_for_where_none_is_needed() -> None:

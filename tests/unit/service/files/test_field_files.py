@@ -73,6 +73,8 @@ KINDS: dict[str, Read | Refused] = {
     "exponents": Read("blank", 3, 2, "rad"),
     "distances_first": Refused("NOT_A_PATH", "s,x,y", "?columns=s,x,y"),
     "small_distances_first": Refused("NOT_A_PATH", "s,x,y", "?columns=s,x,y"),
+    "counts_first": Refused("NOT_A_PATH", "i,x,y", "?columns=t,x,y"),
+    "times_first": Refused("NOT_A_PATH", "t,x,y", "?columns=t,x,y"),
     "widths": Refused("HEADINGS_MISFIT", "x,y,width", "?columns=x,y"),
     "speeds": Refused("HEADINGS_MISFIT", "x,y,speed", "?columns=x,y"),
     "times": Refused("HEADINGS_MISFIT", "x,y,t", "?columns=x,y"),
@@ -87,6 +89,7 @@ def track_of(kind: Callable[[], str]) -> Track:
     scales = {
         field_files.small_centre_line: 0.2,
         field_files.race_line_without_names: 0.2,
+        field_files.counts_first: 0.2,
         field_files.small_distances_first: 0.1,
     }
     return Track(scales.get(kind, 1.0))

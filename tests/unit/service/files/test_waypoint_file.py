@@ -221,6 +221,22 @@ def test_a_path_behind_its_distance_is_read_when_told(columns: str) -> None:
     assert read(text, columns=columns)[:, :2] == pytest.approx(track.places, abs=1e-4)
 
 
+@pytest.mark.parametrize("scale", [0.05, 0.2, 1.0, 3.0, 20.0])
+@pytest.mark.parametrize("first", ["s", "t", "count"])
+def test_nobody_drives_along_what_comes_before_x_and_y(scale: float, first: str) -> None:
+    track = Track(scale)
+    columns = {"s": track.s, "t": track.t, "count": np.arange(121.0)}
+
+    assert fault(rows((columns[first], track.x, track.y), form="%.5f"))[0] == "NOT_A_PATH"
+
+
+@pytest.mark.parametrize("scale", [0.05, 0.2, 1.0, 3.0, 20.0])
+def test_what_comes_behind_x_and_y_is_no_heading(scale: float) -> None:
+    track = Track(scale)
+    for column in (track.s, track.t, track.speed, track.one * 1.1, track.one * 3.5, track.x):
+        assert fault(rows((track.x, track.y, column), form="%.5f"))[0] == "HEADINGS_MISFIT"
+
+
 def test_a_unit_of_headings_makes_no_path_of_a_distance() -> None:
     track = Track()
 

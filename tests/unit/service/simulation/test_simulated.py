@@ -1,21 +1,32 @@
 import asyncio
 from collections.abc import AsyncIterator
+from itertools import pairwise
 
 import pytest
 
 from domain.commands import AskTransition, Drive
 from domain.errors import UnknownParameterError, UnknownPartError
-from domain.inputs import BackendStatus, NodeAnswer, NodeReport, Readings, VehicleReport
+from domain.inputs import (
+    BackendStatus,
+    NodeAnswer,
+    NodeReport,
+    Readings,
+    ReportBacklog,
+    VehicleReport,
+)
 from domain.lifecycle import LifecycleState, Transition
 from domain.simulation.node_settings import Fault
 from domain.simulation.robot import SimulatedRobot
 from domain.state_and_mode import PartName
 from domain.timebase import to_seconds
 from domain.vehicle import DriveCommand
+from service.pacing import AT_ONCE
 from service.ports import BackendMessage
 from service.simulation.simulated import SimulatedBackend
+from tests.support.big_model import big_model
 from tests.support.manual_clock import ManualClock, settle
 from tests.support.models import ARM, BASE, actuation_model
+from tests.support.waiting import until
 
 
 class Listening:
@@ -35,6 +46,9 @@ class Listening:
         return [(at, message) for at, message in self.heard if isinstance(message, kind)]
 
 
+ALL_TAKEN = ReportBacklog("simulated nodes", None)
+
+
 @pytest.fixture
 async def listening() -> AsyncIterator[Listening]:
     listening = Listening()
@@ -50,6 +64,40 @@ async def test_it_is_there_before_its_nodes(listening: Listening) -> None:
 
     assert first == BackendStatus(available=True)
     assert {m.node for m in others if isinstance(m, NodeReport)} == {BASE, ARM}
+
+
+async def test_of_thousands_of_messages_those_of_signals_and_vehicle_come_first() -> None:
+    clock, heard = ManualClock(), list[BackendMessage]()
+    backend = SimulatedBackend(SimulatedRobot(big_model(1_000), 0, mock=True), clock)
+    running = asyncio.create_task(backend.run(heard.append))
+    by_turn = []
+    while ALL_TAKEN not in heard:
+        await asyncio.sleep(0)
+        by_turn.append(len(heard))
+    clock.stall(1.0)
+    running.cancel()
+    await asyncio.wait([running])
+
+    kinds = [type(message) for message in heard]
+    assert kinds[:2] == [BackendStatus, ReportBacklog]
+    assert {*kinds[2:4]} == {Readings, VehicleReport}
+    assert {*kinds[4:-1]} == {NodeReport}
+    assert heard[-1] == ALL_TAKEN
+    assert max(b - a for a, b in pairwise(by_turn)) <= AT_ONCE + 1, "others run in between"
+
+
+async def test_a_pose_that_comes_meanwhile_overtakes_the_nodes() -> None:
+    clock, heard = ManualClock(), list[BackendMessage]()
+    backend = SimulatedBackend(SimulatedRobot(big_model(1_000), 0), clock)
+    running = asyncio.create_task(backend.run(heard.append))
+    await until(lambda: len(heard) > 100)
+    clock.stall(0.05)
+    await until(lambda: len(heard) > 100 + 3 * AT_ONCE)
+    running.cancel()
+    await asyncio.wait([running])
+
+    poses = [n for n, message in enumerate(heard) if isinstance(message, VehicleReport)]
+    assert poses[1] <= 100 + 2 * AT_ONCE
 
 
 async def test_a_node_arrives_exactly_after_its_time(listening: Listening) -> None:

@@ -4,7 +4,14 @@ from collections.abc import AsyncIterator
 import pytest
 
 from domain.commands import AskTransition, Drive
-from domain.inputs import BackendStatus, DriveStatus, NodeAnswer, NodeReport, Readings
+from domain.inputs import (
+    BackendStatus,
+    DriveStatus,
+    NodeAnswer,
+    NodeReport,
+    Readings,
+    ReportBacklog,
+)
 from domain.lifecycle import Transition
 from domain.vehicle import DriveCommand
 from service.files.robot_file import read_robot_file
@@ -109,7 +116,9 @@ async def test_what_comes_at_once_is_delivered_in_its_order_and_lets_others_run(
     await settle()
 
     assert 0 < early < len(values)
-    assert robot.heard == [NodeReport(BASE, parameters={"max_speed": v}) for v in values]
+    reports = [message for message in robot.heard if isinstance(message, NodeReport)]
+    assert reports == [NodeReport(BASE, parameters={"max_speed": v}) for v in values]
+    assert robot.heard[-1] == ReportBacklog("ROS nodes", None)
 
 
 async def test_it_leaves_the_graph_when_it_is_cancelled() -> None:

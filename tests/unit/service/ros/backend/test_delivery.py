@@ -3,11 +3,12 @@ from collections.abc import AsyncIterator
 
 import pytest
 
-from domain.inputs import NodeReport, Reading, Readings, VehicleReport
+from domain.inputs import NodeReport, Reading, Readings, ReportBacklog, VehicleReport
+from domain.timebase import Instant, seconds
 from domain.vehicle import Pose, VehicleState
 from service.ports import BackendMessage
 from service.ros.backend.delivery import Delivery
-from tests.support.manual_clock import settle
+from tests.support.manual_clock import ManualClock, settle
 from tests.support.models import ARM, BASE
 from tests.support.waiting import until
 
@@ -26,8 +27,16 @@ class Robot:
     """A delivery that runs, and what it delivered."""
 
     def __init__(self) -> None:
-        self.delivery = Delivery(ROOM)
+        self.clock = ManualClock()
+        self.delivery = Delivery(ROOM, self.clock)
         self.heard: list[BackendMessage] = []
+        self.backlogs: list[Instant | None] = []
+
+    def deliver(self, message: BackendMessage) -> None:
+        if isinstance(message, ReportBacklog):
+            self.backlogs.append(message.since)
+        else:
+            self.heard.append(message)
 
     def hear(self, *messages: BackendMessage) -> None:
         for message in messages:
@@ -37,7 +46,7 @@ class Robot:
 @pytest.fixture
 async def robot() -> AsyncIterator[Robot]:
     robot = Robot()
-    run = asyncio.create_task(robot.delivery.run(robot.heard.append))
+    run = asyncio.create_task(robot.delivery.run(robot.deliver))
     await settle()
     yield robot
     run.cancel()
@@ -50,6 +59,19 @@ async def test_an_emergency_stop_goes_before_what_was_heard_earlier(robot: Robot
     await settle()
 
     assert robot.heard == [PRESSED, RELEASED, AT_REST, WARM, *earlier]
+
+
+async def test_who_listens_knows_from_when_reports_of_nodes_wait(robot: Robot) -> None:
+    robot.hear(*reports(500))
+    robot.clock.stall(1.0)
+    robot.hear(*reports(500))
+    await until(lambda: len(robot.heard) > 750)
+    assert robot.backlogs == [-1, seconds(1.0) - 1], "all that arrived before is delivered"
+    await settle()
+    assert robot.backlogs[2:] == [None]
+    robot.hear(*reports(2), AT_REST)
+    await settle()
+    assert robot.backlogs[3:] == [], "what one turn delivers does not wait"
 
 
 async def test_in_the_middle_of_a_storm_it_is_next(robot: Robot) -> None:
@@ -85,7 +107,7 @@ async def test_what_is_raised_over_a_message_ends_it() -> None:
     def fail(_: BackendMessage) -> None:
         raise ZeroDivisionError
 
-    delivery = Delivery(ROOM)
+    delivery = Delivery(ROOM, ManualClock())
     delivery.put(PRESSED)
 
     with pytest.raises(ZeroDivisionError):

@@ -8,7 +8,7 @@ from typing import Any, ClassVar
 
 import pytest
 
-from service.ros.graph.crossing import MAX_UNANSWERED, Crossing, Inbox, Server
+from service.ros.graph.crossing import MAX_UNANSWERED, POSTS_AT_ONCE, Crossing, Inbox, Server
 from tests.support.waiting import until
 
 Answer = Callable[[Any], Any]
@@ -42,6 +42,50 @@ async def test_what_is_posted_is_called_on_the_thread_of_the_loop(crossing: Cros
     await until(lambda: bool(called))
 
     assert called == [("a", threading.get_ident())]
+
+
+async def test_many_posts_wake_the_loop_once_and_are_called_in_order_in_several_passes(
+    crossing: Crossing, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    loop, woken, called, passes = asyncio.get_running_loop(), list[object](), list[int](), [0]
+    call_soon = loop.call_soon_threadsafe
+
+    def wake(callback: Callable[..., object]) -> None:
+        woken.append(callback)
+        call_soon(callback)
+
+    monkeypatch.setattr(loop, "call_soon_threadsafe", wake)
+
+    def post_all() -> None:
+        for number in range(50):
+            crossing.post(called.append, number)
+
+    await elsewhere(post_all)
+    while len(called) < 50:
+        before = len(called)
+        await asyncio.sleep(0)
+        passes.append(len(called) - before)
+
+    assert called == list(range(50))
+    assert len(woken) == 1
+    assert max(passes) <= POSTS_AT_ONCE
+
+
+async def test_what_one_posted_call_raises_does_not_cost_the_next(crossing: Crossing) -> None:
+    raised: list[object] = []
+    asyncio.get_running_loop().set_exception_handler(
+        lambda _loop, context: raised.append(context["exception"])
+    )
+    called: list[str] = []
+
+    def fail() -> None:
+        raise ValueError("broken")
+
+    await elsewhere(crossing.post, fail)
+    await elsewhere(crossing.post, called.append, "next")
+    await until(lambda: bool(called))
+
+    assert [str(error) for error in raised] == ["broken"]
 
 
 async def test_what_waits_when_it_is_closed_is_not_called(crossing: Crossing) -> None:
