@@ -16,9 +16,12 @@ from domain.state_and_mode import PartName
 from domain.timebase import Instant
 from service.watching import Watched
 
-PARTS_AT_ONCE = 500
+PARTS_AT_ONCE = 250
 """Changed parts in one frame. The others wait for the next ones, in the order in which they
-changed: encoding the parts of a large robot at once would delay the ticks after it."""
+changed: encoding the parts of a large robot at once would delay this frame and those after it."""
+
+LARGE = 500
+"""A robot with more parts is large: whoever missed frames of it is told only what changed since."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -127,7 +130,7 @@ class FrameFeed(Watched):
             seen: Number of the last frame that the reader took; None: none.
         """
         newest = self._newest
-        if seen is None or newest is None or len(self._parts) <= PARTS_AT_ONCE:
+        if seen is None or newest is None or len(self._parts) <= LARGE:
             return self.complete()
         return replace(
             _all_changed(newest),

@@ -21,7 +21,7 @@ from service.supervisor import Supervisor
 _EVENTS_KEPT = DEFAULT_CAPACITY
 """All that a client can ask for, some 5 MB: two hundred clients that come back at different places
 would otherwise have the same events encoded again and again."""
-_MEMBERS_AT_ONCE = 200
+_MEMBERS_AT_ONCE = 100
 _PASSES = 3
 """Over the parts that changed, each for those that changed during the one before."""
 _PATH = "/ws"

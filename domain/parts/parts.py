@@ -30,7 +30,7 @@ from domain.snapshot import Actual, ParameterView, PartView
 from domain.state_and_mode import DEFAULT_MODE, PartName, StateAndMode
 from domain.timebase import Instant
 
-LOOKS_AT_ONCE = 1_000
+LOOKS_AT_ONCE = 100
 """Parts whose deviations one turn tells. Those that a request of a large robot caused are told in
 several, in the order of the parts, before anything else of the request goes on."""
 

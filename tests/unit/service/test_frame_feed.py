@@ -11,7 +11,7 @@ from domain.inputs import (
 )
 from domain.snapshot import PartView, TaskPhase
 from domain.state_and_mode import PartName
-from service.frame_feed import PARTS_AT_ONCE, Frame, FrameFeed, FrameReader
+from service.frame_feed import LARGE, Frame, FrameFeed, FrameReader
 from tests.support.frames import frame, part_view, signal_view
 from tests.support.live_robot import make_supervisor, running
 from tests.support.manual_clock import ManualClock
@@ -242,7 +242,7 @@ async def test_a_task_that_ended_stays_until_the_next_one() -> None:
 
 def test_of_a_large_robot_a_reader_that_missed_frames_gets_what_changed_since() -> None:
     """A complete frame would take so long that the next ones are missed as well."""
-    names = [PartName(f"node_{number}") for number in range(PARTS_AT_ONCE + 1)]
+    names = [PartName(f"node_{number}") for number in range(LARGE + 1)]
     feed = FrameFeed()
     feed.publish(frame(1, [part_view(name) for name in names], [BATTERY], full=True))
     reader, moved = FrameReader(feed), [part_view(name, "FAST") for name in names[:4]]
@@ -268,7 +268,7 @@ def test_of_a_large_robot_a_reader_that_missed_frames_gets_what_changed_since() 
 
 @given(st.data())
 def test_who_merges_what_it_is_told_has_all_parts_whatever_it_missed(data: st.DataObject) -> None:
-    names = [PartName(f"node_{number}") for number in range(PARTS_AT_ONCE + 5)]
+    names = [PartName(f"node_{number}") for number in range(LARGE + 5)]
     feed, held = FrameFeed(), dict[PartName, PartView]()
     now = {name: part_view(name) for name in names}
     feed.publish(frame(1, list(now.values()), full=True))
