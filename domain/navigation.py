@@ -328,7 +328,10 @@ class Navigation:
 
     def _take_up(self, run: _Run, state: VehicleState) -> None:
         """Find a vehicle that passed its path unseen, or while it braked, further on along it."""
+        has_jumped = run.coverage.least_missed_m(state) > _may_miss_m(run)
         run.coverage.note(state, None)
+        if has_jumped:
+            return
         pose, index = state.pose, run.target_index
         here = run.path.project(pose.x_m, pose.y_m, index)
         # A projection searches ahead within a window.

@@ -65,6 +65,23 @@ class Coverage:
         most_m = speed * unheard_s + speed * speed / (2 * self._braking_mps2)
         return _apart(_place(last), _place(state)) <= most_m
 
+    def least_missed_m(self, state: VehicleState) -> float:
+        """Return a lower bound of what a vehicle left out that is found further along the path, m.
+
+        No path is shorter than the straight line from where the vehicle was known to be. Judging
+        the pieces of a path up to a pose that jumped by kilometres would take seconds.
+
+        Args:
+            state: Of the vehicle, before it is noted.
+        """
+        if self.may_have_rolled(state):
+            return 0.0
+        begin, here = self.path.point_at(self.reached_m), _place(state)
+        known = [(begin.x_m, begin.y_m), *self._trail]
+        if self._last is not None:
+            known.append(_place(self._last))
+        return min(_apart(place, here) for place in known) - 2 * self._near_m
+
     def note(self, state: VehicleState, distance_m: float | None) -> None:
         """Judge the path up to where the vehicle is.
 

@@ -11,7 +11,7 @@ from domain.simulation.vehicle_settings import Plant
 from domain.snapshot import TaskPhase
 from domain.timebase import seconds
 from domain.tracking.trackers import TRACKERS
-from domain.vehicle import Pose, VehicleLimits
+from domain.vehicle import Point, Pose, VehicleLimits
 from tests.support.drives import Trip, through
 from tests.support.track_study import PLANTS, track
 
@@ -230,6 +230,30 @@ def test_a_held_vehicle_that_was_carried_along_its_path_does_not_drive_all_the_w
 
     assert trip.robot.task.status is TaskPhase.ABORTED
     assert str(trip.robot.task.reason).startswith("1500.0 m from where the path goes on")
+
+
+def test_a_pose_that_jumps_by_kilometres_is_not_searched_for_along_the_path(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    trip = Trip(through((0, 0), (50_000, 0), (100_000, 0)))
+    trip.drive(6.0)
+    trip.robot.hold()
+    trip.robot.advance(5.0)
+    vehicle = trip.robot.robot.vehicle
+    vehicle._state = type(vehicle.state)(Pose(90_000.0, 0.0, 0.0), 0.0, 0.0)  # noqa: SLF001
+    trip.robot.advance(0.2)
+    judged: list[float] = []
+    point_at = Path.point_at
+
+    def judge(path: Path, distance_m: float) -> Point:
+        judged.append(distance_m)
+        return point_at(path, distance_m)
+
+    monkeypatch.setattr(Path, "point_at", judge)
+    trip.robot.release()
+
+    assert trip.robot.task.status is TaskPhase.ABORTED
+    assert len(judged) < 100
 
 
 # --- far from the origin -------------------------------------------------------------------------

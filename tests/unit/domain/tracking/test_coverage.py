@@ -1,6 +1,8 @@
+import hypothesis.strategies as st
 import pytest
+from hypothesis import given
 
-from domain.tracking.coverage import MAX_TRAIL, Coverage
+from domain.tracking.coverage import MAX_TRAIL, STEP_M, Coverage
 from domain.vehicle import Pose, VehicleState
 from tests.support.paths import straight
 
@@ -67,3 +69,27 @@ def test_a_trail_of_any_length_takes_bounded_memory(coverage: Coverage) -> None:
         coverage.note(at(float(number), 10.0), None)
 
     assert len(coverage._trail) <= MAX_TRAIL  # noqa: SLF001 - its memory is what is bounded
+
+
+@given(
+    st.lists(st.tuples(st.floats(0, 60), st.floats(-8, 8)), max_size=8),
+    st.tuples(st.floats(0, 60), st.floats(-3, 3)),
+)
+def test_the_lower_bound_of_what_was_left_out_is_one(
+    places: list[tuple[float, float]], here: tuple[float, float]
+) -> None:
+    coverage = Coverage(straight(60.0), 0.0, 0.0, near_m=3.0, braking_mps2=1.0)
+    for x_m, y_m in places:
+        coverage.note(at(x_m, y_m, 0.0), None)
+    bound_m = coverage.least_missed_m(at(*here, 0.0))
+    coverage.note(at(*here, 0.0), None)
+
+    # Pieces of the path are judged by their middles.
+    assert bound_m <= coverage.missed_m(here[0]) + STEP_M
+
+
+def test_of_a_jump_the_lower_bound_is_what_is_left_out(coverage: Coverage) -> None:
+    coverage.note(at(0.0), 0.0)
+
+    assert coverage.least_missed_m(at(40.0)) == pytest.approx(40.0 - 2 * 3.0)
+    assert coverage.least_missed_m(at(2.0)) == 0.0, "it may have rolled there"
