@@ -276,3 +276,12 @@ class BackendUnavailableError(PilothouseError):
 
     def __init__(self, reason: str) -> None:
         super().__init__(f"the nodes cannot be reached: {reason}")
+
+
+class StorageDegradedError(PilothouseError):
+    """What must be on disk first cannot be written there; nothing was changed."""
+
+    code = "STORAGE_DEGRADED"
+
+    def __init__(self, reason: str) -> None:
+        super().__init__(f"nothing was done, since it cannot be stored: {reason}")

@@ -31,6 +31,7 @@ from domain.errors import (
     PilothouseError,
     RefusedError,
     ReservedHoldError,
+    StorageDegradedError,
     TooManyHoldsError,
     UnknownChangeError,
     UnknownControllerError,
@@ -82,6 +83,7 @@ STATUS_OF: Mapping[type[PilothouseError], HTTPStatus] = {
     WorkerBusyError: HTTPStatus.TOO_MANY_REQUESTS,
     WorkerClosedError: HTTPStatus.SERVICE_UNAVAILABLE,
     BackendUnavailableError: HTTPStatus.SERVICE_UNAVAILABLE,
+    StorageDegradedError: HTTPStatus.SERVICE_UNAVAILABLE,
     # Files are read before the service accepts requests.
     InvalidRobotFileError: HTTPStatus.INTERNAL_SERVER_ERROR,
     UnreadableFileError: HTTPStatus.INTERNAL_SERVER_ERROR,
