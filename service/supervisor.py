@@ -114,7 +114,7 @@ class Supervisor:
 
     @property
     def epoch(self) -> str:
-        """Return the name of this run of the service; event ids count from 1 in each."""
+        """Return the name of this run of the service."""
         return self.events.epoch
 
     async def run(self) -> None:
@@ -203,4 +203,9 @@ def _event_log(journal: Journal | None) -> EventLog:
     """Return an empty log that goes on after the events of earlier runs."""
     if journal is None:
         return EventLog()
-    return EventLog(epoch=journal.boot.epoch, before=journal.found.restored.next_event - 1)
+    found = journal.found
+    return EventLog(
+        epoch=journal.boot.epoch,
+        before=found.restored.next_event - 1,
+        earlier=found.epochs,
+    )
