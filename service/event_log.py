@@ -152,6 +152,11 @@ class EventReader:
         """Go on after an event that was read elsewhere."""
         self._at = number
 
+    @property
+    def has_lost(self) -> bool:
+        """Tell whether the gap after the cursor of another run was not taken yet."""
+        return self._lost is not None
+
     def take_lost(self) -> Gap | None:
         """Return the gap after the cursor of another run, once."""
         lost, self._lost = self._lost, None

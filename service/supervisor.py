@@ -117,6 +117,11 @@ class Supervisor:
         """Return the name of this run of the service."""
         return self.events.epoch
 
+    @property
+    def boot(self) -> int:
+        """Return the number of this run, from 1; always 1 where nothing is kept."""
+        return 1 if self.journal is None else self.journal.found.restored.boot
+
     async def run(self) -> None:
         """Run until cancelled; the first task that ends cancels the others.
 

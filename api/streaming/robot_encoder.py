@@ -5,7 +5,7 @@ from typing import Any, Generic, TypeVar
 
 from pydantic_core import to_json
 
-from api.http.schemas.base import timestamp
+from api.http.schemas.base import rfc3339, timestamp
 from api.http.schemas.health import EmergencyStopJson, StreamedSignalJson, SystemStateJson
 from api.http.schemas.parts import PartJson
 from api.http.schemas.tasks import HoldJson, TaskJson, VehicleJson
@@ -20,6 +20,7 @@ from domain.snapshot import (
     VehicleView,
 )
 from domain.timebase import Instant
+from service.storage.journal import StoredEvent
 from service.supervisor import Supervisor
 
 View = TypeVar("View")
@@ -79,20 +80,21 @@ class RobotEncoder:
 
     def event(self, event: RecordedEvent) -> str:
         """Return an `event` frame, which has the same form in `/events` and in simulations."""
-        shown = {
-            "type": "event",
-            "epoch": self._supervisor.epoch,
-            "id": event.id,
-            "at": self._moments.text(event.at),
-            "kind": event.kind,
-            "cause": event.cause,
-            "actor": event.actor.label,
-            "data": event.data,
-            "words": event.event.words,
-            "notable": event.event.notable,
-        }
-        # A node may report a parameter that is NaN, which JSON cannot hold.
-        return to_json(shown, inf_nan_mode="null", fallback=_plain).decode()
+        return _event_text(
+            self._supervisor.epoch,
+            self._moments.text(event.at),
+            event,
+            event.actor.label,
+            event.event.words,
+            notable=event.event.notable,
+        )
+
+    def stored_event(self, event: StoredEvent) -> str:
+        """Return the same frame for an event that was written down."""
+        # Of this run the clock knows better: it may have been set since.
+        is_of_this_run = event.epoch == self._supervisor.epoch
+        at = timestamp(self._clock, event.at) if is_of_this_run else rfc3339(event.wall_at)
+        return _event_text(event.epoch, at, event, event.actor, event.words, notable=event.notable)
 
     def _encode_holds(self, views: Mapping[str, HoldView]) -> str:
         return to_json(
@@ -147,6 +149,31 @@ class LatestCache(Generic[View]):
         if self._known is None or self._known[0] is not view:
             self._known = (view, self._encode(view))
         return self._known[1]
+
+
+def _event_text(
+    epoch: str,
+    at: str,
+    event: RecordedEvent | StoredEvent,
+    actor: str,
+    words: str,
+    *,
+    notable: bool,
+) -> str:
+    shown = {
+        "type": "event",
+        "epoch": epoch,
+        "id": event.id,
+        "at": at,
+        "kind": event.kind,
+        "cause": event.cause,
+        "actor": actor,
+        "data": event.data,
+        "words": words,
+        "notable": notable,
+    }
+    # A node may report a parameter that is NaN, which JSON cannot hold.
+    return to_json(shown, inf_nan_mode="null", fallback=_plain).decode()
 
 
 def _plain(value: object) -> object:
