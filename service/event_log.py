@@ -51,7 +51,7 @@ class EventLog(Watched):
         self.before = before
         """Last id before this log."""
         self.earlier = dict(earlier or {})
-        """Epochs of runs whose ids this log continues, each with its last known id."""
+        """Epochs of earlier runs, each with its last known id; 0: it has none."""
         self._capacity = capacity
         self._ring: list[RecordedEvent] = []
         self._newest = before
@@ -104,7 +104,7 @@ class EventLog(Watched):
 
     def epoch_of(self, number: int) -> str:
         """Return the epoch of an event; of an id that no run is known to have, of the next run."""
-        later = [(last, epoch) for epoch, last in self.earlier.items() if last >= number]
+        later = [(last, epoch) for epoch, last in self.earlier.items() if last >= max(number, 1)]
         return min(later)[1] if later else self.epoch
 
     def _slot(self, number: int) -> int:

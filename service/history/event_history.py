@@ -106,7 +106,7 @@ class EventHistory:
             told = with_gaps(items, first, last, start, self.log.epoch)
             gaps = [item for item in told if isinstance(item, Gap)]
         else:
-            gaps = await self._gaps.within(first, last, oldest)
+            gaps = await self._gaps.within(first, last, oldest, query)
         return FoundEvents(items, [*lost, *gaps], oldest, newest)
 
     async def causes(self, number: int) -> Sequence[ToldEvent]:

@@ -21,6 +21,8 @@ from service.storage.journal import (
     StoredEvent,
 )
 from service.supervisor import Supervisor
+from tests.support.frames import Happened, event
+from tests.support.manual_clock import ManualClock
 
 _RESERVED = 20
 """Ids that a run takes in advance."""
@@ -49,12 +51,31 @@ class Disk:
         self.events = [event for event in self.events if event.id >= before]
 
 
+class Run:
+    """A run of a service as far as its events go: some in memory, all on a disk if it keeps up."""
+
+    def __init__(self, disk: Disk, clock: Clock | None = None, capacity: int = 10) -> None:
+        clock = clock or ManualClock()
+        self.journal = EventJournal(disk, clock)
+        self.log = self.journal.log(capacity)
+        self.history = EventHistory(self.log, self.journal, clock)
+
+    def tell(self, count: int, happened: type[Happened] = Happened) -> list[int]:
+        """Let events happen that nobody has written down yet; return their ids."""
+        first = self.log.newest + 1
+        for number in range(first, first + count):
+            told = event(number, happened)
+            self.log.append(told)
+            self.journal.note_events(told)
+        return list(range(first, first + count))
+
+
 class EventJournal:
     """A run that writes to a disk; what was noted is written down by `commit`, or is lost."""
 
     def __init__(self, disk: Disk, clock: Clock) -> None:
+        epochs = {f"run{number}": 0 for number in range(1, disk.boots + 1)}
         disk.boots += 1
-        epochs: dict[str, int] = {}
         for event in disk.events:
             epochs[event.epoch] = event.id
         last = max(disk.ids, default=0)
