@@ -105,7 +105,7 @@ class HistoryReader:
             return True
         return self._recent.is_behind and not self.needs_page
 
-    def take(self, limit: int) -> Sequence[Told]:
+    def take(self, limit: int) -> list[Told]:
         """Return the next items that are there: at most `limit` events, and gaps before them."""
         lost = self._recent.take_lost()
         if lost is not None:
@@ -115,7 +115,7 @@ class HistoryReader:
         if self.needs_page:
             return []
         self._epoch = self._pages.history.log.epoch
-        return self._recent.take(limit)
+        return [*self._recent.take(limit)]
 
     async def load(self) -> None:
         """Load the page that is needed.
@@ -140,8 +140,8 @@ class HistoryReader:
     def _use(self, page: Page) -> None:
         self._page, self._taken = page, 0
 
-    def _take_of_page(self, limit: int) -> Sequence[Told]:
-        taken = self._page.items[self._taken : self._taken + limit]
+    def _take_of_page(self, limit: int) -> list[Told]:
+        taken = list(self._page.items[self._taken : self._taken + limit])
         self._taken += len(taken)
         last = taken[-1]
         at = last.last if isinstance(last, Gap) else last.id
