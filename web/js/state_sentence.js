@@ -76,9 +76,10 @@ export function mayMove(state) {
 }
 
 /** What was lost in a restart of the service; empty without one. */
-export function restartWords({ restartedAt }) {
+export function restartWords({ restartedAt, boot }) {
   if (restartedAt === null) return "";
-  return `Service restarted at ${timeOfDay(restartedAt)}: earlier tasks and holds are gone.`;
+  const kept = boot > 1 ? "nothing moves until you ask for it" : "earlier tasks and holds are gone";
+  return `Service restarted at ${timeOfDay(restartedAt)}: ${kept}.`;
 }
 
 function sentence([level, sign], word, text, more = []) {
