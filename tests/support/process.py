@@ -91,12 +91,14 @@ def service(*arguments: str, command: tuple[str, ...] = COMMAND) -> Iterator[Ser
     """
     # A pipe that nobody reads would stop the service once it is full.
     with (
+        tempfile.TemporaryDirectory(prefix="pilothouse-state-") as state,
         tempfile.TemporaryFile("w+") as complaints,
         subprocess.Popen(
             [*command, "serve", "--port", "0", *arguments],
             stdout=subprocess.PIPE,
             stderr=complaints,
             text=True,
+            env={**os.environ, "XDG_STATE_HOME": state},
         ) as process,
     ):
         try:
