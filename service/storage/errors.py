@@ -23,5 +23,6 @@ class ForeignFolderError(UnusableFolderError):
 
     def __init__(self, folder: Path, owner: str, robot: str) -> None:
         super().__init__(
-            f"{folder} belongs to the robot {owner!r}, and this one is {robot!r}; nothing was changed"
+            f"{folder} belongs to the robot {owner!r}, and this one is {robot!r};"
+            " nothing in it was changed"
         )

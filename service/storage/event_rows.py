@@ -3,14 +3,15 @@
 import re
 from collections.abc import Iterator
 from dataclasses import fields
-from functools import lru_cache
 from typing import NamedTuple, get_type_hints
 
-from pydantic_core import to_json
+from pydantic_core import from_json, to_json
 
 from domain.events.event import Event, RecordedEvent
 from domain.state_and_mode import PartName
 from domain.timebase import Instant
+from service.clock import to_datetime
+from service.storage.journal import StoredEvent
 
 
 class EventRow(NamedTuple):
@@ -19,7 +20,7 @@ class EventRow(NamedTuple):
     id: int
     at: Instant
     wall_ns: int
-    """Nanoseconds since 1970 UTC, as the system clock was set when it was noted."""
+    """Nanoseconds since 1970 UTC, by the system clock when it was noted; whole microseconds."""
     kind: str
     cause: int | None
     actor: str
@@ -47,6 +48,22 @@ def event_row(recorded: RecordedEvent, wall_ns: int) -> EventRow:
     )
 
 
+def stored_event(row: EventRow, boot: int, epoch: str) -> StoredEvent:
+    """Return a row as readers of the log get it."""
+    return StoredEvent(
+        row.id,
+        boot,
+        epoch,
+        row.at,
+        to_datetime(row.wall_ns),
+        row.kind,
+        row.cause,
+        row.actor,
+        from_json(row.data),
+        row.words,
+    )
+
+
 def kind_pattern(kind: str) -> re.Pattern[str]:
     """Return what the kinds match that a query asks for: a kind, a prefix, or a `*` pattern."""
     if "*" in kind:
@@ -59,9 +76,15 @@ def _parts_of(event: Event) -> tuple[PartName, ...]:
     return tuple(dict.fromkeys(name for name in names if name))
 
 
-@lru_cache(maxsize=None)
+_PART_FIELDS: dict[type[Event], tuple[str, ...]] = {}
+
+
 def _part_fields(kind: type[Event]) -> tuple[str, ...]:
-    return tuple(_fields_of(kind))
+    """Return the fields of a class of events that name a part, looked up once per class."""
+    known = _PART_FIELDS.get(kind)
+    if known is None:
+        known = _PART_FIELDS[kind] = tuple(_fields_of(kind))
+    return known
 
 
 def _fields_of(kind: type[Event]) -> Iterator[str]:

@@ -41,7 +41,7 @@ class Backlog:
         return self._open.is_empty and self._hole is None
 
     @property
-    def bytes(self) -> int:
+    def size(self) -> int:
         """Size of what waits, in bytes."""
         return self._bytes + self._open_bytes
 
@@ -56,10 +56,10 @@ class Backlog:
         """Add a step, or lose it if there is no room."""
         number = self._next_step
         self._next_step += 1
-        size = len(text)
+        added = len(text)
         for row in rows:
-            size += _BYTES_PER_EVENT + len(row.data) + len(row.words)
-        if self._hole is not None or self.bytes + size > self._limit:
+            added += _BYTES_PER_EVENT + len(row.data) + len(row.words)
+        if self._hole is not None or self.size + added > self._limit:
             self.lose(at, len(rows), "the queue is full")
             return
         batch = self._open
@@ -68,7 +68,7 @@ class Backlog:
         batch.steps.append(text)
         batch.last_at, batch.wall_ns = at, wall_ns
         batch.events.extend(rows)
-        self._open_bytes += size
+        self._open_bytes += added
 
     def lose(self, at: Instant, events: int, reason: str) -> None:
         """Count a step that is not written down."""
@@ -86,7 +86,7 @@ class Backlog:
 
     def add_checkpoint(self, at: Instant, state: bytes) -> bool:
         """Add the state after the last step; return whether there was room."""
-        if self._hole is not None or self.bytes + len(state) > self._limit:
+        if self._hole is not None or self.size + len(state) > self._limit:
             return False
         self._open.checkpoints.append(Checkpoint(self.last_step, at, state))
         self._open_bytes += len(state)
@@ -124,3 +124,13 @@ class Backlog:
                 if lost
                 else None
             )
+
+    def discard(self, flight: Flight, reason: str) -> None:
+        """Lose the steps of a flight that nothing is wrong with but itself; its values stay."""
+        changes = {key: v for batch in flight.batches for key, v in batch.changes.items()}
+        self._open.changes = changes | self._open.changes
+        self.written(flight)
+        for batch in flight.batches:
+            for _ in batch.steps:
+                self.lose(batch.last_at, 0, reason)
+            self.lost_events += len(batch.events)

@@ -33,6 +33,9 @@ class Retention:
     not time of day: a step of the system clock drops nothing."""
 
 
+DEFAULT_RETENTION = Retention()
+
+
 @dataclass(frozen=True, slots=True)
 class Report:
     """How the folder is, for the loop."""
@@ -238,9 +241,8 @@ class Folder:
             self._closed.pop(0).path.unlink(missing_ok=True)
 
     def _is_too_much(self, log: LogFile) -> bool:
-        oldest, *others = self._closed
         keep = self._retention
-        running = log.summary.running_ns + sum(file.running_ns for file in others)
+        running = log.summary.running_ns + sum(file.running_ns for file in self._closed[1:])
         size = log.size() + sum(file.file_bytes for file in self._closed)
         return running >= keep.total_running or size > keep.total_bytes
 

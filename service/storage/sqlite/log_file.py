@@ -186,9 +186,10 @@ class LogFile:
         )
         self._insert_events(batch, run)
         for taken in batch.checkpoints:
+            state = zlib.compress(taken.state, _COMPRESSION)
             self._connection.execute(
                 "INSERT OR REPLACE INTO checkpoints VALUES (?,?,?,?,?,?)",
-                (taken.step, batch.number, run.number, taken.at, run.boot.version, taken.state),
+                (taken.step, batch.number, run.number, taken.at, run.boot.version, state),
             )
         if batch.ends_run:
             self._connection.execute(
@@ -200,14 +201,14 @@ class LogFile:
         if not batch.events:
             return
         self._connection.executemany(
-            "INSERT INTO events VALUES (?,?,?,?,?,?,?,?,?)",
+            "INSERT OR REPLACE INTO events VALUES (?,?,?,?,?,?,?,?,?)",
             (
                 (e.id, run.number, e.at, e.wall_ns, e.kind, e.cause, e.actor, e.data, e.words)
                 for e in batch.events
             ),
         )
         self._connection.executemany(
-            "INSERT INTO event_parts VALUES (?,?)",
+            "INSERT OR IGNORE INTO event_parts VALUES (?,?)",
             ((part, event.id) for event in batch.events for part in event.parts),
         )
 

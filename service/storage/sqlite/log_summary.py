@@ -105,18 +105,10 @@ def _with_event_range(connection: apsw.Connection, found: LogSummary) -> LogSumm
 
 
 def _epochs(connection: apsw.Connection) -> dict[str, int]:
-    runs = connection.execute("SELECT epoch, first_event FROM boots ORDER BY number").fetchall()
-    ends = [first for _, first in runs[1:]] + [None]
-    return {
-        epoch: _last_event(connection, first, end)
-        for (epoch, first), end in zip(runs, ends, strict=True)
-    }
-
-
-def _last_event(connection: apsw.Connection, first: int, end: int | None) -> int:
-    sql = "SELECT max(id) FROM events WHERE id >= ? AND id < ?"
-    last = connection.execute(sql, (first, end or _LARGEST)).get
-    return int(last or 0)
-
-
-_LARGEST = 2**63 - 1
+    # The ids of a run are those between its first one and the first one of the next run.
+    rows = connection.execute(
+        "SELECT epoch, coalesce((SELECT max(id) FROM events WHERE id >= first_event AND id < next),"
+        " 0) FROM (SELECT epoch, number, first_event,"
+        " lead(first_event, 1, 1 << 62) OVER (ORDER BY number) AS next FROM boots) ORDER BY number"
+    )
+    return {str(epoch): int(str(last)) for epoch, last in rows}

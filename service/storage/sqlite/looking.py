@@ -1,7 +1,7 @@
 """What an earlier run left in a folder, found at the start; nothing is moved or changed yet."""
 
 import re
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable
 from contextlib import closing
 from dataclasses import dataclass, field, replace
 from pathlib import Path
@@ -16,7 +16,7 @@ from service.storage.sqlite.connection import open_to_read, open_to_write, words
 from service.storage.sqlite.log_file import BrokenFileError, LogFile, Next
 from service.storage.sqlite.log_summary import LogSummary, summary_of
 from service.storage.sqlite.schema import LOG, NewerFileError, bring_up, version_of
-from service.storage.sqlite.state_file import Applied, StateFile
+from service.storage.sqlite.state_file import StateFile
 
 _LOG_NAME = re.compile(r"(\d{6,})\.db")
 _BROKEN = (

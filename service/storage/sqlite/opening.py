@@ -12,10 +12,10 @@ from service.clock import since_epoch, to_datetime
 from service.storage.errors import UnusableFolderError
 from service.storage.id_blocks import BOOT, CHANGE, EVENT, TASK, IdBlocks
 from service.storage.journal import Boot, Found, Plain
-from service.storage.records import Records
+from service.storage.records import kept_from_text, kept_to_text, kind_name
 from service.storage.sqlite.batch import IDS, OWN, Changes
 from service.storage.sqlite.connection import PRIVATE_FOLDER, words
-from service.storage.sqlite.folder import Folder, Report, Retention
+from service.storage.sqlite.folder import DEFAULT_RETENTION, Folder, Report, Retention
 from service.storage.sqlite.folder_lock import FolderLock
 from service.storage.sqlite.log_file import Next, Run
 from service.storage.sqlite.looking import Left, Places, look
@@ -28,7 +28,7 @@ class StoreSettings:
     folder: Path
     robot: str
     """Name of the robot that the folder belongs to."""
-    retention: Retention = Retention()
+    retention: Retention = DEFAULT_RETENTION
     backlog_bytes: int = 16 * 2**20
     """How much may wait for a disk that is slow or fails."""
 
@@ -45,13 +45,12 @@ class Opened:
     report: Report
 
 
-def open_folder(settings: StoreSettings, boot: Boot, records: Records) -> Opened:
+def open_folder(settings: StoreSettings, boot: Boot) -> Opened:
     """Take a folder, bring it up to the end of its log, and write down that a run begins.
 
     Args:
         settings: The folder, which is made if it is missing, and whose it is.
         boot: The run.
-        records: How values are written down.
 
     Raises:
         UnusableFolderError: It is in use, of another robot, or cannot be used at all.
@@ -66,7 +65,7 @@ def open_folder(settings: StoreSettings, boot: Boot, records: Records) -> Opened
     try:
         left = look(places, settings.robot)
         try:
-            return _begin(settings, boot, records, lock, left)
+            return _begin(settings, boot, lock, left)
         except BaseException:
             left.close()
             raise
@@ -75,18 +74,16 @@ def open_folder(settings: StoreSettings, boot: Boot, records: Records) -> Opened
         raise
 
 
-def _begin(
-    settings: StoreSettings, boot: Boot, records: Records, lock: FolderLock, left: Left
-) -> Opened:
+def _begin(settings: StoreSettings, boot: Boot, lock: FolderLock, left: Left) -> Opened:
     """Begin the run in a folder that was looked at."""
     ids, next_ = left.next_ids(), left.next_numbers()
     blocks = IdBlocks(ids)
-    values, left_out = _read_back(records, left)
+    values, left_out = _read_back(left)
     changes: Changes = {}
     stop_because = _stop_because(left)
     if stop_because:
         stop = KeptEmergencyStop(True, "", stop_because, boot.started_at)
-        changes[records.kind(KeptEmergencyStop), stop.name] = records.kept(stop)
+        changes[kind_name(KeptEmergencyStop), stop.name] = kept_to_text(stop)
     for kind, end in ({BOOT: ids[BOOT] + 1} | blocks.reserve()).items():
         changes[IDS, kind] = str(end).encode()
     found = Found(
@@ -109,14 +106,14 @@ def _stop_because(left: Left) -> str:
     return "; ".join(faults)
 
 
-def _read_back(records: Records, left: Left) -> tuple[tuple[Kept, ...], tuple[str, ...]]:
+def _read_back(left: Left) -> tuple[tuple[Kept, ...], tuple[str, ...]]:
     """Return values of the core; what cannot be read stays stored, and is told in words."""
     values, left_out = [], []
     for (kind, name), text in left.kept.items():
         if kind in (IDS, OWN):
             continue
         try:
-            values.append(records.restored(text))
+            values.append(kept_from_text(text))
         except PilothouseError as error:
             left_out.append(f"{kind} {name!r}: {error.message}")
     return tuple(values), tuple(left_out)

@@ -1,6 +1,5 @@
 """Reads events from the files of the log, also while they are written."""
 
-import json
 from collections.abc import Iterable, Sequence
 from contextlib import closing
 from pathlib import Path
@@ -8,8 +7,8 @@ from typing import Any
 
 import apsw
 
-from service.clock import since_epoch, to_datetime
-from service.storage.event_rows import kind_pattern
+from service.clock import since_epoch
+from service.storage.event_rows import EventRow, kind_pattern, stored_event
 from service.storage.journal import EventQuery, StoredEvent
 from service.storage.sqlite.connection import open_to_read
 from service.storage.sqlite.log_summary import LogSummary
@@ -23,6 +22,7 @@ WITH RECURSIVE found (kind) AS (
 )
 SELECT kind FROM found WHERE kind IS NOT NULL
 """
+_LARGEST = 2**63 - 1
 _COLUMNS = (
     "events.id, events.boot, boots.epoch, events.at, events.wall_ns, events.kind, events.cause,"
     " events.actor, events.data, events.words"
@@ -33,7 +33,7 @@ def read_events(files: Sequence[LogSummary], query: EventQuery) -> list[StoredEv
     """Return the events of the log that a query asks for, in the order of their ids.
 
     Args:
-        files: Files of the log, oldest first.
+        files: Files of the log, oldest first; the last may hold more than its summary says.
         query: Without `after`, the newest are returned.
 
     Raises:
@@ -41,8 +41,9 @@ def read_events(files: Sequence[LogSummary], query: EventQuery) -> list[StoredEv
     """
     is_forward = query.after is not None
     found: list[StoredEvent] = []
+    current = files[-1]
     for file in files if is_forward else reversed(files):
-        if len(found) < query.limit and _may_hold(file, query):
+        if len(found) < query.limit and (file is current or _may_hold(file, query)):
             found += _read_file(file.path, query, query.limit - len(found))
     return found if is_forward else found[::-1]
 
@@ -84,14 +85,13 @@ def _conditions(connection: apsw.Connection, query: EventQuery) -> tuple[list[st
         values.extend(needed)
 
     if query.after is not None:
-        require("events.id > ?", query.after)
+        require("events.id > ?", _bound(query.after))
     if query.before is not None:
-        require("events.id < ?", query.before)
+        require("events.id < ?", _bound(query.before))
     if query.from_at is not None:
         require("events.wall_ns >= ?", since_epoch(query.from_at))
     if query.to_at is not None:
-        # Shown in whole microseconds.
-        require("events.wall_ns < ?", since_epoch(query.to_at) + 1_000)
+        require("events.wall_ns <= ?", since_epoch(query.to_at))
     if query.kind is not None:
         kinds = _kinds(connection, query.kind)
         require(f"events.kind IN ({','.join('?' * len(kinds))})", *kinds)
@@ -102,6 +102,11 @@ def _conditions(connection: apsw.Connection, query: EventQuery) -> tuple[list[st
     return conditions, values
 
 
+def _bound(number: int) -> int:
+    """Return a number as SQLite can hold it."""
+    return max(-_LARGEST, min(_LARGEST, number))
+
+
 def _kinds(connection: apsw.Connection, kind: str) -> Sequence[str]:
     pattern = kind_pattern(kind)
     known: Iterable[str] = (row[0] for row in connection.execute(_KINDS))
@@ -110,6 +115,5 @@ def _kinds(connection: apsw.Connection, kind: str) -> Sequence[str]:
 
 def _event(row: tuple[Any, ...]) -> StoredEvent:
     number, boot, epoch, at, wall_ns, kind, cause, actor, data, words = row
-    return StoredEvent(
-        number, boot, epoch, at, to_datetime(wall_ns), kind, cause, actor, json.loads(data), words
-    )
+    found = EventRow(number, at, wall_ns, kind, cause, actor, (), data, words)
+    return stored_event(found, boot, epoch)

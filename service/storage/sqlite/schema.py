@@ -1,7 +1,7 @@
 """Versions of the files, and the numbered steps from one to the next.
 
 `user_version` of a file is the number of steps that it has been through. A step is never changed
-once it is released; a new one is appended, with a stored file of the version before it in the tests.
+once it is released; a new one is appended, and the tests get a stored file of the one before it.
 Kinds of kept values, of events and of inputs are data: they need no step.
 """
 
@@ -59,7 +59,7 @@ LOG: Steps = (
     CREATE TABLE changes (
         number INTEGER PRIMARY KEY, kind TEXT NOT NULL, name TEXT NOT NULL, value BLOB
     );
-    -- State of the core after a step, and the batch that ends with that step.
+    -- State of the core after a step, compressed by zlib, and the batch that holds that step.
     CREATE TABLE checkpoints (
         step INTEGER PRIMARY KEY, batch INTEGER NOT NULL, boot INTEGER NOT NULL,
         at INTEGER NOT NULL, version TEXT NOT NULL, state BLOB NOT NULL

@@ -1,15 +1,16 @@
-"""The one thread that waits for the disk, so that the loop does not."""
+"""A thread that waits for the disk, so that the loop does not."""
 
 import asyncio
 import threading
 from collections.abc import Callable
+from contextlib import suppress
 from queue import SimpleQueue
 from typing import TypeVar
 
 Result = TypeVar("Result")
 
 
-class Writer:
+class DiskThread:
     """Runs calls one after the other in a thread of its own.
 
     A daemon: a disk that never answers must not keep the process from ending.
@@ -27,7 +28,7 @@ class Writer:
         def work() -> None:
             try:
                 result = call()
-            except BaseException as error:  # noqa: BLE001  # whoever waits for it gets it
+            except BaseException as error:  # whoever waits for it gets it
                 _tell(loop, future, error=error)
             else:
                 _tell(loop, future, result)
@@ -58,8 +59,6 @@ def _tell(
         else:
             future.set_result(result)  # type: ignore[arg-type]  # of the call that did not fail
 
-    try:
+    # The loop may have been closed while the disk was slow; then nobody waits any more.
+    with suppress(RuntimeError):
         loop.call_soon_threadsafe(settle)
-    except RuntimeError:
-        # The loop was closed while the disk was slow; nobody waits any more.
-        pass
