@@ -53,3 +53,17 @@ class TimeWasDue(Event):
 
     def _words(self) -> str:
         return "a deadline passed"
+
+
+@dataclass(frozen=True, slots=True)
+class NotRestored(Event):
+    """Something that was kept over a restart does not exist any more, and is forgotten."""
+
+    kind = "service.not_restored"
+
+    what: str
+    """What was kept, such as `hold gate-3`."""
+    reason: str
+
+    def _words(self) -> str:
+        return f"not restored: {self.what}: {self.reason}"

@@ -3,7 +3,7 @@
 import pytest
 
 from domain.events.event import Event
-from domain.events.service import ServiceStalled, TimeWasDue, WriteAnswered
+from domain.events.service import NotRestored, ServiceStalled, TimeWasDue, WriteAnswered
 
 
 @pytest.mark.parametrize(
@@ -14,6 +14,10 @@ from domain.events.service import ServiceStalled, TimeWasDue, WriteAnswered
             "PUT /holds/gate from 10.0.0.7:5 answered 409",
         ),
         (ServiceStalled(1.234), "the service itself was 1.23 s late"),
+        (
+            NotRestored("hold gate-3", "there are 64 holds already"),
+            "not restored: hold gate-3: there are 64 holds already",
+        ),
         (TimeWasDue(), "a deadline passed"),
     ],
     ids=lambda value: value.kind if isinstance(value, Event) else "",
