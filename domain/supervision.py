@@ -23,6 +23,7 @@ from domain.lifecycle import Transition
 from domain.outbox import Outbox, Outputs
 from domain.parts.parts import Parts
 from domain.parts.system_model import SmhModel
+from domain.restart import Restart
 from domain.robot_state import RobotState
 from domain.snapshot import (
     ChangeView,
@@ -85,6 +86,7 @@ class Supervision:
         self._changing = Changing(self._parts, self._health, settings.changes, self._outbox)
         # Driving stops the vehicle before the state is published and changes continue.
         self._concerns: tuple[Concern, ...] = (
+            Restart(self._outbox),
             self._parts,
             self._health,
             self._emergency_stop,
