@@ -54,7 +54,7 @@ class RestartingRobot(CoreRobot):
         self.robot.advance(self.now)
         self.settings = settings or self.settings
         self.boot += 1
-        kept: tuple[Kept, ...] = pickle.loads(pickle.dumps(tuple(self.kept.values())))  # noqa: S301
+        kept: tuple[Kept, ...] = pickle.loads(pickle.dumps(tuple(self.kept.values())))
         self.onboard = make_onboard(self.model, self.now, self.settings)
         self.core = self.onboard.core
         self.commands.clear()
