@@ -24,7 +24,7 @@ from service.clock import Clock
 from service.event_log import EventLog
 from service.files.model_file import LoadedModel
 from service.frame_publisher import PERIOD, FramePublisher
-from service.keeper import Keeper, Taken
+from service.keeper import Keeper, Memory, Taken
 from service.node_incidents import log_node_incidents
 from service.ports import RobotBackend
 from service.readings import DirectReadings, ReadingInput, Submit
@@ -51,6 +51,7 @@ class Supervisor:
         simulated: Sequence[str] = (),
         events: EventLog | None = None,
         journal: Journal | None = None,
+        memories: Sequence[Memory] = (),
     ) -> None:
         """Prepare; nothing runs yet.
 
@@ -63,6 +64,7 @@ class Supervisor:
             simulated: The simulated pieces of the robot, as in `Frame`.
             events: The event log; None: a new one.
             journal: Keeps what must survive a restart, and brings it back; None: nothing is kept.
+            memories: What the journal keeps besides the core.
         """
         self.core: Supervision = onboard.core
         """Only for reading; inputs go through `submit`."""
@@ -88,9 +90,14 @@ class Supervisor:
         self.publisher.on_tick.append(self._note_tick)
         self.readings = readings(self.submit)
         """The input for external readings."""
-        self._keeper = None if journal is None else Keeper(journal, self.submit)
-        if journal is not None:
-            self.submit(journal.found.restored)
+        self._keeper = self._restore(memories)
+
+    def _restore(self, memories: Sequence[Memory]) -> Keeper | None:
+        """Bring back what an earlier run left; return who keeps it from now on."""
+        if self.journal is None:
+            return None
+        self.submit(self.journal.found.restored)
+        return Keeper(self.journal, self.submit, self.clock, memories)
 
     @property
     def model(self) -> SmhModel:
@@ -124,14 +131,15 @@ class Supervisor:
             ExceptionGroup: Of a `TaskFailedError` that names the task; its cause is what the task
                 raised.
         """
-        await run_forever(
-            {
-                "robot": self._backend.run(self.deliver),
-                "deadlines": self._submitter.run(),
-                "log": log_node_incidents(self.events),
-                "tick": self.publisher.run(),
-            }
-        )
+        work = {
+            "robot": self._backend.run(self.deliver),
+            "deadlines": self._submitter.run(),
+            "log": log_node_incidents(self.events),
+            "tick": self.publisher.run(),
+        }
+        if self._keeper is not None:
+            work["keeper"] = self._keeper.run()
+        await run_forever(work)
 
     def submit(self, given: Input) -> Outputs:
         """Pass an input to the core.

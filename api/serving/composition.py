@@ -26,6 +26,7 @@ from service.ros.graph.graph import RosGraph, UnknownTypeError
 from service.ros.interface.interface import RosInterface
 from service.simulation.from_settings import make_simulated_robot
 from service.simulation.mock_source import MockSource
+from service.simulation.remembering import memories_of, memory_in
 from service.simulation.simulated import SimulatedBackend
 from service.start_task import submit_start_task
 from service.storage.journal import Boot, Journal
@@ -171,11 +172,21 @@ def _with_simulated(
     if robot.ros2 != Ros2Block():
         log.warning("`ros2` of the robot file has no effect: everything is simulated")
     now = clock.now()
-    simulated = make_simulated_robot(loaded.model, robot, now, mock=mocked)
+    memory = None if journal is None else memory_in(journal.found)
+    simulated = make_simulated_robot(loaded.model, robot, now, mock=mocked, memory=memory)
+    for left in simulated.left_out:
+        log.warning("left out: %s", left)
     backend = SimulatedBackend(simulated, clock)
     onboard = make_onboard(loaded.model, robot, now)
     supervisor = Supervisor(
-        loaded, onboard, clock, backend, backend.readings, simulated.what, journal=journal
+        loaded,
+        onboard,
+        clock,
+        backend,
+        backend.readings,
+        simulated.what,
+        journal=journal,
+        memories=memories_of(simulated),
     )
     limits, parts = ServiceLimits.of(robot.limits), SimulatedParts(onboard, simulated)
     return Composition(supervisor, limits, simulated=parts)

@@ -9,6 +9,7 @@ import os
 import socket
 import sys
 from collections.abc import Iterator, Sequence
+from contextlib import ExitStack
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -82,7 +83,10 @@ def _serve(options: ServeOptions, output: Output, errors: Output) -> int:
         files = read_files(options)
         sockets = listen(options.host, options.port)
         network = Network(access, origins, sockets)
-        with asyncio.Runner(loop_factory=_new_event_loop) as runner:
+        with ExitStack() as stack:
+            for item in sockets:
+                stack.callback(item.close)
+            runner = stack.enter_context(asyncio.Runner(loop_factory=_new_event_loop))
             return runner.run(_run(options, files, network, manager, output))
     except _MISUSES as error:
         return _end(str(error), MISUSED)
