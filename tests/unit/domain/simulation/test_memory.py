@@ -18,11 +18,13 @@ from domain.simulation.vehicle_settings import Plant, VehicleSettings
 from domain.state_and_mode import DEFAULT_MODE, PartName
 from domain.timebase import seconds
 from domain.vehicle import DriveCommand, Pose, VehicleLimits, VehicleState
+from tests.support.big_model import big_model
 from tests.support.models import ARM, BASE, actuation_model
 
 S, T = LifecycleState, Transition
 MODEL = actuation_model()
 LISTS = SmhModel({BASE: NodeModel(BASE, {DEFAULT_MODE: {"gains": (0.5, 1.0), "on": True}})}, {})
+EMPTY = SmhModel({}, {})
 VEHICLE = {"x_m": 1.0, "y_m": -2.0, "yaw_rad": 0.5, "steering_angle_rad": 0.1}
 
 
@@ -123,7 +125,7 @@ def test_a_node_that_was_plain_and_has_a_lifecycle_now_begins_unconfigured() -> 
 def test_a_node_that_is_dead_from_the_start_is_not_brought_to_life() -> None:
     dead = {BASE: NodeSettings(fault=Fault.DIE)}
     robot = SimulatedRobot(MODEL, 0, dead)
-    assert BASE not in robot.nodes.memory()
+    assert [alike["nodes"] for alike in robot.nodes.memory()] == [[ARM]]
 
     again = SimulatedRobot(MODEL, seconds(100), dead, memory=memory_of(SimulatedRobot(MODEL, 0)))
     assert set(reports(again)) == {ARM}
@@ -137,6 +139,34 @@ def test_nodes_that_the_model_no_longer_has_are_ignored() -> None:
 
     assert again.left_out == ()
     assert {node: report.state for node, report in reports(again).items()} == {BASE: S.INACTIVE}
+
+
+def test_nodes_that_are_in_the_same_are_remembered_together() -> None:
+    robot = SimulatedRobot(big_model(100), 0)
+    assert len(robot.nodes.memory()) == 1
+
+    do(robot, PartName("node_7"), T.SHUTDOWN)
+    robot.advance(seconds(1))
+    told = [(alike["state"], alike["nodes"]) for alike in robot.nodes.memory()]
+    others = [f"node_{number}" for number in range(100) if number != 7]
+    assert told == [("unconfigured", others), ("finalized", ["node_7"])]
+
+
+def test_values_that_are_equal_but_of_different_types_are_not_the_same() -> None:
+    whole, part = PartName("whole"), PartName("part")
+    model = SmhModel(
+        {
+            whole: NodeModel(whole, {DEFAULT_MODE: {"rate": 1}}),
+            part: NodeModel(part, {DEFAULT_MODE: {"rate": 1.0}}),
+        },
+        {},
+    )
+    said = reports(restarted(SimulatedRobot(model, 0), model))
+
+    assert {name: repr(report.parameters) for name, report in said.items()} == {
+        whole: "mappingproxy({'rate': 0})",
+        part: "mappingproxy({'rate': 0.0})",
+    }
 
 
 # --- vehicle -------------------------------------------------------------------------------------
@@ -210,22 +240,26 @@ def test_a_vehicle_that_drives_is_something_new() -> None:
     ("memory", "reason"),
     [
         ("x", "the memory of the simulated robot is not a mapping"),
-        ({"nodes": []}, "the memory of the simulated nodes is not a mapping"),
-        ({"nodes": {BASE: 3}}, "the memory of the simulated node drive_base: it is not a mapping"),
+        ({"nodes": {}}, "the memory of the simulated nodes is not a list"),
+        ({"nodes": [3]}, "the memory of some simulated nodes: it is not a mapping"),
         (
-            {"nodes": {BASE: {"state": "flying"}}},
-            "the memory of the simulated node drive_base: 'flying' is not a state to rest in",
+            {"nodes": [{"state": "active", "nodes": 3, "parameters": {}}]},
+            "the memory of some simulated nodes: its nodes are not a list",
         ),
         (
-            {"nodes": {BASE: {"state": "activating"}}},
-            "the memory of the simulated node drive_base: 'activating' is not a state to rest in",
+            {"nodes": [{"state": "flying", "nodes": [BASE], "parameters": {}}]},
+            "the memory of some simulated nodes: 'flying' is not a state to rest in",
         ),
         (
-            {"nodes": {BASE: {"state": "active", "parameters": 1}}},
-            "the memory of the simulated node drive_base: its parameters are not a mapping",
+            {"nodes": [{"state": "activating", "nodes": [BASE], "parameters": {}}]},
+            "the memory of some simulated nodes: 'activating' is not a state to rest in",
         ),
         (
-            {"nodes": {BASE: {"state": "active", "parameters": {"max_speed": 1}}}},
+            {"nodes": [{"state": "active", "nodes": [BASE], "parameters": 1}]},
+            "the memory of some simulated nodes: its parameters are not a mapping",
+        ),
+        (
+            {"nodes": [{"state": "active", "nodes": [BASE], "parameters": {"max_speed": 1}}]},
             "the memory of the simulated node drive_base: max_speed is of type double, not integer",
         ),
         (
@@ -247,14 +281,14 @@ def test_nonsense_is_left_out_with_a_reason(memory: object, reason: str) -> None
 
 
 def test_of_very_much_nonsense_some_is_told() -> None:
-    nodes = {PartName(f"n{number}"): NodeModel(PartName(f"n{number}")) for number in range(30)}
-    left_out = read_memory({"nodes": dict.fromkeys(nodes, 1)}, SmhModel(nodes, {})).left_out
+    left_out = read_memory({"nodes": [1] * 30}, EMPTY).left_out
 
     assert (len(left_out), left_out[-1]) == (21, "and 10 more")
 
 
 def test_one_node_that_is_nonsense_keeps_no_other_from_being_remembered() -> None:
-    memory = {"nodes": {BASE: 3, ARM: {"state": "inactive"}}, "vehicle": VEHICLE}
+    alike = {"state": "inactive", "parameters": {"max_speed": 1}, "nodes": [BASE, ARM]}
+    memory = {"nodes": [3, alike], "vehicle": VEHICLE}
     read = read_memory(memory, MODEL)
 
     assert read.nodes == {ARM: NodeMemory(S.INACTIVE)}
