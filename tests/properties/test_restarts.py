@@ -6,7 +6,7 @@
 import os
 from collections.abc import Callable
 from dataclasses import dataclass, replace
-from typing import TypeAlias
+from typing import Any, TypeAlias
 
 import hypothesis.strategies as st
 import numpy as np
@@ -30,8 +30,6 @@ from tests.support.drives import through
 from tests.support.good import GOOD
 from tests.support.paths import straight
 from tests.support.restarting_robot import RestartingRobot
-
-Act: TypeAlias = Callable[[RestartingRobot], object]
 
 PLANT = Plant(acceleration_mps2=1.0, braking_mps2=1.0, delay=seconds(0.05))
 PATHS: dict[str, Path] = {
@@ -82,38 +80,50 @@ class Shown:
 # --- what happens --------------------------------------------------------------------------------
 
 
-def submit(name: str) -> Act:
-    def act(robot: RestartingRobot) -> None:
-        state = robot.core.driving.vehicle.state
-        if state is None or abs(state.speed_mps) > 0.01:
-            return
-        x_m, y_m, yaw = state.pose.x_m, state.pose.y_m, state.pose.yaw_rad
-        path = moved(PATHS[name], Pose(x_m, y_m, yaw))
-        robot.give(TaskRequest(path, 0, "pure_pursuit", FASTEST_MPS))
-
-    return act
+def submit(robot: RestartingRobot, name: str) -> None:
+    """Submit a path that begins where the vehicle stands; one that moves is not asked to turn."""
+    state = robot.core.driving.vehicle.state
+    if state is None or abs(state.speed_mps) > 0.01:
+        return
+    robot.give(TaskRequest(seen_from(state.pose, PATHS[name]), 0, "pure_pursuit", FASTEST_MPS))
 
 
-def moved(path: Path, pose: Pose) -> Path:
-    """Return a path as seen from a pose."""
+def seen_from(pose: Pose, path: Path) -> Path:
+    """Return a path with its origin at a pose."""
     c, s = np.cos(pose.yaw_rad), np.sin(pose.yaw_rad)
-    xy = path.waypoints[:, :2] @ np.array([[c, s], [-s, c]]) + (pose.x_m, pose.y_m)
-    return Path(np.column_stack((xy, path.waypoints[:, 2])))
+    places = path.waypoints[:, :2] @ np.array([[c, s], [-s, c]]) + (pose.x_m, pose.y_m)
+    return Path(np.column_stack((places, path.waypoints[:, 2])))
 
 
-ACTS: st.SearchStrategy[Act] = st.one_of(
-    st.sampled_from(sorted(PATHS)).map(submit),
-    st.sampled_from(OWNERS).map(lambda owner: lambda robot: robot.hold(owner)),
-    st.sampled_from([*OWNERS, RESTART_HOLD]).map(lambda owner: lambda robot: robot.release(owner)),
-    st.just(lambda robot: robot.stop()),
-    st.just(lambda robot: robot.release_stop()),
-    st.just(lambda robot: robot.read(**{**GOOD, "temperature": 60.0})),
-    st.just(lambda robot: robot.read(**GOOD)),
-    st.just(lambda robot: robot.acknowledge("TEMPERATURE_HIGH")),
-    st.just(lambda robot: robot.cancel_task()),
-    st.floats(0.01, 12.0).map(lambda by_s: lambda robot: robot.advance(by_s)),
-    st.floats(0.01, 12.0).map(lambda by_s: lambda robot: robot.advance(by_s)),
-)
+ACTS: dict[str, Callable[[RestartingRobot, Any], object]] = {
+    "submit": submit,
+    "hold": lambda robot, owner: robot.hold(owner),
+    "release": lambda robot, owner: robot.release(owner),
+    "stop": lambda robot, _: robot.stop(),
+    "release the stop": lambda robot, _: robot.release_stop(),
+    "read": lambda robot, degrees: robot.read(**{**GOOD, "temperature": degrees}),
+    "acknowledge": lambda robot, _: robot.acknowledge("TEMPERATURE_HIGH"),
+    "cancel": lambda robot, _: robot.cancel_task(),
+    "wait": lambda robot, by_s: robot.advance(by_s),
+}
+Step: TypeAlias = tuple[str, object, float | None]
+"""What happens, with what, and how long the service is down thereafter; None: it goes on."""
+
+
+def steps() -> st.SearchStrategy[Step]:
+    """Generate what happens next."""
+    durations = st.floats(0.01, 12.0)
+    acts = st.one_of(
+        st.tuples(st.just("submit"), st.sampled_from(sorted(PATHS))),
+        st.tuples(st.just("hold"), st.sampled_from(OWNERS)),
+        st.tuples(st.just("release"), st.sampled_from((*OWNERS, RESTART_HOLD))),
+        st.tuples(st.sampled_from(("stop", "release the stop", "acknowledge")), st.none()),
+        st.tuples(st.just("read"), st.sampled_from((20.0, 60.0))),
+        st.tuples(st.just("cancel"), st.none()),
+        st.tuples(st.just("wait"), durations),
+        st.tuples(st.just("wait"), durations),
+    )
+    return st.tuples(acts, st.none() | st.floats(0.0, 5.0)).map(lambda step: (*step[0], step[1]))
 
 
 # --- what has to hold ----------------------------------------------------------------------------
@@ -195,18 +205,16 @@ SOAK = bool(os.environ.get("PILOTHOUSE_SOAK"))
 @settings(
     max_examples=3_000 if SOAK else 60, suppress_health_check=list(HealthCheck), deadline=None
 )
-@given(st.lists(st.tuples(ACTS, st.none() | st.floats(0.0, 5.0)), min_size=1, max_size=12))
-def test_a_restart_forgets_nothing_and_moves_nothing(
-    story: list[tuple[Act, float | None]],
-) -> None:
+@given(st.lists(steps(), min_size=1, max_size=12))
+def test_a_restart_forgets_nothing_and_moves_nothing(story: list[Step]) -> None:
     known = SupervisionSettings(waiting_signals())
     robot = RestartingRobot(SmhModel({}, {}), known, VehicleSettings(plant=PLANT))
     robot.read(**GOOD)
     robot.advance(0.1)
-    submit("long")(robot)
+    submit(robot, "long")
     robot.advance(1.0)
-    for act, down_s in story:
-        act(robot)
+    for act, argument, down_s in story:
+        ACTS[act](robot, argument)
         if down_s is not None:
             restart(robot, down_s)
     finish(robot)
