@@ -1,220 +1,170 @@
-"""Whenever the service dies: nothing is forgotten, nothing moves by itself, and the task goes on.
+"""Whenever the service is restarted, nothing is activated or set before an operator asks for it.
 
-`make soak` tells 3,000 stories, `make test` 60.
+`make soak` plays 10,000 stories, `make test` 300.
 """
 
 import os
-from collections.abc import Callable
-from dataclasses import dataclass, replace
-from typing import Any, TypeAlias
+from contextlib import suppress
 
 import hypothesis.strategies as st
-import numpy as np
-from hypothesis import HealthCheck, given, settings
+from hypothesis import given, settings
 
-from domain.commands import Drive
-from domain.findings import Blocker
-from domain.health.signals import Recovery, SignalSettings
-from domain.inputs import TaskRequest
-from domain.parts.system_model import SmhModel
-from domain.paths.path import Path
-from domain.simulation.vehicle_settings import Plant, VehicleSettings
-from domain.snapshot import EmergencyStopView, HoldView, TaskPhase, TaskView
-from domain.supervision import SupervisionSettings
-from domain.tasks.holds import RESERVED, RESTART_HOLD
-from domain.tasks.kept_tasks import LOST_AT_MOST
-from domain.timebase import seconds, to_seconds
-from domain.vehicle import Pose
-from service.files.robot_settings import SignalsBlock
-from tests.support.drives import through
-from tests.support.good import GOOD
-from tests.support.paths import straight
-from tests.support.restarting_robot import RestartingRobot
-
-PLANT = Plant(acceleration_mps2=1.0, braking_mps2=1.0, delay=seconds(0.05))
-PATHS: dict[str, Path] = {
-    "short": straight(8.0),
-    "long": straight(60.0),
-    "beside": straight(30.0, y_m=2.0),
-    "right angle": through(
-        *((float(x), 0.0) for x in range(16)), *((15.0, y) for y in range(1, 16))
-    ),
-}
-FASTEST_MPS = 2.8
-MAY_BE_LOST_M = to_seconds(LOST_AT_MOST) * FASTEST_MPS
-OWNERS = ("operator", "gate-3")
-
-
-def waiting_signals() -> tuple[SignalSettings, ...]:
-    """Return the signals, none of which becomes stale; the temperature is to be acknowledged."""
-    return tuple(
-        replace(item, recovery=Recovery.ACKNOWLEDGE) if item.spec.name == "temperature" else item
-        for item in SignalsBlock(stale_after_s=0.0).to_domain()
-    )
-
-
-@dataclass(frozen=True, slots=True)
-class Shown:
-    """What an operator sees of that which must not be forgotten."""
-
-    holds: dict[str, HoldView]
-    stop: EmergencyStopView
-    to_acknowledge: dict[str, str | None]
-    ended: list[TaskView]
-    current: TaskView | None
-
-    @classmethod
-    def of(cls, robot: RestartingRobot) -> "Shown":
-        """Look at a robot."""
-        core = robot.core
-        tasks = list(core.driving.tasks())
-        return cls(
-            {o: h for o, h in core.driving.holds.items() if o not in (*RESERVED, RESTART_HOLD)},
-            replace(core.emergency_stop(), standstill_at=None),
-            {s: v.error for s, v in core.signals().items() if v.needs_acknowledgement},
-            [task for task in tasks if task.ended_at is not None],
-            core.driving.current_task,
-        )
-
-
-# --- what happens --------------------------------------------------------------------------------
-
-
-def submit(robot: RestartingRobot, name: str) -> None:
-    """Submit a path that begins where the vehicle stands; one that moves is not asked to turn."""
-    state = robot.core.driving.vehicle.state
-    if state is None or abs(state.speed_mps) > 0.01:
-        return
-    robot.give(TaskRequest(seen_from(state.pose, PATHS[name]), 0, "pure_pursuit", FASTEST_MPS))
-
-
-def seen_from(pose: Pose, path: Path) -> Path:
-    """Return a path with its origin at a pose."""
-    c, s = np.cos(pose.yaw_rad), np.sin(pose.yaw_rad)
-    places = path.waypoints[:, :2] @ np.array([[c, s], [-s, c]]) + (pose.x_m, pose.y_m)
-    return Path(np.column_stack((places, path.waypoints[:, 2])))
-
-
-ACTS: dict[str, Callable[[RestartingRobot, Any], object]] = {
-    "submit": submit,
-    "hold": lambda robot, owner: robot.hold(owner),
-    "release": lambda robot, owner: robot.release(owner),
-    "stop": lambda robot, _: robot.stop(),
-    "release the stop": lambda robot, _: robot.release_stop(),
-    "read": lambda robot, degrees: robot.read(**{**GOOD, "temperature": degrees}),
-    "acknowledge": lambda robot, _: robot.acknowledge("TEMPERATURE_HIGH"),
-    "cancel": lambda robot, _: robot.cancel_task(),
-    "wait": lambda robot, by_s: robot.advance(by_s),
-}
-Step: TypeAlias = tuple[str, object, float | None]
-"""What happens, with what, and how long the service is down thereafter; None: it goes on."""
-
-
-def steps() -> st.SearchStrategy[Step]:
-    """Generate what happens next."""
-    durations = st.floats(0.01, 12.0)
-    acts = st.one_of(
-        st.tuples(st.just("submit"), st.sampled_from(sorted(PATHS))),
-        st.tuples(st.just("hold"), st.sampled_from(OWNERS)),
-        st.tuples(st.just("release"), st.sampled_from((*OWNERS, RESTART_HOLD))),
-        st.tuples(st.sampled_from(("stop", "release the stop", "acknowledge")), st.none()),
-        st.tuples(st.just("read"), st.sampled_from((20.0, 60.0))),
-        st.tuples(st.just("cancel"), st.none()),
-        st.tuples(st.just("wait"), durations),
-        st.tuples(st.just("wait"), durations),
-    )
-    return st.tuples(acts, st.none() | st.floats(0.0, 5.0)).map(lambda step: (*step[0], step[1]))
-
-
-# --- what has to hold ----------------------------------------------------------------------------
-
-
-def restart(robot: RestartingRobot, down_s: float) -> None:
-    """Kill the service, start it again, and look at what is left of it."""
-    before = Shown.of(robot)
-    robot.restart(down_s)
-    after = Shown.of(robot)
-    assert after.holds == before.holds
-    assert after.stop == before.stop
-    assert {s: e for s, e in after.to_acknowledge.items() if s != "estop"} == before.to_acknowledge
-    assert robot.core.emergency_stop().engaged is ("ESTOP" in robot.core.system_state().errors)
-    assert after.ended == before.ended
-    compare(before.current, after.current)
-    assert (RESTART_HOLD in robot.core.driving.holds) is (after.current is not None)
-    nothing_moves(robot, 0.2)
-    again = Shown.of(robot)
-    robot.restart(0.0)
-    compare(again.current, robot.core.driving.current_task, lost_m=0.0)
-    assert replace(Shown.of(robot), current=again.current) == again
-    nothing_moves(robot, 3.0)
-
-
-def compare(before: TaskView | None, after: TaskView | None, lost_m: float = MAY_BE_LOST_M) -> None:
-    """Look whether a task is the same, with all of its progress but what was driven last."""
-    if before is None or after is None:
-        assert before is after
-        return
-    assert after.status is TaskPhase.PAUSED
-    assert 0.0 <= before.distance_m - after.distance_m <= lost_m
-    same = replace(
-        before,
-        status=after.status,
-        reason=after.reason,
-        target_index=after.target_index,
-        progress=after.progress,
-        distance_m=after.distance_m,
-        cross_track_error_m=after.cross_track_error_m,
-    )
-    assert after == same
-
-
-def nothing_moves(robot: RestartingRobot, for_s: float) -> None:
-    """Let time pass after a restart, in which nobody asks for anything."""
-    robot.read(**GOOD)
-    robot.advance(for_s)
-    drives = [command for command in robot.commands if isinstance(command, Drive)]
-    assert all(drive.command.speed_mps == 0.0 for drive in drives)
-    assert robot.happened("task.started") == robot.happened("task.resumed") == []
-
-
-def finish(robot: RestartingRobot) -> None:
-    """Release everything, and drive to the end."""
-    robot.read(**GOOD)
-    robot.release_stop()
-    robot.advance(0.5)
-    for error in robot.core.system_state().errors:
-        robot.acknowledge(error)
-    for owner in (*OWNERS, RESTART_HOLD):
-        robot.release(owner)
-    current = robot.core.driving.current_task
-    robot.advance(120.0)
-    assert reasons(robot) == []
-    if current is not None:
-        task = robot.core.driving.task(current.id)
-        assert (task.status, task.reason, task.progress) == (TaskPhase.SUCCEEDED, None, 1.0)
-
-
-def reasons(robot: RestartingRobot) -> list[Blocker]:
-    """Return why the robot is in ERROR."""
-    return list(robot.core.system_state().reasons)
-
-
-SOAK = bool(os.environ.get("PILOTHOUSE_SOAK"))
-
-
-@settings(
-    max_examples=3_000 if SOAK else 60, suppress_health_check=list(HealthCheck), deadline=None
+from domain.changes.settings import ChangeSettings
+from domain.commands import AskParameters, AskTransition
+from domain.errors import PilothouseError
+from domain.inputs import (
+    BackendStatus,
+    ChangeRequest,
+    Input,
+    ModeRequest,
+    NodeReport,
+    ParametersRequest,
+    Reading,
+    Readings,
+    ServiceStall,
+    TimePassed,
+    TransitionRequest,
 )
-@given(st.lists(steps(), min_size=1, max_size=12))
-def test_a_restart_forgets_nothing_and_moves_nothing(story: list[Step]) -> None:
-    known = SupervisionSettings(waiting_signals())
-    robot = RestartingRobot(SmhModel({}, {}), known, VehicleSettings(plant=PLANT))
-    robot.read(**GOOD)
-    robot.advance(0.1)
-    submit(robot, "long")
-    robot.advance(1.0)
-    for act, argument, down_s in story:
-        ACTS[act](robot, argument)
-        if down_s is not None:
-            restart(robot, down_s)
-    finish(robot)
+from domain.kept import KeptChange, KeptTarget
+from domain.lifecycle import LifecycleState, Transition
+from domain.outbox import Outputs
+from domain.parts.system_model import SmhModel
+from domain.snapshot import ChangeStatus
+from domain.state_and_mode import PartName
+from domain.supervision import Supervision, SupervisionSettings
+from domain.timebase import Instant, seconds
+from tests.support.good import GOOD
+from tests.support.kept_values import KeptValues
+from tests.support.models import BASE, nested_model
+
+STORIES = 10_000 if os.environ.get("PILOTHOUSE_SOAK") == "1" else 300
+MODEL = nested_model()
+STATES = st.none() | st.sampled_from(LifecycleState)
+REPORTS = st.builds(
+    NodeReport,
+    st.sampled_from(list(MODEL.nodes)),
+    state=STATES,
+    reachable=st.sampled_from([None, True, True, False]),
+    has_lifecycle=st.sampled_from([None, None, True, False]),
+)
+PARTS = st.sampled_from(MODEL.parts)
+REQUESTS: st.SearchStrategy[ChangeRequest] = st.one_of(
+    PARTS.flatmap(lambda p: st.builds(ModeRequest, st.just(p), st.sampled_from(MODEL.modes_of(p)))),
+    st.builds(TransitionRequest, PARTS, st.sampled_from(Transition)),
+    st.builds(ParametersRequest, st.just(BASE), st.just({"max_speed": 0.5})),
+)
+NOT_BY_AN_OPERATOR: st.SearchStrategy[Input] = st.one_of(
+    REPORTS,
+    REPORTS,
+    st.just(TimePassed()),
+    st.just(ServiceStall(seconds(1))),
+    st.builds(BackendStatus, st.booleans()),
+    st.booleans().map(
+        lambda good: Readings(
+            tuple(Reading(n, v) for n, v in {**GOOD, "estop": not good}.items()), "test"
+        )
+    ),
+)
+WAITS = st.sampled_from([0.0, 0.01, 0.5, 3.0, 12.0])
+
+
+class Robot:
+    """A core that is restarted now and then, with its nodes all restored when they reappear."""
+
+    def __init__(self, model: SmhModel) -> None:
+        self.model = model
+        self.now: Instant = 0
+        self.kept = KeptValues()
+        self.told: list[int] = []
+        self.changes = 0
+        self.boot = 0
+        self.start()
+
+    def start(self) -> Outputs:
+        """Start the service, for the first time or again."""
+        changes = ChangeSettings(restored_nodes=frozenset(self.model.nodes))
+        self.core = Supervision(self.model, SupervisionSettings(changes=changes), self.now)
+        self.boot += 1
+        first = self.told[-1] + 1 if self.told else 1
+        return self._give(self.kept.restored(self.boot, first, self.changes + 1))
+
+    def give(self, given_: Input, after_s: float = 0.0) -> Outputs:
+        """Give an input that may be rejected."""
+        self.now += seconds(after_s)
+        with suppress(PilothouseError):
+            return self._give(given_)
+        return self._give(TimePassed())
+
+    def _give(self, given_: Input) -> Outputs:
+        outputs = self.kept.take(self.core.handle(given_, self.now))
+        self.told += [event.id for event in outputs.events]
+        self.changes += sum(event.kind == "change.requested" for event in outputs.events)
+        self.changes += sum(event.kind == "node.restoring" for event in outputs.events)
+        return outputs
+
+
+def asked_of(outputs: Outputs) -> set[PartName]:
+    """Return the nodes of which more is asked than what they are in."""
+    return {c.node for c in outputs.commands if isinstance(c, AskTransition | AskParameters)}
+
+
+def meant(part: PartName) -> set[PartName]:
+    """Return the nodes that a request of a part is about, in any of its modes."""
+    return {node for node in MODEL.nodes if part in (node, *MODEL.ancestors[node])}
+
+
+@settings(max_examples=STORIES, deadline=None)
+@given(
+    st.lists(st.tuples(WAITS, REQUESTS | NOT_BY_AN_OPERATOR), max_size=12),
+    st.lists(st.tuples(WAITS, NOT_BY_AN_OPERATOR), max_size=12),
+    REQUESTS,
+    st.lists(st.tuples(WAITS, NOT_BY_AN_OPERATOR), max_size=12),
+)
+def test_nothing_is_asked_of_a_node_before_an_operator_asks_for_it(
+    before: list[tuple[float, Input]],
+    silence: list[tuple[float, Input]],
+    request: ChangeRequest,
+    after: list[tuple[float, Input]],
+) -> None:
+    robot = Robot(MODEL)
+    for after_s, given_ in before:
+        robot.give(given_, after_s)
+    running = [c.id for c in robot.core.changes() if c.status is ChangeStatus.RUNNING]
+
+    assert asked_of(robot.start()) == set()
+    for after_s, given_ in silence:
+        assert asked_of(robot.give(given_, after_s)) == set()
+    assert {c.id: c.reason for c in robot.core.changes()} == dict.fromkeys(running, "restart")
+    assert all(robot.core.change(change).status is ChangeStatus.FAILED for change in running)
+
+    part = request.node if isinstance(request, ParametersRequest) else request.part
+    allowed = meant(part)
+    assert asked_of(robot.give(request)) <= allowed
+    for after_s, given_ in after:
+        assert asked_of(robot.give(given_, after_s)) <= allowed
+
+
+@settings(max_examples=STORIES, deadline=None)
+@given(
+    st.lists(
+        st.lists(st.tuples(WAITS, REQUESTS | NOT_BY_AN_OPERATOR), max_size=8),
+        min_size=2,
+        max_size=4,
+    )
+)
+def test_ids_go_on_and_little_is_kept_however_often_the_service_starts(
+    runs: list[list[tuple[float, Input]]],
+) -> None:
+    robot = Robot(MODEL)
+    for run in runs:
+        for after_s, given_ in run:
+            robot.give(given_, after_s)
+            kept = [v.id for v in robot.kept.of(KeptChange) if isinstance(v, KeptChange)]
+            running = [c.id for c in robot.core.changes() if c.status is ChangeStatus.RUNNING]
+            assert sorted(kept) == sorted(running)
+        targets = [robot.core.part(part).target for part in MODEL.parts]
+        assert len(robot.kept.of(KeptTarget)) <= sum(target is not None for target in targets)
+        robot.start()
+        assert [robot.core.part(part).target for part in MODEL.parts] == targets
+
+    assert robot.told == sorted(set(robot.told))

@@ -16,6 +16,7 @@ from domain.outbox import Outbox, Outputs
 from domain.restart import Restart
 from domain.robot_state import RobotState
 from domain.snapshot import TaskStatus
+from domain.storage import Storage
 from domain.tasks.driving import Driving
 from domain.timebase import Instant, seconds
 from tests.support.good import GOOD
@@ -30,7 +31,9 @@ class Robot:
         self.outbox = Outbox()
         self.health = Health(signals, self.outbox, now)
         self.driving = SimpleNamespace(status=TaskStatus.NO_TASK, still_moving=None)
-        self.state = RobotState(self.health, cast("Driving", self.driving), self.outbox)
+        self.state = RobotState(
+            self.health, cast("Driving", self.driving), Storage(self.outbox), self.outbox
+        )
         self.events: dict[int, RecordedEvent] = {}
         self.now = now
         self.last = Outputs()
