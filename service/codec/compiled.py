@@ -23,8 +23,8 @@ def compile_writer(kind: type, shapes: Mapping[str, Shape], head: Mapping[str, s
                 plain['parameters'] = write_parameters(item)
             return plain
 
-    A field that holds its default is left out, if that is None or a text; not if it is a number,
-    since 0 equals 0.0, -0.0 and False.
+    A field that holds its default is left out, if that is None, a text or `()`; not if it is a
+    number, since 0 equals 0.0, -0.0 and False.
 
     Args:
         kind: A dataclass.
@@ -35,7 +35,7 @@ def compile_writer(kind: type, shapes: Mapping[str, Shape], head: Mapping[str, s
     lines = []
     for item in fields(kind):
         writer = f"write_{item.name}(%s)" if shapes[item.name].write else "%s"
-        if item.default is None or isinstance(item.default, str):
+        if item.default is None or isinstance(item.default, str | tuple):
             differs = "is not" if item.default is None else "!="
             lines += [
                 f"    item = value.{item.name}",

@@ -6,7 +6,9 @@ from domain.actor import Actor
 from domain.commands import AskFacts, AskParameters, AskTransition, Drive, PreemptGoal, SendGoal
 from domain.events.changes import StepEnded
 from domain.events.event import RecordedEvent
+from domain.events.service import TimeWasDue
 from domain.identifiers import ChangeId, GoalId, TaskId
+from domain.inputs import TimePassed
 from domain.kept import (
     Keeping,
     KeptChange,
@@ -21,6 +23,7 @@ from domain.lifecycle import LifecycleState, Transition
 from domain.snapshot import StepStatus
 from domain.state_and_mode import ModeName, PartName, StateAndMode
 from domain.vehicle import DriveCommand
+from service.codec.recorded_step import RecordedStep
 from tests.support.record_samples.pieces import PARAMETERS, PATH
 
 OTHERS: Mapping[str, tuple[object, ...]] = {
@@ -56,6 +59,20 @@ OTHERS: Mapping[str, tuple[object, ...]] = {
     "actor": (
         Actor(name="ada", way="http", address="10.0.0.7"),
         Actor(name="", way="", address=""),
+    ),
+    "recorded_step": (
+        RecordedStep(
+            at=1764420000123456789,
+            given=TimePassed(),
+            is_late=True,
+            commands=(Drive(command=DriveCommand(speed_mps=1.5, steering_angle_rad=0.0625)),),
+            events=(RecordedEvent(41, 1764420000123456789, None, Actor(), TimeWasDue()),),
+            kept=(Keeping(kind=KeptHold, name="operator", value=None),),
+            views=4294967295,
+        ),
+        RecordedStep(
+            at=0, given=TimePassed(), is_late=False, commands=(), events=(), kept=(), views=None
+        ),
     ),
     "recorded_event": (
         RecordedEvent(
