@@ -7,7 +7,7 @@ when it expires (`submitter`); the tick only publishes (`frame_publisher`).
 from collections.abc import Callable, Sequence
 from contextlib import suppress
 
-from domain.actor import Actor
+from domain.actor import SERVICE
 from domain.commands import PreemptGoal, SendGoal
 from domain.errors import PilothouseError
 from domain.findings import Finding
@@ -174,7 +174,7 @@ class Supervisor:
         """Hold the task and stop the vehicle, since the service ends."""
         # Rejected only if the maximum of holds is reached, and then the vehicle is held already.
         with suppress(PilothouseError):
-            self.submit(HoldRequest("service", "the service ends", Actor("service")))
+            self.submit(HoldRequest("service", "the service ends", SERVICE))
 
     def _note_tick(self, since_s: float) -> None:
         """Let deadlines wait after a tick that was late, and tell of one that was very late."""

@@ -1,20 +1,24 @@
 """Composes the service of `pilothouse serve`: the only place that names concrete adapters."""
 
 import logging
+import os
+import secrets
 from dataclasses import dataclass
 from importlib import resources
 from pathlib import Path
 from typing import Literal, TypeAlias
 
+from api.distribution import installed_version
 from api.http.limits import ServiceLimits
-from api.serving.data_folder import MEMORY
+from api.serving.data_folder import MEMORY, data_folder, robot_name
 from api.simulation.simulation_job import SimulatedParts
 from domain.simulation.mock_signals import MockSignals
 from service.clock import Clock
 from service.composite import CompositeRobot
 from service.files.model_file import LoadedModel, load_model
-from service.files.robot_file import RobotSettings, load_robot_file
+from service.files.robot_file import RobotSettings, read_robot_file
 from service.files.ros2_block import Ros2Block
+from service.files.text_file import read_text_file
 from service.onboard_parts import make_onboard
 from service.ros.backend.backend import Ros2Backend
 from service.ros.gateway import RosGateway
@@ -24,6 +28,10 @@ from service.simulation.from_settings import make_simulated_robot
 from service.simulation.mock_source import MockSource
 from service.simulation.simulated import SimulatedBackend
 from service.start_task import submit_start_task
+from service.storage.journal import Boot, Journal
+from service.storage.memory import MemoryJournal
+from service.storage.sqlite.journal import SqliteJournal
+from service.storage.sqlite.opening import StoreSettings
 from service.supervisor import Supervisor
 
 log = logging.getLogger(__name__)
@@ -75,32 +83,85 @@ class Composition:
     """The simulated robot, which a simulation can copy; None: the robot is real."""
 
 
-def compose(options: ServeOptions, clock: Clock) -> Composition:
-    """Return the parts of a service for the robot that the options describe.
+@dataclass(frozen=True, slots=True)
+class RobotFiles:
+    """What the files say of a robot."""
+
+    name: str
+    loaded: LoadedModel
+    settings: RobotSettings
+    text: str
+    """Of the robot file; empty: there is none."""
+
+
+def read_files(options: ServeOptions) -> RobotFiles:
+    """Read model and robot file.
 
     Raises:
         UnreadableFileError: A file cannot be read.
         InvalidModelError: The model is invalid.
         InvalidRobotFileError: The robot file is invalid.
+    """
+    model = options.model or EXAMPLE
+    loaded = load_model(model)
+    text = read_text_file(options.robot) if options.robot else ""
+    settings = read_robot_file(text, loaded.model) if options.robot else RobotSettings()
+    return RobotFiles(robot_name(settings.name, model), loaded, settings, text)
+
+
+async def open_journal(options: ServeOptions, files: RobotFiles, clock: Clock) -> Journal:
+    """Open what an earlier run of the service left of the robot.
+
+    Raises:
+        UnusableFolderError: The folder is in use, of another robot, or cannot be used at all.
+    """
+    now = clock.now()
+    boot = Boot(
+        secrets.token_hex(8),
+        installed_version(),
+        now,
+        clock.wall_time(now),
+        files.loaded.text,
+        files.text,
+    )
+    folder = data_folder(options.data, files.name, os.environ)
+    if folder is None:
+        return MemoryJournal(boot, clock)
+    return await SqliteJournal.open(StoreSettings(folder, files.name), boot, clock)
+
+
+def compose(
+    options: ServeOptions, clock: Clock, files: RobotFiles, journal: Journal | None = None
+) -> Composition:
+    """Return the parts of a service for the robot that the options describe.
+
+    Args:
+        options: Of the command.
+        clock: Of the service.
+        files: What `read_files` returned for the options.
+        journal: Keeps what must survive a restart; None: nothing is kept.
+
+    Raises:
         StartTaskError: The start task cannot be driven.
         MisuseError: ROS 2 is required and not available.
         UnknownTypeError: The type of a topic in the robot file is not installed.
         UnknownFieldError: That type does not have the field that the robot file names.
     """
-    loaded = load_model(options.model or EXAMPLE)
-    robot = load_robot_file(options.robot, loaded.model) if options.robot else RobotSettings()
-    composition = (
-        _with_ros2(options, loaded, robot, clock)
-        if (options.backend or robot.backend) == "ros2"
-        else _with_simulated(options, loaded, robot, clock)
-    )
-    if options.robot is not None and robot.start_task is not None:
-        submit_start_task(composition.supervisor, robot.start_task, options.robot)
+    is_real = (options.backend or files.settings.backend) == "ros2"
+    make = _with_ros2 if is_real else _with_simulated
+    composition = make(options, files.loaded, files.settings, clock, journal)
+    start_task = files.settings.start_task
+    if options.robot is not None and start_task is not None:
+        submit_start_task(composition.supervisor, start_task, options.robot)
     return composition
 
 
 def _with_simulated(
-    options: ServeOptions, loaded: LoadedModel, robot: RobotSettings, clock: Clock
+    options: ServeOptions,
+    loaded: LoadedModel,
+    robot: RobotSettings,
+    clock: Clock,
+    journal: Journal | None,
 ) -> Composition:
     """Simulate everything, by default also the signals.
 
@@ -113,13 +174,19 @@ def _with_simulated(
     simulated = make_simulated_robot(loaded.model, robot, now, mock=mocked)
     backend = SimulatedBackend(simulated, clock)
     onboard = make_onboard(loaded.model, robot, now)
-    supervisor = Supervisor(loaded, onboard, clock, backend, backend.readings, simulated.what)
+    supervisor = Supervisor(
+        loaded, onboard, clock, backend, backend.readings, simulated.what, journal=journal
+    )
     limits, parts = ServiceLimits.of(robot.limits), SimulatedParts(onboard, simulated)
     return Composition(supervisor, limits, simulated=parts)
 
 
 def _with_ros2(
-    options: ServeOptions, loaded: LoadedModel, robot: RobotSettings, clock: Clock
+    options: ServeOptions,
+    loaded: LoadedModel,
+    robot: RobotSettings,
+    clock: Clock,
+    journal: Journal | None,
 ) -> Composition:
     """Reach real nodes; signals are mocked only on request."""
     mocked = options.mock_signals or robot.mock is True
@@ -131,9 +198,11 @@ def _with_ros2(
     if mocked:
         mock = MockSource(MockSignals(now), clock)
         backend = CompositeRobot(dict.fromkeys(loaded.model.nodes, ros), ros, (ros, mock))
-        supervisor = Supervisor(loaded, onboard, clock, backend, mock.readings, ("signals",))
+        supervisor = Supervisor(
+            loaded, onboard, clock, backend, mock.readings, ("signals",), journal=journal
+        )
     else:
-        supervisor = Supervisor(loaded, onboard, clock, ros)
+        supervisor = Supervisor(loaded, onboard, clock, ros, journal=journal)
     mapped = {block.topic for block in robot.ros2.signals.values()}
     gateway = RosGateway(RosInterface(supervisor), graph, mapped)
     return Composition(supervisor, ServiceLimits.of(robot.limits), gateway)

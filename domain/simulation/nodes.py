@@ -17,6 +17,7 @@ from domain.inputs import NodeAnswer, NodeReport
 from domain.lifecycle import ERROR_PROCESSED, LifecycleState, Transition, TransitionRule, rule_for
 from domain.parameters import Parameters, ParameterValue
 from domain.parts.system_model import SmhModel
+from domain.simulation.memory import NodeMemory, rest_of
 from domain.simulation.node_parameters import declared_parameters, find_refusal, start_parameters
 from domain.simulation.node_settings import NOTICED_AFTER, SLOWDOWN, Fault, NodeSettings
 from domain.state_and_mode import PartName
@@ -51,12 +52,21 @@ class _Node:
     def speaks(self) -> bool:
         return self.fault is None or not self.fault.is_mute
 
-    def start(self, at: Instant) -> None:
-        """Start a process: unconfigured, with the initial parameters."""
+    def start(self, at: Instant, memory: NodeMemory | None = None) -> None:
+        """Start a process: unconfigured, with the initial parameters.
+
+        Args:
+            at: When.
+            memory: Where the process is that has run on meanwhile; None: there is none.
+        """
         plain = self.settings.plain
         self.state = LifecycleState.UNKNOWN if plain else LifecycleState.UNCONFIGURED
         self.parameters = start_parameters(self.declared)
         self.parameters_free_at = at
+        if memory is not None:
+            if not plain and memory.state is not LifecycleState.UNKNOWN:
+                self.state = memory.state
+            self.parameters.update(memory.parameters)
 
     def stop(self) -> None:
         """End the process, and with it all its work."""
@@ -107,14 +117,15 @@ class _SilenceIsNoticed:
     at: Instant
 
 
+_NO_MEMORY: Mapping[PartName, NodeMemory] = MappingProxyType({})
 _Work: TypeAlias = _CallbackEnds | _ErrorIsProcessed | _ParametersAreSet | _SilenceIsNoticed
 
 
 class SimulatedNodes:
     """All nodes of a model, and which of them the backend can reach.
 
-    Each starts unconfigured, with every parameter that its modes set, at `0`, `0.0`, `False` or
-    `"none"`. `now` must never decrease from call to call.
+    Without a memory, each starts unconfigured, with every parameter that its modes set, at `0`,
+    `0.0`, `False` or `"none"`. `now` must never decrease from call to call.
 
     A legal transition is accepted at once, reported as the transitional state, and after its
     duration as the resulting state; any other is rejected. Parameter sets are atomic, and are
@@ -125,14 +136,21 @@ class SimulatedNodes:
     """
 
     def __init__(
-        self, model: SmhModel, settings: Mapping[PartName, NodeSettings], start: Instant
+        self,
+        model: SmhModel,
+        settings: Mapping[PartName, NodeSettings],
+        start: Instant,
+        memory: Mapping[PartName, NodeMemory] = _NO_MEMORY,
     ) -> None:
+        """Begin at `start`, each node where it is remembered, or else unconfigured."""
         self._nodes: dict[PartName, _Node] = {}
         self._systems = frozenset(model.systems)
         self._due: list[tuple[Instant, int, _Work]] = []
         self._issues = 0
         self._messages: list[NodeMessage] = []
         self._messages_at = start
+        self.revision = 0
+        """Differs when `memory` does."""
         for name in settings:
             if name not in model.nodes:
                 raise UnknownPartError("node", name, tuple(model.nodes))
@@ -141,7 +159,7 @@ class SimulatedNodes:
             node = _Node(name, own, declared_parameters(node_model), own.fault)
             self._nodes[name] = node
             if node.runs:
-                node.start(start)
+                node.start(start, memory.get(name))
             self._appear(node, start)
 
     def handle(self, command: NodeCommand, now: Instant) -> None:
@@ -183,6 +201,7 @@ class SimulatedNodes:
             UnknownPartError: There is no such node.
         """
         self._catch_up(now)
+        self.revision += 1
         it = self._require(node)
         before, it.fault = it.fault, fault
         if fault is Fault.DIE:
@@ -225,6 +244,17 @@ class SimulatedNodes:
             UnknownPartError: There is no such node.
         """
         return dict(self._require(node).parameters)
+
+    def memory(self) -> dict[PartName, dict[str, object]]:
+        """Return where each running node is, as plain values.
+
+        A parameter set in progress is not part of it: nobody was told that it was done.
+        """
+        return {
+            name: NodeMemory(rest_of(node.state), node.parameters).plain()
+            for name, node in self._nodes.items()
+            if node.runs
+        }
 
     def _require(self, name: PartName) -> _Node:
         if name in self._systems:
@@ -305,10 +335,12 @@ class SimulatedNodes:
 
     def _enter(self, node: _Node, state: LifecycleState, at: Instant) -> None:
         node.state = state
+        self.revision += 1
         self._say(node, NodeReport(node.name, state=state), at)
 
     def _take_over(self, node: _Node, values: Parameters, at: Instant) -> None:
         node.parameters.update(values)
+        self.revision += 1
         # All values of the request, changed or not, as in ROS 2 parameter events.
         self._say(node, NodeReport(node.name, parameters=MappingProxyType(dict(values))), at)
 

@@ -26,6 +26,7 @@ NAMES: Mapping[type, str] = {
     inputs.DriveStatus: "drive_status",
     inputs.BackendStatus: "backend_status",
     inputs.ReportBacklog: "report_backlog",
+    inputs.StorageStatus: "storage_status",
     inputs.GoalFeedback: "goal_feedback",
     inputs.GoalResult: "goal_result",
     inputs.TimePassed: "time_passed",
