@@ -22,7 +22,7 @@ from domain.kept import (
 from domain.lifecycle import LifecycleState, Transition
 from domain.snapshot import StepStatus
 from domain.state_and_mode import ModeName, PartName, StateAndMode
-from domain.vehicle import DriveCommand
+from domain.vehicle import DriveCommand, Pose, VehicleState
 from service.codec.recorded_step import RecordedStep
 from tests.support.record_samples.pieces import PARAMETERS, PATH
 
@@ -106,6 +106,13 @@ OTHERS: Mapping[str, tuple[object, ...]] = {
             part=PartName("arm"),
             target=StateAndMode(state=LifecycleState.INACTIVE, mode=ModeName("FAST")),
             order=9,
+            staying={PartName("left/arm"): LifecycleState.UNCONFIGURED},
+        ),
+        KeptTarget(
+            part=PartName("arm"),
+            target=StateAndMode(state=LifecycleState.INACTIVE, mode=ModeName("FAST")),
+            order=9,
+            staying={},
         ),
     ),
     "kept_change": (
@@ -171,6 +178,11 @@ OTHERS: Mapping[str, tuple[object, ...]] = {
             ended_as="ABORTED",
             reason='Größe ≤ 3 — "gripper\\jam"',
             ended_at=1764420001123456789,
+            seen=VehicleState(
+                pose=Pose(x_m=-12.25, y_m=1e-07, yaw_rad=-3.125),
+                speed_mps=1.5,
+                steering_angle_rad=0.0625,
+            ),
         ),
         KeptProgress(
             task=TaskId("3"),
@@ -182,6 +194,7 @@ OTHERS: Mapping[str, tuple[object, ...]] = {
             ended_as=None,
             reason=None,
             ended_at=None,
+            seen=None,
         ),
     ),
 }
