@@ -31,6 +31,8 @@ from service.readings import DirectReadings, ReadingInput, Submit
 from service.refused_readings import RefusedReadings
 from service.running import run_forever
 from service.storage.journal import Journal, Step
+from service.storage.trends.sampling import Sampling
+from service.storage.trends.trends import Trends
 from service.submitter import Submitter
 from service.watchdog import hanging
 
@@ -51,6 +53,7 @@ class Supervisor:
         simulated: Sequence[str] = (),
         events: EventLog | None = None,
         journal: Journal | None = None,
+        trends: Trends | None = None,
     ) -> None:
         """Prepare; nothing runs yet.
 
@@ -63,6 +66,7 @@ class Supervisor:
             simulated: The simulated pieces of the robot, as in `Frame`.
             events: The event log; None: a new one.
             journal: Keeps what must survive a restart, and brings it back; None: nothing is kept.
+            trends: The history of the signals; None: there is none.
         """
         self.core: Supervision = onboard.core
         """Only for reading; inputs go through `submit`."""
@@ -79,6 +83,9 @@ class Supervisor:
         self._onboard = onboard
         self.journal = journal
         """Keeps what must survive a restart; None: nothing is kept."""
+        self.trends = trends
+        """The history of the signals; None: there is none."""
+        self._sampling = None if trends is None else Sampling(trends, onboard.core.signal)
         self._backend = backend
         self.refused_readings = RefusedReadings()
         """Rejected readings, on all ways in."""
@@ -167,8 +174,13 @@ class Supervisor:
             self.submit(HoldRequest("service", "the service ends", Actor("service")))
 
     def _note_tick(self, since_s: float) -> None:
-        """Let deadlines wait after a tick that was late, and tell of one that was very late."""
+        """Let deadlines wait after a tick that was late, and tell of one that was very late.
+
+        The history of the signals has the same clock.
+        """
         self._catch_up.note_tick(self.clock.now())
+        if self.trends is not None:
+            self.trends.pass_time(self.clock.now())
         late = seconds(since_s) - PERIOD
         if late > STALL:
             self.submit(ServiceStall(late))
@@ -182,6 +194,8 @@ class Supervisor:
                 self._backend.send(command)
         if self.journal is not None:
             self.journal.note(step)
+        if self._sampling is not None:
+            self._sampling.note(outputs.signals, step.at)
         self.publisher.note(outputs)
         self.events.append(*outputs.events)
         self.change_ends.note(outputs.events)

@@ -23,6 +23,7 @@ from service.simulation.from_settings import make_simulated_robot
 from service.simulation.mock_source import MockSource
 from service.simulation.simulated import SimulatedBackend
 from service.start_task import submit_start_task
+from service.storage.trends.trends import Trends
 from service.supervisor import Supervisor
 
 log = logging.getLogger(__name__)
@@ -110,7 +111,9 @@ def _with_simulated(
     simulated = make_simulated_robot(loaded.model, robot, now, mock=mocked)
     backend = SimulatedBackend(simulated, clock)
     onboard = make_onboard(loaded.model, robot, now)
-    supervisor = Supervisor(loaded, onboard, clock, backend, backend.readings, simulated.what)
+    supervisor = Supervisor(
+        loaded, onboard, clock, backend, backend.readings, simulated.what, trends=_trends(robot)
+    )
     limits, parts = ServiceLimits.of(robot.limits), SimulatedParts(onboard, simulated)
     return Composition(supervisor, limits, simulated=parts)
 
@@ -128,12 +131,18 @@ def _with_ros2(
     if mocked:
         mock = MockSource(MockSignals(now), clock)
         backend = CompositeRobot(dict.fromkeys(loaded.model.nodes, ros), ros, (ros, mock))
-        supervisor = Supervisor(loaded, onboard, clock, backend, mock.readings, ("signals",))
+        supervisor = Supervisor(
+            loaded, onboard, clock, backend, mock.readings, ("signals",), trends=_trends(robot)
+        )
     else:
-        supervisor = Supervisor(loaded, onboard, clock, ros)
+        supervisor = Supervisor(loaded, onboard, clock, ros, trends=_trends(robot))
     mapped = {block.topic for block in robot.ros2.signals.values()}
     gateway = RosGateway(RosInterface(supervisor), graph, mapped)
     return Composition(supervisor, ServiceLimits.of(robot.limits), gateway)
+
+
+def _trends(robot: RobotSettings) -> Trends:
+    return Trends(robot.to_signal_settings())
 
 
 def _require_types(graph: RosGraph, topics: Ros2Block) -> None:
