@@ -8,15 +8,15 @@ process is killed is derived again from these.
 from collections.abc import Callable, Sequence
 from typing import TypeAlias
 
-from domain.timebase import Duration, Instant
+from domain.timebase import Duration, Instant, seconds
 from service.storage.trends.rows import Rows
 from service.storage.trends.tiers import Tier
 
 Write: TypeAlias = Callable[[int, Rows], bool]
 """Packs and writes rows of the tier with an index; returns whether that succeeded."""
 
-_PATIENCE = 2
-"""Rows that cannot be written wait until so many blocks could have been made of them."""
+_PATIENCE = seconds(10.0)
+"""Rows that cannot be written are tried again for so long, or for as long as a block takes."""
 
 
 class Cascade:
@@ -53,7 +53,8 @@ class Cascade:
         for index, tier in enumerate(self._tiers):
             since = self._since[index]
             if since is not None and ran - since >= tier.block:
-                self._pack(index, write, is_last_try=ran - since >= _PATIENCE * tier.block)
+                overdue = ran - since - tier.block
+                self._pack(index, write, is_last_try=overdue >= max(tier.block, _PATIENCE))
 
     def write_readings(self, write: Write) -> None:
         """Make blocks of the single readings; the coarser tiers can be derived from these."""

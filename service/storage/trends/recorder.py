@@ -63,17 +63,24 @@ class Recorder:
         """Return how many rows could not be written."""
         return self._cascade.dropped
 
-    def record(self, rows: Rows | None, elapsed: Duration) -> None:
-        """Add readings, and write what has waited long enough.
+    def add(self, rows: Rows, elapsed: Duration) -> None:
+        """Add readings, and write nothing yet.
 
         Args:
-            rows: Readings in the order of arrival; None: there are none.
+            rows: Readings in the order of arrival.
+            elapsed: Running time of this run.
+        """
+        self._open()
+        self._cascade.add(rows, self._before + elapsed)
+
+    def settle(self, elapsed: Duration) -> None:
+        """Write what has waited long enough.
+
+        Args:
             elapsed: Running time of this run.
         """
         self._open()
         ran = self._before + elapsed
-        if rows is not None:
-            self._cascade.add(rows, ran)
         self._cascade.settle(lambda tier, packed: self._write(tier, packed, ran), ran)
 
     def trend(self, signal: KnownSignal, from_at: Instant, to_at: Instant, points: int) -> Trend:
@@ -86,16 +93,29 @@ class Recorder:
         try:
             oldest = [self._oldest(tier, signal) for tier in range(len(self._tiers))]
             tier = pick_tier(self._tiers, oldest, from_at, to_at, points)
-            rows = Rows.joined(
-                [
-                    *self._stored(tier, signal, from_at, to_at),
-                    *self._cascade.rows_of(tier, signal.number),
-                ]
-            )
+            rows = self.rows(tier, signal, from_at, to_at)
         except apsw.Error as error:
             self._fail(error)
             raise StorageDegradedError(f"the history cannot be read: {error}") from error
         return trend_of(rows, signal, self._tiers[tier], from_at, to_at, points)
+
+    def rows(self, tier: int, signal: KnownSignal, from_at: Instant, to_at: Instant) -> Rows:
+        """Return the rows of a tier and a signal, in the order of arrival.
+
+        Args:
+            tier: Index of the tier.
+            signal: The signal.
+            from_at: Rows that end before may be left out.
+            to_at: Rows that begin after it may be left out.
+
+        Raises:
+            apsw.Error: The file cannot be read.
+        """
+        waiting = self._cascade.rows_of(tier, signal.number)
+        if self._file is None:
+            return Rows.joined(waiting)
+        stored = self._file.read(tier, self._in_file[signal.number], from_at, to_at)
+        return Rows.joined([*self._unpacked(tier, stored), *waiting])
 
     def close(self, elapsed: Duration) -> None:
         """Write all readings, and close the file."""
@@ -205,14 +225,6 @@ class Recorder:
                 )
             except _UNREADABLE as error:
                 log.warning("a block of %s cannot be read: %s", tier.name, error)
-
-    def _stored(
-        self, tier: int, signal: KnownSignal, from_at: Instant, to_at: Instant
-    ) -> Iterator[Rows]:
-        if self._file is None:
-            return iter(())
-        stored = self._in_file[signal.number]
-        return self._unpacked(tier, self._file.read(tier, stored, from_at, to_at))
 
     def _oldest(self, tier: int, signal: KnownSignal) -> Instant | None:
         waiting = self._cascade.oldest(tier, signal.number)

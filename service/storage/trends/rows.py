@@ -105,9 +105,11 @@ class Rows:
         count = np.add.reduceat(self.count, starts)
         low = np.minimum.reduceat(self.low, starts)
         high = np.maximum.reduceat(self.high, starts)
-        # Each is weighted before it is added, since a sum of large numbers would overflow.
+        # Each is weighted before it is added, since a sum of large numbers would overflow. By
+        # rounding, that of the largest ones still can.
         share = self.count / np.repeat(count, ends - starts)
-        mean = np.clip(np.add.reduceat(self.mean * share, starts), low, high)
+        with np.errstate(over="ignore"):
+            mean = np.clip(np.add.reduceat(self.mean * share, starts), low, high)
         return Rows(
             self.signal[starts],
             np.minimum.reduceat(self.first, starts),

@@ -25,7 +25,8 @@ class Tier:
     width: Duration
     """Of a bucket; 0: single readings."""
     block: Duration
-    """Running time after which the rows that have gathered are packed and written."""
+    """Running time after which the rows that have gathered are packed and written; 0: as soon as
+    the thread gets them."""
     keep_for: Duration
     """Recorded running time after which a block is deleted."""
     keep_bytes: int
@@ -43,7 +44,7 @@ class Tier:
 
 
 TIERS = (
-    Tier(0, seconds(5.0), seconds(10 * _MINUTE), 32 * _MIB),
+    Tier(0, 0, seconds(10 * _MINUTE), 32 * _MIB),
     Tier(seconds(1.0), seconds(_MINUTE), seconds(4 * _HOUR), 96 * _MIB),
     Tier(seconds(10.0), seconds(10 * _MINUTE), seconds(2 * _DAY), 112 * _MIB),
     Tier(seconds(_MINUTE), seconds(_HOUR), seconds(14 * _DAY), 128 * _MIB),

@@ -2,9 +2,10 @@
 
 import asyncio
 import logging
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from concurrent.futures import Future, ThreadPoolExecutor
 from dataclasses import dataclass
+from typing import ParamSpec
 
 from domain.errors import StorageDegradedError, UnknownSignalError
 from domain.health.signals import SignalSettings
@@ -16,6 +17,8 @@ from service.storage.trends.intake import Intake
 from service.storage.trends.known_signals import KnownSignals
 from service.storage.trends.recorder import Recorder
 from service.storage.trends.tiers import MEMORY_TIERS, TIERS, Tier
+
+P = ParamSpec("P")
 
 log = logging.getLogger(__name__)
 
@@ -97,6 +100,7 @@ class Trends:
         if now >= self._due and not is_busy:
             self._due = now + HAND_OVER
             self._hand_over()
+            self._recording = self._do(self._recorder.settle, self._elapsed())
 
     async def history(self, signal: str, from_at: Instant, to_at: Instant, points: int) -> Trend:
         """Return the history of a signal, including all that was noted before.
@@ -141,11 +145,15 @@ class Trends:
         return 0 if self._started is None else self._now - self._started
 
     def _hand_over(self) -> None:
-        rows = self._intake.take()
-        self._recording = self._thread.submit(self._recorder.record, rows, self._elapsed())
-        self._recording.add_done_callback(_log_failure)
+        if (rows := self._intake.take()) is not None:
+            self._do(self._recorder.add, rows, self._elapsed())
+
+    def _do(self, work: Callable[P, None], *args: P.args, **named: P.kwargs) -> Future[None]:
+        doing = self._thread.submit(work, *args, **named)
+        doing.add_done_callback(_log_failure)
+        return doing
 
 
-def _log_failure(recording: Future[None]) -> None:
-    if not recording.cancelled() and (error := recording.exception()) is not None:
+def _log_failure(done: Future[None]) -> None:
+    if not done.cancelled() and (error := done.exception()) is not None:
         log.error("readings are missing in the history of signals", exc_info=error)
