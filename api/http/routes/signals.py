@@ -174,8 +174,8 @@ def _span(
     end = clock.now() if to_at is None else clock.from_wall(to_at)
     begin = end - _DEFAULT_SPAN if from_at is None else clock.from_wall(from_at)
     if begin >= end:
-        message = "must be before to_at, which is now unless it is given"
-        fault = BodyFault(pointer="/from_at", code=InvalidValueError.code, message=message)
+        message = "query from_at: must be before to_at, which is now unless it is given"
+        fault = BodyFault(pointer="", code=InvalidValueError.code, message=message)
         raise InvalidBodyError([fault], "INVALID_QUERY")
     return begin, end
 
