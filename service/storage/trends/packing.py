@@ -33,7 +33,9 @@ def pack(rows: Rows, errors: Sequence[int], unit: Duration, *, is_raw: bool) -> 
         is_raw: Whether each row is a single reading.
     """
     first = rows.first // unit
-    columns: list[NDArray[np.generic]] = [np.diff(first, prepend=first[0])]
+    steps = np.zeros(len(rows), np.int64)
+    np.subtract(first[1:], first[:-1], out=steps[1:])
+    columns: list[NDArray[np.generic]] = [steps]
     if is_raw:
         columns.append(rows.low)
     else:

@@ -11,6 +11,7 @@ from collections.abc import Iterable, Iterator, Sequence
 from contextlib import suppress
 
 import apsw
+import numpy as np
 
 from domain.errors import StorageDegradedError
 from domain.timebase import Duration, Instant
@@ -195,7 +196,7 @@ class Recorder:
     def _packed(self, index: int, rows: Rows) -> Iterator[Block]:
         tier = self._tiers[index]
         for number, own in rows.by_signal():
-            ranks = [rank for rank in sorted(set(own.error.tolist())) if rank != NO_ERROR][-255:]
+            ranks = _ranks(own)
             errors = self._signals[number].errors_of(ranks)
             yield Block(
                 self._in_file[number],
@@ -232,3 +233,10 @@ class Recorder:
         if self._file is not None:
             stored = self._file.oldest(tier, self._in_file[signal.number])
         return min((at for at in (waiting, stored) if at is not None), default=None)
+
+
+def _ranks(rows: Rows) -> list[int]:
+    """Return the ranks of the errors in rows; at most 255, the worst ones."""
+    if rows.error.max() == NO_ERROR:
+        return []
+    return [rank for rank in np.unique(rows.error).tolist() if rank != NO_ERROR][-255:]

@@ -5,7 +5,8 @@ however often: a spike of one reading is in every tier.
 """
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, fields
+from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -55,16 +56,26 @@ class Rows:
         if not parts:
             integers, floats = np.empty(0, np.int64), np.empty(0)
             return cls.of_readings(integers, integers, floats, integers)
-        return cls(
-            *(
-                np.concatenate([getattr(part, column.name) for part in parts])
-                for column in fields(cls)
-            )
+        columns = zip(*(part.columns() for part in parts), strict=True)
+        return cls(*map(np.concatenate, columns))
+
+    def columns(self) -> tuple[NDArray[Any], ...]:
+        """Return all columns."""
+        return (
+            self.signal,
+            self.first,
+            self.last,
+            self.low,
+            self.high,
+            self.mean,
+            self.final,
+            self.count,
+            self.error,
         )
 
     def taken(self, which: slice | NDArray[np.bool_] | Integers) -> "Rows":
         """Return the rows of a slice, of a mask, or at indices."""
-        return Rows(*(getattr(self, column.name)[which] for column in fields(self)))
+        return Rows(*(column[which] for column in self.columns()))
 
     def of_signal(self, number: int) -> "Rows":
         """Return the rows of one signal."""
