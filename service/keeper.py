@@ -28,6 +28,7 @@ from domain.outbox import Outputs
 from domain.timebase import Duration, Instant, seconds
 from service.clock import Clock
 from service.storage.journal import Journal, Plain
+from service.storage.trends.trends import Trends
 
 BARRIER_S = 2.0
 """A request that starts something is rejected if the disk takes longer."""
@@ -61,6 +62,29 @@ class Memory:
     """Differs when the value does; cheap."""
     every: Duration
     """Kept at most so often; so much may be lost."""
+
+
+@dataclass(frozen=True, slots=True)
+class Stores:
+    """Where the service keeps what survives it."""
+
+    journal: Journal | None = None
+    """What happens, and what must not be forgotten; None: nothing is kept."""
+    trends: Trends | None = None
+    """The history of the signals; None: there is none."""
+    memories: Sequence[Memory] = ()
+    """What the journal keeps besides the core."""
+
+    async def close(self) -> None:
+        """Write down what is noted, and release the folder."""
+        if self.trends is not None:
+            await self.trends.close()
+        if self.journal is not None:
+            await self.journal.close()
+
+
+NO_STORES = Stores()
+"""Nothing survives."""
 
 
 def starts_or_loosens(given: Input) -> bool:

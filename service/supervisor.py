@@ -24,13 +24,14 @@ from service.clock import Clock
 from service.event_log import EventLog
 from service.files.model_file import LoadedModel
 from service.frame_publisher import PERIOD, FramePublisher
-from service.keeper import Keeper, Memory, Taken
+from service.keeper import NO_STORES, Keeper, Stores, Taken
 from service.node_incidents import log_node_incidents
 from service.ports import RobotBackend
 from service.readings import DirectReadings, ReadingInput, Submit
 from service.refused_readings import RefusedReadings
 from service.running import run_forever
 from service.storage.journal import Journal, Step
+from service.storage.trends.sampling import Sampling
 from service.submitter import Submitter
 from service.watchdog import hanging
 
@@ -50,8 +51,7 @@ class Supervisor:
         readings: Callable[[Submit], ReadingInput] = DirectReadings,
         simulated: Sequence[str] = (),
         events: EventLog | None = None,
-        journal: Journal | None = None,
-        memories: Sequence[Memory] = (),
+        stores: Stores = NO_STORES,
     ) -> None:
         """Prepare; nothing runs yet.
 
@@ -63,8 +63,7 @@ class Supervisor:
             readings: Makes the input for external readings.
             simulated: The simulated pieces of the robot, as in `Frame`.
             events: The event log; None: a new one.
-            journal: Keeps what must survive a restart, and brings it back; None: nothing is kept.
-            memories: What the journal keeps besides the core.
+            stores: Keep what must survive a restart, and bring it back.
         """
         self.core: Supervision = onboard.core
         """Only for reading; inputs go through `submit`."""
@@ -72,15 +71,18 @@ class Supervisor:
         self.started_at = clock.now()
         """Start of this run of the service, and of its epoch."""
         self.simulated = tuple(simulated)
-        self.events = events or _event_log(journal)
+        self.journal = stores.journal
+        """Keeps what must survive a restart; None: nothing is kept."""
+        self.trends = stores.trends
+        """The history of the signals; None: there is none."""
+        self._sampling = _sampling(stores, onboard.core)
+        self.events = events or _event_log(self.journal)
         self.publisher = FramePublisher(onboard.core, clock, self.simulated)
         self.frames = self.publisher.frames
         self._catch_up = CatchUp(clock, self.publisher.tick_due)
         self.change_ends = ChangeEnds(onboard.core, clock, self._catch_up.wait)
         self._loaded = loaded
         self._onboard = onboard
-        self.journal = journal
-        """Keeps what must survive a restart; None: nothing is kept."""
         self._backend = backend
         self.refused_readings = RefusedReadings()
         """Rejected readings, on all ways in."""
@@ -90,14 +92,14 @@ class Supervisor:
         self.publisher.on_tick.append(self._note_tick)
         self.readings = readings(self.submit)
         """The input for external readings."""
-        self._keeper = self._restore(memories)
+        self._keeper = self._restore(stores)
 
-    def _restore(self, memories: Sequence[Memory]) -> Keeper | None:
+    def _restore(self, stores: Stores) -> Keeper | None:
         """Bring back what an earlier run left; return who keeps it from now on."""
-        if self.journal is None:
+        if stores.journal is None:
             return None
-        self.submit(self.journal.found.restored)
-        return Keeper(self.journal, self.submit, self.clock, memories)
+        self.submit(stores.journal.found.restored)
+        return Keeper(stores.journal, self.submit, self.clock, stores.memories)
 
     @property
     def model(self) -> SmhModel:
@@ -200,6 +202,8 @@ class Supervisor:
                 self._backend.send(command)
         if self.journal is not None:
             self.journal.note(step)
+        if self._sampling is not None and outputs.signals:
+            self._sampling.note(outputs.signals, step.at)
         self.publisher.note(outputs)
         self.events.append(*outputs.events)
         self.change_ends.note(outputs.events)
@@ -212,3 +216,7 @@ def _event_log(journal: Journal | None) -> EventLog:
     if journal is None:
         return EventLog()
     return EventLog(epoch=journal.boot.epoch, before=journal.found.restored.next_event - 1)
+
+
+def _sampling(stores: Stores, core: Supervision) -> Sampling | None:
+    return None if stores.trends is None else Sampling(stores.trends, core.signal)

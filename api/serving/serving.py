@@ -25,7 +25,7 @@ from api.serving.composition import (
     RobotFiles,
     ServeOptions,
     compose,
-    open_journal,
+    open_stores,
     read_files,
 )
 from api.serving.data_folder import MEMORY
@@ -116,14 +116,14 @@ async def _run(
 ) -> int:
     """Run the service on what earlier runs left, and return the exit code of the process."""
     clock = continuous_clock()
-    journal = await open_journal(options, files, clock)
+    stores = await open_stores(options, files, clock)
     try:
-        composition = compose(options, clock, files, journal)
+        composition = compose(options, clock, files, stores)
         server = _make_server(composition, options, network, manager, output)
         Heap().settle()
         return await run_service(composition, server, network.sockets, manager)
     finally:
-        await journal.close()
+        await stores.close()
 
 
 def _make_server(

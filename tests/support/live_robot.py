@@ -13,6 +13,7 @@ from domain.supervision import Supervision, SupervisionSettings
 from domain.timebase import Instant
 from service.clock import Clock
 from service.files.model_file import LoadedModel
+from service.keeper import Stores
 from service.simulation.simulated import SimulatedBackend
 from service.storage.journal import Journal
 from service.supervisor import Supervisor
@@ -54,7 +55,7 @@ def make_live_robot(
         backend,
         backend.readings,
         simulated=robot.what,
-        journal=journal,
+        stores=Stores(journal),
     )
     return supervisor, backend
 
