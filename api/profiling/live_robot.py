@@ -154,7 +154,7 @@ async def _first_frame(robot: LiveRobot) -> None:
 def _check_simulated(simulated: list[str]) -> None:
     for needed in ("nodes", "vehicle"):
         if needed not in simulated:
-            raise NotSimulatedError(f"{needed} are real: a profile would stop the robot")
+            raise NotSimulatedError(f"not simulated: {needed}; a profile would stop the robot")
     if "signals" in simulated:
         raise NotSimulatedError(
             "mock signals are published, which would replace the readings that are measured: set"

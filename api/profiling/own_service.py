@@ -4,7 +4,7 @@ import asyncio
 import os
 import re
 import sys
-from asyncio.subprocess import DEVNULL, PIPE, Process
+from asyncio.subprocess import PIPE, Process
 from collections.abc import AsyncIterator, Sequence
 from contextlib import asynccontextmanager, suppress
 from pathlib import Path
@@ -12,6 +12,13 @@ from pathlib import Path
 from api.access_token import FILE_VARIABLE, TOKEN_VARIABLE
 
 _ADDRESS = re.compile(r"^  page  (http://\S+)/$")
+_CODE = """\
+import sys
+from api.profiling.end_with_parent import end_with_parent
+end_with_parent()
+from api.cli.command_line import main
+sys.exit(main())
+"""
 _START_S = 30.0
 _END_S = 10.0
 _NOT_INHERITED = frozenset({TOKEN_VARIABLE, FILE_VARIABLE, "NOTIFY_SOCKET", "WATCHDOG_USEC"})
@@ -52,14 +59,14 @@ async def _start(options: Sequence[str], log: int) -> Process:
         sys.executable,
         "-P",
         "-c",
-        "import sys; from api.cli.command_line import main; sys.exit(main())",
+        _CODE,
         "serve",
         "--backend",
         "simulated",
         "--port",
         "0",
         *options,
-        stdin=DEVNULL,
+        stdin=PIPE,
         stdout=PIPE,
         stderr=log,
         env={**inherited, "PYTHONPATH": path},

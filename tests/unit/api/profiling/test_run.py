@@ -1,3 +1,4 @@
+import itertools
 import re
 from random import Random
 
@@ -42,7 +43,7 @@ async def test_stale_data_has_no_bad_reading() -> None:
 
     assert "first_bad_s" not in run.times
     battery = [at for at, signal, _ in robot.sent if signal == "battery_level"]
-    assert max(b - a for a, b in zip(battery, battery[1:], strict=False)) > 2.0
+    assert max(b - a for a, b in itertools.pairwise(battery)) > 2.0
 
 
 async def test_all_signals_are_repeated_while_a_timed_error_is_waited_for() -> None:
@@ -52,7 +53,7 @@ async def test_all_signals_are_repeated_while_a_timed_error_is_waited_for() -> N
 
     for name in GOOD:
         times = [at for at, signal, _ in robot.sent if signal == name]
-        assert max(b - a for a, b in zip(times, times[1:], strict=False)) < 0.3
+        assert max(b - a for a, b in itertools.pairwise(times)) < 0.3
 
 
 async def test_readings_meet_the_ticks_of_the_service_at_random() -> None:
