@@ -36,6 +36,7 @@ from domain.snapshot import (
 )
 from domain.stalls import Stalls
 from domain.state_and_mode import ModeName, PartName
+from domain.storage import Storage
 from domain.tasks.driving import Driving
 from domain.tasks.settings import TaskSettings
 from domain.tasks.standstill import Standstill
@@ -81,7 +82,8 @@ class Supervision:
             self._outbox,
             start,
         )
-        self._robot_state = RobotState(self._health, self.driving, self._outbox)
+        storage = Storage(self._outbox)
+        self._robot_state = RobotState(self._health, self.driving, storage, self._outbox)
         self._changing = Changing(self._parts, self._health, settings.changes, self._outbox)
         # Driving stops the vehicle before the state is published and changes continue.
         self._concerns: tuple[Concern, ...] = (
@@ -90,6 +92,7 @@ class Supervision:
             self._emergency_stop,
             self.driving,
             Standstill(self.driving, self._emergency_stop, self._outbox),
+            storage,
             self._robot_state,
             self._changing,
             Audit(self._outbox),

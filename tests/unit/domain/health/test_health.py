@@ -13,6 +13,7 @@ from domain.inputs import Reading, Readings, SignalValue
 from domain.outbox import Outbox, Outputs
 from domain.robot_state import RobotState
 from domain.snapshot import TaskStatus
+from domain.storage import Storage
 from domain.tasks.driving import Driving
 from domain.timebase import seconds
 from tests.support.good import GOOD
@@ -25,7 +26,9 @@ class Robot:
         self.outbox = Outbox()
         self.health = Health(default_signals(), self.outbox, 0)
         self.driving = SimpleNamespace(status=TaskStatus.NO_TASK, still_moving=None)
-        self.state = RobotState(self.health, cast("Driving", self.driving), self.outbox)
+        self.state = RobotState(
+            self.health, cast("Driving", self.driving), Storage(self.outbox), self.outbox
+        )
         self.events: dict[int, RecordedEvent] = {}
         self.now = 0
         self.last = Outputs()
