@@ -2,6 +2,7 @@
 
 import asyncio
 import json
+import os
 import signal
 import sys
 import time
@@ -111,13 +112,14 @@ def analyse(
 
 
 def _serve_options(options: ProfileOptions, out: Path) -> list[str]:
-    """Return the model and robot file of the service; without a robot file, one is written."""
+    """Return model, robot file and folder of the service; without a robot file, one is written."""
     robot_file = options.robot
     if robot_file is None:
         robot_file = out / "robot.yaml"
         robot_file.write_text(_MOCK_OFF, encoding="utf-8")
     model = [str(options.model)] if options.model else []
-    return [*model, "--robot", str(robot_file)]
+    # On a disk, as on a robot: what storing costs is part of what is measured.
+    return [*model, "--robot", str(robot_file), "--data", str(out / "data")]
 
 
 async def _measure(
@@ -190,6 +192,8 @@ def _setup(options: ProfileOptions, robot: Robot) -> Json:
         "version": installed_version(),
         "started_at": datetime.now(UTC).isoformat(timespec="seconds").replace("+00:00", "Z"),
         "machine": machine_facts(),
+        # Of the minute before; there is none on Windows.
+        "load_average": round(os.getloadavg()[0], 2) if hasattr(os, "getloadavg") else None,
         "model": str(options.model) if options.model else None,
         "robot": str(options.robot) if options.robot else None,
         "changed_settings": list(changed_settings(robot.settings)),

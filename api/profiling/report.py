@@ -61,6 +61,8 @@ def _setup_lines(setup: Mapping[str, Any]) -> Iterator[str]:
     machine = ", ".join(f"{name} {value}" for name, value in setup["machine"].items())
     yield f"Pilothouse {setup['version']}, measured at {setup['started_at']}"
     yield f"Machine: {machine}"
+    if setup["load_average"] is not None:
+        yield f"Load average before: {setup['load_average']:g}"
     for changed in setup["changed_settings"]:
         yield f"Setting: {changed}"
 

@@ -70,7 +70,9 @@ def test_raw_data_setup_and_report_are_kept(
 def test_without_a_robot_file_signals_are_not_mocked(bench: Bench, tmp_path: Path) -> None:
     assert measure(options(tmp_path, runs=1)) == 0
 
-    assert bench.serve == [["--robot", str(tmp_path / "robot.yaml")]]
+    assert bench.serve == [
+        ["--robot", str(tmp_path / "robot.yaml"), "--data", str(tmp_path / "data")]
+    ]
     assert "mock: false" in (tmp_path / "robot.yaml").read_text()
 
 
@@ -79,7 +81,7 @@ def test_model_and_robot_file_are_those_of_the_service(bench: Bench, tmp_path: P
 
     assert measure(asked) == 0
 
-    assert bench.serve == [["m.yaml", "--robot", "r.yaml"]]
+    assert bench.serve == [["m.yaml", "--robot", "r.yaml", "--data", str(tmp_path / "data")]]
 
 
 def test_times_that_differ_from_the_defaults_are_named(

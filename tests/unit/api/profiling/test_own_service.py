@@ -6,6 +6,9 @@ import pytest
 from api.profiling.own_service import NotServingError, own_service
 
 
+DATA = ("--data", ":memory:")
+
+
 async def test_it_serves_without_a_token_as_long_as_it_is_used(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -15,7 +18,7 @@ async def test_it_serves_without_a_token_as_long_as_it_is_used(
     (tmp_path / "api" / "__init__.py").write_text("raise SystemExit('foreign')")
     monkeypatch.chdir(tmp_path)
     async with httpx.AsyncClient(trust_env=False) as http:
-        async with own_service((), tmp_path / "service.log") as url:
+        async with own_service(DATA, tmp_path / "service.log") as url:
             answer = await http.get(f"{url}/system_state")
             assert answer.json()["simulated"]
 
@@ -28,5 +31,5 @@ async def test_why_it_does_not_start_is_said(tmp_path: Path) -> None:
     model.write_text("nothing: [", encoding="utf-8")
 
     with pytest.raises(NotServingError, match=rf"did not start:\n.*{model}:1:"):
-        async with own_service((str(model),), tmp_path / "service.log"):
+        async with own_service((str(model), *DATA), tmp_path / "service.log"):
             pass

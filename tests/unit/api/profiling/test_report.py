@@ -5,6 +5,7 @@ SETUP = {
     "version": "1.2.3",
     "started_at": "2026-01-01T00:00:00Z",
     "machine": {"CPU": "Z80", "cores": "1"},
+    "load_average": 0.25,
     "changed_settings": ["gps_accuracy.for_s is 0.5 (default 15)"],
 }
 
@@ -18,12 +19,13 @@ def test_the_report_has_a_table_for_each_trigger() -> None:
     assert [row[5:] for row in rows] == [["1", "0", *["2.00"] * 6, "0.00"]] * 2
 
 
-def test_machine_and_changed_times_are_named_first() -> None:
+def test_machine_load_and_changed_times_are_named_first() -> None:
     lines = list(report_lines([ok_run()], SETUP))
 
-    assert lines[:3] == [
+    assert lines[:4] == [
         "Pilothouse 1.2.3, measured at 2026-01-01T00:00:00Z",
         "Machine: CPU Z80, cores 1",
+        "Load average before: 0.25",
         "Setting: gps_accuracy.for_s is 0.5 (default 15)",
     ]
 
