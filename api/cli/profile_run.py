@@ -77,8 +77,7 @@ def measure(options: ProfileOptions) -> int:
                 is_interrupted = True
         _report(runs, _setup_of([out / _RUNS]), out, options.form, plot=options.plot)
     except (_MisusedError, NoMatplotlibError, OSError) as error:
-        complain(str(error))
-        return MISUSED
+        return _misused(error)
     print(f"pilothouse: results are in {out}", file=sys.stderr)
     if why:
         complain(why)
@@ -106,9 +105,23 @@ def analyse(
             out.mkdir(parents=True, exist_ok=True)
         _report(runs, _setup_of(files), out, form, plot=plot)
     except (_MisusedError, InvalidRunFileError, NoMatplotlibError, OSError) as error:
-        complain(str(error))
-        return MISUSED
+        return _misused(error)
     return _code(runs)
+
+
+def _misused(error: Exception) -> int:
+    """Say why nothing can be done.
+
+    Raises:
+        OSError: It is not about a file, but about what is printed.
+    """
+    if isinstance(error, OSError):
+        if error.filename is None:
+            raise error
+        complain(f"{error.filename}: {error.strerror}")
+    else:
+        complain(str(error))
+    return MISUSED
 
 
 def _serve_options(options: ProfileOptions, out: Path) -> list[str]:
@@ -222,21 +235,20 @@ def _report(
     *,
     plot: bool,
 ) -> None:
-    """Print the report, and store it.
+    """Store the report, and print it.
 
     Raises:
         OSError: It cannot be stored.
         NoMatplotlibError: It was to be drawn, and matplotlib is not installed.
     """
     text = "\n".join(report_lines(runs, setup))
-    shown = json.dumps(report_json(runs, setup), indent=2)
-    print(shown if form == "json" else text)
-    if out is None:
-        return
-    (out / "report.txt").write_text(text + "\n", encoding="utf-8")
-    (out / "report.json").write_text(shown + "\n", encoding="utf-8")
-    if plot and runs:
-        draw(runs, out / "latency.png")
+    found = report_json(runs, setup)
+    if out is not None:
+        (out / "report.txt").write_text(text + "\n", encoding="utf-8")
+        _write_json(out / "report.json", found)
+        if plot and runs:
+            draw(runs, out / "latency.png")
+    print(json.dumps(found, indent=2) if form == "json" else text)
 
 
 def _write_json(file: Path, content: Json) -> None:

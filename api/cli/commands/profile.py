@@ -25,9 +25,9 @@ about one minute a run. After Ctrl-C, what was measured is kept and analysed.
 mock: false. Times that differ from the defaults are named in the report.
 
 The folder DIR gets runs.csv (raw: one line for each run and trigger, with the
-times in s), setup.json, report.txt, report.json, latency.png (with --plot), and
-of the service its data, service.log and, without --robot, robot.yaml. --analyse makes the report again from CSV files, also of several
-profiles.
+times in s), setup.json, report.txt, report.json and, with --plot, latency.png;
+from the service its data, service.log and, without --robot, robot.yaml.
+--analyse makes the report again from CSV files, also of several profiles.
 
 A run fails if something is not seen within 2 s after it was due, is seen before
 it, or if another error is raised. It counts as failed and is listed.

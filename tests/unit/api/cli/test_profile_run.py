@@ -127,6 +127,30 @@ def test_earlier_data_is_not_overwritten(
     assert "choose another --out" in capsys.readouterr().err
 
 
+def test_a_folder_that_cannot_be_made_is_said(
+    bench: Bench, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    (tmp_path / "file").write_text("")
+
+    assert measure(options(tmp_path / "file")) == 2
+
+    assert capsys.readouterr().err == f"pilothouse: {tmp_path / 'file'}: File exists\n"
+
+
+def test_a_reader_that_closes_the_pipe_leaves_the_report_in_its_file(
+    bench: Bench, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def closed(text: str, **_: object) -> None:
+        raise BrokenPipeError(32, "Broken pipe")
+
+    monkeypatch.setattr(sys.stdout, "write", closed)
+
+    with pytest.raises(BrokenPipeError):
+        measure(options(tmp_path))
+
+    assert "2 runs, 0 failed" in (tmp_path / "report.txt").read_text()
+
+
 def test_ctrl_c_keeps_and_reports_what_was_measured(
     bench: Bench,
     tmp_path: Path,
@@ -250,6 +274,6 @@ def test_what_cannot_be_analysed_is_said(
     assert analyse([tmp_path / "other.csv"], None, "text", plot=True) == 2
 
     complaints = capsys.readouterr().err
-    assert "none.csv" in complaints
+    assert f"{tmp_path / 'none.csv'}: No such file or directory" in complaints
     assert "other.csv:1: no column run" in complaints
     assert "needs --out" in complaints

@@ -5,7 +5,6 @@ import pytest
 
 from api.profiling.own_service import NotServingError, own_service
 
-
 DATA = ("--data", ":memory:")
 
 
