@@ -90,7 +90,9 @@ def _serve(options: ServeOptions, output: Output, errors: Output) -> int:
     prepare(app)
     greeting = "\n".join(greet(composition, options, url_of(sockets, options.host), access))
     server = web_server(app, lambda: _say_serving(output, greeting, manager, supervisor))
-    Heap().settle()
+    heap = Heap()
+    heap.settle()
+    supervisor.publisher.on_tick.append(heap.note_tick)
     with asyncio.Runner(loop_factory=_new_event_loop) as runner:
         return runner.run(run_service(composition, server, sockets, manager))
 
