@@ -20,6 +20,7 @@
     |   +-- ReservedHoldError
     |   +-- TooManyHoldsError
     +-- BackendUnavailableError       the backend is down: no node can be reached
+    +-- StorageDegradedError          what must be on disk first cannot be written there
 
 `service` and `api` add errors below the same root: files that cannot be read (`service/files/`), a
 worker that is busy (`service/worker.py`), malformed bodies (`api/http/body_parsing.py`). A rejected
@@ -276,3 +277,12 @@ class BackendUnavailableError(PilothouseError):
 
     def __init__(self, reason: str) -> None:
         super().__init__(f"the nodes cannot be reached: {reason}")
+
+
+class StorageDegradedError(PilothouseError):
+    """What must be on disk first cannot be written there; nothing was changed."""
+
+    code = "STORAGE_DEGRADED"
+
+    def __init__(self, reason: str) -> None:
+        super().__init__(f"nothing was done, since it cannot be stored: {reason}")

@@ -6,6 +6,7 @@ from typing import TypeAlias
 
 from domain.actor import NOBODY, Actor
 from domain.identifiers import ChangeId, GoalId
+from domain.kept import Kept
 from domain.lifecycle import LifecycleState, Transition
 from domain.parameters import Parameters, ParameterValue
 from domain.paths.path import Path
@@ -246,6 +247,24 @@ class ReportBacklog:
     """All that arrived up to then is taken in; None: all that arrived at all."""
 
 
+@dataclass(frozen=True, slots=True)
+class Restored:
+    """What an earlier run of the service left; the first input, before any other.
+
+    Nothing that it brings back starts anything: the task is held, and parts wait for a request.
+    """
+
+    kept: tuple[Kept, ...] = ()
+    boot: int = 1
+    """Number of this run, from 1."""
+    next_event: int = 1
+    """Id of the first event; those before may have been told already."""
+    next_change: int = 1
+    next_task: int = 1
+    stop_because: str = ""
+    """Why the emergency stop is engaged, whatever is kept; empty: it is as it was kept."""
+
+
 ChangeRequest: TypeAlias = ModeRequest | TransitionRequest | ParametersRequest
 DriveRequest: TypeAlias = TaskRequest | CancelTaskRequest | HoldRequest | ReleaseRequest
 
@@ -267,4 +286,5 @@ Input: TypeAlias = (
     | EmergencyStopRequest
     | AcknowledgeRequest
     | DriveRequest
+    | Restored
 )

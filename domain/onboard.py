@@ -128,4 +128,5 @@ def _merged(parts: Sequence[Outputs]) -> Outputs:
         next((part.task for part in parts if part.task is not None), None),
         any(part.task_changed for part in parts),
         any(part.vehicle_changed for part in parts),
+        tuple(kept for part in parts for kept in part.kept),
     )

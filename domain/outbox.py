@@ -7,6 +7,7 @@ from domain.commands import Command
 from domain.events.event import Event, RecordedEvent
 from domain.events.service import TimeWasDue
 from domain.identifiers import ChangeId, TaskId
+from domain.kept import Keeping, Kept
 from domain.state_and_mode import PartName
 from domain.timebase import Instant
 
@@ -31,6 +32,8 @@ class Outputs:
     """Whether the view of the current task changed, or the task was replaced or ended."""
     vehicle_changed: bool = False
     """Whether the motion of the vehicle, its command or its look-ahead point changed."""
+    kept: tuple[Keeping, ...] = ()
+    """What changed of that which survives a restart; one entry per thing."""
 
 
 NOTHING = Outputs()
@@ -51,6 +54,7 @@ class Outbox:
         self.task: TaskId | None = None
         self.task_changed = False
         self.vehicle_changed = False
+        self._kept: dict[tuple[type[Kept], str], Keeping] = {}
         self._commands: list[Command] = []
         self._events: list[RecordedEvent] = []
         self._next_event = 1
@@ -114,6 +118,14 @@ class Outbox:
         """Send a command."""
         self._commands.append(command)
 
+    def keep(self, value: Kept) -> None:
+        """Keep a value over a restart; it replaces an earlier one of its kind and name."""
+        self._kept[type(value), value.name] = Keeping(type(value), value.name, value)
+
+    def forget(self, kind: type[Kept], name: str) -> None:
+        """Keep a value no longer."""
+        self._kept[kind, name] = Keeping(kind, name, None)
+
     def take(self) -> Outputs:
         """Return all outputs since the last call."""
         if not self._has_anything():
@@ -129,7 +141,9 @@ class Outbox:
             self.task,
             self.task_changed,
             self.vehicle_changed,
+            tuple(self._kept.values()),
         )
+        self._kept = {}
         self._commands, self._events = [], []
         self.change, self.system_state = None, False
         self.parts, self.signals = set(), set()
@@ -140,6 +154,7 @@ class Outbox:
         return bool(
             self._events
             or self._commands
+            or self._kept
             or self.vehicle_changed
             or self.task_changed
             or self.parts

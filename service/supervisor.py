@@ -24,11 +24,13 @@ from service.clock import Clock
 from service.event_log import EventLog
 from service.files.model_file import LoadedModel
 from service.frame_publisher import PERIOD, FramePublisher
+from service.keeper import Keeper, Taken
 from service.node_incidents import log_node_incidents
 from service.ports import RobotBackend
 from service.readings import DirectReadings, ReadingInput, Submit
 from service.refused_readings import RefusedReadings
 from service.running import run_forever
+from service.storage.journal import Journal, Step
 from service.submitter import Submitter
 from service.watchdog import hanging
 
@@ -48,6 +50,7 @@ class Supervisor:
         readings: Callable[[Submit], ReadingInput] = DirectReadings,
         simulated: Sequence[str] = (),
         events: EventLog | None = None,
+        journal: Journal | None = None,
     ) -> None:
         """Prepare; nothing runs yet.
 
@@ -59,6 +62,7 @@ class Supervisor:
             readings: Makes the input for external readings.
             simulated: The simulated pieces of the robot, as in `Frame`.
             events: The event log; None: a new one.
+            journal: Keeps what must survive a restart, and brings it back; None: nothing is kept.
         """
         self.core: Supervision = onboard.core
         """Only for reading; inputs go through `submit`."""
@@ -66,13 +70,15 @@ class Supervisor:
         self.started_at = clock.now()
         """Start of this run of the service, and of its epoch."""
         self.simulated = tuple(simulated)
-        self.events = events or EventLog()
+        self.events = events or _event_log(journal)
         self.publisher = FramePublisher(onboard.core, clock, self.simulated)
         self.frames = self.publisher.frames
         self._catch_up = CatchUp(clock, self.publisher.tick_due)
         self.change_ends = ChangeEnds(onboard.core, clock, self._catch_up.wait)
         self._loaded = loaded
         self._onboard = onboard
+        self.journal = journal
+        """Keeps what must survive a restart; None: nothing is kept."""
         self._backend = backend
         self.refused_readings = RefusedReadings()
         """Rejected readings, on all ways in."""
@@ -80,14 +86,11 @@ class Supervisor:
             onboard, clock, self._carry_out, self._catch_up, self.refused_readings
         )
         self.publisher.on_tick.append(self._note_tick)
-        self.submit: Callable[[Input], Outputs] = self._submitter.submit
-        """Passes an input to the core; raises PilothouseError if it is rejected."""
-        self.deliver: Callable[[Input], None] = self._submitter.deliver
-        """Submits a report of an adapter, and logs it if it is rejected."""
-        self.let_pass: Callable[[], None] = self._submitter.let_pass
-        """Processes the deadlines that have expired by now."""
         self.readings = readings(self.submit)
         """The input for external readings."""
+        self._keeper = None if journal is None else Keeper(journal, self.submit)
+        if journal is not None:
+            self.submit(journal.found.restored)
 
     @property
     def model(self) -> SmhModel:
@@ -130,6 +133,32 @@ class Supervisor:
             }
         )
 
+    def submit(self, given: Input) -> Outputs:
+        """Pass an input to the core.
+
+        Raises:
+            PilothouseError: The input is rejected; it changed nothing.
+        """
+        return self._submitter.submit(given)
+
+    def deliver(self, given: Input) -> None:
+        """Submit a report of an adapter, and log it if it is rejected."""
+        self._submitter.deliver(given)
+
+    def let_pass(self) -> None:
+        """Process the deadlines that have expired by now."""
+        self._submitter.let_pass()
+
+    async def request(self, given: Input, *, volatile: bool = False) -> Taken:
+        """Submit a request whose outcome is kept, as `Keeper.request` does.
+
+        Raises:
+            PilothouseError: The request is rejected; nothing was done.
+        """
+        if self._keeper is None:
+            return Taken(self.submit(given), is_durable=False)
+        return await self._keeper.request(given, volatile=volatile)
+
     def hanging(self) -> str | None:
         """Return what of the supervision hangs, in words; None: all goes on."""
         publisher = self.publisher
@@ -154,14 +183,24 @@ class Supervisor:
         if late > STALL:
             self.submit(ServiceStall(late))
 
-    def _carry_out(self, outputs: Outputs) -> None:
-        """Send commands to the robot first, then publish."""
+    def _carry_out(self, step: Step) -> None:
+        """Send commands to the robot first, then note what happened, then publish."""
+        outputs = step.outputs
         for command in outputs.commands:
             # Goals are for the navigation on board; the rest is for nodes and the vehicle.
             if not isinstance(command, SendGoal | PreemptGoal):
                 self._backend.send(command)
+        if self.journal is not None:
+            self.journal.note(step)
         self.publisher.note(outputs)
         self.events.append(*outputs.events)
         self.change_ends.note(outputs.events)
         if outputs.system_state:
             self.publisher.publish_change()
+
+
+def _event_log(journal: Journal | None) -> EventLog:
+    """Return an empty log that goes on after the events of earlier runs."""
+    if journal is None:
+        return EventLog()
+    return EventLog(epoch=journal.boot.epoch, before=journal.found.restored.next_event - 1)

@@ -31,6 +31,7 @@ from domain.errors import (
     PilothouseError,
     RefusedError,
     ReservedHoldError,
+    StorageDegradedError,
     TooManyHoldsError,
     UnknownChangeError,
     UnknownControllerError,
@@ -43,6 +44,7 @@ from domain.errors import (
     UnknownTaskError,
 )
 from service.clock import Clock
+from service.codec.errors import CodecError
 from service.files.csv_table import InvalidWaypointsError
 from service.files.robot_file import InvalidRobotFileError
 from service.files.text_file import UnreadableFileError
@@ -70,6 +72,7 @@ STATUS_OF: Mapping[type[PilothouseError], HTTPStatus] = {
     InvalidWaypointsError: HTTPStatus.UNPROCESSABLE_ENTITY,
     InvalidBodyError: HTTPStatus.UNPROCESSABLE_ENTITY,
     StopTakenError: HTTPStatus.UNPROCESSABLE_ENTITY,
+    CodecError: HTTPStatus.UNPROCESSABLE_ENTITY,
     InvalidModelError: HTTPStatus.UNPROCESSABLE_ENTITY,
     TooComplexError: HTTPStatus.UNPROCESSABLE_ENTITY,
     OutOfMemoryError: HTTPStatus.UNPROCESSABLE_ENTITY,
@@ -82,6 +85,7 @@ STATUS_OF: Mapping[type[PilothouseError], HTTPStatus] = {
     WorkerBusyError: HTTPStatus.TOO_MANY_REQUESTS,
     WorkerClosedError: HTTPStatus.SERVICE_UNAVAILABLE,
     BackendUnavailableError: HTTPStatus.SERVICE_UNAVAILABLE,
+    StorageDegradedError: HTTPStatus.SERVICE_UNAVAILABLE,
     # Files are read before the service accepts requests.
     InvalidRobotFileError: HTTPStatus.INTERNAL_SERVER_ERROR,
     UnreadableFileError: HTTPStatus.INTERNAL_SERVER_ERROR,

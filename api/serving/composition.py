@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import Literal, TypeAlias
 
 from api.http.limits import ServiceLimits
+from api.serving.data_folder import MEMORY
 from api.simulation.simulation_job import SimulatedParts
 from domain.simulation.mock_signals import MockSignals
 from service.clock import Clock
@@ -54,6 +55,8 @@ class ServeOptions:
     allowed_hosts: tuple[str, ...] = ()
     allowed_origins: tuple[str, ...] = ()
     log_level: str = "info"
+    data: str = MEMORY
+    """Folder for what survives a restart, or `MEMORY`, or `USUAL`."""
 
 
 class MisuseError(Exception):

@@ -253,6 +253,10 @@ class EmergencyStopBody(Body):
 
     engaged: bool
     reason: str | None = Field(default=None, max_length=MAX_REASON)
+    volatile: bool = Field(
+        default=False,
+        description="Release it though storage fails; a restart of the service may forget that",
+    )
 
 
 class MockBody(Body):

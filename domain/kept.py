@@ -1,0 +1,155 @@
+"""What the core keeps over a restart of the service: small, plain values by kind and name.
+
+A concern says by `Outbox.keep` and `Outbox.forget` what changed of it. After a restart the input
+`Restored` brings the values back. Fields may be added with a default; a stored value of an older
+version is read without them.
+"""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import TypeAlias
+
+from domain.identifiers import ChangeId, TaskId
+from domain.lifecycle import Transition
+from domain.parameters import ParameterValue
+from domain.paths.path import Path
+from domain.state_and_mode import PartName, StateAndMode
+from domain.timebase import Instant
+
+
+@dataclass(frozen=True, slots=True)
+class KeptTarget:
+    """What was requested of a part last; what follows for its parts is derived again."""
+
+    part: PartName
+    target: StateAndMode
+    order: int
+    """Rises with each request: a later one prevails where two concern the same part."""
+
+    @property
+    def name(self) -> str:
+        """Return its name among those of its kind."""
+        return self.part
+
+
+@dataclass(frozen=True, slots=True)
+class KeptChange:
+    """A change that has not ended."""
+
+    id: ChangeId
+    part: PartName
+    started_at: Instant
+    cause: int
+    """Id of the event that recorded the request."""
+    mode: str | None = None
+    transition: Transition | None = None
+    parameters: Mapping[str, ParameterValue] | None = None
+    """Of these three, what was requested; the others are None."""
+
+    @property
+    def name(self) -> str:
+        """Return its name among those of its kind."""
+        return self.id
+
+
+@dataclass(frozen=True, slots=True)
+class KeptEmergencyStop:
+    """The emergency stop."""
+
+    engaged: bool
+    by: str
+    reason: str
+    since: Instant
+
+    @property
+    def name(self) -> str:
+        """Return its name among those of its kind; there is one."""
+        return ""
+
+
+@dataclass(frozen=True, slots=True)
+class KeptError:
+    """An error of a signal that an operator has yet to acknowledge."""
+
+    signal: str
+    error: str
+    since: Instant
+    """When it was raised."""
+    message: str
+    """What was measured."""
+
+    @property
+    def name(self) -> str:
+        """Return its name among those of its kind."""
+        return self.error
+
+
+@dataclass(frozen=True, slots=True)
+class KeptHold:
+    """A hold that somebody set."""
+
+    owner: str
+    reason: str
+    by: str
+    since: Instant
+
+    @property
+    def name(self) -> str:
+        """Return its name among those of its kind."""
+        return self.owner
+
+
+@dataclass(frozen=True, slots=True)
+class KeptTask:
+    """A task as it was submitted; its progress is kept apart, since that changes often."""
+
+    id: TaskId
+    path: Path
+    controller: str
+    speed_mps: float
+    start_index: int
+    created_at: Instant
+    cause: int
+    """Id of the event that recorded the request."""
+
+    @property
+    def name(self) -> str:
+        """Return its name among those of its kind."""
+        return self.id
+
+
+@dataclass(frozen=True, slots=True)
+class KeptProgress:
+    """How far a task got, and how it ended."""
+
+    task: TaskId
+    has_run: bool
+    target_index: int
+    distance_m: float
+    left_out_m: float
+    cross_track_error_m: float | None = None
+    ended_as: str | None = None
+    """Its last status; None: it has not ended."""
+    reason: str | None = None
+    """Why it is held, or how it ended."""
+    ended_at: Instant | None = None
+
+    @property
+    def name(self) -> str:
+        """Return its name among those of its kind."""
+        return self.task
+
+
+Kept: TypeAlias = (
+    KeptTarget | KeptChange | KeptEmergencyStop | KeptError | KeptHold | KeptTask | KeptProgress
+)
+
+
+@dataclass(frozen=True, slots=True)
+class Keeping:
+    """What is kept of one thing changed."""
+
+    kind: type[Kept]
+    name: str
+    value: Kept | None
+    """None: it is forgotten."""

@@ -1,0 +1,1 @@
+"""Durable state, logs and history of one robot, behind the port `Journal`."""

@@ -1,0 +1,177 @@
+"""The port of storage: what the core took and decided is written down, and found again.
+
+The loop never waits for a disk: `note` returns at once, and only who must answer for what is kept
+awaits `commit`. `tests/conformance/test_journal.py` specifies what every adapter must do.
+"""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from datetime import datetime
+from typing import Protocol, TypeAlias
+
+from domain.inputs import Input, Restored
+from domain.outbox import Outputs
+from domain.state_and_mode import PartName
+from domain.timebase import Instant
+
+Plain: TypeAlias = bool | int | float | str | Sequence["Plain"] | Mapping[str, "Plain"] | None
+"""What JSON can hold."""
+
+
+@dataclass(frozen=True, slots=True)
+class Boot:
+    """A run of the service: what its core was made of, so that a replay can make it again."""
+
+    epoch: str
+    """Unique name of the run."""
+    version: str
+    """Version of Pilothouse."""
+    started_at: Instant
+    wall_at: datetime
+    """`started_at` as UTC, as the system clock was set then."""
+    model: str
+    """Text of the model file."""
+    robot: str
+    """Text of the robot file; empty: there is none."""
+
+
+@dataclass(frozen=True, slots=True)
+class Found:
+    """What opening a journal found."""
+
+    restored: Restored
+    """The first input of this run."""
+    is_new: bool = True
+    """Whether there was no earlier run."""
+    ended_at: datetime | None = None
+    """When the last entry of the earlier run was written; None: there was none."""
+    epochs: Mapping[str, int] | None = None
+    """Earlier runs that are still in the log, by epoch, with the id of the last event of each."""
+    own: Mapping[str, Plain] | None = None
+    """What the service kept by `keep`."""
+    left_out: tuple[str, ...] = ()
+    """What was kept and cannot be taken back, in words."""
+
+
+@dataclass(frozen=True, slots=True)
+class Step:
+    """One input that the core took, and what followed."""
+
+    at: Instant
+    given: Input
+    is_late: bool
+    """Whether it was late by our own fault: `Onboard.take_in`, not `handle`."""
+    outputs: Outputs
+
+
+@dataclass(frozen=True, slots=True)
+class LogStatus:
+    """The extent of one log."""
+
+    from_at: datetime | None
+    to_at: datetime | None
+    bytes: int
+
+
+@dataclass(frozen=True, slots=True)
+class StorageStatus:
+    """How storage is doing."""
+
+    path: str
+    """The folder, or `:memory:`."""
+    bytes: int
+    free_bytes: int | None
+    reason: str | None
+    """Why storage is degraded; None: it is not."""
+    library_version: str
+    boot: int
+    logs: Mapping[str, LogStatus]
+    """By name: `inputs` and `events`."""
+    lost_inputs: int = 0
+    lost_events: int = 0
+    """What this run could not write down."""
+
+
+@dataclass(frozen=True, slots=True)
+class EventQuery:
+    """Which events of the log are wanted; None: any."""
+
+    after: int | None = None
+    """Only ids above; without it the newest are returned."""
+    before: int | None = None
+    from_at: datetime | None = None
+    to_at: datetime | None = None
+    kind: str | None = None
+    """A kind, a prefix such as `change`, or a pattern with `*`."""
+    part: PartName | None = None
+    """Events whose data name this part."""
+    actor: str | None = None
+    """Label of the actor."""
+    limit: int = 100
+
+
+@dataclass(frozen=True, slots=True)
+class StoredEvent:
+    """An event as it was written down, readable without the class that it was made from."""
+
+    id: int
+    boot: int
+    epoch: str
+    at: Instant
+    wall_at: datetime
+    kind: str
+    cause: int | None
+    actor: str
+    data: Mapping[str, Plain]
+    """As clients see it."""
+    words: str
+
+
+class Journal(Protocol):
+    """Keeps what must not be forgotten."""
+
+    @property
+    def found(self) -> Found:
+        """Return what was there when the journal was opened."""
+        ...
+
+    @property
+    def boot(self) -> Boot:
+        """Return this run."""
+        ...
+
+    def note(self, step: Step) -> None:
+        """Write a step down soon, all of it or nothing; return at once, and never raise."""
+        ...
+
+    def keep(self, name: str, value: Plain) -> None:
+        """Keep a value of the service itself, such as the state of a simulated robot."""
+        ...
+
+    def checkpoint(self, at: Instant, state: bytes) -> None:
+        """Write down the whole state of the core after the last noted step."""
+        ...
+
+    async def commit(self, patience_s: float) -> bool:
+        """Wait until all that was noted before is on disk; return whether it is, in that time.
+
+        Raises:
+            StorageDegradedError: Storage fails: it will not be, until it works again.
+        """
+        ...
+
+    def status(self) -> StorageStatus:
+        """Return how storage is doing, without touching a disk."""
+        ...
+
+    async def events(self, query: EventQuery) -> Sequence[StoredEvent]:
+        """Return events in the order of their ids, also those of earlier runs.
+
+        Raises:
+            StorageDegradedError: They cannot be read.
+        """
+        ...
+
+    async def close(self) -> None:
+        """Write down what is noted, note that the run ended, and release the folder."""
+        ...
