@@ -65,9 +65,10 @@ class _Line:
         A part matches if it is in exactly this state and, if active, in this mode.
         """
         state = actual.state
-        if state is self.state:
-            if state is not LifecycleState.ACTIVE or actual.mode == self.wanted:
-                return
+        if state is self.state and (
+            state is not LifecycleState.ACTIVE or actual.mode == self.wanted
+        ):
+            return
         if self.in_default:
             self.mode.unmatched += by
         # A part that shall be inactive may as well not be configured yet.
