@@ -120,7 +120,9 @@ async def _run(
     try:
         composition = compose(options, clock, files, stores)
         server = _make_server(composition, options, network, manager, output)
-        Heap().settle()
+        heap = Heap()
+        heap.settle()
+        composition.supervisor.publisher.on_tick.append(heap.note_tick)
         return await run_service(composition, server, network.sockets, manager)
     finally:
         await stores.close()
