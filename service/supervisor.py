@@ -6,6 +6,7 @@ when it expires (`submitter`); the tick only publishes (`frame_publisher`).
 
 from collections.abc import Callable, Sequence
 from contextlib import suppress
+from functools import partial
 
 from domain.actor import SERVICE
 from domain.commands import PreemptGoal, SendGoal
@@ -20,11 +21,12 @@ from domain.supervision import Supervision
 from domain.timebase import Duration, seconds
 from service.catch_up import CatchUp
 from service.change_ends import ChangeEnds
+from service.checkpoint import checkpoint_of
 from service.clock import Clock
 from service.event_log import EventLog
 from service.files.model_file import LoadedModel
 from service.frame_publisher import PERIOD, FramePublisher
-from service.keeper import NO_STORES, Keeper, Stores, Taken
+from service.keeper import NO_STORES, Checkpoint, Keeper, Stores, Taken
 from service.node_incidents import log_node_incidents
 from service.ports import RobotBackend
 from service.readings import DirectReadings, ReadingInput, Submit
@@ -37,6 +39,10 @@ from service.watchdog import hanging
 
 STALL: Duration = seconds(0.25)
 """A tick that is later is told: the pose of a vehicle that reports every 0.05 s is too old then."""
+
+
+_LARGE = 200
+"""Parts of a robot whose state is written down in a fork; of fewer it takes some 2 ms."""
 
 
 class Supervisor:
@@ -99,7 +105,11 @@ class Supervisor:
         if stores.journal is None:
             return None
         self.submit(stores.journal.found.restored)
-        return Keeper(stores.journal, self.submit, self.clock, stores.memories)
+        version = stores.journal.boot.version
+        checkpoint = Checkpoint(
+            partial(checkpoint_of, self._onboard, version), len(self.model.parts) > _LARGE
+        )
+        return Keeper(stores.journal, self.submit, self.clock, stores.memories, checkpoint)
 
     @property
     def model(self) -> SmhModel:

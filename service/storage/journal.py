@@ -156,8 +156,13 @@ class Journal(Protocol):
         """
         ...
 
-    def checkpoint(self, at: Instant, state: bytes) -> None:
-        """Write down the whole state of the core after the last noted step."""
+    @property
+    def last_step(self) -> int:
+        """Return the number of the step that was noted last."""
+        ...
+
+    def checkpoint(self, step: int, at: Instant, state: bytes) -> None:
+        """Write down the whole state of the core as it was after a step."""
         ...
 
     async def commit(self, patience_s: float) -> bool:
