@@ -116,7 +116,9 @@ async def _run(
     try:
         composition = compose(options, clock, files, journal)
         server = _make_server(composition, options, network, manager, output)
-        Heap().settle()
+        heap = Heap()
+        heap.settle()
+        composition.supervisor.publisher.on_tick.append(heap.note_tick)
         return await run_service(composition, server, network.sockets, manager)
     finally:
         await journal.close()

@@ -154,8 +154,8 @@ class Parts(Concern):
         if not touched:
             return False
         self._outbox.parts |= touched
-        for part in touched:
-            self._views.pop(part, None)
+        for part in touched & self._views.keys():
+            del self._views[part]
         moved, self._moved = sorted(self._moved), set()
         self._tell_actuals(moved)
         for part in moved[:LOOKS_AT_ONCE]:
@@ -233,9 +233,10 @@ class Parts(Concern):
 
     def _tell_actuals(self, parts: Iterable[PartName]) -> None:
         """Publish the parts whose actual state or mode differs from the last published one."""
-        for part in sorted(parts):
-            actual, was = self.inference.actual(part), self._told.get(part, _UNKNOWN)
-            if actual is was or (actual.state is was.state and actual.mode == was.mode):
+        actuals, told = self.inference.actuals, self._told
+        for part in sorted([p for p in parts if actuals[p] is not told.get(p)]):
+            actual, was = actuals[part], told.get(part, _UNKNOWN)
+            if actual.state is was.state and actual.mode == was.mode:
                 continue
             self._told[part] = actual
             self._outbox.emit(
