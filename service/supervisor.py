@@ -24,13 +24,14 @@ from service.clock import Clock
 from service.event_log import EventLog
 from service.files.model_file import LoadedModel
 from service.frame_publisher import PERIOD, FramePublisher
-from service.keeper import Keeper, Taken
+from service.keeper import NO_STORES, Keeper, Stores, Taken
 from service.node_incidents import log_node_incidents
 from service.ports import RobotBackend
 from service.readings import DirectReadings, ReadingInput, Submit
 from service.refused_readings import RefusedReadings
 from service.running import run_forever
 from service.storage.journal import Journal, Step
+from service.storage.trends.sampling import Sampling
 from service.submitter import Submitter
 from service.watchdog import hanging
 
@@ -50,7 +51,7 @@ class Supervisor:
         readings: Callable[[Submit], ReadingInput] = DirectReadings,
         simulated: Sequence[str] = (),
         events: EventLog | None = None,
-        journal: Journal | None = None,
+        stores: Stores = NO_STORES,
     ) -> None:
         """Prepare; nothing runs yet.
 
@@ -62,7 +63,7 @@ class Supervisor:
             readings: Makes the input for external readings.
             simulated: The simulated pieces of the robot, as in `Frame`.
             events: The event log; None: a new one.
-            journal: Keeps what must survive a restart, and brings it back; None: nothing is kept.
+            stores: Keep what must survive a restart, and bring it back.
         """
         self.core: Supervision = onboard.core
         """Only for reading; inputs go through `submit`."""
@@ -70,15 +71,18 @@ class Supervisor:
         self.started_at = clock.now()
         """Start of this run of the service, and of its epoch."""
         self.simulated = tuple(simulated)
-        self.events = events or _event_log(journal)
+        self.journal = stores.journal
+        """Keeps what must survive a restart; None: nothing is kept."""
+        self.trends = stores.trends
+        """The history of the signals; None: there is none."""
+        self._sampling = _sampling(stores, onboard.core)
+        self.events = events or _event_log(self.journal)
         self.publisher = FramePublisher(onboard.core, clock, self.simulated)
         self.frames = self.publisher.frames
         self._catch_up = CatchUp(clock, self.publisher.tick_due)
         self.change_ends = ChangeEnds(onboard.core, clock, self._catch_up.wait)
         self._loaded = loaded
         self._onboard = onboard
-        self.journal = journal
-        """Keeps what must survive a restart; None: nothing is kept."""
         self._backend = backend
         self.refused_readings = RefusedReadings()
         """Rejected readings, on all ways in."""
@@ -88,9 +92,14 @@ class Supervisor:
         self.publisher.on_tick.append(self._note_tick)
         self.readings = readings(self.submit)
         """The input for external readings."""
-        self._keeper = None if journal is None else Keeper(journal, self.submit)
-        if journal is not None:
-            self.submit(journal.found.restored)
+        self._keeper = self._restore(stores)
+
+    def _restore(self, stores: Stores) -> Keeper | None:
+        """Bring back what an earlier run left; return who keeps it from now on."""
+        if stores.journal is None:
+            return None
+        self.submit(stores.journal.found.restored)
+        return Keeper(stores.journal, self.submit, self.clock, stores.memories)
 
     @property
     def model(self) -> SmhModel:
@@ -124,14 +133,15 @@ class Supervisor:
             ExceptionGroup: Of a `TaskFailedError` that names the task; its cause is what the task
                 raised.
         """
-        await run_forever(
-            {
-                "robot": self._backend.run(self.deliver),
-                "deadlines": self._submitter.run(),
-                "log": log_node_incidents(self.events),
-                "tick": self.publisher.run(),
-            }
-        )
+        work = {
+            "robot": self._backend.run(self.deliver),
+            "deadlines": self._submitter.run(),
+            "log": log_node_incidents(self.events),
+            "tick": self.publisher.run(),
+        }
+        if self._keeper is not None:
+            work["keeper"] = self._keeper.run()
+        await run_forever(work)
 
     def submit(self, given: Input) -> Outputs:
         """Pass an input to the core.
@@ -192,6 +202,8 @@ class Supervisor:
                 self._backend.send(command)
         if self.journal is not None:
             self.journal.note(step)
+        if self._sampling is not None and outputs.signals:
+            self._sampling.note(outputs.signals, step.at)
         self.publisher.note(outputs)
         self.events.append(*outputs.events)
         self.change_ends.note(outputs.events)
@@ -204,3 +216,7 @@ def _event_log(journal: Journal | None) -> EventLog:
     if journal is None:
         return EventLog()
     return EventLog(epoch=journal.boot.epoch, before=journal.found.restored.next_event - 1)
+
+
+def _sampling(stores: Stores, core: Supervision) -> Sampling | None:
+    return None if stores.trends is None else Sampling(stores.trends, core.signal)
