@@ -161,7 +161,7 @@ class NodeSteps:
             self._backlogs[source] = since
 
     def _judged_until(self, now: Instant) -> Instant:
-        return min((now, *self._backlogs.values()))
+        return min((now, *self._backlogs.values())) if self._backlogs else now
 
     def pass_time(self, now: Instant) -> None:
         """Handle all deadlines up to `now`, unless a report may wait that came before them."""

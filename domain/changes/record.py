@@ -120,15 +120,18 @@ class Pursuit:
 
     def plan(self, actions: tuple[Action, ...]) -> None:
         """Replace the pending steps, if the path to the goal has changed."""
-        done = [step for step in self.steps if step.status is not StepStatus.PENDING]
         pending = [step.action for step in self.steps if step.status is StepStatus.PENDING]
         if pending != list(actions):
+            done = [step for step in self.steps if step.status is not StepStatus.PENDING]
             new = [Step(self.change, self.node, action) for action in actions]
             self.steps = (*done, *new)
 
     def next_step(self) -> Step | None:
         """Return the first pending step; None: there is none."""
-        return next((step for step in self.steps if step.status is StepStatus.PENDING), None)
+        for step in self.steps:
+            if step.status is StepStatus.PENDING:
+                return step
+        return None
 
     def drop_pending(self, status: StepStatus, now: Instant) -> None:
         """End all pending steps."""

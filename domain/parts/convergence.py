@@ -44,20 +44,19 @@ class _Laggards:
         }
         """Parts of the modes that leave some of the named parts out."""
 
-    def note(self, parts: Iterable[PartName], *, lag: bool) -> None:
-        """Record whether parts lag; without effect for those of which that is recorded already."""
-        numbers, number_of = self._numbers, self._number
-        for part in parts:
-            number = number_of[part]
-            if not numbers or numbers[-1] < number:
-                if lag:
-                    numbers.append(number)
-                continue
-            place = bisect_left(numbers, number)
-            if lag and numbers[place] != number:
-                numbers.insert(place, number)
-            elif not lag and numbers[place] == number:
-                del numbers[place]
+    def note(self, part: PartName, *, lags: bool) -> None:
+        """Record whether a part lags; without effect if that is recorded already."""
+        numbers, number = self._numbers, self._number[part]
+        if not numbers or numbers[-1] < number:
+            # Nodes are asked in the order of the file.
+            if lags:
+                numbers.append(number)
+            return
+        place = bisect_left(numbers, number)
+        if lags and numbers[place] != number:
+            numbers.insert(place, number)
+        elif not lags and numbers[place] == number:
+            del numbers[place]
 
     def last(self, target: StateAndMode | None) -> PartName | None:
         """Return the last laggard of the parts that a system with this target has."""
@@ -125,8 +124,8 @@ class Convergence:
             Parts of which `converged` or `reason` changed.
         """
         moved = set(parts)
-        renewed = self._renew_nodes(part for part in parts if part not in self._depth)
-        waiting = moved & self._depth.keys()
+        waiting = {part for part in parts if part in self._depth}
+        renewed = self._renew_nodes(part for part in parts if part not in waiting)
         for node in renewed:
             waiting.update(self._parents.get(node, ()))
         order = [(-self._depth[name], name) for name in waiting]
@@ -148,29 +147,21 @@ class Convergence:
         As `_renew`, with less work: the cause of a node is the node itself, and a request may move
         ten thousand of them.
         """
-        causes = self._causes
-        caught_up: dict[PartName, list[PartName]] = {}
-        fell_behind: dict[PartName, list[PartName]] = {}
+        causes, laggards, parents = self._causes, self._laggards, self._parents
         renewed: set[PartName] = set()
         for node in nodes:
-            if self._is_behind(node):
+            lags = self._is_behind(node)
+            if lags:
                 renewed.add(node)
-                if node in causes:
-                    continue
-                causes[node] = node
-                by_parent = fell_behind
-            elif node in causes:
-                renewed.add(node)
-                del causes[node]
-                by_parent = caught_up
-            else:
+            if lags is (node in causes):
                 continue
-            for parent in self._parents.get(node, ()):
-                by_parent.setdefault(parent, []).append(node)
-        for parent, parts in fell_behind.items():
-            self._laggards[parent].note(parts, lag=True)
-        for parent, parts in caught_up.items():
-            self._laggards[parent].note(parts, lag=False)
+            renewed.add(node)
+            if lags:
+                causes[node] = node
+            else:
+                del causes[node]
+            for parent in parents.get(node, ()):
+                laggards[parent].note(node, lags=lags)
         return renewed
 
     def _renew(self, part: PartName, cause: PartName | None, moved: set[PartName]) -> bool:
@@ -184,7 +175,7 @@ class Convergence:
             self._causes[part] = cause
         if cause is None or was is None:
             for parent in self._parents.get(part, ()):
-                self._laggards[parent].note((part,), lag=cause is not None)
+                self._laggards[parent].note(part, lags=cause is not None)
         return True
 
     def _cause(self, system: PartName) -> PartName | None:

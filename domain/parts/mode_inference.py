@@ -179,6 +179,8 @@ class ModeInference:
             elif self._renew(part, self._infer_node(part)):
                 changed.add(part)
                 waiting.update(self._parents.get(part, ()))
+        if not waiting:
+            return changed
         order = [(-self._depth[name], name) for name in waiting]
         heapify(order)
         while order:
