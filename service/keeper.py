@@ -66,7 +66,7 @@ class Memory:
     revision: Callable[[], object]
     """Differs when the value does; cheap."""
     every: Duration
-    """Kept at most so often; so much may be lost."""
+    """Kept at most so often; so much may be lost. 0: with the step that tells of it."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -157,13 +157,7 @@ class Keeper:
 
     def look(self) -> None:
         """Keep memories that changed, and tell the core if storage fails or works again."""
-        now = self._clock.now()
-        for memory in self._memories:
-            kept_at, kept = self._remembered.get(memory.name, (now - memory.every, None))
-            revision = memory.revision()
-            if revision != kept and now - kept_at >= memory.every:
-                self._remembered[memory.name] = now, revision
-                self._journal.keep(memory.name, memory.value())
+        self.keep_memories(self._clock.now())
         fault = self._journal.status().reason
         if (fault is None) is not (self._fault is None):
             self._fault = fault
@@ -180,6 +174,15 @@ class Keeper:
         except (OSError, ForkedCallError) as error:
             log.warning("no checkpoint was written, it is tried again: %s", error)
             await self._clock.sleep_until(at + RETRY_CHECKPOINT)
+
+    def keep_memories(self, now: Instant) -> None:
+        """Keep memories that changed, with the step that tells of it."""
+        for memory in self._memories:
+            kept_at, kept = self._remembered.get(memory.name, (now - memory.every, None))
+            if now - kept_at < memory.every or (revision := memory.revision()) == kept:
+                continue
+            self._remembered[memory.name] = now, revision
+            self._journal.keep(memory.name, memory.value())
 
     async def request(self, given: Input, *, volatile: bool = False) -> Taken:
         """Pass a request to the core, and return when its outcome is on disk or takes too long.

@@ -98,6 +98,7 @@ class Supervisor:
         self.publisher.on_tick.append(self._note_tick)
         self.readings = readings(self.submit)
         """The input for external readings."""
+        self._keeper: Keeper | None = None
         self._keeper = self._restore(stores)
 
     def _restore(self, stores: Stores) -> Keeper | None:
@@ -210,6 +211,8 @@ class Supervisor:
             # Goals are for the navigation on board; the rest is for nodes and the vehicle.
             if not isinstance(command, SendGoal | PreemptGoal):
                 self._backend.send(command)
+        if self._keeper is not None:
+            self._keeper.keep_memories(step.at)
         if self.journal is not None:
             self.journal.note(step)
         if self._sampling is not None and outputs.signals:

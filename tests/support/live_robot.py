@@ -14,6 +14,7 @@ from domain.timebase import Instant
 from service.clock import Clock
 from service.files.model_file import LoadedModel
 from service.keeper import Stores
+from service.simulation.remembering import memories_of
 from service.simulation.simulated import SimulatedBackend
 from service.storage.journal import Journal
 from service.supervisor import Supervisor
@@ -55,7 +56,7 @@ def make_live_robot(
         backend,
         backend.readings,
         simulated=robot.what,
-        stores=Stores(journal),
+        stores=Stores(journal, memories=memories_of(robot)),
     )
     return supervisor, backend
 

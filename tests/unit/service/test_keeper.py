@@ -241,3 +241,17 @@ async def test_a_checkpoint_is_of_the_moment_in_which_it_was_begun(
     keeping.cancel()
 
     assert disk.done == ["checkpoint after step 7: state"]
+
+
+def test_a_memory_that_is_kept_with_each_step_never_waits(disk: Disk, clock: ManualClock) -> None:
+    state = ["active"]
+    memory = Memory("nodes", lambda: list(state), lambda: state[0], 0)
+    keeper = Keeper(disk, disk.submit, clock, [memory])  # type: ignore[arg-type]
+    keeper.keep_memories(clock.now())
+    state[0] = "inactive"
+    keeper.keep_memories(clock.now())
+
+    assert disk.kept == {"nodes": ["inactive"]}
+    disk.done.clear()
+    keeper.keep_memories(clock.now())
+    assert disk.done == []
