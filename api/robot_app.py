@@ -31,6 +31,7 @@ from api.http.routes import (
     parts,
     service_health,
     signals,
+    storage,
     system_state,
     tasks,
     vehicle,
@@ -60,6 +61,7 @@ _RESOURCES = (
     example_tracks.router,
     events.router,
     stream.router,
+    storage.router,
     service_health.router,
 )
 

@@ -148,12 +148,22 @@ class Journal(Protocol):
         """Keep a value of the service itself, such as the state of a simulated robot."""
         ...
 
+    @property
+    def wants_checkpoint(self) -> bool:
+        """Tell whether a replay could not go on from what was written down lately.
+
+        So at the start, after a hole, with each new file of the log, and every few minutes.
+        """
+        ...
+
     def checkpoint(self, at: Instant, state: bytes) -> None:
         """Write down the whole state of the core after the last noted step."""
         ...
 
     async def commit(self, patience_s: float) -> bool:
         """Wait until all that was noted before is on disk; return whether it is, in that time.
+
+        Something is written in any case: success proves that storage works now.
 
         Raises:
             StorageDegradedError: Storage fails: it will not be, until it works again.

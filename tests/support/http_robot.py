@@ -21,6 +21,7 @@ from domain.simulation.vehicle_settings import VehicleSettings
 from domain.state_and_mode import PartName
 from domain.supervision import SupervisionSettings
 from service.files.model_file import LoadedModel, read_model
+from service.keeper import Stores
 from service.simulation.simulated import SimulatedBackend
 from service.storage.trends.trends import Trends
 from service.supervisor import Supervisor
@@ -96,7 +97,7 @@ class HttpRobot:
             self.backend,
             self.backend.readings,
             simulated=robot.what,
-            trends=Trends((settings or SupervisionSettings()).signals),
+            stores=Stores(trends=Trends((settings or SupervisionSettings()).signals)),
         )
         self.app = create_app(
             self.supervisor,

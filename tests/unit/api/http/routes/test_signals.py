@@ -85,6 +85,7 @@ async def test_a_reading_is_decided_on_arrival(robot: HttpRobot) -> None:
         "reasons",
         "task_status",
         "simulated",
+        "storage_fault",
     }
     assert (state["state"], state["error_code"], state["errors"]) == ("ERROR", 1, ["BATTERY_LOW"])
     assert state["reasons"][0]["value"] == 0.42

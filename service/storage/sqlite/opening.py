@@ -1,0 +1,123 @@
+"""Opens a folder for a run, and says what an earlier run left."""
+
+from dataclasses import dataclass
+from pathlib import Path
+
+from pydantic_core import from_json
+
+from domain.errors import PilothouseError
+from domain.inputs import Restored
+from domain.kept import Kept, KeptEmergencyStop
+from service.clock import since_epoch, to_datetime
+from service.storage.errors import UnusableFolderError
+from service.storage.id_blocks import BOOT, CHANGE, EVENT, TASK, IdBlocks
+from service.storage.journal import Boot, Found, Plain
+from service.storage.records import kept_from_text, kept_to_text, kind_name
+from service.storage.sqlite.batch import IDS, OWN, Changes
+from service.storage.sqlite.connection import PRIVATE_FOLDER, words
+from service.storage.sqlite.folder import DEFAULT_RETENTION, Folder, Report, Retention
+from service.storage.sqlite.folder_lock import FolderLock
+from service.storage.sqlite.log_file import Next, Run
+from service.storage.sqlite.looking import Left, Places, look
+
+
+@dataclass(frozen=True, slots=True)
+class StoreSettings:
+    """Where a robot's data are, and how much of them is kept."""
+
+    folder: Path
+    robot: str
+    """Name of the robot that the folder belongs to."""
+    retention: Retention = DEFAULT_RETENTION
+    backlog_bytes: int = 16 * 2**20
+    """How much may wait for a disk that is slow or fails."""
+
+
+@dataclass(frozen=True, slots=True)
+class Opened:
+    """A folder that a run goes on in."""
+
+    lock: FolderLock
+    folder: Folder
+    found: Found
+    ids: IdBlocks
+    next: Next
+    report: Report
+
+
+def open_folder(settings: StoreSettings, boot: Boot) -> Opened:
+    """Take a folder, bring it up to the end of its log, and write down that a run begins.
+
+    Args:
+        settings: The folder, which is made if it is missing, and whose it is.
+        boot: The run.
+
+    Raises:
+        UnusableFolderError: It is in use, of another robot, or cannot be used at all.
+    """
+    places = Places(settings.folder)
+    try:
+        for folder in (places.folder, places.logs):
+            folder.mkdir(mode=PRIVATE_FOLDER, parents=True, exist_ok=True)
+        lock = FolderLock(places.lock)
+    except OSError as error:
+        raise UnusableFolderError(f"{places.folder} cannot be used: {words(error)}") from error
+    try:
+        left = look(places, settings.robot)
+        try:
+            return _begin(settings, boot, lock, left)
+        except BaseException:
+            left.close()
+            raise
+    except BaseException:
+        lock.release()
+        raise
+
+
+def _begin(settings: StoreSettings, boot: Boot, lock: FolderLock, left: Left) -> Opened:
+    """Begin the run in a folder that was looked at."""
+    ids, next_ = left.next_ids(), left.next_numbers()
+    blocks = IdBlocks(ids)
+    values, left_out = _read_back(left)
+    changes: Changes = {}
+    stop_because = _stop_because(left)
+    if stop_because:
+        stop = KeptEmergencyStop(True, "", stop_because, boot.started_at)
+        changes[kind_name(KeptEmergencyStop), stop.name] = kept_to_text(stop)
+    for kind, end in ({BOOT: ids[BOOT] + 1} | blocks.reserve()).items():
+        changes[IDS, kind] = str(end).encode()
+    found = Found(
+        Restored(values, ids[BOOT], ids[EVENT], ids[CHANGE], ids[TASK], stop_because),
+        left.is_new,
+        to_datetime(left.newest.wall_ns) if left.newest and left.newest.wall_ns else None,
+        {epoch: last for file in left.files for epoch, last in file.epochs.items() if last},
+        _own(left),
+        left_out,
+    )
+    run = Run(ids[BOOT], boot, since_epoch(boot.wall_at))
+    folder = Folder(Places(settings.folder), settings.robot, settings.retention, run)
+    folder.start(left, changes, next_)
+    return Opened(lock, folder, found, blocks, next_, folder.report())
+
+
+def _stop_because(left: Left) -> str:
+    """Return why the emergency stop is engaged; empty: it is as it was kept."""
+    faults = [f"{path.name} was put aside: {why}" for path, why in left.broken.items()]
+    return "; ".join(faults)
+
+
+def _read_back(left: Left) -> tuple[tuple[Kept, ...], tuple[str, ...]]:
+    """Return values of the core; what cannot be read stays stored, and is told in words."""
+    values, left_out = [], []
+    for (kind, name), text in left.kept.items():
+        if kind in (IDS, OWN):
+            continue
+        try:
+            values.append(kept_from_text(text))
+        except PilothouseError as error:
+            left_out.append(f"{kind} {name!r}: {error.message}")
+    return tuple(values), tuple(left_out)
+
+
+def _own(left: Left) -> dict[str, Plain]:
+    return {name: from_json(text) for (kind, name), text in left.kept.items() if kind == OWN}
