@@ -16,6 +16,7 @@ from service.files.model_file import LoadedModel
 from service.keeper import Stores
 from service.simulation.simulated import SimulatedBackend
 from service.storage.journal import Journal
+from service.storage.trends.trends import Trends
 from service.supervisor import Supervisor
 from tests.support.manual_clock import ManualClock
 from tests.support.models import actuation_model
@@ -41,6 +42,7 @@ def make_live_robot(
     *,
     mock: bool = True,
     journal: Journal | None = None,
+    trends: Trends | None = None,
 ) -> tuple[Supervisor, SimulatedBackend]:
     """Return a supervisor that does not run yet, and the simulated robot that it supervises."""
     clock = clock or ManualClock()
@@ -55,7 +57,7 @@ def make_live_robot(
         backend,
         backend.readings,
         simulated=robot.what,
-        stores=Stores(journal),
+        stores=Stores(journal, trends),
     )
     return supervisor, backend
 
