@@ -198,8 +198,13 @@ class Supervisor:
             self.submit(HoldRequest("service", "the service ends", SERVICE))
 
     def _note_tick(self, since_s: float) -> None:
-        """Let deadlines wait after a tick that was late, and tell of one that was very late."""
+        """Let deadlines wait after a tick that was late, and tell of one that was very late.
+
+        The history of the signals is written every few seconds, which it learns here.
+        """
         self._catch_up.note_tick(self.clock.now())
+        if self.trends is not None:
+            self.trends.pass_time(self.clock.now())
         late = seconds(since_s) - PERIOD
         if late > STALL:
             self.submit(ServiceStall(late))

@@ -17,6 +17,7 @@ from service.keeper import Stores
 from service.simulation.remembering import memories_of
 from service.simulation.simulated import SimulatedBackend
 from service.storage.journal import Journal
+from service.storage.trends.trends import Trends
 from service.supervisor import Supervisor
 from tests.support.manual_clock import ManualClock
 from tests.support.models import actuation_model
@@ -42,6 +43,7 @@ def make_live_robot(
     *,
     mock: bool = True,
     journal: Journal | None = None,
+    trends: Trends | None = None,
 ) -> tuple[Supervisor, SimulatedBackend]:
     """Return a supervisor that does not run yet, and the simulated robot that it supervises."""
     clock = clock or ManualClock()
@@ -56,7 +58,7 @@ def make_live_robot(
         backend,
         backend.readings,
         simulated=robot.what,
-        stores=Stores(journal, memories=memories_of(robot)),
+        stores=Stores(journal, trends, memories_of(robot)),
     )
     return supervisor, backend
 
