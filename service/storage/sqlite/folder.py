@@ -15,7 +15,8 @@ from service.storage.sqlite.batch import Changes, Flight, Key
 from service.storage.sqlite.connection import FAILURES, sync_folder, words
 from service.storage.sqlite.log_file import LogFile, Next, Run
 from service.storage.sqlite.log_summary import LogSummary
-from service.storage.sqlite.looking import Left, Places, is_fault_of_file
+from service.storage.sqlite.looking import Left, is_fault_of_file
+from service.storage.sqlite.places import Places
 from service.storage.sqlite.state_file import Applied, StateFile
 
 

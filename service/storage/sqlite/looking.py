@@ -1,6 +1,5 @@
 """What an earlier run left in a folder, found at the start; nothing is moved or changed yet."""
 
-import re
 from collections.abc import Callable
 from contextlib import closing
 from dataclasses import dataclass, field, replace
@@ -15,10 +14,10 @@ from service.storage.sqlite.batch import IDS, Key
 from service.storage.sqlite.connection import open_to_read, open_to_write, words
 from service.storage.sqlite.log_file import BrokenFileError, LogFile, Next
 from service.storage.sqlite.log_summary import LogSummary, summary_of
+from service.storage.sqlite.places import Places
 from service.storage.sqlite.schema import LOG, NewerFileError, bring_up, version_of
 from service.storage.sqlite.state_file import StateFile
 
-_LOG_NAME = re.compile(r"(\d{6,})\.db")
 _BROKEN = (
     *(apsw.CorruptError, apsw.NotADBError, apsw.SQLError, apsw.MismatchError),
     *(BrokenFileError, NewerFileError, KeyError, TypeError, ValueError),
@@ -29,37 +28,6 @@ _BAD_READS = (
 )
 
 FileType = TypeVar("FileType", LogFile, StateFile)
-
-
-@dataclass(frozen=True, slots=True)
-class Places:
-    """Where things are in a folder."""
-
-    folder: Path
-
-    @property
-    def lock(self) -> Path:
-        """Return the file that the service holds a lock on."""
-        return self.folder / "lock"
-
-    @property
-    def state(self) -> Path:
-        """Return the file with what is kept at present."""
-        return self.folder / "state.db"
-
-    @property
-    def logs(self) -> Path:
-        """Return the folder of the log."""
-        return self.folder / "log"
-
-    def log(self, number: int) -> Path:
-        """Return a file of the log."""
-        return self.logs / f"{number:06}.db"
-
-    def log_numbers(self) -> list[int]:
-        """Return which files of the log there are, oldest first."""
-        matches = (_LOG_NAME.fullmatch(path.name) for path in self.logs.iterdir())
-        return sorted(int(match[1]) for match in matches if match)
 
 
 @dataclass(slots=True)

@@ -18,7 +18,8 @@ from service.storage.sqlite.connection import PRIVATE_FOLDER, words
 from service.storage.sqlite.folder import DEFAULT_RETENTION, Folder, Report, Retention
 from service.storage.sqlite.folder_lock import FolderLock
 from service.storage.sqlite.log_file import Next, Run
-from service.storage.sqlite.looking import Left, Places, look
+from service.storage.sqlite.looking import Left, look
+from service.storage.sqlite.places import Places
 
 
 @dataclass(frozen=True, slots=True)
