@@ -2,19 +2,17 @@
 
 import zlib
 from collections.abc import Iterator, Sequence
-from contextlib import closing
+from contextlib import suppress
 from dataclasses import dataclass, replace
 from datetime import datetime
 from pathlib import Path
 from typing import Any
 
-import apsw
-
 from domain.timebase import Instant
 from service.clock import to_datetime
 from service.storage.errors import UnusableFolderError
 from service.storage.journal import Boot, EventQuery, StoredEvent
-from service.storage.sqlite.connection import FAILURES, open_to_read, words
+from service.storage.sqlite.connection import FAILURES, reading, words
 from service.storage.sqlite.log_summary import LogSummary, summary_of
 from service.storage.sqlite.places import Places
 from service.storage.sqlite.reading import read_events
@@ -134,7 +132,7 @@ class RecordedLog:
 
     def _check(self, path: Path) -> None:
         try:
-            with closing(open_to_read(path)) as connection:
+            with reading(path) as connection:
                 version = version_of(connection)
         except FAILURES as error:
             raise UnusableFolderError(f"{path} cannot be read: {words(error)}") from error
@@ -145,16 +143,12 @@ class RecordedLog:
             )
 
     def _rows(self, path: Path, sql: str, *values: object) -> Iterator[tuple[Any, ...]]:
-        try:
-            with closing(open_to_read(path)) as connection:
-                yield from connection.execute(sql, values)
-        except apsw.CantOpenError:
-            # It was dropped a moment ago.
-            if path.exists():
-                raise
+        # It may have been dropped a moment ago.
+        with suppress(FileNotFoundError), reading(path) as connection:
+            yield from connection.execute(sql, values)
 
     def _summary(self, path: Path) -> LogSummary:
-        with closing(open_to_read(path)) as connection:
+        with reading(path) as connection:
             return summary_of(connection, path, int(path.stem))
 
 
