@@ -30,7 +30,8 @@ class Told:
     """Reason of the one hold after each step; empty: no hold."""
     durable: int = 0
     """How many steps were answered as durable."""
-    last_event: int = 0
+    events: list[int] = field(default_factory=list)
+    """Ids of the events that were published."""
 
 
 async def tell(disk: FaultyDisk) -> Told:
@@ -53,7 +54,7 @@ async def _run(disk: FaultyDisk, number: int, told: Told) -> None:
         reason = f"{number}.{step}"
         robot.holds("operator", reason)
         told.reasons.append(reason)
-        told.last_event = robot.next_event - 1
+        told.events.append(robot.next_event - 1)
         robot.reads()
         if step == 1:
             journal.checkpoint(robot.now, b"state" * 2_000)
@@ -75,7 +76,9 @@ async def check(folder: Path, told: Told) -> None:
     assert first.stop_because == "", first.stop_because
     reasons = [hold.reason for hold in first.kept if isinstance(hold, KeptHold)]
     assert (reasons or [""])[0] in told.reasons[told.durable :], (reasons, told)
-    assert first.next_event > told.last_event, (first, told)
+    next_ids = range(first.next_event, first.next_event + 1_000)
+    assert not [used for used in told.events if used in next_ids], (first, told)
+    assert len(told.events) == len(set(told.events)), told
     _check_log(folder, told)
 
 
@@ -99,4 +102,3 @@ def fresh(folder: Path) -> Path:
     for path in (folder, folder.with_name(f"{folder.name}-left")):
         shutil.rmtree(path, ignore_errors=True)
     return folder
-

@@ -1,4 +1,4 @@
-"""A disk that fails at a chosen operation, below SQLite; as the file system that it uses by default.
+"""A disk that fails at a chosen operation: SQLite's default file system while a test lasts.
 
 Operations are counted over all files: opening, writing, truncating, syncing and deleting. Reads and
 locks work.
@@ -10,16 +10,12 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any, Literal, TypeAlias
+from typing import Literal, TypeAlias
 
 import apsw
 
 _BELOW = "unix"
 Fault: TypeAlias = Literal["none", "fails", "full", "is short", "is slow", "dies", "loses power"]
-
-
-class DiedError(Exception):
-    """The process that used the disk is dead: nothing that it does counts any more."""
 
 
 @dataclass
@@ -39,7 +35,7 @@ class FaultyDisk:
     _synced: dict[int, bytes] = field(default_factory=dict)
     """What is on the disk itself, by inode."""
 
-    def does(self, write: Callable[[], Any], short: Callable[[], Any] | None = None) -> None:
+    def does(self, write: Callable[[], object], short: Callable[[], object] | None = None) -> None:
         """Do one operation, or what the fault makes of it."""
         self.count += 1
         if self.left is not None:
@@ -81,17 +77,19 @@ class FaultyDisk:
 
 
 class _File(apsw.VFSFile):
-    def __init__(self, disk: FaultyDisk, name: Any, flags: list[int]) -> None:
+    def __init__(
+        self, disk: FaultyDisk, name: str | apsw.URIFilename | None, flags: list[int]
+    ) -> None:
         super().__init__(_BELOW, name, flags)
         self._disk = disk
-        self._path = Path(name.filename() if isinstance(name, apsw.URIFilename) else name)
+        self._path = Path(name.filename() if isinstance(name, apsw.URIFilename) else name or "")
 
-    def xWrite(self, data: bytes, offset: int) -> None:
+    def xWrite(self, data: bytes, offset: int) -> None:  # noqa: N802
         below = super().xWrite
         half = bytes(data)[: len(data) // 2]
         self._disk.does(lambda: below(data, offset), lambda: half and below(half, offset))
 
-    def xLock(self, level: int) -> None:
+    def xLock(self, level: int) -> None:  # noqa: N802
         try:
             super().xLock(level)
         except apsw.IOError:
@@ -99,11 +97,11 @@ class _File(apsw.VFSFile):
             # and apsw would raise it all the same.
             raise apsw.BusyError("open for reading") from None
 
-    def xTruncate(self, newsize: int) -> None:
+    def xTruncate(self, newsize: int) -> None:  # noqa: N802
         below = super().xTruncate
         self._disk.does(lambda: below(newsize))
 
-    def xSync(self, flags: int) -> None:
+    def xSync(self, flags: int) -> None:  # noqa: N802
         below = super().xSync
         self._disk.does(lambda: below(flags))
         self._disk.synced(self._path)
@@ -114,12 +112,12 @@ class _Files(apsw.VFS):
         super().__init__("faulty", _BELOW, makedefault=True)
         self._disk = disk
 
-    def xOpen(self, name: Any, flags: list[int]) -> _File:
+    def xOpen(self, name: str | apsw.URIFilename | None, flags: list[int]) -> _File:  # noqa: N802
         opened: list[_File] = []
         self._disk.does(lambda: opened.append(_File(self._disk, name, flags)))
         return opened[0]
 
-    def xDelete(self, filename: str, syncdir: bool) -> None:
+    def xDelete(self, filename: str, syncdir: bool) -> None:  # noqa: N802
         below = super().xDelete
         self._disk.does(lambda: below(filename, syncdir))
 

@@ -76,9 +76,8 @@ class Left:
                 ids[kind] += UNKNOWN_TAIL * block
         return ids
 
-    def next_numbers(self) -> Next:
-        """Return where steps, batches and events go on."""
-        event = self.next_ids()[EVENT]
+    def next_numbers(self, event: int) -> Next:
+        """Return where steps and batches go on; events do with `event`."""
         newest = self.newest
         if newest is None:
             return Next(event=event)

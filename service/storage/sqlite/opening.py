@@ -1,7 +1,7 @@
 """Opens a folder for a run, and says what an earlier run left."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 from pydantic_core import from_json
@@ -11,7 +11,7 @@ from domain.inputs import Restored
 from domain.kept import Kept, KeptEmergencyStop
 from service.clock import since_epoch, to_datetime
 from service.storage.errors import UnusableFolderError
-from service.storage.id_blocks import BOOT, CHANGE, EVENT, TASK, IdBlocks, IdKind
+from service.storage.id_blocks import BOOT, CHANGE, EVENT, TASK, IdBlocks, IdKind, unreserved
 from service.storage.journal import Boot, Found, Plain
 from service.storage.records import kept_from_text, kept_to_text, kind_name
 from service.storage.sqlite.batch import IDS, OWN, Changes
@@ -45,7 +45,7 @@ class Opened:
     ids: IdBlocks
     next: Next
     report: Report
-    fault: str | None
+    fault: str | None = None
     """Why nothing can be written yet; None: the run has begun on disk."""
 
 
@@ -79,19 +79,31 @@ def open_folder(settings: StoreSettings, boot: Boot) -> Opened:
 def _begin(settings: StoreSettings, places: Places, boot: Boot, lock: FolderLock) -> Opened:
     """Begin the run in a folder that this process has locked."""
     left, fault = _looked(places, settings.robot)
-    ids, next_ = left.next_ids(), left.next_numbers()
+    ids = left.next_ids()
+    if fault is None:
+        opened = _prepared(settings, lock, left, boot, ids)
+        try:
+            opened.folder.start(left)
+        except FAILURES as error:
+            fault = words(error)
+            opened.folder.close()
+        else:
+            return replace(opened, report=opened.folder.report())
+    opened = _prepared(settings, lock, left, boot, unreserved(ids, boot.wall_at))
+    return replace(opened, fault=fault)
+
+
+def _prepared(
+    settings: StoreSettings, lock: FolderLock, left: Left, boot: Boot, ids: Mapping[IdKind, int]
+) -> Opened:
+    """Return a folder that nothing is written to yet."""
     blocks = IdBlocks(ids)
     found = _found(left, boot, ids)
     changes = _first_changes(found.restored, blocks, boot)
     run = Run(ids[BOOT], boot, since_epoch(boot.wall_at))
-    folder = Folder(places, settings.robot, settings.retention, Start(run, changes, next_))
-    if fault is None:
-        try:
-            folder.start(left)
-        except FAILURES as error:
-            fault = words(error)
-            folder.close()
-    return Opened(lock, folder, found, blocks, next_, folder.report(), fault)
+    start = Start(run, changes, left.next_numbers(ids[EVENT]))
+    folder = Folder(Places(settings.folder), settings.robot, settings.retention, start)
+    return Opened(lock, folder, found, blocks, start.next, folder.report())
 
 
 def _looked(places: Places, robot: str) -> tuple[Left, str | None]:
