@@ -13,6 +13,7 @@ from api.distribution import installed_version
 from api.documents.openapi import describe
 from api.documents.route import openapi_router
 from api.http.access import Access
+from api.http.gate.durable import DurableHeader
 from api.http.gate.faults import UnexpectedErrors
 from api.http.gate.refusals import Refusals
 from api.http.limits import USUAL_LIMITS, ServiceLimits
@@ -30,6 +31,7 @@ from api.http.routes import (
     parts,
     service_health,
     signals,
+    storage,
     system_state,
     tasks,
     vehicle,
@@ -59,6 +61,7 @@ _RESOURCES = (
     example_tracks.router,
     events.router,
     stream.router,
+    storage.router,
     service_health.router,
 )
 
@@ -113,7 +116,7 @@ def create_robot_app(
         lifespan=lifespan,
         responses=_A_PROBLEM,
         routes=_resources(),
-        middleware=[Middleware(UnexpectedErrors)],
+        middleware=[Middleware(DurableHeader), Middleware(UnexpectedErrors)],
     )
     _share(app, supervisor, worker, access or Access.open(), limits)
     add_problem_handlers(app, supervisor.clock)

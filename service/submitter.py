@@ -5,7 +5,6 @@ After a stall of the event loop, deadlines wait until what has arrived meanwhile
 
 import logging
 from collections.abc import Callable
-from typing import TypeAlias
 
 from domain.actor import Actor
 from domain.errors import PilothouseError
@@ -17,8 +16,7 @@ from service.catch_up import CatchUp
 from service.clock import Clock
 from service.pacing import Alarm
 from service.refused_readings import RefusedReadings
-
-Handle: TypeAlias = Callable[[Input, Instant], Outputs]
+from service.storage.journal import Step
 
 log = logging.getLogger(__name__)
 
@@ -30,7 +28,7 @@ class Submitter:
         self,
         onboard: Onboard,
         clock: Clock,
-        carry_out: Callable[[Outputs], None],
+        carry_out: Callable[[Step], None],
         catch_up: CatchUp,
         refused: RefusedReadings,
     ) -> None:
@@ -39,7 +37,7 @@ class Submitter:
         Args:
             onboard: The core.
             clock: Of the service.
-            carry_out: Acts on the outputs of the core.
+            carry_out: Acts on what the core took and put out.
             catch_up: Tells whether deadlines wait.
             refused: Counts rejected readings of adapters, all of which hear ROS topics.
         """
@@ -61,19 +59,20 @@ class Submitter:
             PilothouseError: The input is rejected; it changed nothing.
         """
         now = self._clock.now()
-        is_late = self._catch_up.is_on(now)
-        return self._pass(given, now, self._onboard.take_in if is_late else self._onboard.handle)
+        return self._pass(given, now, is_late=self._catch_up.is_on(now))
 
-    def _pass(self, given: Input, now: Instant, handle: Handle) -> Outputs:
+    def _pass(self, given: Input, now: Instant, *, is_late: bool) -> Outputs:
+        handle = self._onboard.take_in if is_late else self._onboard.handle
         try:
             outputs = handle(given, now)
         except PilothouseError:
             # Deadlines that expired before the rejected input are processed nevertheless.
-            self._carry_out(handle(TimePassed(), now))
+            passed = TimePassed()
+            self._carry_out(Step(now, passed, is_late, handle(passed, now)))
             raise
         finally:
             self._alarm.check()
-        self._carry_out(outputs)
+        self._carry_out(Step(now, given, is_late, outputs))
         return outputs
 
     def deliver(self, given: Input) -> None:
@@ -90,7 +89,7 @@ class Submitter:
         """Process the deadlines that have expired by now."""
         due, now = self._onboard.wake_at(), self._clock.now()
         if due is not None and due <= now and not self._catch_up.is_on(now):
-            self._pass(TimePassed(), now, self._onboard.handle)
+            self._pass(TimePassed(), now, is_late=False)
 
     def _due(self) -> Instant | None:
         due, until = self._onboard.wake_at(), self._catch_up.until

@@ -7,7 +7,7 @@ when it expires (`submitter`); the tick only publishes (`frame_publisher`).
 from collections.abc import Callable, Sequence
 from contextlib import suppress
 
-from domain.actor import Actor
+from domain.actor import SERVICE
 from domain.commands import PreemptGoal, SendGoal
 from domain.errors import PilothouseError
 from domain.findings import Finding
@@ -24,11 +24,14 @@ from service.clock import Clock
 from service.event_log import EventLog
 from service.files.model_file import LoadedModel
 from service.frame_publisher import PERIOD, FramePublisher
+from service.keeper import NO_STORES, Keeper, Stores, Taken
 from service.node_incidents import log_node_incidents
 from service.ports import RobotBackend
 from service.readings import DirectReadings, ReadingInput, Submit
 from service.refused_readings import RefusedReadings
 from service.running import run_forever
+from service.storage.journal import Journal, Step
+from service.storage.trends.sampling import Sampling
 from service.submitter import Submitter
 from service.watchdog import hanging
 
@@ -48,6 +51,7 @@ class Supervisor:
         readings: Callable[[Submit], ReadingInput] = DirectReadings,
         simulated: Sequence[str] = (),
         events: EventLog | None = None,
+        stores: Stores = NO_STORES,
     ) -> None:
         """Prepare; nothing runs yet.
 
@@ -59,6 +63,7 @@ class Supervisor:
             readings: Makes the input for external readings.
             simulated: The simulated pieces of the robot, as in `Frame`.
             events: The event log; None: a new one.
+            stores: Keep what must survive a restart, and bring it back.
         """
         self.core: Supervision = onboard.core
         """Only for reading; inputs go through `submit`."""
@@ -66,7 +71,12 @@ class Supervisor:
         self.started_at = clock.now()
         """Start of this run of the service, and of its epoch."""
         self.simulated = tuple(simulated)
-        self.events = events or EventLog()
+        self.journal = stores.journal
+        """Keeps what must survive a restart; None: nothing is kept."""
+        self.trends = stores.trends
+        """The history of the signals; None: there is none."""
+        self._sampling = _sampling(stores, onboard.core)
+        self.events = events or _event_log(self.journal)
         self.publisher = FramePublisher(onboard.core, clock, self.simulated)
         self.frames = self.publisher.frames
         self._catch_up = CatchUp(clock, self.publisher.tick_due)
@@ -80,14 +90,16 @@ class Supervisor:
             onboard, clock, self._carry_out, self._catch_up, self.refused_readings
         )
         self.publisher.on_tick.append(self._note_tick)
-        self.submit: Callable[[Input], Outputs] = self._submitter.submit
-        """Passes an input to the core; raises PilothouseError if it is rejected."""
-        self.deliver: Callable[[Input], None] = self._submitter.deliver
-        """Submits a report of an adapter, and logs it if it is rejected."""
-        self.let_pass: Callable[[], None] = self._submitter.let_pass
-        """Processes the deadlines that have expired by now."""
         self.readings = readings(self.submit)
         """The input for external readings."""
+        self._keeper = self._restore(stores)
+
+    def _restore(self, stores: Stores) -> Keeper | None:
+        """Bring back what an earlier run left; return who keeps it from now on."""
+        if stores.journal is None:
+            return None
+        self.submit(stores.journal.found.restored)
+        return Keeper(stores.journal, self.submit, self.clock, stores.memories)
 
     @property
     def model(self) -> SmhModel:
@@ -121,14 +133,41 @@ class Supervisor:
             ExceptionGroup: Of a `TaskFailedError` that names the task; its cause is what the task
                 raised.
         """
-        await run_forever(
-            {
-                "robot": self._backend.run(self.deliver),
-                "deadlines": self._submitter.run(),
-                "log": log_node_incidents(self.events),
-                "tick": self.publisher.run(),
-            }
-        )
+        work = {
+            "robot": self._backend.run(self.deliver),
+            "deadlines": self._submitter.run(),
+            "log": log_node_incidents(self.events),
+            "tick": self.publisher.run(),
+        }
+        if self._keeper is not None:
+            work["keeper"] = self._keeper.run()
+        await run_forever(work)
+
+    def submit(self, given: Input) -> Outputs:
+        """Pass an input to the core.
+
+        Raises:
+            PilothouseError: The input is rejected; it changed nothing.
+        """
+        return self._submitter.submit(given)
+
+    def deliver(self, given: Input) -> None:
+        """Submit a report of an adapter, and log it if it is rejected."""
+        self._submitter.deliver(given)
+
+    def let_pass(self) -> None:
+        """Process the deadlines that have expired by now."""
+        self._submitter.let_pass()
+
+    async def request(self, given: Input, *, volatile: bool = False) -> Taken:
+        """Submit a request whose outcome is kept, as `Keeper.request` does.
+
+        Raises:
+            PilothouseError: The request is rejected; nothing was done.
+        """
+        if self._keeper is None:
+            return Taken(self.submit(given), is_durable=False)
+        return await self._keeper.request(given, volatile=volatile)
 
     def hanging(self) -> str | None:
         """Return what of the supervision hangs, in words; None: all goes on."""
@@ -145,7 +184,7 @@ class Supervisor:
         """Hold the task and stop the vehicle, since the service ends."""
         # Rejected only if the maximum of holds is reached, and then the vehicle is held already.
         with suppress(PilothouseError):
-            self.submit(HoldRequest("service", "the service ends", Actor("service")))
+            self.submit(HoldRequest("service", "the service ends", SERVICE))
 
     def _note_tick(self, since_s: float) -> None:
         """Let deadlines wait after a tick that was late, and tell of one that was very late."""
@@ -154,14 +193,30 @@ class Supervisor:
         if late > STALL:
             self.submit(ServiceStall(late))
 
-    def _carry_out(self, outputs: Outputs) -> None:
-        """Send commands to the robot first, then publish."""
+    def _carry_out(self, step: Step) -> None:
+        """Send commands to the robot first, then note what happened, then publish."""
+        outputs = step.outputs
         for command in outputs.commands:
             # Goals are for the navigation on board; the rest is for nodes and the vehicle.
             if not isinstance(command, SendGoal | PreemptGoal):
                 self._backend.send(command)
+        if self.journal is not None:
+            self.journal.note(step)
+        if self._sampling is not None and outputs.signals:
+            self._sampling.note(outputs.signals, step.at)
         self.publisher.note(outputs)
         self.events.append(*outputs.events)
         self.change_ends.note(outputs.events)
         if outputs.system_state:
             self.publisher.publish_change()
+
+
+def _event_log(journal: Journal | None) -> EventLog:
+    """Return an empty log that goes on after the events of earlier runs."""
+    if journal is None:
+        return EventLog()
+    return EventLog(epoch=journal.boot.epoch, before=journal.found.restored.next_event - 1)
+
+
+def _sampling(stores: Stores, core: Supervision) -> Sampling | None:
+    return None if stores.trends is None else Sampling(stores.trends, core.signal)

@@ -8,6 +8,7 @@ from typing import Annotated, Any
 from fastapi import Depends, Query, Request, Response
 
 from api.http.change_text import change_text, with_steps
+from api.http.kept_requests import KeptRequests
 from api.http.schemas.changes import ChangeJson, PlanJson, shown_request
 from domain.changes.admission import part_of
 from domain.identifiers import ChangeId
@@ -79,7 +80,7 @@ async def answer_change(
         steps = supervisor.core.plan(asked)
         plan = PlanJson(part=part_of(asked), request=shown_request(asked), steps=[])
         return _answer(HTTPStatus.OK, await with_steps(plan, steps, clock))
-    change = supervisor.submit(asked).change
+    change = (await KeptRequests(request).submit(asked)).change
     if change is None:
         raise RuntimeError(f"{asked} was taken and is no change")
     view = supervisor.core.change(change)

@@ -130,6 +130,27 @@ class _ServiceCollector(Collector):
         for way in WAYS:
             refused.add_metric([way], self._supervisor.refused_readings.counts[way])
         yield refused
+        yield from self._storage()
+
+    def _storage(self) -> Iterator[Metric]:
+        journal = self._supervisor.journal
+        if journal is None:
+            return
+        status = journal.status()
+        yield GaugeMetricFamily(
+            "pilothouse_storage_degraded",
+            "1 while what happens cannot be written down",
+            value=float(status.reason is not None),
+        )
+        yield GaugeMetricFamily(
+            "pilothouse_storage_bytes", "Size of the folder of the robot", value=status.bytes
+        )
+        lost = CounterMetricFamily(
+            "pilothouse_storage_lost", "What could not be written down, by log", labels=["log"]
+        )
+        lost.add_metric(["inputs"], status.lost_inputs)
+        lost.add_metric(["events"], status.lost_events)
+        yield lost
 
 
 class _GateCollector(Collector):

@@ -43,6 +43,7 @@ from domain.errors import (
     UnknownSignalError,
     UnknownTaskError,
 )
+from service.checkpoint import CheckpointError
 from service.clock import Clock
 from service.codec.errors import CodecError
 from service.files.csv_table import InvalidWaypointsError
@@ -73,6 +74,7 @@ STATUS_OF: Mapping[type[PilothouseError], HTTPStatus] = {
     InvalidBodyError: HTTPStatus.UNPROCESSABLE_ENTITY,
     StopTakenError: HTTPStatus.UNPROCESSABLE_ENTITY,
     CodecError: HTTPStatus.UNPROCESSABLE_ENTITY,
+    CheckpointError: HTTPStatus.UNPROCESSABLE_ENTITY,
     InvalidModelError: HTTPStatus.UNPROCESSABLE_ENTITY,
     TooComplexError: HTTPStatus.UNPROCESSABLE_ENTITY,
     OutOfMemoryError: HTTPStatus.UNPROCESSABLE_ENTITY,

@@ -3,7 +3,7 @@
 import asyncio
 
 from api.http.problems import problem_of
-from api.http.routes.tasks import submit_task
+from api.http.routes.tasks import faults_in_body, task_request
 from api.http.schemas.problem import Problem
 from api.http.schemas.simulation import (
     AnyStep,
@@ -82,7 +82,9 @@ class Actors:
         if step.task is None:
             self._robot.supervisor.submit(CancelTaskRequest(_ACTOR))
         else:
-            submit_task(self._robot.supervisor, task_of(step.task), _ACTOR)
+            asked = task_request(task_of(step.task), _ACTOR)
+            with faults_in_body():
+                self._robot.supervisor.submit(asked)
 
     def _change(self, step: ChangeStep) -> None:
         asked, part = step.change, part_name(step.change.part)

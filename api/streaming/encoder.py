@@ -1,6 +1,7 @@
 """Encodes frames and events as JSON, once for all clients that get the same text."""
 
 import asyncio
+from collections import OrderedDict
 from collections.abc import Iterator
 from typing import TypeAlias
 
@@ -39,7 +40,8 @@ class StreamEncoder:
         self._robot = RobotEncoder(supervisor)
         self._texts: dict[_Shape, tuple[Frame, _StateText]] = {}
         """The newest text of each shape, shared by the clients of the same topics."""
-        self._events: dict[int, str] = {}
+        self._events: OrderedDict[int, str] = OrderedDict()
+        """Ordered, since the first entry of a plain one is found behind all that were removed."""
         self._prepared = 0
         """Number of the frame up to which parts are encoded."""
 
@@ -88,7 +90,7 @@ class StreamEncoder:
         if text is None:
             text = self._events[event.id] = self._robot.event(event)
             if len(self._events) > _EVENTS_KEPT:
-                del self._events[next(iter(self._events))]
+                self._events.popitem(last=False)
         return text
 
     def gap(self, gap: Gap) -> str:

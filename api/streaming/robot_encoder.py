@@ -5,10 +5,11 @@ from typing import Any, Generic, TypeVar
 
 from pydantic_core import to_json
 
+from api.http.part_text import part_text
 from api.http.schemas.base import timestamp
 from api.http.schemas.health import EmergencyStopJson, StreamedSignalJson, SystemStateJson
-from api.http.schemas.parts import PartJson
 from api.http.schemas.tasks import HoldJson, TaskJson, VehicleJson
+from domain.actor import Actor
 from domain.events.event import RecordedEvent
 from domain.snapshot import (
     EmergencyStopView,
@@ -36,13 +37,17 @@ class RobotEncoder:
         """
         self._supervisor = supervisor
         self._clock = clock = supervisor.clock
-        self.parts = MemberCache[PartView](lambda view: PartJson.of(view, clock).model_dump_json())
+        since = LatestCache[Instant](lambda at: timestamp(clock, at))
+        """Most parts that deviate do so since the same moment."""
+        self.parts = MemberCache[PartView](lambda view: part_text(view, since.text))
         self.signals = MemberCache[SignalView](
             lambda view: StreamedSignalJson.of(view, clock).model_dump_json()
         )
         self._holds = LatestCache[Mapping[str, HoldView]](self._encode_holds)
         self._moments = LatestCache[Instant](lambda at: timestamp(clock, at))
         """An input and what follows from it are at the same moment."""
+        self._actors = LatestCache[Actor](lambda actor: to_json(actor.label).decode())
+        self._epoch = to_json(supervisor.epoch).decode()
         self._emergency_stop = LatestCache[EmergencyStopView](
             lambda view: EmergencyStopJson.of(view, clock).model_dump_json()
         )
@@ -79,20 +84,17 @@ class RobotEncoder:
 
     def event(self, event: RecordedEvent) -> str:
         """Return an `event` frame, which has the same form in `/events` and in simulations."""
-        shown = {
-            "type": "event",
-            "epoch": self._supervisor.epoch,
-            "id": event.id,
-            "at": self._moments.text(event.at),
-            "kind": event.kind,
-            "cause": event.cause,
-            "actor": event.actor.label,
-            "data": event.data,
-            "words": event.event.words,
-            "notable": event.event.notable,
-        }
+        told = event.event
+        cause = "null" if event.cause is None else event.cause
+        head = (
+            f'{{"type":"event","epoch":{self._epoch},"id":{event.id},'
+            f'"at":"{self._moments.text(event.at)}","kind":"{event.kind}","cause":{cause},'
+            f'"actor":{self._actors.text(event.actor)},'
+        )
+        rest = {"data": told.data(), "words": told.words, "notable": told.notable}
         # A node may report a parameter that is NaN, which JSON cannot hold.
-        return to_json(shown, inf_nan_mode="null", fallback=_plain).decode()
+        text = to_json(rest, inf_nan_mode="null", fallback=_plain).decode()
+        return head + text[1:]
 
     def _encode_holds(self, views: Mapping[str, HoldView]) -> str:
         return to_json(

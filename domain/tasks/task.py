@@ -7,6 +7,7 @@ from domain.inputs import GoalFeedback
 from domain.paths.path import Path
 from domain.snapshot import TaskPhase, TaskView
 from domain.timebase import Instant
+from domain.vehicle import VehicleState
 
 
 @dataclass(slots=True)
@@ -33,6 +34,8 @@ class Task:
     """Length of the path behind the vehicle that it never came near, in m."""
     reason: str | None = None
     ended_at: Instant | None = None
+    seen: VehicleState | None = None
+    """Where an earlier run of the service saw the vehicle last; None: this run drove it already."""
 
     def __post_init__(self) -> None:
         self.target_index = self.start_index

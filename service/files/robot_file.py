@@ -6,7 +6,7 @@ The keys are documented in docs/reference/robot-file.schema.json.
 from collections.abc import Iterator
 from collections.abc import Mapping as AnyMapping
 from pathlib import Path
-from typing import Any, Literal
+from typing import Annotated, Any, Literal
 
 from pydantic import Field, ValidationError, field_validator
 
@@ -52,6 +52,9 @@ class InvalidRobotFileError(PilothouseError):
 class RobotSettings(SettingsBlock):
     """Settings of a robot. Omitted keys keep their default."""
 
+    name: Annotated[str, Field(pattern=r"^[A-Za-z0-9][A-Za-z0-9_.-]{0,63}$")] | None = None
+    """Name of the robot; what survives a restart is kept under it. Default: the name of the model
+    file, without its ending. Without effect in simulations."""
     backend: Literal["simulated", "ros2"] = "simulated"
     """Backend through which nodes are reached. Without effect in simulations."""
     mock: bool | None = None

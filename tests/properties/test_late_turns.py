@@ -12,12 +12,12 @@ from hypothesis import given, settings
 
 from domain.inputs import NodeReport, Reading, Readings, VehicleReport
 from domain.lifecycle import LifecycleState
-from domain.outbox import Outputs
 from domain.state_and_mode import PartName
 from domain.timebase import Instant, seconds
 from domain.vehicle import Pose, VehicleState
 from service.catch_up import MOST_WINDOWS, WINDOW, CatchUp
 from service.refused_readings import RefusedReadings
+from service.storage.journal import Step
 from service.submitter import Submitter
 from tests.support.good import GOOD
 from tests.support.live_robot import make_onboard
@@ -64,8 +64,8 @@ class Robot:
     def _tick_due(self) -> Instant:
         return self.ticked_at + seconds(0.05)
 
-    def _note(self, outputs: Outputs) -> None:
-        self.kinds += [event.kind for event in outputs.events]
+    def _note(self, step: Step) -> None:
+        self.kinds += [event.kind for event in step.outputs.events]
 
     def take(self, arrived: Arrived) -> None:
         """Take in what arrived, in its order."""

@@ -13,7 +13,9 @@ from domain.supervision import Supervision, SupervisionSettings
 from domain.timebase import Instant
 from service.clock import Clock
 from service.files.model_file import LoadedModel
+from service.keeper import Stores
 from service.simulation.simulated import SimulatedBackend
+from service.storage.journal import Journal
 from service.supervisor import Supervisor
 from tests.support.manual_clock import ManualClock
 from tests.support.models import actuation_model
@@ -26,9 +28,10 @@ def make_supervisor(
     warnings: Sequence[Finding] = (),
     *,
     mock: bool = True,
+    journal: Journal | None = None,
 ) -> Supervisor:
     """Return a supervisor of simulated nodes that does not run yet."""
-    return make_live_robot(clock, model, warnings, mock=mock)[0]
+    return make_live_robot(clock, model, warnings, mock=mock, journal=journal)[0]
 
 
 def make_live_robot(
@@ -37,6 +40,7 @@ def make_live_robot(
     warnings: Sequence[Finding] = (),
     *,
     mock: bool = True,
+    journal: Journal | None = None,
 ) -> tuple[Supervisor, SimulatedBackend]:
     """Return a supervisor that does not run yet, and the simulated robot that it supervises."""
     clock = clock or ManualClock()
@@ -51,6 +55,7 @@ def make_live_robot(
         backend,
         backend.readings,
         simulated=robot.what,
+        stores=Stores(journal),
     )
     return supervisor, backend
 

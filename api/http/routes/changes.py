@@ -7,6 +7,7 @@ from fastapi import APIRouter, Path, Query, Response
 
 from api.http.change_text import change_text
 from api.http.dependencies import ActorDep, SupervisorDep
+from api.http.kept_requests import KeptDep
 from api.http.list_answers import json_list
 from api.http.route_policy import Permission, policy
 from api.http.schemas.changes import ChangeJson, ChangesJson
@@ -57,12 +58,14 @@ async def get_change(change: ChangePath, supervisor: SupervisorDep) -> Response:
 
 @router.delete("/{change}", response_model=ChangeJson)
 @policy(Permission.OPERATE)
-async def cancel_change(change: ChangePath, supervisor: SupervisorDep, actor: ActorDep) -> Response:
+async def cancel_change(
+    change: ChangePath, supervisor: SupervisorDep, kept: KeptDep, actor: ActorDep
+) -> Response:
     """Cancel a change: no further step is started; steps in progress are not recalled.
 
     A change that has ended keeps its status.
     """
-    supervisor.submit(CancelRequest(ChangeId(change), actor))
+    await kept.submit(CancelRequest(ChangeId(change), actor))
     return await _shown(supervisor, change)
 
 

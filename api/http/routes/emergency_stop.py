@@ -3,6 +3,7 @@
 from fastapi import APIRouter
 
 from api.http.dependencies import ActorDep, SupervisorDep
+from api.http.kept_requests import KeptDep
 from api.http.route_policy import Permission, policy
 from api.http.schemas.health import (
     EmergencyStopAnswerJson,
@@ -25,15 +26,20 @@ async def get_emergency_stop(supervisor: SupervisorDep) -> EmergencyStopJson:
 @router.put("", response_model_exclude_unset=True)
 @policy(Permission.STOP)
 async def set_emergency_stop(
-    body: EmergencyStopBody, supervisor: SupervisorDep, actor: ActorDep, ignored: IgnoredDep
+    body: EmergencyStopBody,
+    supervisor: SupervisorDep,
+    kept: KeptDep,
+    actor: ActorDep,
+    ignored: IgnoredDep,
 ) -> EmergencyStopAnswerJson:
     """Engage or release the emergency stop; repeating a request changes nothing.
 
     A request to engage is taken whatever else is in the body; `ignored` tells what was not.
 
-    This is a software stop. It is not safety-rated and does not replace a hardware stop. In this
-    version a restart of the service releases it, since it is not stored.
+    This is a software stop. It is not safety-rated and does not replace a hardware stop. A restart
+    of the service does not release it. While storage fails it is released only with `volatile`.
     """
-    supervisor.submit(EmergencyStopRequest(body.engaged, body.reason or "", actor))
+    asked = EmergencyStopRequest(body.engaged, body.reason or "", actor)
+    await kept.submit(asked, volatile=body.volatile)
     shown = EmergencyStopJson.of(supervisor.core.emergency_stop(), supervisor.clock)
     return EmergencyStopAnswerJson(**dict(shown)).model_copy(update=ignored)

@@ -6,6 +6,7 @@ from typing import Annotated
 from fastapi import APIRouter, Path, Response
 
 from api.http.dependencies import ActorDep, SupervisorDep
+from api.http.kept_requests import KeptDep, VolatileQuery
 from api.http.route_policy import Permission, policy
 from api.http.schemas.tasks import HoldAnswerJson, HoldBody, HoldJson, HoldsJson
 from api.http.stop_route import IgnoredDep, StopRoute
@@ -36,6 +37,7 @@ async def list_holds(supervisor: SupervisorDep) -> HoldsJson:
 async def set_hold(
     owner: OwnerPath,
     supervisor: SupervisorDep,
+    kept: KeptDep,
     actor: ActorDep,
     ignored: IgnoredDep,
     body: HoldBody | None = None,
@@ -45,13 +47,15 @@ async def set_hold(
     A hold stays in force until it is released, also if another task is submitted meanwhile. It is
     set whatever else is in the body; `ignored` tells what was not taken.
     """
-    supervisor.submit(HoldRequest(owner, body.reason if body else "", actor))
+    await kept.submit(HoldRequest(owner, body.reason if body else "", actor))
     shown = HoldJson.of(supervisor.core.driving.holds[owner], supervisor.clock)
     return HoldAnswerJson(**dict(shown)).model_copy(update=ignored)
 
 
 @router.delete("/{owner}", status_code=HTTPStatus.NO_CONTENT, response_class=Response)
 @policy(Permission.OPERATE)
-async def release_hold(owner: OwnerPath, supervisor: SupervisorDep, actor: ActorDep) -> None:
+async def release_hold(
+    owner: OwnerPath, kept: KeptDep, actor: ActorDep, *, volatile: VolatileQuery = False
+) -> None:
     """Release a hold; the task resumes without holds. If there is no such hold, nothing changes."""
-    supervisor.submit(ReleaseRequest(owner, actor))
+    await kept.submit(ReleaseRequest(owner, actor), volatile=volatile)

@@ -12,6 +12,7 @@ from api.http.metrics import Metrics
 from api.http.problems import make_problem, problem_response
 from api.http.route_policy import Permission, policy
 from api.http.schemas.base import Json
+from domain.errors import StorageDegradedError
 from domain.tasks.holds import DRIVE_HOLD, VEHICLE_HOLD
 from domain.timebase import to_seconds
 from service.supervisor import Supervisor
@@ -133,6 +134,10 @@ def _warnings(supervisor: Supervisor, *, exposed: bool) -> Iterator[WarningJson]
     if late := supervisor.publisher.late_ticks:
         message = f"{late} ticks skipped since the start: the machine is too slow"
         yield WarningJson(code="LATE_TICKS", message=message)
+    degraded = None if supervisor.journal is None else supervisor.journal.status().reason
+    if degraded is not None:
+        message = f"{degraded}; a restart may forget what is asked now"
+        yield WarningJson(code=StorageDegradedError.code, message=message)
     if exposed:
         message = "anybody on the network can control the robot: there is no authentication"
         yield WarningJson(code="NO_AUTHENTICATION", message=message)

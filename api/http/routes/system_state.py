@@ -5,6 +5,7 @@ from typing import Annotated
 from fastapi import APIRouter, Path
 
 from api.http.dependencies import ActorDep, SupervisorDep
+from api.http.kept_requests import KeptDep, VolatileQuery
 from api.http.route_policy import Permission, policy
 from api.http.schemas.health import SystemStateJson
 from domain.inputs import AcknowledgeRequest
@@ -34,8 +35,11 @@ async def get_system_state(supervisor: SupervisorDep) -> SystemStateJson:
 async def acknowledge_error(
     error: Annotated[str, Path(description="One of `errors` in `GET /system_state`")],
     supervisor: SupervisorDep,
+    kept: KeptDep,
     actor: ActorDep,
+    *,
+    volatile: VolatileQuery = False,
 ) -> SystemStateJson:
     """Acknowledge an error that requires it; the error ends once its cause is gone as well."""
-    supervisor.submit(AcknowledgeRequest(error, actor))
+    await kept.submit(AcknowledgeRequest(error, actor), volatile=volatile)
     return current_system_state(supervisor)

@@ -1,5 +1,7 @@
 """Waypoint tasks of the vehicle."""
 
+from collections.abc import Iterator
+from contextlib import contextmanager
 from http import HTTPStatus
 from typing import Annotated
 
@@ -7,6 +9,7 @@ from fastapi import APIRouter, Depends, Path, Query, Request, Response
 
 from api.http.body_parsing import InvalidBodyError
 from api.http.dependencies import ActorDep, SupervisorDep, WorkerDep
+from api.http.kept_requests import KeptDep
 from api.http.request_body import limits_of, read_body
 from api.http.route_policy import Permission, policy
 from api.http.schemas.path_preview import PathPreviewJson
@@ -31,7 +34,6 @@ from domain.inputs import CancelTaskRequest, TaskRequest
 from domain.paths.headings import Heading
 from domain.tracking.trackers import TRACKERS
 from service.files.csv_columns import column_names
-from service.supervisor import Supervisor
 from service.worker import Jobs
 
 router = APIRouter(prefix="/tasks", tags=["drive"])
@@ -122,6 +124,7 @@ async def post_task(
     csv: CsvOptionsDep,
     supervisor: SupervisorDep,
     worker: WorkerDep,
+    kept: KeptDep,
     actor: ActorDep,
 ) -> Response:
     """Submit a task along waypoints; it replaces the current task.
@@ -133,20 +136,29 @@ async def post_task(
     """
     raw = await read_body(request, limits_of(request).waypoints_bytes)
     posted = await _read(raw, csv, worker)
-    task = submit_task(supervisor, posted, actor)
+    with faults_in_body():
+        identity = (await kept.submit(task_request(posted, actor))).task
+    if identity is None:
+        raise RuntimeError("a task was taken and has no id")
+    task = TaskJson.of(supervisor.core.driving.task(identity), supervisor.clock)
     headers = {"Location": f"/tasks/{task.id}"}
     return Response(task.model_dump_json(), HTTPStatus.CREATED, headers, "application/json")
 
 
-def submit_task(supervisor: Supervisor, posted: PostedTask, actor: Actor) -> TaskJson:
-    """Submit a task to the core and return it.
+def task_request(posted: PostedTask, actor: Actor) -> TaskRequest:
+    """Return the request to drive what was posted."""
+    return TaskRequest(posted.path, posted.start_index, posted.controller, posted.speed_mps, actor)
+
+
+@contextmanager
+def faults_in_body() -> Iterator[None]:
+    """Say where in the body a task is that the core rejects.
 
     Raises:
         InvalidBodyError: The task cannot be driven.
     """
-    asked = TaskRequest(posted.path, posted.start_index, posted.controller, posted.speed_mps, actor)
     try:
-        identity = supervisor.submit(asked).task
+        yield
     except FarStartError:
         # Passed on unchanged: it holds the waypoints at which the task could start instead.
         raise
@@ -154,9 +166,6 @@ def submit_task(supervisor: Supervisor, posted: PostedTask, actor: Actor) -> Tas
         raise InvalidBodyError.at(error.pointer, error) from error
     except UnknownControllerError as error:
         raise InvalidBodyError.at("controller", error) from error
-    if identity is None:
-        raise RuntimeError("a task was taken and has no id")
-    return TaskJson.of(supervisor.core.driving.task(identity), supervisor.clock)
 
 
 @router.post("/preview", response_model=PathPreviewJson, openapi_extra=_BODY)
@@ -193,9 +202,9 @@ async def get_current_task(supervisor: SupervisorDep) -> TaskJson:
 
 @router.delete("/current", status_code=HTTPStatus.NO_CONTENT, response_class=Response)
 @policy(Permission.STOP)
-async def cancel_task(supervisor: SupervisorDep, actor: ActorDep) -> None:
+async def cancel_task(kept: KeptDep, actor: ActorDep) -> None:
     """Cancel the current task and stop; succeeds also if there is none."""
-    supervisor.submit(CancelTaskRequest(actor))
+    await kept.submit(CancelTaskRequest(actor))
 
 
 @router.get("/{task}")

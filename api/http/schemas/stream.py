@@ -28,7 +28,7 @@ class HelloJson(Json):
     type: Literal["hello"] = "hello"
     epoch: str = Field(description="Epoch of the event ids; changes with each restart")
     started_at: Timestamp = Field(
-        description="Start of this run of the service; tasks and holds of earlier runs are gone"
+        description="Start of this run of the service; the next frame is complete"
     )
     topics: list[str] = Field(description="Topics that this client is subscribed to")
     period_s: float = Field(description="Time between two `state` frames")

@@ -35,7 +35,7 @@ async def carry_out(supervisor: Supervisor, request: ModeRequest | TransitionReq
     wanted = request.mode if isinstance(request, ModeRequest) else str(request.transition)
     what = f"{wanted!r:.100} of {request.part}, requested by {request.actor.label}"
     try:
-        change = supervisor.submit(request).change
+        change = (await supervisor.request(request)).outputs.change
         if change is None:
             raise RuntimeError(f"{request} was taken and is no change")
         view = await supervisor.change_ends.wait(change, MAX_WAIT_S)
@@ -217,5 +217,5 @@ def robot_services(supervisor: Supervisor) -> tuple[OfferedService, ...]:
 async def _cancel_tasks(supervisor: Supervisor, request: Fields, caller: Actor) -> Fields:
     """End the task, if there is one."""
     checked(EMPTY, request)
-    supervisor.submit(CancelTaskRequest(caller))
+    await supervisor.request(CancelTaskRequest(caller))
     return {}

@@ -63,7 +63,15 @@ from domain.events.parts import (
     NodeUnreachable,
     PartActualChanged,
 )
-from domain.events.service import ServiceStalled, TimeWasDue, WriteAnswered
+from domain.events.service import (
+    NotRestored,
+    ServiceRestored,
+    ServiceStalled,
+    StorageDegraded,
+    StorageRecovered,
+    TimeWasDue,
+    WriteAnswered,
+)
 from domain.identifiers import ChangeId, GoalId, TaskId
 from domain.lifecycle import LifecycleState, Transition
 from domain.snapshot import StepStatus, SystemState
@@ -196,6 +204,21 @@ EVENTS: Mapping[str, tuple[object, ...]] = {
             reason='Größe ≤ 3 — "gripper\\jam"',
         ),
     ),
+    "service.not_restored": (NotRestored(what="node left/arm", reason="not in the model"),),
+    "service.restored": (
+        ServiceRestored(
+            boot=4,
+            targets=2,
+            changes=1,
+            tasks=1,
+            holds=3,
+            errors=0,
+            emergency_stop=True,
+            reason="the store was broken",
+        ),
+    ),
+    "storage.degraded": (StorageDegraded(reason="disk full"),),
+    "storage.recovered": (StorageRecovered(),),
     "service.stalled": (ServiceStalled(late_s=0.4),),
     "signal.pending": (SignalPending(signal="battery_level", error="LOW_BATTERY"),),
     "signal.read": (

@@ -25,6 +25,7 @@ from domain.inputs import (
     ReportBacklog,
     Restored,
     ServiceStall,
+    StorageStatus,
     TaskRequest,
     TimePassed,
     TransitionRequest,
@@ -103,6 +104,10 @@ INPUTS: Mapping[str, tuple[object, ...]] = {
     "backend_status": (
         BackendStatus(available=True, reason='Größe ≤ 3 — "gripper\\jam"'),
         BackendStatus(available=True, reason=""),
+    ),
+    "storage_status": (
+        StorageStatus(available=False, reason="disk full"),
+        StorageStatus(available=True, reason=""),
     ),
     "report_backlog": (ReportBacklog(source="ros", since=1764420000123456789),),
     "goal_feedback": (

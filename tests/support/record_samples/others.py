@@ -6,7 +6,9 @@ from domain.actor import Actor
 from domain.commands import AskFacts, AskParameters, AskTransition, Drive, PreemptGoal, SendGoal
 from domain.events.changes import StepEnded
 from domain.events.event import RecordedEvent
+from domain.events.service import TimeWasDue
 from domain.identifiers import ChangeId, GoalId, TaskId
+from domain.inputs import TimePassed
 from domain.kept import (
     Keeping,
     KeptChange,
@@ -20,7 +22,8 @@ from domain.kept import (
 from domain.lifecycle import LifecycleState, Transition
 from domain.snapshot import StepStatus
 from domain.state_and_mode import ModeName, PartName, StateAndMode
-from domain.vehicle import DriveCommand
+from domain.vehicle import DriveCommand, Pose, VehicleState
+from service.codec.recorded_step import RecordedStep
 from tests.support.record_samples.pieces import PARAMETERS, PATH
 
 OTHERS: Mapping[str, tuple[object, ...]] = {
@@ -57,6 +60,20 @@ OTHERS: Mapping[str, tuple[object, ...]] = {
         Actor(name="ada", way="http", address="10.0.0.7"),
         Actor(name="", way="", address=""),
     ),
+    "recorded_step": (
+        RecordedStep(
+            at=1764420000123456789,
+            given=TimePassed(),
+            is_late=True,
+            commands=(Drive(command=DriveCommand(speed_mps=1.5, steering_angle_rad=0.0625)),),
+            events=(RecordedEvent(41, 1764420000123456789, None, Actor(), TimeWasDue()),),
+            kept=(Keeping(kind=KeptHold, name="operator", value=None),),
+            views=4294967295,
+        ),
+        RecordedStep(
+            at=0, given=TimePassed(), is_late=False, commands=(), events=(), kept=(), views=None
+        ),
+    ),
     "recorded_event": (
         RecordedEvent(
             id=41,
@@ -89,6 +106,13 @@ OTHERS: Mapping[str, tuple[object, ...]] = {
             part=PartName("arm"),
             target=StateAndMode(state=LifecycleState.INACTIVE, mode=ModeName("FAST")),
             order=9,
+            staying={PartName("left/arm"): LifecycleState.UNCONFIGURED},
+        ),
+        KeptTarget(
+            part=PartName("arm"),
+            target=StateAndMode(state=LifecycleState.INACTIVE, mode=ModeName("FAST")),
+            order=9,
+            staying={},
         ),
     ),
     "kept_change": (
@@ -154,6 +178,11 @@ OTHERS: Mapping[str, tuple[object, ...]] = {
             ended_as="ABORTED",
             reason='Größe ≤ 3 — "gripper\\jam"',
             ended_at=1764420001123456789,
+            seen=VehicleState(
+                pose=Pose(x_m=-12.25, y_m=1e-07, yaw_rad=-3.125),
+                speed_mps=1.5,
+                steering_angle_rad=0.0625,
+            ),
         ),
         KeptProgress(
             task=TaskId("3"),
@@ -165,6 +194,7 @@ OTHERS: Mapping[str, tuple[object, ...]] = {
             ended_as=None,
             reason=None,
             ended_at=None,
+            seen=None,
         ),
     ),
 }

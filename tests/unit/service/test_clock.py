@@ -6,7 +6,7 @@ import pytest
 
 from domain.errors import InvalidValueError
 from domain.timebase import seconds
-from service.clock import MonotonicClock, since_epoch, to_datetime
+from service.clock import MonotonicClock, continuous_clock, since_epoch, to_datetime
 
 NOON = datetime(2026, 5, 4, 12, tzinfo=UTC)
 
@@ -112,3 +112,16 @@ def test_a_moment_is_exact_to_the_microsecond() -> None:
 def test_a_moment_of_no_known_offset_is_refused() -> None:
     with pytest.raises(InvalidValueError):
         since_epoch(datetime(2026, 5, 4))
+
+
+def test_instants_of_a_later_run_are_after_those_of_an_earlier_one() -> None:
+    first = continuous_clock().now()
+    assert continuous_clock().now() > first
+    assert abs(first - time.time_ns()) < 60 * 10**9
+
+
+def test_instants_go_on_though_the_system_clock_was_set_back_by_a_year() -> None:
+    a_year_ahead = time.time_ns() + 365 * 86_400 * 10**9
+    clock = continuous_clock(after=a_year_ahead)
+    assert clock.now() > a_year_ahead
+    assert abs(since_epoch(clock.wall_time(clock.now())) - time.time_ns()) < 60 * 10**9

@@ -7,11 +7,11 @@ import pytest
 
 from domain.errors import UnknownPartError
 from domain.inputs import ModeRequest, NodeReport, Reading, Readings
-from domain.outbox import Outputs
 from domain.state_and_mode import PartName
 from domain.timebase import Instant
 from service.catch_up import CatchUp
 from service.refused_readings import RefusedReadings
+from service.storage.journal import Step
 from service.submitter import Submitter
 from service.supervisor import Supervisor
 from tests.support.live_robot import make_onboard, make_supervisor, running
@@ -25,7 +25,7 @@ class Given:
     def __init__(self) -> None:
         self.clock = ManualClock()
         self.onboard = make_onboard(actuation_model(), self.clock.now())
-        self.carried_out: list[Outputs] = []
+        self.carried_out: list[Step] = []
         self.tick_due: Instant | None = None
         catch_up = CatchUp(self.clock, lambda: self.tick_due)
         self.refused = RefusedReadings()
@@ -64,7 +64,7 @@ def test_what_follows_is_carried_out_and_returned() -> None:
     given.submitter.deliver(NodeReport(BASE, reachable=True))
     outputs = given.submitter.submit(ModeRequest(BASE, "FAST"))
 
-    assert given.carried_out[-1] == outputs
+    assert given.carried_out[-1].outputs == outputs
     assert outputs.change is not None
 
 

@@ -170,7 +170,7 @@ def test_bodies_that_routes_read_themselves_are_described(document: dict[str, An
 @pytest.mark.parametrize(
     ("method", "path", "told"),
     [
-        ("put", "/emergency_stop", "a restart of the service releases it"),
+        ("put", "/emergency_stop", "of the service does not release it"),
         ("post", "/signals", "or the mock if it is"),
         ("post", "/signals/{signal}", "or the mock if it is"),
     ],

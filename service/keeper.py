@@ -1,0 +1,181 @@
+"""Keeps what must not be forgotten: notes each step of the core, and answers for requests.
+
+What starts or loosens something is carried out only once storage has shown that it works: the
+request is on disk then. What makes the robot safer is carried out at once. Either is answered when
+its outcome is on disk, or when that takes too long.
+"""
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+
+from domain.errors import StorageDegradedError
+from domain.inputs import (
+    AcknowledgeRequest,
+    CancelRequest,
+    CancelTaskRequest,
+    EmergencyStopRequest,
+    HoldRequest,
+    Input,
+    ModeRequest,
+    ParametersRequest,
+    ReleaseRequest,
+    StorageStatus,
+    TaskRequest,
+    TransitionRequest,
+)
+from domain.lifecycle import Transition
+from domain.outbox import Outputs
+from domain.timebase import Duration, Instant, seconds
+from service.clock import Clock
+from service.storage.journal import Journal, Plain
+from service.storage.trends.trends import Trends
+
+BARRIER_S = 2.0
+"""A request that starts something is rejected if the disk takes longer."""
+OUTCOME_S = 2.0
+"""Its answer waits so long for its outcome to be on disk."""
+SAFER_S = 0.1
+"""The answer to what makes the robot safer waits no longer."""
+
+LOOK_EVERY = seconds(0.25)
+_RAISING = frozenset({Transition.CONFIGURE, Transition.ACTIVATE})
+LAST_REQUEST = "last_request"
+"""Under this name the journal has the last request that starts or loosens something."""
+
+
+@dataclass(frozen=True, slots=True)
+class Taken:
+    """A request that the core accepted."""
+
+    outputs: Outputs
+    is_durable: bool
+    """Whether its outcome is on disk."""
+
+
+@dataclass(frozen=True, slots=True)
+class Memory:
+    """Something besides the core that survives a restart, such as where a simulated robot is."""
+
+    name: str
+    value: Callable[[], Plain]
+    revision: Callable[[], object]
+    """Differs when the value does; cheap."""
+    every: Duration
+    """Kept at most so often; so much may be lost."""
+
+
+@dataclass(frozen=True, slots=True)
+class Stores:
+    """Where the service keeps what survives it."""
+
+    journal: Journal | None = None
+    """What happens, and what must not be forgotten; None: nothing is kept."""
+    trends: Trends | None = None
+    """The history of the signals; None: there is none."""
+    memories: Sequence[Memory] = ()
+    """What the journal keeps besides the core."""
+
+    async def close(self) -> None:
+        """Write down what is noted, and release the folder."""
+        if self.trends is not None:
+            await self.trends.close()
+        if self.journal is not None:
+            await self.journal.close()
+
+
+NO_STORES = Stores()
+"""Nothing survives."""
+
+
+def starts_or_loosens(given: Input) -> bool:
+    """Tell whether an input may start or loosen something, and so must be on disk first."""
+    match given:
+        case TaskRequest() | ReleaseRequest() | AcknowledgeRequest():
+            return True
+        case ModeRequest() | ParametersRequest():
+            return True
+        case TransitionRequest(transition=transition):
+            return transition in _RAISING
+        case EmergencyStopRequest(engaged=engaged):
+            return not engaged
+        case HoldRequest() | CancelRequest() | CancelTaskRequest():
+            return False
+    raise TypeError(f"{type(given).__name__} is no request")
+
+
+class Keeper:
+    """Passes requests on, each with the order of disk and robot that it needs."""
+
+    def __init__(
+        self,
+        journal: Journal,
+        submit: Callable[[Input], Outputs],
+        clock: Clock,
+        memories: Sequence[Memory] = (),
+    ) -> None:
+        """Prepare.
+
+        Args:
+            journal: Keeps what follows from each input.
+            submit: Passes an input to the core, and notes the step in the journal.
+            clock: Of the service.
+            memories: What else the service keeps.
+        """
+        self._journal = journal
+        self._submit = submit
+        self._clock = clock
+        self._memories = memories
+        self._remembered: dict[str, tuple[Instant, object]] = {}
+        """By memory, when it was kept last, and its revision then."""
+        self._fault: str | None = None
+        self._requests = 0
+
+    async def run(self) -> None:
+        """Keep what changes without a request, and tell how storage is, until cancelled."""
+        while True:
+            await self._clock.sleep_until(self._clock.now() + LOOK_EVERY)
+            self.look()
+
+    def look(self) -> None:
+        """Keep memories that changed, and tell the core if storage fails or works again."""
+        now = self._clock.now()
+        for memory in self._memories:
+            kept_at, kept = self._remembered.get(memory.name, (now - memory.every, None))
+            revision = memory.revision()
+            if revision != kept and now - kept_at >= memory.every:
+                self._remembered[memory.name] = now, revision
+                self._journal.keep(memory.name, memory.value())
+        fault = self._journal.status().reason
+        if (fault is None) is not (self._fault is None):
+            self._fault = fault
+            self._submit(StorageStatus(available=fault is None, reason=fault or ""))
+
+    async def request(self, given: Input, *, volatile: bool = False) -> Taken:
+        """Pass a request to the core, and return when its outcome is on disk or takes too long.
+
+        Args:
+            given: A request.
+            volatile: Carry it out though storage fails; a restart may forget it.
+
+        Raises:
+            StorageDegradedError: It starts or loosens something, and cannot be stored first;
+                nothing was done.
+            PilothouseError: The core rejects it; nothing was done.
+        """
+        is_first_stored = starts_or_loosens(given)
+        if is_first_stored and not volatile:
+            await self._store_first(given)
+        outputs = self._submit(given)
+        return Taken(outputs, await self._is_stored(OUTCOME_S if is_first_stored else SAFER_S))
+
+    async def _store_first(self, given: Input) -> None:
+        self._requests += 1
+        self._journal.keep(LAST_REQUEST, [self._requests, type(given).__name__])
+        if not await self._journal.commit(BARRIER_S):
+            raise StorageDegradedError(f"the disk takes more than {BARRIER_S:g} s")
+
+    async def _is_stored(self, patience_s: float) -> bool:
+        try:
+            return await self._journal.commit(patience_s)
+        except StorageDegradedError:
+            return False

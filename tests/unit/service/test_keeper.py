@@ -1,0 +1,215 @@
+"""What is on disk before a request is carried out, and what its answer waits for."""
+
+import asyncio
+
+import pytest
+
+from domain.errors import StorageDegradedError
+from domain.health.signals import ESTOP
+from domain.identifiers import ChangeId
+from domain.inputs import (
+    AcknowledgeRequest,
+    CancelRequest,
+    CancelTaskRequest,
+    EmergencyStopRequest,
+    HoldRequest,
+    Input,
+    ModeRequest,
+    ParametersRequest,
+    ReleaseRequest,
+    StorageStatus,
+    TimePassed,
+    TransitionRequest,
+)
+from domain.lifecycle import Transition
+from domain.outbox import NOTHING, Outputs
+from domain.timebase import to_seconds
+from service.keeper import LOOK_EVERY, SAFER_S, Keeper, Memory, starts_or_loosens
+from service.storage.journal import Plain
+from service.storage.journal import StorageStatus as StorageStatusView
+from tests.support.manual_clock import ManualClock
+from tests.support.models import BASE
+
+RELEASE = ReleaseRequest("operator")
+HOLD = HoldRequest("operator", "lunch")
+
+
+class Disk:
+    """The part of a journal that a keeper uses; what is done is told in order."""
+
+    def __init__(self) -> None:
+        self.fault: str | None = None
+        self.done: list[str] = []
+        self.kept: dict[str, Plain] = {}
+        self.given: list[Input] = []
+        self.answers: list[bool | StorageDegradedError] = []
+
+    def keep(self, name: str, value: Plain) -> None:
+        self.done.append("store the request")
+        self.kept[name] = value
+
+    def status(self) -> StorageStatusView:
+        return StorageStatusView("/robot", 0, None, self.fault, "3", 1, {})
+
+    async def commit(self, patience_s: float) -> bool:
+        self.done.append(f"wait {patience_s:g} s for the disk")
+        answer = self.answers.pop(0) if self.answers else True
+        if isinstance(answer, StorageDegradedError):
+            raise answer
+        return answer
+
+    def submit(self, given: Input) -> Outputs:
+        self.done.append(f"do {type(given).__name__}")
+        self.given.append(given)
+        return NOTHING
+
+
+@pytest.fixture
+def clock() -> ManualClock:
+    return ManualClock()
+
+
+@pytest.fixture
+def disk() -> Disk:
+    return Disk()
+
+
+@pytest.fixture
+def keeper(disk: Disk, clock: ManualClock) -> Keeper:
+    return Keeper(disk, disk.submit, clock)  # type: ignore[arg-type]
+
+
+async def test_a_release_is_on_disk_before_the_robot_may_drive(disk: Disk, keeper: Keeper) -> None:
+    taken = await keeper.request(RELEASE)
+
+    assert taken.is_durable
+    assert disk.done == [
+        "store the request",
+        "wait 2 s for the disk",
+        "do ReleaseRequest",
+        "wait 2 s for the disk",
+    ]
+
+
+async def test_a_hold_does_not_wait_for_the_disk(disk: Disk, keeper: Keeper) -> None:
+    await keeper.request(HOLD)
+
+    assert disk.done == ["do HoldRequest", f"wait {SAFER_S:g} s for the disk"]
+
+
+async def test_a_hold_is_answered_though_the_disk_is_slow(disk: Disk, keeper: Keeper) -> None:
+    disk.answers = [False]
+
+    assert not (await keeper.request(HOLD)).is_durable
+
+
+async def test_a_hold_is_set_though_the_disk_is_broken(disk: Disk, keeper: Keeper) -> None:
+    disk.answers = [StorageDegradedError("it is full")]
+
+    assert not (await keeper.request(HOLD)).is_durable
+    assert "do HoldRequest" in disk.done
+
+
+@pytest.mark.parametrize("answer", [False, StorageDegradedError("it is full")])
+async def test_nothing_is_released_that_cannot_be_stored(
+    disk: Disk, keeper: Keeper, answer: bool | StorageDegradedError
+) -> None:
+    disk.answers = [answer]
+
+    with pytest.raises(StorageDegradedError):
+        await keeper.request(RELEASE)
+    assert "do ReleaseRequest" not in disk.done
+
+
+async def test_a_person_may_release_though_the_disk_is_broken(disk: Disk, keeper: Keeper) -> None:
+    disk.answers = [StorageDegradedError("it is full")]
+
+    taken = await keeper.request(RELEASE, volatile=True)
+
+    assert not taken.is_durable
+    assert disk.done[0] == "do ReleaseRequest"
+
+
+@pytest.mark.parametrize(
+    "given",
+    [
+        ModeRequest(BASE, "FAST"),
+        ParametersRequest(BASE, {"max_speed": 0.1}),
+        TransitionRequest(BASE, Transition.CONFIGURE),
+        TransitionRequest(BASE, Transition.ACTIVATE),
+        RELEASE,
+        AcknowledgeRequest(ESTOP),
+        EmergencyStopRequest(engaged=False, reason=""),
+    ],
+)
+def test_what_starts_or_loosens_is_stored_first(given: Input) -> None:
+    assert starts_or_loosens(given)
+
+
+@pytest.mark.parametrize(
+    "given",
+    [
+        TransitionRequest(BASE, Transition.DEACTIVATE),
+        TransitionRequest(BASE, Transition.CLEANUP),
+        TransitionRequest(BASE, Transition.SHUTDOWN),
+        HOLD,
+        CancelTaskRequest(),
+        CancelRequest(ChangeId("c1")),
+        EmergencyStopRequest(engaged=True, reason="smoke"),
+    ],
+)
+def test_what_makes_safer_is_done_first(given: Input) -> None:
+    assert not starts_or_loosens(given)
+
+
+def test_what_is_no_request_is_neither() -> None:
+    with pytest.raises(TypeError, match="TimePassed"):
+        starts_or_loosens(TimePassed())
+
+
+def test_a_disk_that_fails_is_told_to_the_core_once_and_its_recovery_too(
+    disk: Disk, keeper: Keeper
+) -> None:
+    keeper.look()
+    disk.fault = "the disk is full"
+    keeper.look()
+    keeper.look()
+    disk.fault = None
+    keeper.look()
+
+    assert disk.given == [
+        StorageStatus(available=False, reason="the disk is full"),
+        StorageStatus(available=True),
+    ]
+
+
+async def test_a_memory_is_kept_when_it_changed_and_not_too_often(
+    disk: Disk, clock: ManualClock
+) -> None:
+    pose = [0.0]
+    memory = Memory("pose", lambda: list(pose), lambda: pose[0], 2 * LOOK_EVERY)
+    keeper = Keeper(disk, disk.submit, clock, [memory])  # type: ignore[arg-type]
+    keeper.look()
+    assert disk.kept == {"pose": [0.0]}
+
+    pose[0] = 1.0
+    keeper.look()
+    assert disk.kept == {"pose": [0.0]}
+
+    await clock.advance(to_seconds(2 * LOOK_EVERY))
+    keeper.look()
+    assert disk.kept == {"pose": [1.0]}
+    disk.done.clear()
+    await clock.advance(to_seconds(2 * LOOK_EVERY))
+    keeper.look()
+    assert disk.done == []
+
+
+async def test_it_looks_four_times_a_second(disk: Disk, clock: ManualClock, keeper: Keeper) -> None:
+    looking = asyncio.create_task(keeper.run())
+    await asyncio.sleep(0)
+    disk.fault = "the disk is full"
+    await clock.advance(0.25)
+    looking.cancel()
+
+    assert disk.given == [StorageStatus(available=False, reason="the disk is full")]
