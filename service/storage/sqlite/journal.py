@@ -73,6 +73,9 @@ class SqliteJournal:
         self._is_closed = False
         self._wants_checkpoint = True
         self._checkpoint_at: Instant = boot.started_at
+        if opened.fault is not None:
+            self._fail(opened.fault, [])
+            self._go_on()
 
     @classmethod
     async def open(cls, settings: StoreSettings, boot: Boot, clock: Clock) -> "SqliteJournal":
