@@ -134,8 +134,13 @@ class Supervisor:
 
     @property
     def epoch(self) -> str:
-        """Return the name of this run of the service; event ids count from 1 in each."""
+        """Return the name of this run of the service."""
         return self.events.epoch
+
+    @property
+    def boot(self) -> int:
+        """Return the number of this run, from 1; always 1 where nothing is kept."""
+        return 1 if self.journal is None else self.journal.found.restored.boot
 
     async def run(self) -> None:
         """Run until cancelled; the first task that ends cancels the others.
@@ -233,7 +238,12 @@ def _event_log(journal: Journal | None) -> EventLog:
     """Return an empty log that goes on after the events of earlier runs."""
     if journal is None:
         return EventLog()
-    return EventLog(epoch=journal.boot.epoch, before=journal.found.restored.next_event - 1)
+    found = journal.found
+    return EventLog(
+        epoch=journal.boot.epoch,
+        before=found.restored.next_event - 1,
+        earlier=found.epochs,
+    )
 
 
 def _sampling(stores: Stores, core: Supervision) -> Sampling | None:

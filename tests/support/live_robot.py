@@ -12,6 +12,7 @@ from domain.simulation.robot import SimulatedRobot
 from domain.supervision import Supervision, SupervisionSettings
 from domain.timebase import Instant
 from service.clock import Clock
+from service.event_log import EventLog
 from service.files.model_file import LoadedModel
 from service.keeper import Stores
 from service.simulation.remembering import memories_of
@@ -30,10 +31,12 @@ def make_supervisor(
     warnings: Sequence[Finding] = (),
     *,
     mock: bool = True,
+    events: EventLog | None = None,
     journal: Journal | None = None,
 ) -> Supervisor:
     """Return a supervisor of simulated nodes that does not run yet."""
-    return make_live_robot(clock, model, warnings, mock=mock, journal=journal)[0]
+    robot = make_live_robot(clock, model, warnings, mock=mock, events=events, journal=journal)
+    return robot[0]
 
 
 def make_live_robot(
@@ -42,6 +45,7 @@ def make_live_robot(
     warnings: Sequence[Finding] = (),
     *,
     mock: bool = True,
+    events: EventLog | None = None,
     journal: Journal | None = None,
     trends: Trends | None = None,
 ) -> tuple[Supervisor, SimulatedBackend]:
@@ -58,6 +62,7 @@ def make_live_robot(
         backend,
         backend.readings,
         simulated=robot.what,
+        events=events,
         stores=Stores(journal, trends, memories_of(robot)),
     )
     return supervisor, backend
