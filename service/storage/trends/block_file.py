@@ -11,7 +11,6 @@ from pathlib import Path
 
 import apsw
 
-from domain.errors import PilothouseError
 from domain.timebase import Duration, Instant
 from service.storage.trends.tiers import Tier
 
@@ -27,10 +26,8 @@ _AT_ONCE = 1_000
 """Blocks that are deleted at most with one write."""
 
 
-class ForeignVersionError(PilothouseError):
+class ForeignVersionError(Exception):
     """A file that a newer version of Pilothouse wrote."""
-
-    code = "FOREIGN_VERSION"
 
     def __init__(self, path: str, version: int) -> None:
         super().__init__(f"{path} has version {version}; this Pilothouse knows {VERSION}")
