@@ -2,7 +2,6 @@
 
 import asyncio
 import json
-import os
 import signal
 import sys
 import time
@@ -18,7 +17,7 @@ from api.cli.terminal_line import TerminalLine
 from api.client.outcomes import Json
 from api.distribution import installed_version
 from api.profiling.live_robot import NotSimulatedError, live_robot
-from api.profiling.machine import machine_facts
+from api.profiling.machine import load_facts, machine_facts
 from api.profiling.own_service import NotServingError, own_service
 from api.profiling.plot import NoMatplotlibError, check_plot, draw
 from api.profiling.profile import Progress, measure_runs
@@ -205,8 +204,7 @@ def _setup(options: ProfileOptions, robot: Robot) -> Json:
         "version": installed_version(),
         "started_at": datetime.now(UTC).isoformat(timespec="seconds").replace("+00:00", "Z"),
         "machine": machine_facts(),
-        # Of the minute before; there is none on Windows.
-        "load_average": round(os.getloadavg()[0], 2) if hasattr(os, "getloadavg") else None,
+        "load": load_facts(),
         "model": str(options.model) if options.model else None,
         "robot": str(options.robot) if options.robot else None,
         "changed_settings": list(changed_settings(robot.settings)),
