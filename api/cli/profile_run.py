@@ -31,6 +31,10 @@ SUCCEEDED, FAILED, MISUSED = 0, 1, 2
 
 _MOCK_OFF = "# Readings come from the profile.\nmock: false\n"
 _RUNS, _SETUP = "runs.csv", "setup.json"
+_DECISIVE = frozenset({"version", "machine", "changed_settings"})
+"""Where profiles differ in these, they have no setup together."""
+_SHOWN = _DECISIVE | {"started_at", "load"}
+"""What a report shows of a setup."""
 _LINE_EVERY_S = 30.0
 """Between two lines of progress, where there is no terminal."""
 
@@ -217,11 +221,13 @@ def _setup_of(files: Sequence[Path]) -> Json:
     found: list[dict[str, Any]] = []
     for file in files:
         try:
-            found.append(json.loads((file.parent / _SETUP).read_text(encoding="utf-8")))
+            setup = json.loads((file.parent / _SETUP).read_text(encoding="utf-8"))
         except (FileNotFoundError, ValueError):
             return {}
-    decisive = ("version", "machine", "changed_settings")
-    is_same = all(other.get(key) == found[0].get(key) for other in found for key in decisive)
+        if not isinstance(setup, dict) or not _SHOWN.issubset(setup):
+            return {}
+        found.append(setup)
+    is_same = all(other[key] == found[0][key] for other in found for key in _DECISIVE)
     return found[0] if is_same else {}
 
 

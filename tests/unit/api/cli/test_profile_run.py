@@ -264,6 +264,20 @@ def test_the_setup_of_profiles_that_differ_is_left_out(
     assert capsys.readouterr().out.startswith("Latencies in ms")
 
 
+@pytest.mark.parametrize("text", [None, "[1]", "{}", "no JSON"])
+def test_raw_data_without_its_setup_is_analysed_all_the_same(
+    bench: Bench, tmp_path: Path, capsys: pytest.CaptureFixture[str], text: str | None
+) -> None:
+    measure(options(tmp_path))
+    setup = tmp_path / "setup.json"
+    setup.unlink() if text is None else setup.write_text(text)
+    capsys.readouterr()
+
+    assert analyse([tmp_path / "runs.csv"], None, "text", plot=False) == 0
+
+    assert capsys.readouterr().out.startswith("Latencies in ms")
+
+
 def test_what_cannot_be_analysed_is_said(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
