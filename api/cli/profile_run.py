@@ -217,7 +217,10 @@ def _setup(options: ProfileOptions, robot: Robot) -> Json:
 
 
 def _setup_of(files: Sequence[Path]) -> Json:
-    """Return the setup beside raw data; empty if it is not known, or files differ in it."""
+    """Return the setup beside raw data; empty if it is not known, or files differ in it.
+
+    The load is left out where there are several: it is another one each time.
+    """
     found: list[dict[str, Any]] = []
     for file in files:
         try:
@@ -228,7 +231,9 @@ def _setup_of(files: Sequence[Path]) -> Json:
             return {}
         found.append(setup)
     is_same = all(other[key] == found[0][key] for other in found for key in _DECISIVE)
-    return found[0] if is_same else {}
+    if not is_same:
+        return {}
+    return found[0] if len(found) == 1 else {**found[0], "load": {}}
 
 
 def _report(

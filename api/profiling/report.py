@@ -60,8 +60,8 @@ def _setup_lines(setup: Mapping[str, Any]) -> Iterator[str]:
         return
     yield f"Pilothouse {setup['version']}, measured at {setup['started_at']}"
     for name in ("machine", "load"):
-        facts = ", ".join(f"{key} {value}" for key, value in setup[name].items())
-        yield f"{name.capitalize()}: {facts}"
+        if facts := ", ".join(f"{key} {value}" for key, value in setup[name].items()):
+            yield f"{name.capitalize()}: {facts}"
     for changed in setup["changed_settings"]:
         yield f"Setting: {changed}"
 

@@ -247,6 +247,8 @@ def test_several_profiles_are_analysed_together(
     assert "ESTOP, 4 runs" in printed
     assert "4 runs, 2 failed" in printed
     assert printed.startswith("Pilothouse")
+    assert "Machine: " in printed
+    assert "Load: " not in printed
 
 
 def test_the_setup_of_profiles_that_differ_is_left_out(
