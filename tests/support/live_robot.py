@@ -12,8 +12,10 @@ from domain.simulation.robot import SimulatedRobot
 from domain.supervision import Supervision, SupervisionSettings
 from domain.timebase import Instant
 from service.clock import Clock
+from service.event_log import EventLog
 from service.files.model_file import LoadedModel
 from service.keeper import Stores
+from service.simulation.remembering import memories_of
 from service.simulation.simulated import SimulatedBackend
 from service.storage.journal import Journal
 from service.storage.trends.trends import Trends
@@ -29,10 +31,12 @@ def make_supervisor(
     warnings: Sequence[Finding] = (),
     *,
     mock: bool = True,
+    events: EventLog | None = None,
     journal: Journal | None = None,
 ) -> Supervisor:
     """Return a supervisor of simulated nodes that does not run yet."""
-    return make_live_robot(clock, model, warnings, mock=mock, journal=journal)[0]
+    robot = make_live_robot(clock, model, warnings, mock=mock, events=events, journal=journal)
+    return robot[0]
 
 
 def make_live_robot(
@@ -41,6 +45,7 @@ def make_live_robot(
     warnings: Sequence[Finding] = (),
     *,
     mock: bool = True,
+    events: EventLog | None = None,
     journal: Journal | None = None,
     trends: Trends | None = None,
 ) -> tuple[Supervisor, SimulatedBackend]:
@@ -57,7 +62,8 @@ def make_live_robot(
         backend,
         backend.readings,
         simulated=robot.what,
-        stores=Stores(journal, trends),
+        events=events,
+        stores=Stores(journal, trends, memories_of(robot)),
     )
     return supervisor, backend
 
