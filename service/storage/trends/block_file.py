@@ -4,7 +4,6 @@ It is read and written by one thread. Commits are not synchronised one by one: a
 power, the last of them may be missing, but the file is not damaged.
 """
 
-import os
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from itertools import count
@@ -13,24 +12,13 @@ from pathlib import Path
 import apsw
 
 from domain.timebase import Duration, Instant
+from service.storage.sqlite.connection import open_to_write
 from service.storage.trends.tiers import Tier
 
 MEMORY = ":memory:"
 
 VERSION = 1
 """Of the tables and of the bytes in them."""
-
-_SETTINGS = (
-    "PRAGMA journal_mode = WAL",
-    "PRAGMA synchronous = NORMAL",
-    # A failed read of a mapped file is a signal that ends the process.
-    "PRAGMA mmap_size = 0",
-    "PRAGMA trusted_schema = OFF",
-    "PRAGMA cell_size_check = ON",
-)
-
-_PATIENCE_MS = 1_000
-"""How long another process may hold the file."""
 
 _PER_BLOCK = 100
 """Bytes that a block takes besides its data, about."""
@@ -78,12 +66,9 @@ class BlockFile:
             OSError: It cannot be created.
         """
         self._tiers = tuple(tiers)
-        if path != MEMORY and not Path(path).exists():
-            # Who runs the service may read it, and nobody else.
-            os.close(os.open(path, os.O_CREAT | os.O_EXCL | os.O_CLOEXEC, 0o600))
-        self._connection = apsw.Connection(path)
+        in_memory = path == MEMORY
+        self._connection = apsw.Connection(path) if in_memory else open_to_write(Path(path))
         try:
-            self._connection.set_busy_timeout(_PATIENCE_MS)
             self._prepare(path)
             self._bytes = {tier.name: self._measured(tier) for tier in tiers}
         except BaseException:
@@ -175,8 +160,8 @@ class BlockFile:
         version = self._value("PRAGMA user_version") or 0
         if version > VERSION:
             raise ForeignVersionError(path, version)
-        for setting in _SETTINGS:
-            run(setting)
+        run("PRAGMA synchronous = NORMAL")
+        run("PRAGMA wal_autocheckpoint = 1000")
         with self._connection:
             run(
                 "CREATE TABLE IF NOT EXISTS signals"
