@@ -90,6 +90,14 @@ class BackendStatus:
 
 
 @dataclass(frozen=True, slots=True)
+class StorageStatus:
+    """Whether what happens can be written down. Without such a report, it can."""
+
+    available: bool
+    reason: str = ""
+
+
+@dataclass(frozen=True, slots=True)
 class GoalFeedback:
     """Progress of navigation towards a goal."""
 
@@ -264,6 +272,11 @@ class Restored:
     stop_because: str = ""
     """Why the emergency stop is engaged, whatever is kept; empty: it is as it was kept."""
 
+    @property
+    def is_restart(self) -> bool:
+        """Tell whether the service ran before; its first run has nothing to bring back."""
+        return self.boot > 1 or bool(self.kept) or bool(self.stop_because)
+
 
 ChangeRequest: TypeAlias = ModeRequest | TransitionRequest | ParametersRequest
 DriveRequest: TypeAlias = TaskRequest | CancelTaskRequest | HoldRequest | ReleaseRequest
@@ -275,6 +288,7 @@ Input: TypeAlias = (
     | VehicleReport
     | DriveStatus
     | BackendStatus
+    | StorageStatus
     | ReportBacklog
     | GoalFeedback
     | GoalResult

@@ -78,6 +78,10 @@ class Outbox:
         self._at, self._input, self._actor, self._cause = now, event, actor, cause
         self._input_id = None
 
+    def number_events_from(self, first: int) -> None:
+        """Give the next event this id: those before may have been told by an earlier run."""
+        self._next_event = first
+
     @property
     def actor(self) -> Actor:
         """Return who sent the current input."""

@@ -190,6 +190,8 @@ class SystemStateView:
     errors: tuple[str, ...]
     reasons: tuple[Blocker, ...]
     task_status: TaskStatus
+    storage_fault: str | None = None
+    """Why what happens cannot be written down; None: it can."""
 
 
 @dataclass(frozen=True, slots=True)

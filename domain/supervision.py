@@ -23,6 +23,7 @@ from domain.lifecycle import Transition
 from domain.outbox import Outbox, Outputs
 from domain.parts.parts import Parts
 from domain.parts.system_model import SmhModel
+from domain.restart import Restart
 from domain.robot_state import RobotState
 from domain.snapshot import (
     ChangeView,
@@ -36,6 +37,7 @@ from domain.snapshot import (
 )
 from domain.stalls import Stalls
 from domain.state_and_mode import ModeName, PartName
+from domain.storage import Storage
 from domain.tasks.driving import Driving
 from domain.tasks.settings import TaskSettings
 from domain.tasks.standstill import Standstill
@@ -81,15 +83,18 @@ class Supervision:
             self._outbox,
             start,
         )
-        self._robot_state = RobotState(self._health, self.driving, self._outbox)
+        storage = Storage(self._outbox)
+        self._robot_state = RobotState(self._health, self.driving, storage, self._outbox)
         self._changing = Changing(self._parts, self._health, settings.changes, self._outbox)
         # Driving stops the vehicle before the state is published and changes continue.
         self._concerns: tuple[Concern, ...] = (
+            Restart(self._outbox),
             self._parts,
             self._health,
             self._emergency_stop,
             self.driving,
             Standstill(self.driving, self._emergency_stop, self._outbox),
+            storage,
             self._robot_state,
             self._changing,
             Audit(self._outbox),

@@ -6,6 +6,8 @@ What a change wants of its nodes is the work of `node_steps.py`.
 from collections.abc import Iterable, Mapping, Sequence
 from itertools import islice
 
+from domain.changes.kept_changes import ended_by_restart, kept_of
+from domain.changes.kept_targets import KeptTargets
 from domain.changes.node_steps import NodeSteps
 from domain.changes.plan import ChangeGoal
 from domain.changes.record import Change, Pursuit, Step
@@ -14,7 +16,8 @@ from domain.errors import UnknownChangeError
 from domain.events.changes import CHANGE_ENDS
 from domain.health.health import Health
 from domain.identifiers import ChangeId
-from domain.inputs import ChangeRequest, NodeAnswer, NodeReport, ReportBacklog
+from domain.inputs import ChangeRequest, NodeAnswer, NodeReport, ReportBacklog, Restored
+from domain.kept import KeptChange
 from domain.lifecycle import LifecycleState
 from domain.outbox import Outbox
 from domain.parts.convergence import is_there
@@ -54,6 +57,7 @@ class Changes:
         )
         self._changes: dict[ChangeId, Change] = {}
         self._running: dict[ChangeId, Change] = {}
+        self._kept_targets = KeptTargets(parts.model, outbox)
         self._to_pack: dict[ChangeId, Change] = {}
         self._count = 0
 
@@ -90,6 +94,15 @@ class Changes:
 
     # --- inputs ----------------------------------------------------------------------------------
 
+    def restore(self, restored: Restored, now: Instant) -> None:
+        """Set the targets that were kept, and end the changes that the restart interrupted."""
+        self._count = restored.next_change - 1
+        self._parts.ask(self._kept_targets.restore(restored.kept))
+        for change in ended_by_restart(restored.kept, now):
+            self._changes[change.id] = change
+            self._outbox.forget(KeptChange, change.id)
+            self._outbox.emit(CHANGE_ENDS[change.status](change.id, change.part, change.reason))
+
     def begin(
         self, part: PartName, request: ChangeRequest, goal: ChangeGoal, now: Instant
     ) -> ChangeId:
@@ -111,6 +124,9 @@ class Changes:
         self._changes[identity] = self._running[identity] = change
         self._parts.put_under(identity, (part, *goal.targets, *goal.nodes))
         self._parts.ask(goal.targets)
+        if goal.targets:
+            self._kept_targets.note(part, goal.targets)
+        self._outbox.keep(kept_of(change))
         change.set_out(goal.nodes)
         self._steps.add(change)
         for node in islice(goal.nodes, STARTS_AT_ONCE):
@@ -226,6 +242,7 @@ class Changes:
         if resting.state is LifecycleState.UNCONFIGURED:
             change.targets[node] = resting
             self._parts.ask({node: resting})
+            self._kept_targets.note(node, {node: resting})
 
     def _conclude(self, change: Change, now: Instant) -> None:
         """End a running change after its last node has ended; success is verified."""
@@ -259,6 +276,7 @@ class Changes:
     def _end(self, change: Change, status: ChangeStatus, reason: str | None, now: Instant) -> None:
         change.status, change.reason, change.ended_at = status, reason, now
         del self._running[change.id]
+        self._outbox.forget(KeptChange, change.id)
         self._let_go(change, {change.part, *change.targets, *change.pursuits})
         self._outbox.emit(CHANGE_ENDS[status](change.id, change.part, reason))
         self._pack(change)

@@ -197,6 +197,15 @@ def _is_left_out(
     return not (is_asked_itself or facts.has_lifecycle or target.state is LifecycleState.ACTIVE)
 
 
+def targets_of(
+    model: SmhModel, part: PartName, wanted: StateAndMode
+) -> dict[PartName, StateAndMode]:
+    """Return the targets of a part and of all parts below it, whatever state the nodes are in."""
+    targets: dict[PartName, StateAndMode] = {}
+    _spread(model, part, wanted, targets)
+    return targets
+
+
 def next_steps(facts: NodeFacts, goal: NodeGoal) -> tuple[Action, ...] | None:
     """Return the steps from the state of a node, or the one it will reach, to its goal.
 

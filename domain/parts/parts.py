@@ -15,7 +15,7 @@ from domain.events.parts import (
     PartActualChanged,
 )
 from domain.identifiers import ChangeId
-from domain.inputs import NodeReport
+from domain.inputs import NodeReport, Restored
 from domain.lifecycle import LifecycleState
 from domain.outbox import Outbox
 from domain.parameters import check_values
@@ -26,6 +26,7 @@ from domain.parts.node_facts import NodeFacts
 from domain.parts.reachability import Reachability
 from domain.parts.system_model import SmhModel
 from domain.parts.targets import Targets
+from domain.parts.waiting_parts import WaitingParts
 from domain.snapshot import Actual, ParameterView, PartView
 from domain.state_and_mode import DEFAULT_MODE, PartName, StateAndMode
 from domain.timebase import Instant
@@ -56,6 +57,7 @@ class Parts(Concern):
         self._targets = Targets(self.inference)
         self._deviations = Deviations(self.inference)
         self._reachability = Reachability(model)
+        self._waiting = WaitingParts(model)
         self._outbox = outbox
         self._told: dict[PartName, Actual] = {}
         self._touched: set[PartName] = set()
@@ -78,7 +80,24 @@ class Parts(Concern):
     @property
     def takes(self) -> Takers:
         """Return the handler of each class of input."""
-        return {NodeReport: self.take_report}
+        return {Restored: self.take_restored, NodeReport: self.take_report}
+
+    def take_restored(self, restored: Restored, now: Instant) -> None:
+        """After a restart, let all parts wait for an operator."""
+        if restored.is_restart:
+            self._waiting.begin()
+
+    def note_request(self, part: PartName) -> None:
+        """Note that an operator requests something of a part; it and those below wait no more."""
+        self._waiting.end(part)
+
+    def waits_for_operator(self, part: PartName) -> bool:
+        """Tell whether nothing may activate or restore a part by itself.
+
+        So it is after a restart until somebody requests something of the part, or of a system that
+        contains it.
+        """
+        return self._waiting.includes(part)
 
     def take_report(self, report: NodeReport, now: Instant) -> None:
         """Process a report of a node, and publish what it changed.

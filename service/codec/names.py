@@ -12,10 +12,12 @@ from domain import commands, inputs, kept
 from domain.actor import Actor
 from domain.events.event import RecordedEvent
 from domain.events.kinds import EVENTS
+from service.codec.recorded_step import RecordedStep
 
 NAMES: Mapping[type, str] = {
     Actor: "actor",
     RecordedEvent: "recorded_event",
+    RecordedStep: "recorded_step",
     # Inputs.
     inputs.NodeReport: "node_report",
     inputs.NodeAnswer: "node_answer",
@@ -24,6 +26,7 @@ NAMES: Mapping[type, str] = {
     inputs.DriveStatus: "drive_status",
     inputs.BackendStatus: "backend_status",
     inputs.ReportBacklog: "report_backlog",
+    inputs.StorageStatus: "storage_status",
     inputs.GoalFeedback: "goal_feedback",
     inputs.GoalResult: "goal_result",
     inputs.TimePassed: "time_passed",
