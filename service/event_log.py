@@ -79,7 +79,7 @@ class EventLog(Watched):
             if len(ring) < capacity:
                 ring.append(event)
             else:
-                ring[(event.id - self._before - 1) % capacity] = event
+                ring[(event.id - self.before - 1) % capacity] = event
             self._newest = event.id
         if events:
             self._wake_watchers()
