@@ -66,9 +66,9 @@ LOG: Steps = (
         step INTEGER PRIMARY KEY, batch INTEGER NOT NULL, boot INTEGER NOT NULL,
         at INTEGER NOT NULL, version TEXT NOT NULL, state BLOB NOT NULL
     );
-    -- Steps that were lost after a batch.
+    -- Steps that were lost at the end of a batch.
     CREATE TABLE holes (
-        number INTEGER PRIMARY KEY, batch INTEGER NOT NULL, boot INTEGER NOT NULL,
+        batch INTEGER PRIMARY KEY, boot INTEGER NOT NULL, after_step INTEGER NOT NULL,
         steps INTEGER NOT NULL, events INTEGER NOT NULL,
         from_at INTEGER NOT NULL, to_at INTEGER NOT NULL, reason TEXT NOT NULL
     );
