@@ -16,7 +16,7 @@ from service.storage.journal import Boot
 from service.storage.sqlite.batch import Batch, Changes, Flight, Key
 from service.storage.sqlite.connection import finish, new_file, open_to_write
 from service.storage.sqlite.log_summary import LogSummary, summary_of
-from service.storage.sqlite.schema import LOG, admit, bring_up, describe
+from service.storage.sqlite.schema import LOG, bring_up, describe, examine
 
 _COMPRESSION = 1
 _CHECKPOINT_AT_PAGES = 1_000
@@ -56,9 +56,10 @@ class LogFile:
             NewerFileError: A later version wrote it.
             apsw.Error: It cannot be read or written.
         """
+        examine(path, LOG)
         connection = open_to_write(path)
         try:
-            admit(connection, path, LOG)
+            bring_up(connection, path, LOG)
             return cls(path, number, connection)
         except BaseException:
             connection.close(True)
