@@ -10,12 +10,13 @@ from domain.errors import PilothouseError
 from domain.inputs import Restored
 from domain.kept import Kept, KeptEmergencyStop
 from service.clock import since_epoch, to_datetime
+from service.codec.codec import KEPT
+from service.codec.names import NAMES
 from service.storage.errors import UnusableFolderError
 from service.storage.id_blocks import BOOT, CHANGE, EVENT, TASK, IdBlocks, IdKind, unreserved
 from service.storage.journal import Boot, Found, Plain
-from service.storage.records import kept_from_text, kept_to_text, kind_name
 from service.storage.sqlite.batch import IDS, OWN, Changes
-from service.storage.sqlite.connection import FAILURES, PRIVATE_FOLDER, words
+from service.storage.sqlite.connection import FAILURES, words
 from service.storage.sqlite.folder import DEFAULT_RETENTION, Folder, Report, Retention, Start
 from service.storage.sqlite.folder_lock import FolderLock
 from service.storage.sqlite.log_file import Next, Run
@@ -64,8 +65,7 @@ def open_folder(settings: StoreSettings, boot: Boot) -> Opened:
     """
     places = Places(settings.folder)
     try:
-        for folder in (places.folder, places.logs):
-            folder.mkdir(mode=PRIVATE_FOLDER, parents=True, exist_ok=True)
+        places.make()
         lock = FolderLock(places.lock)
     except OSError as error:
         raise UnusableFolderError(f"{places.folder} cannot be used: {words(error)}") from error
@@ -137,7 +137,7 @@ def _first_changes(first: Restored, blocks: IdBlocks, boot: Boot) -> Changes:
     changes: Changes = {}
     if first.stop_because:
         stop = KeptEmergencyStop(True, "", first.stop_because, boot.started_at)
-        changes[kind_name(KeptEmergencyStop), stop.name] = kept_to_text(stop)
+        changes[NAMES[KeptEmergencyStop], stop.name] = KEPT.encode(stop)
     for kind, end in ({BOOT: first.boot + 1} | blocks.reserve()).items():
         changes[IDS, kind] = str(end).encode()
     return changes
@@ -155,7 +155,7 @@ def _read_back(left: Left) -> tuple[tuple[Kept, ...], tuple[str, ...]]:
         if kind in (IDS, OWN):
             continue
         try:
-            values.append(kept_from_text(text))
+            values.append(KEPT.decode(text))
         except PilothouseError as error:
             left_out.append(f"{kind} {name!r}: {error.message}")
     return tuple(values), tuple(left_out)

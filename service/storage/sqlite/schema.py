@@ -13,6 +13,9 @@ from typing import TypeAlias
 
 import apsw
 
+from service.codec.codec import VERSION
+from service.storage.sqlite.connection import reading
+
 Steps: TypeAlias = Sequence[str]
 """SQL of each step, from an empty file on."""
 
@@ -64,9 +67,9 @@ LOG: Steps = (
         step INTEGER PRIMARY KEY, batch INTEGER NOT NULL, boot INTEGER NOT NULL,
         at INTEGER NOT NULL, version TEXT NOT NULL, state BLOB NOT NULL
     );
-    -- Steps that were lost after a batch.
+    -- Steps that were lost at the end of a batch.
     CREATE TABLE holes (
-        number INTEGER PRIMARY KEY, batch INTEGER NOT NULL, boot INTEGER NOT NULL,
+        batch INTEGER PRIMARY KEY, boot INTEGER NOT NULL, after_step INTEGER NOT NULL,
         steps INTEGER NOT NULL, events INTEGER NOT NULL,
         from_at INTEGER NOT NULL, to_at INTEGER NOT NULL, reason TEXT NOT NULL
     );
@@ -77,6 +80,10 @@ APPLICATION_ID = 0x50494C54
 """Marks the files as ours for `file` and others: PILT."""
 _SPARE_BYTES = 4 * 2**20
 """Free space that a migration leaves, beside twice the size of the file."""
+
+
+class BrokenFileError(Exception):
+    """A file does not hold what it should."""
 
 
 class NewerFileError(Exception):
@@ -92,18 +99,20 @@ def version_of(connection: apsw.Connection) -> int:
     return int(connection.pragma("user_version"))
 
 
+def describe(connection: apsw.Connection, **meta: object) -> None:
+    """Write down what a new file is; the version of its records is added."""
+    connection.executemany("INSERT INTO meta VALUES (?, ?)", [*meta.items(), ("records", VERSION)])
+
+
 def bring_up(connection: apsw.Connection, path: Path, steps: Steps) -> None:
     """Take a file through the steps that it lacks: all of them, or none.
 
     Raises:
-        NewerFileError: It is of a later version.
         NoSpaceError: There is not enough free space.
         apsw.Error: It cannot be written.
     """
     version = version_of(connection)
-    if version > len(steps):
-        raise NewerFileError(f"version {version} of the file; this release knows {len(steps)}")
-    if version == len(steps):
+    if version >= len(steps):
         return
     if version:
         _require_space(path)
@@ -112,6 +121,28 @@ def bring_up(connection: apsw.Connection, path: Path, steps: Steps) -> None:
             connection.execute(step)
         connection.pragma("application_id", APPLICATION_ID)
         connection.pragma("user_version", len(steps))
+
+
+def examine(path: Path, steps: Steps) -> None:
+    """Check that a file is whole, and that this release can read it; change nothing.
+
+    Raises:
+        BrokenFileError: It is damaged, or it is empty.
+        NewerFileError: It is of a later version, or holds records of one.
+        apsw.Error: It cannot be read, or it is no database.
+    """
+    with reading(path) as connection:
+        version = version_of(connection)
+        if not version:
+            raise BrokenFileError("it is empty")
+        if version > len(steps):
+            raise NewerFileError(f"version {version} of the file; this release knows {len(steps)}")
+        found = connection.pragma("quick_check")
+        if found != "ok":
+            raise BrokenFileError(str(found))
+        records = connection.execute("SELECT value FROM meta WHERE name = 'records'").get
+        if not isinstance(records, int) or records > VERSION:
+            raise NewerFileError(f"records of version {records}; this release knows {VERSION}")
 
 
 def _require_space(path: Path) -> None:
