@@ -56,7 +56,7 @@ def draw(runs: Sequence[Run], file: Path) -> None:
     for side, latency in zip(axes, (_STOP, _START), strict=True):
         _draw(side, runs, latency)
     axes[0].set_ylabel("share of the runs, %")
-    axes[1].legend(loc="upper left")
+    figure.legend(*axes[1].get_legend_handles_labels(), loc="outside right center")
     figure.savefig(file, dpi=100)
     pyplot.close(figure)
 
