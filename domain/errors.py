@@ -9,6 +9,7 @@
     |   +-- UnknownChangeError
     |   +-- UnknownParameterError
     |   +-- UnknownTaskError
+    |   +-- UnknownEventError
     |   +-- UnknownControllerError
     +-- InvalidValueError             a value that is never valid: type, range, NaN
     |   +-- FarStartError             a path that begins too far from the vehicle
@@ -146,6 +147,12 @@ class UnknownTaskError(UnknownNameError):
     code = "UNKNOWN_TASK"
 
 
+class UnknownEventError(UnknownNameError):
+    """An unknown event: it never happened, or it is too old to be kept."""
+
+    code = "UNKNOWN_EVENT"
+
+
 class UnknownControllerError(UnknownNameError):
     """An unknown path tracker."""
 
@@ -252,13 +259,15 @@ class OutdatedReadingError(RefusedError):
 
 
 class ReservedHoldError(RefusedError):
-    """A hold that only Pilothouse sets and releases."""
+    """A hold that only Pilothouse sets."""
 
     code = "RESERVED_HOLD"
 
-    def __init__(self, owner: str) -> None:
-        super().__init__(f"only Pilothouse sets and releases the hold {owner!r}")
-        self.hint = "it is released with its cause; use another name, such as operator"
+    def __init__(self, owner: str, *, is_released_by_people: bool = False) -> None:
+        verbs = "sets" if is_released_by_people else "sets and releases"
+        super().__init__(f"only Pilothouse {verbs} the hold {owner!r}")
+        other = "use another name, such as operator"
+        self.hint = other if is_released_by_people else f"it is released with its cause; {other}"
 
 
 class TooManyHoldsError(RefusedError):
@@ -286,3 +295,4 @@ class StorageDegradedError(PilothouseError):
 
     def __init__(self, reason: str) -> None:
         super().__init__(f"nothing was done, since it cannot be stored: {reason}")
+        self.reason = reason

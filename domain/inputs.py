@@ -272,6 +272,11 @@ class Restored:
     stop_because: str = ""
     """Why the emergency stop is engaged, whatever is kept; empty: it is as it was kept."""
 
+    @property
+    def is_restart(self) -> bool:
+        """Tell whether the service ran before; its first run has nothing to bring back."""
+        return self.boot > 1 or bool(self.kept) or bool(self.stop_because)
+
 
 ChangeRequest: TypeAlias = ModeRequest | TransitionRequest | ParametersRequest
 DriveRequest: TypeAlias = TaskRequest | CancelTaskRequest | HoldRequest | ReleaseRequest

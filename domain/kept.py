@@ -6,30 +6,33 @@ version is read without them.
 """
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import TypeAlias
 
 from domain.identifiers import ChangeId, TaskId
-from domain.lifecycle import Transition
+from domain.lifecycle import LifecycleState, Transition
 from domain.parameters import ParameterValue
 from domain.paths.path import Path
 from domain.state_and_mode import PartName, StateAndMode
 from domain.timebase import Instant
+from domain.vehicle import VehicleState
 
 
 @dataclass(frozen=True, slots=True)
 class KeptTarget:
-    """What was requested of a part last; what follows for its parts is derived again."""
+    """A requested target that is in force for some part; those below it are derived again."""
 
     part: PartName
     target: StateAndMode
     order: int
     """Rises with each request: a later one prevails where two concern the same part."""
+    staying: Mapping[PartName, LifecycleState] = field(default_factory=dict)
+    """Nodes below in which the request was not legal, and the state that each is to keep."""
 
     @property
     def name(self) -> str:
-        """Return its name among those of its kind."""
-        return self.part
+        """Return its name: two modes of a system may name different parts, and both be in force."""
+        return str(self.order)
 
 
 @dataclass(frozen=True, slots=True)
@@ -131,8 +134,10 @@ class KeptProgress:
     ended_as: str | None = None
     """Its last status; None: it has not ended."""
     reason: str | None = None
-    """Why it is held, or how it ended."""
+    """How it ended; None: it has not, or there is nothing more to say."""
     ended_at: Instant | None = None
+    seen: VehicleState | None = None
+    """The vehicle when it had got so far: what it rolls thereafter, unseen, is driven."""
 
     @property
     def name(self) -> str:

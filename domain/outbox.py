@@ -1,6 +1,6 @@
 """Gathers the consequences of one input: commands, events with causes, and changed views."""
 
-from dataclasses import dataclass
+from typing import NamedTuple
 
 from domain.actor import NOBODY, Actor
 from domain.commands import Command
@@ -12,9 +12,8 @@ from domain.state_and_mode import PartName
 from domain.timebase import Instant
 
 
-@dataclass(frozen=True, slots=True)
-class Outputs:
-    """The consequences of one input."""
+class Outputs(NamedTuple):
+    """The consequences of one input; a tuple, since there are thousands a second."""
 
     commands: tuple[Command, ...] = ()
     events: tuple[RecordedEvent, ...] = ()
@@ -78,6 +77,10 @@ class Outbox:
         """
         self._at, self._input, self._actor, self._cause = now, event, actor, cause
         self._input_id = None
+
+    def number_events_from(self, first: int) -> None:
+        """Give the next event this id: those before may have been told by an earlier run."""
+        self._next_event = first
 
     @property
     def actor(self) -> Actor:

@@ -23,6 +23,7 @@ from domain.lifecycle import Transition
 from domain.outbox import Outbox, Outputs
 from domain.parts.parts import Parts
 from domain.parts.system_model import SmhModel
+from domain.restart import Restart
 from domain.robot_state import RobotState
 from domain.snapshot import (
     ChangeView,
@@ -87,6 +88,7 @@ class Supervision:
         self._changing = Changing(self._parts, self._health, settings.changes, self._outbox)
         # Driving stops the vehicle before the state is published and changes continue.
         self._concerns: tuple[Concern, ...] = (
+            Restart(self._outbox),
             self._parts,
             self._health,
             self._emergency_stop,
@@ -180,7 +182,10 @@ class Supervision:
     def _settle(self) -> None:
         settle(self._settling, self._now, self._max_rounds)
         self._wake_at = self._next_wake()
-        self._has_more = any(concern.has_more for concern in self._portioned)
+        self._has_more = False
+        for concern in self._portioned:
+            if concern.has_more:
+                self._has_more = True
 
     def _next_wake(self) -> Instant | None:
         due = None

@@ -36,6 +36,7 @@ from domain.errors import (
     UnknownChangeError,
     UnknownControllerError,
     UnknownErrorNameError,
+    UnknownEventError,
     UnknownModeError,
     UnknownNameError,
     UnknownParameterError,
@@ -43,6 +44,7 @@ from domain.errors import (
     UnknownSignalError,
     UnknownTaskError,
 )
+from service.checkpoint import CheckpointError
 from service.clock import Clock
 from service.codec.errors import CodecError
 from service.files.csv_table import InvalidWaypointsError
@@ -63,6 +65,7 @@ STATUS_OF: Mapping[type[PilothouseError], HTTPStatus] = {
     UnknownErrorNameError: HTTPStatus.NOT_FOUND,
     UnknownChangeError: HTTPStatus.NOT_FOUND,
     UnknownTaskError: HTTPStatus.NOT_FOUND,
+    UnknownEventError: HTTPStatus.NOT_FOUND,
     # Modes and parameters are named in bodies, not in paths.
     UnknownModeError: HTTPStatus.UNPROCESSABLE_ENTITY,
     UnknownParameterError: HTTPStatus.UNPROCESSABLE_ENTITY,
@@ -73,6 +76,7 @@ STATUS_OF: Mapping[type[PilothouseError], HTTPStatus] = {
     InvalidBodyError: HTTPStatus.UNPROCESSABLE_ENTITY,
     StopTakenError: HTTPStatus.UNPROCESSABLE_ENTITY,
     CodecError: HTTPStatus.UNPROCESSABLE_ENTITY,
+    CheckpointError: HTTPStatus.UNPROCESSABLE_ENTITY,
     InvalidModelError: HTTPStatus.UNPROCESSABLE_ENTITY,
     TooComplexError: HTTPStatus.UNPROCESSABLE_ENTITY,
     OutOfMemoryError: HTTPStatus.UNPROCESSABLE_ENTITY,

@@ -31,6 +31,7 @@ from domain.inputs import (
     NodeReport,
     ParametersRequest,
     ReportBacklog,
+    Restored,
     TransitionRequest,
 )
 from domain.lifecycle import LifecycleState, Transition
@@ -71,6 +72,7 @@ class Changing(Concern):
             NodeAnswer: self._take_answer,
             BackendStatus: self._take_backend_status,
             ReportBacklog: self._take_backlog,
+            Restored: self._changes.restore,
         }
 
     def wake_at(self) -> Instant | None:
@@ -98,6 +100,7 @@ class Changing(Concern):
         part = check_request(self._parts.model, self._parts.facts, request)
         goal = self._admit(request)
         self._outbox.begin(now, _described(part, request), request.actor)
+        self._parts.note_request(part)
         self._outbox.change = self._changes.begin(part, request, goal, now)
         self._restoring.forget(goal.targets)
 

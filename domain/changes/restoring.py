@@ -1,7 +1,8 @@
 """Restores nodes that reappear to their targets.
 
 Only nodes that the settings name: a node that changes state because its process was restarted would
-be a surprise, unless it was configured. Nothing else begins a change that nobody requested.
+be a surprise, unless it was configured. Nothing else begins a change that nobody requested. After a
+restart of the service, nodes that wait for an operator are left as they are.
 """
 
 from collections.abc import Callable, Iterable
@@ -77,7 +78,7 @@ class Restoring:
         Its state was unknown before; or a complete report says that it is unconfigured, without a
         transition there: its process was restarted before it was found missing.
         """
-        if report.node not in self._restored:
+        if report.node not in self._restored or self._parts.waits_for_operator(report.node):
             return False
         known = self._parts.state_before
         if known is LifecycleState.UNKNOWN:

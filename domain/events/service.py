@@ -1,8 +1,8 @@
-"""Events of the service itself: writes, stalls and time."""
+"""Events of the service itself: writes, restarts, stalls and time."""
 
 from dataclasses import dataclass
 
-from domain.events.event import Event
+from domain.events.event import Event, because
 
 
 @dataclass(frozen=True, slots=True)
@@ -24,6 +24,58 @@ class WriteAnswered(Event):
 
     def _words(self) -> str:
         return f"{self.method} {self.path} from {self.address} answered {self.status}"
+
+
+@dataclass(frozen=True, slots=True)
+class ServiceRestored(Event):
+    """The service runs again, with what an earlier run of it left.
+
+    Nothing that is restored starts anything: a task is held, and parts wait for a request.
+    """
+
+    kind = "service.restored"
+    is_input = True
+
+    boot: int
+    """Number of this run, from 1."""
+    targets: int
+    """Requests whose targets are in force again."""
+    changes: int
+    """Changes that had not ended; they failed."""
+    tasks: int
+    """Tasks that had not ended; they are held."""
+    holds: int
+    errors: int
+    """Errors that an operator has yet to acknowledge."""
+    emergency_stop: bool
+    """Whether the emergency stop is engaged."""
+    reason: str
+    """Why it is, whatever was kept; empty: it is as it was kept."""
+
+    def _words(self) -> str:
+        told = [
+            _counted(self.targets, "requested target"),
+            _counted(self.changes, "change", " failed"),
+            _counted(self.tasks, "task", " held"),
+            _counted(self.holds, "hold"),
+            _counted(self.errors, "error", " to acknowledge"),
+            because("emergency stop engaged", self.reason) if self.emergency_stop else "",
+        ]
+        what = ", ".join(filter(None, told)) or "nothing was kept"
+        return f"restored after a restart: {what}"
+
+
+@dataclass(frozen=True, slots=True)
+class NotRestored(Event):
+    """Something that was kept is not restored, for a reason, and is no longer kept."""
+
+    kind = "service.not_restored"
+
+    what: str
+    reason: str
+
+    def _words(self) -> str:
+        return because(f"{self.what} is not restored", self.reason)
 
 
 @dataclass(frozen=True, slots=True)
@@ -77,3 +129,8 @@ class StorageRecovered(Event):
 
     def _words(self) -> str:
         return "storage works again"
+
+
+def _counted(count: int, noun: str, more: str = "") -> str:
+    """Return such as `2 holds`; empty: there are none."""
+    return f"{count} {noun}{'' if count == 1 else 's'}{more}" if count else ""

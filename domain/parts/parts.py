@@ -15,10 +15,10 @@ from domain.events.parts import (
     PartActualChanged,
 )
 from domain.identifiers import ChangeId
-from domain.inputs import NodeReport
+from domain.inputs import NodeReport, Restored
 from domain.lifecycle import LifecycleState
 from domain.outbox import Outbox
-from domain.parameters import value_type
+from domain.parameters import check_values
 from domain.parts.convergence import is_there
 from domain.parts.deviations import Deviations
 from domain.parts.mode_inference import ModeInference
@@ -26,6 +26,7 @@ from domain.parts.node_facts import NodeFacts
 from domain.parts.reachability import Reachability
 from domain.parts.system_model import SmhModel
 from domain.parts.targets import Targets
+from domain.parts.waiting_parts import WaitingParts
 from domain.snapshot import Actual, ParameterView, PartView
 from domain.state_and_mode import DEFAULT_MODE, PartName, StateAndMode
 from domain.timebase import Instant
@@ -56,12 +57,15 @@ class Parts(Concern):
         self._targets = Targets(self.inference)
         self._deviations = Deviations(self.inference)
         self._reachability = Reachability(model)
+        self._waiting = WaitingParts(model)
         self._outbox = outbox
         self._told: dict[PartName, Actual] = {}
         self._touched: set[PartName] = set()
         """Parts about which something changed since the last `settle`."""
         self._moved: set[PartName] = set()
         """Those of them whose actual or target changed, so that a deviation may begin or end."""
+        self._untold: set[PartName] = set()
+        """Those of them whose actual may differ from the published one."""
         self._to_look: dict[PartName, _Cause] = {}
         """Parts whose deviations are told in later turns; their views show them already."""
         self._views: dict[PartName, PartView] = {}
@@ -76,7 +80,24 @@ class Parts(Concern):
     @property
     def takes(self) -> Takers:
         """Return the handler of each class of input."""
-        return {NodeReport: self.take_report}
+        return {Restored: self.take_restored, NodeReport: self.take_report}
+
+    def take_restored(self, restored: Restored, now: Instant) -> None:
+        """After a restart, let all parts wait for an operator."""
+        if restored.is_restart:
+            self._waiting.begin()
+
+    def note_request(self, part: PartName) -> None:
+        """Note that an operator requests something of a part; it and those below wait no more."""
+        self._waiting.end(part)
+
+    def waits_for_operator(self, part: PartName) -> bool:
+        """Tell whether nothing may activate or restore a part by itself.
+
+        So it is after a restart until somebody requests something of the part, or of a system that
+        contains it.
+        """
+        return self._waiting.includes(part)
 
     def take_report(self, report: NodeReport, now: Instant) -> None:
         """Process a report of a node, and publish what it changed.
@@ -85,8 +106,8 @@ class Parts(Concern):
             InvalidValueError: A value is not a ROS 2 parameter value.
             UnknownPartError: The node is not in the model.
         """
-        for value in (report.parameters or {}).values():
-            value_type(value)
+        if report.parameters:
+            check_values(report.parameters.values())
         facts = self.inference.facts_of(report.node)
         if self._to_look:
             self._look_late(sorted({report.node, *self.model.ancestors[report.node]}), now)
@@ -94,15 +115,16 @@ class Parts(Concern):
         self.state_before = facts.known_state
         changed = self.inference.report(report, now)
         self._note_reachable(report.node, reachable=bool(facts.reachable))
-        self.touch(changed)
+        self._touched |= changed
         self._moved |= changed
         self._tell_actuals(changed)
 
     def ask(self, wanted: Mapping[PartName, StateAndMode]) -> None:
         """Set requested targets; they are in force at once."""
         moved = self._targets.ask(wanted) | wanted.keys()
-        self.touch(moved)
+        self._touched |= moved
         self._moved |= moved
+        self._untold |= moved
 
     def put_under(self, change: ChangeId, parts: Iterable[PartName]) -> None:
         """Record that a change drives parts; it replaces an earlier one."""
@@ -131,14 +153,16 @@ class Parts(Concern):
 
     def settle(self, now: Instant) -> bool:
         """Publish states of changed parts, and deviations that began or ended."""
-        touched, self._touched = self._touched, set()
-        if not touched:
+        if not self._touched:
             return False
+        touched, self._touched = self._touched, set()
         self._outbox.parts |= touched
         for part in touched:
             self._views.pop(part, None)
+        if self._untold:
+            untold, self._untold = self._untold, set()
+            self._tell_actuals(untold)
         moved, self._moved = sorted(self._moved), set()
-        self._tell_actuals(moved)
         for part in moved[:LOOKS_AT_ONCE]:
             self._to_look.pop(part, None)
             self._look(part, now)
@@ -214,9 +238,10 @@ class Parts(Concern):
 
     def _tell_actuals(self, parts: Iterable[PartName]) -> None:
         """Publish the parts whose actual state or mode differs from the last published one."""
-        for part in sorted(parts):
-            actual, was = self.inference.actual(part), self._told.get(part, _UNKNOWN)
-            if actual is was or (actual.state is was.state and actual.mode == was.mode):
+        actuals, told = self.inference.actuals, self._told
+        for part in sorted([p for p in parts if actuals[p] is not told.get(p)]):
+            actual, was = actuals[part], told.get(part, _UNKNOWN)
+            if actual.state is was.state and actual.mode == was.mode:
                 continue
             self._told[part] = actual
             self._outbox.emit(

@@ -9,12 +9,15 @@ from domain.inputs import Input
 from domain.kept import Keeping, Kept
 from service.codec.errors import CodecError
 from service.codec.json_text import from_text, to_text
+from service.codec.recorded_step import RecordedStep
 from service.codec.records import Shapes
 
 VERSION = 1
 """Of the format; whoever stores or sends records says with which version they were written."""
 MAX_BYTES = 8 * 2**20
 """Largest size of one record; a path of most waypoints takes 3.2 MB."""
+MAX_STEP_BYTES = 2**29
+"""Largest size of a step; the first one of a run brings the paths of a hundred tasks back."""
 
 Record = TypeVar("Record")
 
@@ -77,3 +80,4 @@ EVENTS: Codec[RecordedEvent] = Codec(RecordedEvent)
 KEPT: Codec[Kept] = Codec(*get_args(Kept))
 KEEPINGS: Codec[Keeping] = Codec(Keeping)
 ACTORS: Codec[Actor] = Codec(Actor)
+STEPS: Codec[RecordedStep] = Codec(RecordedStep, most_bytes=MAX_STEP_BYTES)

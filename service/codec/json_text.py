@@ -14,6 +14,8 @@ from service.codec.errors import CodecError
 Json: TypeAlias = Any
 """None, bool, int, float, str, or lists and dictionaries of them."""
 
+_LONG = 2**16
+
 SPECIAL_FLOATS: Mapping[str, float] = {"nan": math.nan, "inf": math.inf, "-inf": -math.inf}
 
 
@@ -25,8 +27,9 @@ def to_text(value: Json) -> bytes:
     """
     try:
         text = to_json(value, inf_nan_mode="constants")
-        # Those letters may belong to a text; then the second pass changes nothing.
-        if b"NaN" in text or b"Infinity" in text:
+        # The letters may belong to a text; then the second pass changes nothing. It takes less
+        # time than to search a long one, such as a path.
+        if len(text) > _LONG or b"NaN" in text or b"Infinity" in text:
             text = to_json(_with_objects(value))
     except ValueError as error:
         raise CodecError(f"cannot be written as JSON: {error}") from error

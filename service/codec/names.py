@@ -12,10 +12,12 @@ from domain import commands, inputs, kept
 from domain.actor import Actor
 from domain.events.event import RecordedEvent
 from domain.events.kinds import EVENTS
+from service.codec.recorded_step import RecordedStep
 
 NAMES: Mapping[type, str] = {
     Actor: "actor",
     RecordedEvent: "recorded_event",
+    RecordedStep: "recorded_step",
     # Inputs.
     inputs.NodeReport: "node_report",
     inputs.NodeAnswer: "node_answer",

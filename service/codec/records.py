@@ -4,16 +4,16 @@ Nothing is guessed from a record: what may be built is settled by the hints, bef
 """
 
 import types
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import MISSING, Field, fields, is_dataclass
 from enum import StrEnum
-from operator import attrgetter
 from typing import Any, Union, get_args, get_origin, get_type_hints
 
 from domain.errors import PilothouseError, near_match, shortened
 from domain.events.event import Event
 from domain.events.kinds import EVENTS
 from domain.paths.path import Path
+from service.codec.compiled import compile_writer
 from service.codec.errors import CodecError
 from service.codec.json_text import Json
 from service.codec.names import NAMES
@@ -64,7 +64,7 @@ class Shapes:
         readers: dict[str, Read] = {}
         for kind in kinds:
             name, shapes = _name_of(kind), self._of_fields(kind)
-            writers[kind] = _writer(kind, shapes, {TAG: name})
+            writers[kind] = compile_writer(kind, shapes, {TAG: name})
             readers[name] = _reader(kind, shapes)
 
         def write(value: Any) -> Json:  # noqa: ANN401  # one of `kinds`
@@ -89,7 +89,7 @@ class Shapes:
     def _of_class(self, kind: type) -> Shape:
         if kind not in self._classes:
             shapes = self._of_fields(kind)
-            read, write = _reader(kind, shapes), _writer(kind, shapes, {})
+            read, write = _reader(kind, shapes), compile_writer(kind, shapes, {})
             self._classes[kind] = Shape((dict,), read, write, is_of=(kind,))
         return self._classes[kind]
 
@@ -139,43 +139,6 @@ def _of_names(kinds: tuple[type, ...]) -> Shape:
             raise CodecError(f"unknown kind of record {shortened(plain)!r}") from None
 
     return Shape((str,), read, names.__getitem__)
-
-
-def _is_left_out(item: "Field[Any]") -> bool:
-    """Tell whether a field is left out that holds its default.
-
-    Not for numbers: 0 equals 0.0 and -0.0, and False.
-    """
-    return item.default is None or isinstance(item.default, str)
-
-
-def _writer(kind: type, shapes: Mapping[str, Shape], head: Mapping[str, str]) -> Write:
-    """Return the function that writes an object of a class; it begins with `head`."""
-    names = tuple(shapes)
-    left_out = tuple((item.name, item.default) for item in fields(kind) if _is_left_out(item))
-    written = tuple((name, shape.write) for name, shape in shapes.items() if shape.write)
-    take = _values_of(names)
-
-    def write(value: Any) -> Json:  # noqa: ANN401  # of the class
-        plain = {**head}
-        plain.update(zip(names, take(value)))  # noqa: B905  # as many, and this is called often
-        for name, default in left_out:
-            if plain[name] == default:
-                del plain[name]
-        for name, write_field in written:
-            if name in plain:
-                plain[name] = write_field(plain[name])
-        return plain
-
-    return write
-
-
-def _values_of(names: tuple[str, ...]) -> Callable[[Any], tuple[Any, ...]]:
-    """Return the function that returns these fields of a value."""
-    if len(names) > 1:
-        return attrgetter(*names)
-    # attrgetter of one name returns no tuple.
-    return lambda value: tuple([getattr(value, name) for name in names])
 
 
 def _reader(kind: type, shapes: Mapping[str, Shape]) -> Read:

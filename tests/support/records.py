@@ -17,7 +17,8 @@ from domain.events.event import Event, RecordedEvent
 from domain.inputs import Input
 from domain.kept import Keeping, Kept
 from domain.paths.path import Path
-from service.codec.codec import ACTORS, COMMANDS, EVENTS, INPUTS, KEEPINGS, KEPT, Codec
+from service.codec.codec import ACTORS, COMMANDS, EVENTS, INPUTS, KEEPINGS, KEPT, STEPS, Codec
+from service.codec.recorded_step import RecordedStep
 
 
 def _concrete(kind: type[Event]) -> Iterator[type[Event]]:
@@ -36,6 +37,7 @@ CODECS: tuple[tuple[Codec[Any], tuple[type, ...]], ...] = (
     (KEPT, get_args(Kept)),
     (KEEPINGS, (Keeping,)),
     (ACTORS, (Actor,)),
+    (STEPS, (RecordedStep,)),
 )
 EVENT_CLASSES = tuple(_concrete(Event))
 RECORDS: tuple[tuple[type, Codec[Any]], ...] = tuple(

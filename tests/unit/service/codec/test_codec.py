@@ -173,24 +173,6 @@ def test_what_is_no_record_is_rejected_with_the_place(text: bytes, message: str)
         INPUTS.decode(text)
 
 
-@pytest.mark.parametrize(
-    ("waypoints", "message"),
-    [
-        ("?", "not waypoints in base64"),
-        ("AAAA", "not waypoints in base64"),
-        ("", "2 to 100000 waypoints, not 0"),
-        ("A" * 64, "all waypoints are at the same position"),
-        ("//////////8" * 8, ""),
-    ],
-)
-def test_waypoints_that_are_no_path_are_rejected(waypoints: str, message: str) -> None:
-    task = {"is": "task_request", "path": waypoints, "start_index": 1}
-    text = json.dumps(task | {"controller": "stanley", "speed_mps": 1.0}).encode()
-
-    with pytest.raises(CodecError, match=f"path: .*{message}"):
-        INPUTS.decode(text)
-
-
 def test_a_record_that_is_too_long_is_not_even_parsed() -> None:
     with pytest.raises(CodecError, match=f"at most {MAX_BYTES} bytes, not {MAX_BYTES + 1}"):
         INPUTS.decode(b"[" * (MAX_BYTES + 1))
