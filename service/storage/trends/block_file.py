@@ -12,6 +12,7 @@ from pathlib import Path
 import apsw
 
 from domain.timebase import Duration, Instant
+from service.storage.sqlite.connection import open_to_write
 from service.storage.trends.tiers import Tier
 
 MEMORY = ":memory:"
@@ -62,9 +63,11 @@ class BlockFile:
         Raises:
             ForeignVersionError: It is of a newer version.
             apsw.Error: It cannot be opened, or is no such file.
+            OSError: It cannot be created.
         """
         self._tiers = tuple(tiers)
-        self._connection = apsw.Connection(path)
+        in_memory = path == MEMORY
+        self._connection = apsw.Connection(path) if in_memory else open_to_write(Path(path))
         try:
             self._prepare(path)
             self._bytes = {tier.name: self._measured(tier) for tier in tiers}
@@ -157,9 +160,8 @@ class BlockFile:
         version = self._value("PRAGMA user_version") or 0
         if version > VERSION:
             raise ForeignVersionError(path, version)
-        run("PRAGMA journal_mode = WAL")
         run("PRAGMA synchronous = NORMAL")
-        run("PRAGMA mmap_size = 0")
+        run("PRAGMA wal_autocheckpoint = 1000")
         with self._connection:
             run(
                 "CREATE TABLE IF NOT EXISTS signals"
