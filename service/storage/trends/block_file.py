@@ -110,6 +110,7 @@ class BlockFile:
         """
         name = self._tiers[tier].name
         upto = self._newest(self._tiers[tier - 1]) if tier else 0
+        size, freed = self._bytes[name] + sum(map(_size, blocks)), 0
         with self._connection as connection:
             connection.executemany(
                 f"INSERT INTO {name}(signal, from_at, to_at, bytes, rows, ran, upto, errors, data)"
@@ -119,7 +120,6 @@ class BlockFile:
                     for b in blocks
                 ],
             )
-            size = self._bytes[name] + sum(map(_size, blocks))
             freed = self._free(self._tiers[tier], size, ran)
         self._bytes[name] = size - freed
 
