@@ -32,7 +32,7 @@ from service.ports import RobotBackend
 from service.readings import DirectReadings, ReadingInput, Submit
 from service.refused_readings import RefusedReadings
 from service.running import run_forever
-from service.storage.journal import Journal, Step
+from service.storage.journal import NOTHING_KEPT, Journal, Step, StorageStatus
 from service.storage.trends.sampling import Sampling
 from service.submitter import Submitter
 from service.watchdog import hanging
@@ -184,6 +184,11 @@ class Supervisor:
         if self._keeper is None:
             return Taken(self.submit(given), is_durable=False)
         return await self._keeper.request(given, volatile=volatile)
+
+    @property
+    def storage(self) -> StorageStatus:
+        """Return how storage is doing."""
+        return NOTHING_KEPT if self.journal is None else self.journal.status()
 
     def hanging(self) -> str | None:
         """Return what of the supervision hangs, in words; None: all goes on."""
