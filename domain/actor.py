@@ -23,5 +23,8 @@ class Actor:
         return self.name or ":".join(filter(None, (self.way, self.address)))
 
 
+SERVICE = Actor("service")
+"""The service itself; whoever comes from outside comes through an interface."""
+
 NOBODY = Actor()
 """Nobody in particular: the robot itself, or time."""

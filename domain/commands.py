@@ -8,7 +8,7 @@ from domain.lifecycle import Transition
 from domain.parameters import Parameters
 from domain.paths.path import Path
 from domain.state_and_mode import PartName
-from domain.vehicle import DriveCommand
+from domain.vehicle import DriveCommand, VehicleState
 
 
 @dataclass(frozen=True, slots=True)
@@ -60,6 +60,11 @@ class SendGoal:
     """Distance along the path, from waypoint 0, that earlier goals of the task reached, in m."""
     left_out_m: float = 0.0
     """Part of `reached_m` that the vehicle never came near, in m."""
+    seen: VehicleState | None = None
+    """The vehicle when `reached_m` was noted; None: no earlier goal of the task noted anything.
+
+    Navigation knows more of a goal that it preempted itself; of others, this is all.
+    """
 
 
 @dataclass(frozen=True, slots=True)

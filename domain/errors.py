@@ -259,13 +259,15 @@ class OutdatedReadingError(RefusedError):
 
 
 class ReservedHoldError(RefusedError):
-    """A hold that only Pilothouse sets and releases."""
+    """A hold that only Pilothouse sets."""
 
     code = "RESERVED_HOLD"
 
-    def __init__(self, owner: str) -> None:
-        super().__init__(f"only Pilothouse sets and releases the hold {owner!r}")
-        self.hint = "it is released with its cause; use another name, such as operator"
+    def __init__(self, owner: str, *, is_released_by_people: bool = False) -> None:
+        verbs = "sets" if is_released_by_people else "sets and releases"
+        super().__init__(f"only Pilothouse {verbs} the hold {owner!r}")
+        other = "use another name, such as operator"
+        self.hint = other if is_released_by_people else f"it is released with its cause; {other}"
 
 
 class TooManyHoldsError(RefusedError):

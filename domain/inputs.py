@@ -90,6 +90,14 @@ class BackendStatus:
 
 
 @dataclass(frozen=True, slots=True)
+class StorageStatus:
+    """Whether what happens can be written down. Without such a report, it can."""
+
+    available: bool
+    reason: str = ""
+
+
+@dataclass(frozen=True, slots=True)
 class GoalFeedback:
     """Progress of navigation towards a goal."""
 
@@ -280,6 +288,7 @@ Input: TypeAlias = (
     | VehicleReport
     | DriveStatus
     | BackendStatus
+    | StorageStatus
     | ReportBacklog
     | GoalFeedback
     | GoalResult

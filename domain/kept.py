@@ -15,6 +15,7 @@ from domain.parameters import ParameterValue
 from domain.paths.path import Path
 from domain.state_and_mode import PartName, StateAndMode
 from domain.timebase import Instant
+from domain.vehicle import VehicleState
 
 
 @dataclass(frozen=True, slots=True)
@@ -133,8 +134,10 @@ class KeptProgress:
     ended_as: str | None = None
     """Its last status; None: it has not ended."""
     reason: str | None = None
-    """Why it is held, or how it ended."""
+    """How it ended; None: it has not, or there is nothing more to say."""
     ended_at: Instant | None = None
+    seen: VehicleState | None = None
+    """The vehicle when it had got so far: what it rolls thereafter, unseen, is driven."""
 
     @property
     def name(self) -> str:

@@ -31,6 +31,7 @@ from domain.paths.approach import (
 )
 from domain.paths.path import Path
 from domain.paths.speed_profile import SpeedLimits, SpeedProfile
+from domain.tasks.kept_tasks import LOST_AT_MOST
 from domain.tasks.vehicle_watch import VehicleWatch
 from domain.timebase import Duration, Instant, seconds, to_seconds
 from domain.tracking.coverage import Coverage
@@ -100,7 +101,7 @@ class _Run:
     is_preempted: bool = False
     """Whether it only stops."""
     was_approaching: bool = False
-    """Whether the goal that it takes up was preempted before it was on the path."""
+    """Whether the goal that it takes up ended before the vehicle was on the path, or may have."""
     slow_down: SlowDown | None = None
     """It brakes, and its way onto the path begins thereafter."""
     rolled_m: float = 0.0
@@ -168,22 +169,46 @@ class Navigation:
             before = self._preempted = None
         path = goal.path.for_vehicle(self._limits)
         reached_m = max(goal.reached_m, path.distance_of(goal.first_index))
+        if before is None:
+            coverage = self._coverage(goal, path, reached_m)
+            was_approaching = self._goes_on_unseen(goal, coverage, state)
+        else:
+            coverage, was_approaching = before.coverage, before.is_approaching
         self._run = _Run(
             goal=goal,
             path=path,
             profile=SpeedProfile(path, goal.speed_mps, self.settings.speed, self._limits),
             pace=Pace(self.settings.speed, self._limits, speed),
-            coverage=self._coverage(goal, path, reached_m) if before is None else before.coverage,
+            coverage=coverage,
             next_at=now,
             target_index=goal.start_index,
             distance_m=reached_m,
-            was_approaching=before is not None and before.is_approaching,
+            was_approaching=was_approaching,
         )
 
     def _coverage(self, goal: SendGoal, path: Path, reached_m: float) -> Coverage:
         braking = min(self.settings.speed.braking_mps2, self._limits.braking_mps2 or math.inf)
         near_m = self.approach_limits.near_m
         return Coverage(path, reached_m, goal.left_out_m, near_m, braking)
+
+    def _goes_on_unseen(
+        self, goal: SendGoal, coverage: Coverage, state: VehicleState | None
+    ) -> bool:
+        """Take up what the vehicle drove while the service restarted.
+
+        Returns:
+            Whether it may have come to where it is by itself: it may also be beside the path then,
+            since it stopped with its wheels as they were.
+        """
+        seen = goal.seen
+        if seen is None or state is None:
+            return False
+        unseen_s = to_seconds(LOST_AT_MOST)
+        gained_mps = self.settings.speed.acceleration_mps2 * unseen_s
+        seen_mps = abs(seen.speed_mps)
+        fastest_mps = max(min(seen_mps + gained_mps, goal.speed_mps), seen_mps)
+        coverage.go_on_from(replace(seen, speed_mps=fastest_mps), unseen_s)
+        return coverage.may_have_rolled(state)
 
     def _preempt(self, run: _Run) -> None:
         self._preempted, run.is_preempted = run, True

@@ -8,6 +8,7 @@ from domain.findings import Blocker
 from domain.health.health import Health
 from domain.outbox import Outbox
 from domain.snapshot import SystemStateView, TaskStatus
+from domain.storage import Storage
 from domain.tasks.driving import Driving
 from domain.timebase import Instant
 
@@ -15,7 +16,8 @@ from domain.timebase import Instant
 class RobotState(Concern):
     """Publishes the state after errors and task have settled: the vehicle is stopped first."""
 
-    def __init__(self, health: Health, driving: Driving, outbox: Outbox) -> None:
+    def __init__(self, health: Health, driving: Driving, storage: Storage, outbox: Outbox) -> None:
+        self._storage = storage
         self._health = health
         self._driving = driving
         self._outbox = outbox
@@ -52,4 +54,7 @@ class RobotState(Concern):
         """
         view = self._health.system_state(self._driving.status)
         moving = self._driving.still_moving
-        return view if moving is None else replace(view, reasons=(moving, *view.reasons))
+        if moving is not None:
+            view = replace(view, reasons=(moving, *view.reasons))
+        fault = self._storage.fault
+        return view if fault is None else replace(view, storage_fault=fault)

@@ -37,6 +37,7 @@ from domain.snapshot import (
 )
 from domain.stalls import Stalls
 from domain.state_and_mode import ModeName, PartName
+from domain.storage import Storage
 from domain.tasks.driving import Driving
 from domain.tasks.settings import TaskSettings
 from domain.tasks.standstill import Standstill
@@ -82,7 +83,8 @@ class Supervision:
             self._outbox,
             start,
         )
-        self._robot_state = RobotState(self._health, self.driving, self._outbox)
+        storage = Storage(self._outbox)
+        self._robot_state = RobotState(self._health, self.driving, storage, self._outbox)
         self._changing = Changing(self._parts, self._health, settings.changes, self._outbox)
         # Driving stops the vehicle before the state is published and changes continue.
         self._concerns: tuple[Concern, ...] = (
@@ -92,6 +94,7 @@ class Supervision:
             self._emergency_stop,
             self.driving,
             Standstill(self.driving, self._emergency_stop, self._outbox),
+            storage,
             self._robot_state,
             self._changing,
             Audit(self._outbox),
@@ -179,7 +182,10 @@ class Supervision:
     def _settle(self) -> None:
         settle(self._settling, self._now, self._max_rounds)
         self._wake_at = self._next_wake()
-        self._has_more = any(concern.has_more for concern in self._portioned)
+        self._has_more = False
+        for concern in self._portioned:
+            if concern.has_more:
+                self._has_more = True
 
     def _next_wake(self) -> Instant | None:
         due = None

@@ -25,6 +25,12 @@ if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:
     signal.signal(signal.SIGINT, signal.default_int_handler)
 
 
+@pytest.fixture(scope="session", autouse=True)
+def _state_of_its_own(tmp_path_factory: pytest.TempPathFactory) -> None:
+    """Keep the tests away from what the user's own robots remember."""
+    os.environ["XDG_STATE_HOME"] = str(tmp_path_factory.mktemp("state"))
+
+
 # What takes longest begins first, so that the workers end at about the same time.
 _LONGEST_FIRST = ("browser", "docs", "process", "properties", "api", "ros2/test_interfaces.py")
 

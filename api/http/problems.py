@@ -44,7 +44,9 @@ from domain.errors import (
     UnknownSignalError,
     UnknownTaskError,
 )
+from service.checkpoint import CheckpointError
 from service.clock import Clock
+from service.codec.errors import CodecError
 from service.files.csv_table import InvalidWaypointsError
 from service.files.robot_file import InvalidRobotFileError
 from service.files.text_file import UnreadableFileError
@@ -73,6 +75,8 @@ STATUS_OF: Mapping[type[PilothouseError], HTTPStatus] = {
     InvalidWaypointsError: HTTPStatus.UNPROCESSABLE_ENTITY,
     InvalidBodyError: HTTPStatus.UNPROCESSABLE_ENTITY,
     StopTakenError: HTTPStatus.UNPROCESSABLE_ENTITY,
+    CodecError: HTTPStatus.UNPROCESSABLE_ENTITY,
+    CheckpointError: HTTPStatus.UNPROCESSABLE_ENTITY,
     InvalidModelError: HTTPStatus.UNPROCESSABLE_ENTITY,
     TooComplexError: HTTPStatus.UNPROCESSABLE_ENTITY,
     OutOfMemoryError: HTTPStatus.UNPROCESSABLE_ENTITY,

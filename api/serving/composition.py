@@ -1,20 +1,25 @@
 """Composes the service of `pilothouse serve`: the only place that names concrete adapters."""
 
 import logging
-from dataclasses import dataclass
+import os
+import secrets
+from dataclasses import dataclass, replace
 from importlib import resources
 from pathlib import Path
 from typing import Literal, TypeAlias
 
+from api.distribution import installed_version
 from api.http.limits import ServiceLimits
-from api.serving.data_folder import MEMORY
+from api.serving.data_folder import MEMORY, data_folder, robot_name
 from api.simulation.simulation_job import SimulatedParts
 from domain.simulation.mock_signals import MockSignals
 from service.clock import Clock
 from service.composite import CompositeRobot
 from service.files.model_file import LoadedModel, load_model
-from service.files.robot_file import RobotSettings, load_robot_file
+from service.files.robot_file import RobotSettings, read_robot_file
 from service.files.ros2_block import Ros2Block
+from service.files.text_file import read_text_file
+from service.keeper import NO_STORES, Stores
 from service.onboard_parts import make_onboard
 from service.ros.backend.backend import Ros2Backend
 from service.ros.gateway import RosGateway
@@ -22,8 +27,14 @@ from service.ros.graph.graph import RosGraph, UnknownTypeError
 from service.ros.interface.interface import RosInterface
 from service.simulation.from_settings import make_simulated_robot
 from service.simulation.mock_source import MockSource
+from service.simulation.remembering import memories_of, memory_in
 from service.simulation.simulated import SimulatedBackend
 from service.start_task import submit_start_task
+from service.storage.journal import Boot
+from service.storage.memory import MemoryJournal
+from service.storage.sqlite.journal import SqliteJournal
+from service.storage.sqlite.opening import StoreSettings
+from service.storage.trends.trends import Trends
 from service.supervisor import Supervisor
 
 log = logging.getLogger(__name__)
@@ -75,32 +86,87 @@ class Composition:
     """The simulated robot, which a simulation can copy; None: the robot is real."""
 
 
-def compose(options: ServeOptions, clock: Clock) -> Composition:
-    """Return the parts of a service for the robot that the options describe.
+@dataclass(frozen=True, slots=True)
+class RobotFiles:
+    """What the files say of a robot."""
+
+    name: str
+    loaded: LoadedModel
+    settings: RobotSettings
+    text: str
+    """Of the robot file; empty: there is none."""
+
+
+def read_files(options: ServeOptions) -> RobotFiles:
+    """Read model and robot file.
 
     Raises:
         UnreadableFileError: A file cannot be read.
         InvalidModelError: The model is invalid.
         InvalidRobotFileError: The robot file is invalid.
+    """
+    model = options.model or EXAMPLE
+    loaded = load_model(model)
+    text = read_text_file(options.robot) if options.robot else ""
+    settings = read_robot_file(text, loaded.model) if options.robot else RobotSettings()
+    return RobotFiles(robot_name(settings.name, model), loaded, settings, text)
+
+
+async def open_stores(options: ServeOptions, files: RobotFiles, clock: Clock) -> Stores:
+    """Open what an earlier run of the service left of the robot.
+
+    Raises:
+        UnusableFolderError: The folder is in use, of another robot, or cannot be used at all.
+    """
+    now = clock.now()
+    boot = Boot(
+        secrets.token_hex(8),
+        installed_version(),
+        now,
+        clock.wall_time(now),
+        files.loaded.text,
+        files.text,
+    )
+    folder = data_folder(options.data, files.name, os.environ)
+    signals = files.settings.to_signal_settings()
+    if folder is None:
+        return Stores(MemoryJournal(boot, clock), Trends(signals))
+    journal = await SqliteJournal.open(StoreSettings(folder, files.name), boot, clock)
+    return Stores(journal, Trends(signals, str(folder / "trends.db")))
+
+
+def compose(
+    options: ServeOptions, clock: Clock, files: RobotFiles, stores: Stores = NO_STORES
+) -> Composition:
+    """Return the parts of a service for the robot that the options describe.
+
+    Args:
+        options: Of the command.
+        clock: Of the service.
+        files: What `read_files` returned for the options.
+        stores: Keep what must survive a restart.
+
+    Raises:
         StartTaskError: The start task cannot be driven.
         MisuseError: ROS 2 is required and not available.
         UnknownTypeError: The type of a topic in the robot file is not installed.
         UnknownFieldError: That type does not have the field that the robot file names.
     """
-    loaded = load_model(options.model or EXAMPLE)
-    robot = load_robot_file(options.robot, loaded.model) if options.robot else RobotSettings()
-    composition = (
-        _with_ros2(options, loaded, robot, clock)
-        if (options.backend or robot.backend) == "ros2"
-        else _with_simulated(options, loaded, robot, clock)
-    )
-    if options.robot is not None and robot.start_task is not None:
-        submit_start_task(composition.supervisor, robot.start_task, options.robot)
+    is_real = (options.backend or files.settings.backend) == "ros2"
+    make = _with_ros2 if is_real else _with_simulated
+    composition = make(options, files.loaded, files.settings, clock, stores)
+    start_task = files.settings.start_task
+    if options.robot is not None and start_task is not None:
+        submit_start_task(composition.supervisor, start_task, options.robot)
     return composition
 
 
 def _with_simulated(
-    options: ServeOptions, loaded: LoadedModel, robot: RobotSettings, clock: Clock
+    options: ServeOptions,
+    loaded: LoadedModel,
+    robot: RobotSettings,
+    clock: Clock,
+    stores: Stores,
 ) -> Composition:
     """Simulate everything, by default also the signals.
 
@@ -110,16 +176,26 @@ def _with_simulated(
     if robot.ros2 != Ros2Block():
         log.warning("`ros2` of the robot file has no effect: everything is simulated")
     now = clock.now()
-    simulated = make_simulated_robot(loaded.model, robot, now, mock=mocked)
+    memory = None if stores.journal is None else memory_in(stores.journal.found)
+    simulated = make_simulated_robot(loaded.model, robot, now, mock=mocked, memory=memory)
+    for left in simulated.left_out:
+        log.warning("left out: %s", left)
     backend = SimulatedBackend(simulated, clock)
     onboard = make_onboard(loaded.model, robot, now)
-    supervisor = Supervisor(loaded, onboard, clock, backend, backend.readings, simulated.what)
+    stores = replace(stores, memories=memories_of(simulated))
+    supervisor = Supervisor(
+        loaded, onboard, clock, backend, backend.readings, simulated.what, stores=stores
+    )
     limits, parts = ServiceLimits.of(robot.limits), SimulatedParts(onboard, simulated)
     return Composition(supervisor, limits, simulated=parts)
 
 
 def _with_ros2(
-    options: ServeOptions, loaded: LoadedModel, robot: RobotSettings, clock: Clock
+    options: ServeOptions,
+    loaded: LoadedModel,
+    robot: RobotSettings,
+    clock: Clock,
+    stores: Stores,
 ) -> Composition:
     """Reach real nodes; signals are mocked only on request."""
     mocked = options.mock_signals or robot.mock is True
@@ -131,9 +207,11 @@ def _with_ros2(
     if mocked:
         mock = MockSource(MockSignals(now), clock)
         backend = CompositeRobot(dict.fromkeys(loaded.model.nodes, ros), ros, (ros, mock))
-        supervisor = Supervisor(loaded, onboard, clock, backend, mock.readings, ("signals",))
+        supervisor = Supervisor(
+            loaded, onboard, clock, backend, mock.readings, ("signals",), stores=stores
+        )
     else:
-        supervisor = Supervisor(loaded, onboard, clock, ros)
+        supervisor = Supervisor(loaded, onboard, clock, ros, stores=stores)
     mapped = {block.topic for block in robot.ros2.signals.values()}
     gateway = RosGateway(RosInterface(supervisor), graph, mapped)
     return Composition(supervisor, ServiceLimits.of(robot.limits), gateway)

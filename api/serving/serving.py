@@ -9,6 +9,8 @@ import os
 import socket
 import sys
 from collections.abc import Iterator, Sequence
+from contextlib import ExitStack
+from dataclasses import dataclass
 from pathlib import Path
 
 from api.access_token import FILE_VARIABLE, TOKEN_VARIABLE, InvalidTokenError, take_token
@@ -16,7 +18,17 @@ from api.app import create_app, prepare
 from api.distribution import installed_version
 from api.http.access import MIN_GOOD_CHARACTERS, Access
 from api.http.gate.origins import AllowedOrigins, InvalidOriginError
-from api.serving.composition import EXAMPLE, Composition, MisuseError, ServeOptions, compose
+from api.serving.composition import (
+    EXAMPLE,
+    Composition,
+    MisuseError,
+    RobotFiles,
+    ServeOptions,
+    compose,
+    open_stores,
+    read_files,
+)
+from api.serving.data_folder import MEMORY
 from api.serving.garbage import Heap
 from api.serving.output import Output
 from api.serving.process_log import log_to
@@ -26,13 +38,14 @@ from api.serving.web_server import ListenError, WebServer, is_loopback, listen, 
 from api.terminal_text import complain, counted, finding_line
 from domain.errors import InvalidModelError
 from domain.findings import Finding
-from service.clock import MonotonicClock
+from service.clock import continuous_clock
 from service.files.robot_file import InvalidRobotFileError
 from service.files.text_file import UnreadableFileError
 from service.ros.gateway import RosGateway
 from service.ros.graph.graph import GraphFailedError, UnknownFieldError, UnknownTypeError
 from service.running import TaskFailedError
 from service.start_task import StartTaskError
+from service.storage.errors import UnusableFolderError
 from service.supervisor import Supervisor
 
 log = logging.getLogger(__name__)
@@ -67,32 +80,76 @@ def _serve(options: ServeOptions, output: Output, errors: Output) -> int:
         access = access_of(options, token)
         origins = AllowedOrigins(options.allowed_origins)
         manager = ServiceManager.of(os.environ)
-        composition = compose(options, MonotonicClock())
+        files = read_files(options)
         sockets = listen(options.host, options.port)
+        network = Network(access, origins, sockets)
+        with ExitStack() as stack:
+            for item in sockets:
+                stack.callback(item.close)
+            runner = stack.enter_context(asyncio.Runner(loop_factory=_new_event_loop))
+            return runner.run(_run(options, files, network, manager, output))
     except _MISUSES as error:
         return _end(str(error), MISUSED)
     except InvalidModelError as error:
         return _complain_of(options.model or EXAMPLE, error.findings)
     except InvalidRobotFileError as error:
         return _complain_of(options.robot, error.findings)
-    except (ListenError, StartTaskError, *_NOT_IN_ROS) as error:
+    except (ListenError, StartTaskError, UnusableFolderError, *_NOT_IN_ROS) as error:
         return _end(str(error), FAILED)
+
+
+@dataclass(frozen=True, slots=True)
+class Network:
+    """Who reaches the service, and where."""
+
+    access: Access
+    origins: AllowedOrigins
+    sockets: Sequence[socket.socket]
+
+
+async def _run(
+    options: ServeOptions,
+    files: RobotFiles,
+    network: Network,
+    manager: ServiceManager,
+    output: Output,
+) -> int:
+    """Run the service on what earlier runs left, and return the exit code of the process."""
+    clock = continuous_clock()
+    stores = await open_stores(options, files, clock)
+    try:
+        composition = compose(options, clock, files, stores)
+        server = _make_server(composition, options, network, manager, output)
+        heap = Heap()
+        heap.settle()
+        composition.supervisor.publisher.on_tick.append(heap.note_tick)
+        return await run_service(composition, server, network.sockets, manager)
+    finally:
+        await stores.close()
+
+
+def _make_server(
+    composition: Composition,
+    options: ServeOptions,
+    network: Network,
+    manager: ServiceManager,
+    output: Output,
+) -> WebServer:
+    """Return the web server of the service; it greets once it accepts connections."""
     supervisor, hosts = composition.supervisor, (options.host, *options.allowed_hosts)
     app = create_app(
         supervisor,
         allowed_hosts=hosts,
-        allowed_origins=origins,
-        access=access,
+        allowed_origins=network.origins,
+        access=network.access,
         limits=composition.limits,
         simulated=composition.simulated,
     )
     app.state.exposed = options.anonymous and not is_loopback(options.host)
     prepare(app)
-    greeting = "\n".join(greet(composition, options, url_of(sockets, options.host), access))
-    server = web_server(app, lambda: _say_serving(output, greeting, manager, supervisor))
-    Heap().settle()
-    with asyncio.Runner(loop_factory=_new_event_loop) as runner:
-        return runner.run(run_service(composition, server, sockets, manager))
+    url = url_of(network.sockets, options.host)
+    greeting = "\n".join(greet(composition, options, url, network.access))
+    return web_server(app, lambda: _say_serving(output, greeting, manager, supervisor))
 
 
 def access_of(options: ServeOptions, token: str | None) -> Access:
@@ -198,12 +255,32 @@ def greet(
     if composition.gateway is not None:
         domain = os.environ.get("ROS_DOMAIN_ID") or "0"
         yield f"ROS 2: domain {domain}. Nodes are real: requests here change them."
+    yield from _remembering(supervisor)
     if supervisor.simulated:
         harmless = "" if composition.gateway else " Nothing here moves a real robot."
         yield f"Simulated: {', '.join(supervisor.simulated)}.{harmless}"
     for warning in supervisor.warnings:
         yield finding_line(source, warning)
     yield "Ctrl-C stops the service and the vehicle; nodes stay as they are."
+
+
+def _remembering(supervisor: Supervisor) -> Iterator[str]:
+    """Yield what the service remembers, where, and how to forget it."""
+    journal = supervisor.journal
+    if journal is None:
+        return
+    status, found = journal.status(), journal.found
+    if status.path == MEMORY:
+        yield "Nothing survives a restart (--data :memory:)."
+        return
+    yield f"Remembers in {status.path}; to forget: stop it and delete that folder."
+    if found.restored.stop_because:
+        yield f"THE EMERGENCY STOP IS ENGAGED: {found.restored.stop_because}"
+    elif not found.is_new:
+        at = "" if found.ended_at is None else f" of {found.ended_at:%Y-%m-%d %H:%M:%S} UTC"
+        yield f"  goes on from run {found.restored.boot - 1}{at}: nothing moves before you ask"
+    for left in found.left_out:
+        yield f"  left out: {left}"
 
 
 def _say_serving(

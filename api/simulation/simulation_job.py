@@ -1,13 +1,10 @@
 """Posted scenarios; `simulate_posted` runs in a worker process."""
 
-import copyreg
 import io
 import pickle
-from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from datetime import UTC, datetime
-from types import MappingProxyType
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 from pydantic import ValidationError
 
@@ -18,6 +15,7 @@ from domain.errors import InvalidValueError
 from domain.onboard import Onboard
 from domain.simulation.robot import SimulatedRobot
 from domain.timebase import Instant
+from service.checkpoint import CorePickler
 from service.event_log import EventLog
 from service.files.model_file import LoadedModel, read_model
 from service.files.robot_file import RobotSettings, robot_settings_of
@@ -52,26 +50,8 @@ class LiveCopy:
 def copy_of(onboard: Onboard, robot: SimulatedRobot) -> bytes:
     """Return a pickled copy of both in their current state."""
     copy = io.BytesIO()
-    _Pickler(copy, pickle.HIGHEST_PROTOCOL).dump((onboard, robot))
+    CorePickler(copy, pickle.HIGHEST_PROTOCOL).dump((onboard, robot))
     return copy.getvalue()
-
-
-def _reduce_view(view: MappingProxyType[Any, Any]) -> tuple[Callable[..., Any], tuple[Any]]:
-    return _view_of, (dict(view),)
-
-
-def _view_of(values: dict[Any, Any]) -> MappingProxyType[Any, Any]:
-    # pickle cannot find the type itself by its name.
-    return MappingProxyType(values)
-
-
-class _Pickler(pickle.Pickler):
-    """A pickler that also supports `MappingProxyType`."""
-
-    dispatch_table: Mapping[type, Callable[[Any], Any]] = {
-        **copyreg.dispatch_table,
-        MappingProxyType: _reduce_view,
-    }
 
 
 def simulate_posted(raw: bytes, model_text: str, live: LiveCopy | None) -> bytes:

@@ -1,6 +1,7 @@
 """Encodes frames and events as JSON, once for all clients that get the same text."""
 
 import asyncio
+from collections import OrderedDict
 from collections.abc import Callable, Iterator
 from typing import TypeAlias, TypeVar
 
@@ -43,8 +44,9 @@ class StreamEncoder:
         self._robot = RobotEncoder(supervisor)
         self._texts: dict[_Shape, tuple[Frame, _StateText]] = {}
         """The newest text of each shape, shared by the clients of the same topics."""
-        self._events: dict[int, str] = {}
-        self._earlier: dict[int, str] = {}
+        self._events: OrderedDict[int, str] = OrderedDict()
+        """Ordered, since the first entry of a plain one is found behind all that were removed."""
+        self._earlier: OrderedDict[int, str] = OrderedDict()
         self._prepared = 0
         """Number of the frame up to which parts are encoded."""
 
@@ -133,14 +135,14 @@ class StreamEncoder:
 
 
 def _remembered(
-    texts: dict[int, str], event: Told, encode: Callable[[Told], str], most: int
+    texts: OrderedDict[int, str], event: Told, encode: Callable[[Told], str], most: int
 ) -> str:
     """Return the text of an event; the newest ones are kept by id."""
     text = texts.get(event.id)
     if text is None:
         text = texts[event.id] = encode(event)
         if len(texts) > most:
-            del texts[next(iter(texts))]
+            texts.popitem(last=False)
     return text
 
 

@@ -6,14 +6,16 @@ from typing import Any
 
 from api.app import create_app
 from api.documents.asyncapi import describe_stream
-from api.serving.composition import ServeOptions, compose
+from api.serving.composition import ServeOptions, compose, read_files
 from service.clock import MonotonicClock
 from service.files.robot_file import RobotSettings
 
 
 def openapi_document() -> str:
     """Return the text of `openapi.json`."""
-    app = create_app(compose(ServeOptions(), MonotonicClock()).supervisor, allowed_hosts=[])
+    options = ServeOptions()
+    composition = compose(options, MonotonicClock(), read_files(options))
+    app = create_app(composition.supervisor, allowed_hosts=[])
     return _text(app.openapi())
 
 

@@ -4,6 +4,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 from domain.events.event import Event, because
+from domain.findings import Fact
 from domain.inputs import SignalValue
 from domain.snapshot import SystemState
 
@@ -76,8 +77,8 @@ class ErrorRaised(Event):
 
     error: str
     message: str
-    value: object
-    threshold: object
+    value: Fact
+    threshold: Fact
 
     def _words(self) -> str:
         return f"{self.error}: {self.message}"

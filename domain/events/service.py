@@ -107,6 +107,30 @@ class TimeWasDue(Event):
         return "a deadline passed"
 
 
+@dataclass(frozen=True, slots=True)
+class StorageDegraded(Event):
+    """What happens cannot be written down: a restart may forget what is asked from now on."""
+
+    kind = "storage.degraded"
+    is_input = True
+
+    reason: str
+
+    def _words(self) -> str:
+        return f"storage fails: {self.reason}"
+
+
+@dataclass(frozen=True, slots=True)
+class StorageRecovered(Event):
+    """What happens is written down again, and what is kept is on disk."""
+
+    kind = "storage.recovered"
+    is_input = True
+
+    def _words(self) -> str:
+        return "storage works again"
+
+
 def _counted(count: int, noun: str, more: str = "") -> str:
     """Return such as `2 holds`; empty: there are none."""
     return f"{count} {noun}{'' if count == 1 else 's'}{more}" if count else ""

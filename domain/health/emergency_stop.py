@@ -2,6 +2,7 @@
 
 from dataclasses import replace
 
+from domain.actor import SERVICE
 from domain.concern import Concern, Takers
 from domain.events.health import (
     EmergencyStopEngaged,
@@ -9,7 +10,8 @@ from domain.events.health import (
     EmergencyStopStandstill,
 )
 from domain.health.health import Health
-from domain.inputs import EmergencyStopRequest
+from domain.inputs import EmergencyStopRequest, Restored
+from domain.kept import KeptEmergencyStop
 from domain.outbox import Outbox
 from domain.snapshot import EmergencyStopView
 from domain.timebase import Instant
@@ -18,8 +20,8 @@ from domain.timebase import Instant
 class EmergencyStop(Concern):
     """The latch: who engaged it, why and since when.
 
-    Engage and release are idempotent: a repetition keeps the first actor. The latch starts
-    released, since it is not stored yet.
+    Engage and release are idempotent: a repetition keeps the first actor. The latch is kept over a
+    restart of the service; it starts released if there was no earlier run.
 
     Source: ISO 13850, which requires a stop to remain until it is reset manually.
     """
@@ -34,7 +36,7 @@ class EmergencyStop(Concern):
     @property
     def takes(self) -> Takers:
         """Return the handler of each class of input."""
-        return {EmergencyStopRequest: self.take_request}
+        return {EmergencyStopRequest: self.take_request, Restored: self.restore}
 
     def take_request(self, request: EmergencyStopRequest, now: Instant) -> None:
         """Engage or release the stop; a repetition changes nothing."""
@@ -50,7 +52,25 @@ class EmergencyStop(Concern):
         kind = EmergencyStopEngaged if request.engaged else EmergencyStopReleased
         self._outbox.begin(now, kind(request.reason), request.actor)
         self._outbox.record_input()
-        self._health.press_stop(now, engaged=request.engaged)
+        by = request.actor.label
+        self._outbox.keep(KeptEmergencyStop(request.engaged, by, request.reason, now))
+        self._health.press_stop(now if request.engaged else None, now)
+
+    def restore(self, restored: Restored, now: Instant) -> None:
+        """Be as an earlier run left it, or engaged if nobody can tell how that was."""
+        kept = next((item for item in restored.kept if isinstance(item, KeptEmergencyStop)), None)
+        if restored.stop_because:
+            kept = KeptEmergencyStop(True, SERVICE.label, restored.stop_because, now)
+            self._outbox.keep(kept)
+            self._outbox.emit(EmergencyStopEngaged(restored.stop_because))
+        if kept is None:
+            return
+        since = min(kept.since, now)
+        self._view = EmergencyStopView(
+            engaged=kept.engaged, by=kept.by, reason=kept.reason, since=since, standstill_at=None
+        )
+        if kept.engaged:
+            self._health.press_stop(since, now)
 
     def note_standstill(self, now: Instant) -> None:
         """Record the first standstill since the stop was engaged, or since it moved after that."""

@@ -28,6 +28,11 @@ class ErrorSlot:
         self.error = self.cause = error
         self.since = self._hold_until = start
 
+    def restore(self, error: str, since: Instant) -> None:
+        """Raise an error of an earlier run, whose cause is not known to be present."""
+        self.error, self.since = error, since
+        self._hold_until = since + self._min_on
+
     def update(self, cause: str | None, now: Instant) -> None:
         """Set the cause that is present now, and clear the error if it may end.
 

@@ -13,11 +13,12 @@ from domain.events.health import (
     SignalSettled,
     SignalSkewed,
 )
-from domain.events.service import WriteAnswered
+from domain.events.service import NotRestored, WriteAnswered
 from domain.findings import Blocker
 from domain.health.signals import ESTOP, SignalSettings
 from domain.health.state_manager import HealthChanges, StateManager
-from domain.inputs import AcknowledgeRequest, Readings
+from domain.inputs import AcknowledgeRequest, Readings, Restored
+from domain.kept import KeptError
 from domain.outbox import Outbox
 from domain.snapshot import SignalView, SystemStateView, TaskStatus
 from domain.timebase import Instant
@@ -37,6 +38,8 @@ class Health(Concern):
         self._outbox = outbox
         self._pending: dict[str, int] = {}
         """By error, the event that recorded it as pending."""
+        self._kept: dict[str, str] = {}
+        """By signal, the error that is kept, since it waits for an acknowledgement."""
         self.decided_by: int | None = None
         """The newest event that raised or cleared an error; None: there was none yet."""
 
@@ -45,7 +48,11 @@ class Health(Concern):
     @property
     def takes(self) -> Takers:
         """Return the handler of each class of input."""
-        return {Readings: self.take_readings, AcknowledgeRequest: self.acknowledge}
+        return {
+            Readings: self.take_readings,
+            AcknowledgeRequest: self.acknowledge,
+            Restored: self.restore,
+        }
 
     def wake_at(self) -> Instant | None:
         """Return when time alone raises or clears an error."""
@@ -88,9 +95,29 @@ class Health(Concern):
         self._outbox.begin(now, ErrorAcknowledged(request.error), request.actor)
         self._tell(self._manager.acknowledge(request.error, now))
 
-    def press_stop(self, now: Instant, *, engaged: bool) -> None:
-        """Raise ESTOP for the emergency stop, or remove that cause."""
-        self._tell(self._manager.set_emergency_stop(engaged, now))
+    def press_stop(self, since: Instant | None, now: Instant) -> None:
+        """Raise ESTOP for the emergency stop, or remove that cause.
+
+        Args:
+            since: When it was engaged; None: it is released.
+            now: The current time.
+        """
+        self._tell(self._manager.set_emergency_stop(since, now))
+
+    def restore(self, restored: Restored, now: Instant) -> None:
+        """Raise the errors again that nobody acknowledged, before anything is read."""
+        errors = []
+        for kept in restored.kept:
+            if not isinstance(kept, KeptError):
+                continue
+            if reason := self._manager.check_kept(kept):
+                self._outbox.forget(KeptError, kept.name)
+                self._outbox.emit(NotRestored(f"the error {kept.error}", reason))
+            else:
+                errors.append(kept)
+                self._kept[kept.signal] = kept.error
+        if errors:
+            self._tell(self._manager.restore(errors, now))
 
     # --- what can be seen ------------------------------------------------------------------------
 
@@ -150,3 +177,22 @@ class Health(Concern):
         for error in changes.cleared:
             self.decided_by = emit(ErrorCleared(error))
         self._outbox.signals |= changes.signals
+        for signal in changes.signals:
+            self._keep(self._manager.signal(signal))
+
+    def _keep(self, signal: SignalView) -> None:
+        """Keep the error of a signal from when it waits for an acknowledgement until it does not.
+
+        With what was measured when it began to: later readings are not worth a write each.
+        """
+        name, kept = signal.signal, self._kept.get(signal.signal)
+        error = signal.error if signal.needs_acknowledgement else None
+        if error == kept:
+            return
+        if kept is not None:
+            self._outbox.forget(KeptError, kept)
+            del self._kept[name]
+        if error is not None:
+            why = next(reason for reason in self._manager.reasons if reason.code == error)
+            self._outbox.keep(KeptError(name, error, why.since or 0, why.message))
+            self._kept[name] = error

@@ -6,7 +6,13 @@ from types import MappingProxyType
 from domain.findings import Blocker, Fact
 from domain.health.error_slot import ErrorSlot
 from domain.health.held_readings import HeldReadings
-from domain.health.signal_reasons import kept_reason, pressed_reason, stale_reason, value_reason
+from domain.health.signal_reasons import (
+    kept_reason,
+    pressed_reason,
+    restored_reason,
+    stale_reason,
+    value_reason,
+)
 from domain.health.signals import (
     ESTOP,
     STALE_DATA,
@@ -45,6 +51,8 @@ class SignalMonitor:
         self._counted: Duration = 0
         """How long it had counted when the error was raised."""
         self._engaged_since: Instant | None = None
+        self._measured_before = ""
+        """What an earlier run had measured of the error that it left; empty: it left none."""
         self._facts = MappingProxyType(settings.facts())
         self.bits: Mapping[str, int] = MappingProxyType(
             {STALE_DATA: STALE_DATA_BIT, **{c.error: c.bit for c in settings.conditions}}
@@ -75,11 +83,34 @@ class SignalMonitor:
             self._counting_since = now
         self.judge(now)
 
-    def set_engaged(self, *, engaged: bool, now: Instant) -> None:
-        """Press or release the stop independently of its sources; this takes effect at once."""
-        if engaged is not (self._engaged_since is not None):
-            self._engaged_since = now if engaged else None
+    def set_engaged(self, since: Instant | None, now: Instant) -> None:
+        """Press or release the stop independently of its sources; this takes effect at once.
+
+        Args:
+            since: When it was pressed; None: it is released.
+            now: The current time.
+        """
+        if (since is None) is not (self._engaged_since is None):
+            self._engaged_since = since
             self.judge(now)
+
+    def restore(self, error: str, since: Instant, measured: str, now: Instant) -> None:
+        """Raise an error of an earlier run, which waits for acknowledgement; nothing is read yet.
+
+        Args:
+            error: One that needs an acknowledgement.
+            since: When it was raised.
+            measured: What was measured then.
+            now: The current time.
+        """
+        self._measured_before = measured
+        self._value_slot.restore(error, since)
+        self.judge(now)
+
+    def waits_with(self, error: str) -> bool:
+        """Tell whether an error of this name, once raised, waits for an acknowledgement."""
+        has_it = any(condition.error == error for condition in self.settings.conditions)
+        return has_it and self.settings.recovery is Recovery.ACKNOWLEDGE
 
     def acknowledge(self, error: str, now: Instant) -> None:
         """Acknowledge `error` if it is the active one."""
@@ -127,7 +158,7 @@ class SignalMonitor:
         """Yield why the errors are active, one reason per cause."""
         value = self.readings.value
         if self._value_slot.error is not None and self._cause is None:
-            yield self._reason(self._value_slot, kept_reason(self.settings, self._value_slot))
+            yield self._reason(self._value_slot, self._kept_reason())
         elif self._cause is not None and self.settings.spec.is_stop:
             yield from self._stop_reasons(self._value_slot)
         elif self._cause is not None and value is not None:
@@ -140,6 +171,11 @@ class SignalMonitor:
             yield self._reason(self._stale_slot, message, threshold=limit)
         elif self._stale_slot.error is not None:
             yield self._reason(self._stale_slot, kept_reason(self.settings, self._stale_slot))
+
+    def _kept_reason(self) -> str:
+        if self._measured_before and self.readings.newest is None:
+            return restored_reason(self._measured_before)
+        return kept_reason(self.settings, self._value_slot)
 
     def _stop_reasons(self, slot: ErrorSlot) -> Iterator[Blocker]:
         if self._engaged_since is not None:

@@ -68,6 +68,15 @@ def kept_reason(settings: SignalSettings, slot: ErrorSlot) -> str:
     return f"{gone} stays active for at least {_duration(settings.min_on)}"
 
 
+def restored_reason(measured: str) -> str:
+    """Return why an error is active that was raised before a restart, and nothing read since.
+
+    Args:
+        measured: What was measured when it was raised.
+    """
+    return f"before the restart: {measured}; waits for acknowledgement"
+
+
 def _number_reason(settings: SignalSettings, condition: Condition, value: float, time: str) -> str:
     spec = settings.spec
     # Between the two thresholds, the value has not reached the clear threshold.

@@ -21,6 +21,7 @@ from domain.health.held_readings import HeldReadings
 from domain.health.signal_monitor import SignalMonitor
 from domain.health.signals import ESTOP_SIGNAL, STALE_DATA, SignalSettings
 from domain.inputs import Reading, Readings
+from domain.kept import KeptError
 from domain.snapshot import SignalView, SystemState, SystemStateView, TaskStatus
 from domain.timebase import Instant, to_seconds
 
@@ -165,11 +166,33 @@ class StateManager:
                 self._monitors[reading.signal].receive(reading, readings.source, now)
         return gathered.build()
 
-    def set_emergency_stop(self, engaged: bool, now: Instant) -> HealthChanges:
-        """Raise ESTOP for the emergency stop, which no reading releases, or remove that cause."""
+    def set_emergency_stop(self, since: Instant | None, now: Instant) -> HealthChanges:
+        """Raise ESTOP for the emergency stop, which no reading releases, or remove that cause.
+
+        Args:
+            since: When it was engaged; None: it is released.
+            now: The current time.
+        """
         with self._gathering(now) as gathered:
-            self._monitors[ESTOP_SIGNAL].set_engaged(engaged=engaged, now=now)
+            self._monitors[ESTOP_SIGNAL].set_engaged(since, now)
         return gathered.build()
+
+    def restore(self, errors: Iterable[KeptError], now: Instant) -> HealthChanges:
+        """Raise errors of an earlier run that passed `check_kept`; they wait as they did."""
+        with self._gathering(now) as gathered:
+            for kept in errors:
+                since = min(kept.since, now)
+                self._monitors[kept.signal].restore(kept.error, since, kept.message, now)
+        return gathered.build()
+
+    def check_kept(self, kept: KeptError) -> str:
+        """Return in words why an error cannot be restored; empty: it can."""
+        monitor = self._monitors.get(kept.signal)
+        if monitor is None:
+            return f"there is no signal {kept.signal} any more"
+        if not monitor.waits_with(kept.error):
+            return f"{kept.signal} has no such error to acknowledge any more"
+        return ""
 
     def acknowledge(self, error: str, now: Instant) -> HealthChanges:
         """Acknowledge an error: it clears once its cause is gone, which may be now.

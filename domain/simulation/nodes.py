@@ -17,6 +17,7 @@ from domain.inputs import NodeAnswer, NodeReport
 from domain.lifecycle import ERROR_PROCESSED, LifecycleState, Transition, TransitionRule, rule_for
 from domain.parameters import Parameters, ParameterValue
 from domain.parts.system_model import SmhModel
+from domain.simulation.memory import NodeMemory, plain_nodes
 from domain.simulation.node_parameters import declared_parameters, find_refusal, start_parameters
 from domain.simulation.node_settings import NOTICED_AFTER, SLOWDOWN, Fault, NodeSettings
 from domain.state_and_mode import PartName
@@ -42,6 +43,15 @@ class _Node:
     unreachable_at: Instant | None = None
     """When the backend will notice that the node sends nothing."""
     told_unreachable: bool = False
+    known_likeness: str = ""
+    """Empty: it is to be found anew."""
+
+    @property
+    def likeness(self) -> str:
+        """Return the same for all nodes in the same state with the same parameters."""
+        if not self.known_likeness:
+            self.known_likeness = f"{self.state} {self.parameters!r}"
+        return self.known_likeness
 
     @property
     def runs(self) -> bool:
@@ -51,12 +61,21 @@ class _Node:
     def speaks(self) -> bool:
         return self.fault is None or not self.fault.is_mute
 
-    def start(self, at: Instant) -> None:
-        """Start a process: unconfigured, with the initial parameters."""
+    def start(self, at: Instant, memory: NodeMemory | None = None) -> None:
+        """Start a process: unconfigured, with the initial parameters.
+
+        Args:
+            at: When.
+            memory: Where the process is that has run on meanwhile; None: there is none.
+        """
         plain = self.settings.plain
         self.state = LifecycleState.UNKNOWN if plain else LifecycleState.UNCONFIGURED
         self.parameters = start_parameters(self.declared)
         self.parameters_free_at = at
+        if memory is not None:
+            if not plain and memory.state is not LifecycleState.UNKNOWN:
+                self.state = memory.state
+            self.parameters.update(memory.parameters)
 
     def stop(self) -> None:
         """End the process, and with it all its work."""
@@ -107,14 +126,15 @@ class _SilenceIsNoticed:
     at: Instant
 
 
+_NO_MEMORY: Mapping[PartName, NodeMemory] = MappingProxyType({})
 _Work: TypeAlias = _CallbackEnds | _ErrorIsProcessed | _ParametersAreSet | _SilenceIsNoticed
 
 
 class SimulatedNodes:
     """All nodes of a model, and which of them the backend can reach.
 
-    Each starts unconfigured, with every parameter that its modes set, at `0`, `0.0`, `False` or
-    `"none"`. `now` must never decrease from call to call.
+    Without a memory, each starts unconfigured, with every parameter that its modes set, at `0`,
+    `0.0`, `False` or `"none"`. `now` must never decrease from call to call.
 
     A legal transition is accepted at once, reported as the transitional state, and after its
     duration as the resulting state; any other is rejected. Parameter sets are atomic, and are
@@ -125,14 +145,21 @@ class SimulatedNodes:
     """
 
     def __init__(
-        self, model: SmhModel, settings: Mapping[PartName, NodeSettings], start: Instant
+        self,
+        model: SmhModel,
+        settings: Mapping[PartName, NodeSettings],
+        start: Instant,
+        memory: Mapping[PartName, NodeMemory] = _NO_MEMORY,
     ) -> None:
+        """Begin at `start`, each node where it is remembered, or else unconfigured."""
         self._nodes: dict[PartName, _Node] = {}
         self._systems = frozenset(model.systems)
         self._due: list[tuple[Instant, int, _Work]] = []
         self._issues = 0
         self._messages: list[NodeMessage] = []
         self._messages_at = start
+        self.revision = 0
+        """Differs when `memory` does."""
         for name in settings:
             if name not in model.nodes:
                 raise UnknownPartError("node", name, tuple(model.nodes))
@@ -141,7 +168,7 @@ class SimulatedNodes:
             node = _Node(name, own, declared_parameters(node_model), own.fault)
             self._nodes[name] = node
             if node.runs:
-                node.start(start)
+                node.start(start, memory.get(name))
             self._appear(node, start)
 
     def handle(self, command: NodeCommand, now: Instant) -> None:
@@ -184,6 +211,7 @@ class SimulatedNodes:
         """
         self._catch_up(now)
         it = self._require(node)
+        self._touch(it)
         before, it.fault = it.fault, fault
         if fault is Fault.DIE:
             it.stop()
@@ -210,6 +238,11 @@ class SimulatedNodes:
             raise refusal
         self._take_over(it, values, now)
 
+    @property
+    def count(self) -> int:
+        """Return how many nodes there are."""
+        return len(self._nodes)
+
     def state_of(self, node: PartName) -> LifecycleState:
         """Return the actual state of a node; `unknown` without a process or a lifecycle.
 
@@ -225,6 +258,18 @@ class SimulatedNodes:
             UnknownPartError: There is no such node.
         """
         return dict(self._require(node).parameters)
+
+    def memory(self) -> list[dict[str, object]]:
+        """Return where the running nodes are, as plain values: those that are in the same together.
+
+        A parameter set in progress is not part of it: nobody was told that it was done.
+        """
+        groups: dict[str, list[PartName]] = {}
+        for name, node in self._nodes.items():
+            if node.runs:
+                groups.setdefault(node.likeness, []).append(name)
+        alike = ((self._nodes[names[0]], names) for names in groups.values())
+        return [plain_nodes(node.state, node.parameters, names) for node, names in alike]
 
     def _require(self, name: PartName) -> _Node:
         if name in self._systems:
@@ -303,12 +348,19 @@ class SimulatedNodes:
         else:
             self._enter(node, rule.failure if node.fault is Fault.FAIL else rule.success, at)
 
+    def _touch(self, node: _Node) -> None:
+        """Note that there is something new to remember of a node."""
+        self.revision += 1
+        node.known_likeness = ""
+
     def _enter(self, node: _Node, state: LifecycleState, at: Instant) -> None:
         node.state = state
+        self._touch(node)
         self._say(node, NodeReport(node.name, state=state), at)
 
     def _take_over(self, node: _Node, values: Parameters, at: Instant) -> None:
         node.parameters.update(values)
+        self._touch(node)
         # All values of the request, changed or not, as in ROS 2 parameter events.
         self._say(node, NodeReport(node.name, parameters=MappingProxyType(dict(values))), at)
 

@@ -10,6 +10,7 @@ from typing import TypeAlias
 from domain.commands import Drive, NodeCommand
 from domain.inputs import Readings, VehicleReport
 from domain.parts.system_model import SmhModel
+from domain.simulation.memory import read_memory
 from domain.simulation.mock_signals import MockSignals
 from domain.simulation.node_settings import NodeSettings
 from domain.simulation.nodes import NodeMessage, SimulatedNodes
@@ -38,6 +39,7 @@ class SimulatedRobot:
         vehicle: VehicleSettings | None = None,
         *,
         mock: bool = False,
+        memory: object = None,
     ) -> None:
         """Begin at `start`.
 
@@ -47,10 +49,15 @@ class SimulatedRobot:
             nodes: Settings of the nodes that differ from the default.
             vehicle: Settings of the vehicle; None: an ideal one at the origin.
             mock: Whether to publish the five mock signals.
+            memory: `nodes` and `vehicle` as they were in an earlier run, so that both are where
+                they were, at standstill; None: they begin anew.
         """
-        self.nodes = SimulatedNodes(model, nodes, start)
+        remembered = read_memory(memory, model)
+        self.left_out = remembered.left_out
+        """What could not be read of the memory, and why, in words."""
+        self.nodes = SimulatedNodes(model, nodes, start, remembered.nodes)
         self.mock = MockSignals(start) if mock else None
-        self.vehicle = SimulatedVehicle(vehicle or VehicleSettings(), start)
+        self.vehicle = SimulatedVehicle(vehicle or VehicleSettings(), start, remembered.vehicle)
 
     @property
     def what(self) -> tuple[str, ...]:

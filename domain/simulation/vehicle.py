@@ -23,7 +23,6 @@ REPORT_PERIOD: Duration = seconds(0.05)
 _STEP: Duration = seconds(0.01)
 _AS_GOOD_AS_THERE = 1e-6
 """Difference, in m/s or rad, at which a lag counts as settled; it would never reach its target."""
-_AT_REST = DriveCommand(0.0, 0.0)
 
 
 class SimulatedVehicle:
@@ -34,14 +33,25 @@ class SimulatedVehicle:
     never decrease from call to call.
     """
 
-    def __init__(self, settings: VehicleSettings, start: Instant) -> None:
+    def __init__(
+        self, settings: VehicleSettings, start: Instant, at_first: VehicleState | None = None
+    ) -> None:
+        """Begin at standstill.
+
+        Args:
+            settings: Pose, limits and plant.
+            start: The current time.
+            at_first: Pose and steering angle to begin with; None: the pose of the settings.
+        """
         self._limits = settings.limits
         self._plant = settings.plant
         self._is_ideal = _is_ideal(settings.plant)
         self._noise = _NoiseSource(settings.plant.noise)
-        pose = replace(settings.pose, yaw_rad=_wrapped(settings.pose.yaw_rad))
-        self._state = VehicleState(pose, 0.0, 0.0)
-        self._command = _AT_REST
+        state = at_first or VehicleState(settings.pose, 0.0, 0.0)
+        pose = replace(state.pose, yaw_rad=_wrapped(state.pose.yaw_rad))
+        steering = _clipped(state.steering_angle_rad, settings.limits.max_steering_angle_rad)
+        self._state = VehicleState(pose, 0.0, steering)
+        self._command = DriveCommand(0.0, steering)
         self._expires_at: Instant | None = None
         self._coming: deque[tuple[Instant, DriveCommand]] = deque()
         self._start = start

@@ -2,6 +2,7 @@
 
 from collections.abc import Iterator, Mapping
 
+from domain.actor import SERVICE
 from domain.concern import Concern, Takers
 from domain.events.driving import (
     DriveAvailable,
@@ -14,6 +15,7 @@ from domain.events.driving import (
     TaskRequested,
     VehicleReported,
 )
+from domain.events.service import NotRestored
 from domain.findings import Blocker
 from domain.health.emergency_stop import EmergencyStop
 from domain.health.health import Health
@@ -24,13 +26,16 @@ from domain.inputs import (
     GoalResult,
     HoldRequest,
     ReleaseRequest,
+    Restored,
     TaskRequest,
     VehicleReport,
 )
+from domain.kept import KeptHold, KeptProgress, KeptTask
 from domain.outbox import Outbox
 from domain.paths.path import Path
 from domain.snapshot import HoldView, TaskStatus, TaskView, VehicleView
-from domain.tasks.holds import DRIVE_HOLD, ERROR_HOLD, VEHICLE_HOLD
+from domain.tasks.holds import DRIVE_HOLD, ERROR_HOLD, VEHICLE_HOLD, why_not_restored
+from domain.tasks.kept_tasks import tasks_of
 from domain.tasks.settings import TaskSettings
 from domain.tasks.task_planner import TaskPlanner
 from domain.tasks.vehicle_watch import VehicleWatch
@@ -71,6 +76,8 @@ class Driving(Concern):
         self._outbox = outbox
         self._planner = TaskPlanner(settings, limits, self.watch, outbox)
         self._followed = health.reasons
+        self._kept: dict[str, KeptHold] = {}
+        """The holds that are kept over a restart, by owner."""
         # The initial state is not an event.
         self._planner.holds.set(VEHICLE_HOLD, "the vehicle never reported a pose", "", start)
         if self._followed:
@@ -90,6 +97,7 @@ class Driving(Concern):
             CancelTaskRequest: self._take_cancel,
             HoldRequest: self._take_hold,
             ReleaseRequest: self._take_release,
+            Restored: self._take_restored,
         }
 
     def wake_at(self) -> Instant | None:
@@ -125,7 +133,7 @@ class Driving(Concern):
         was_lost = self.watch.is_lost
         self.watch.take(report, now)
         if self.watch.stands:
-            self._planner.note_standstill()
+            self._planner.note_standstill(now)
         if was_lost:
             self._planner.release(VEHICLE_HOLD, now)
         if self.watch.stands:
@@ -141,7 +149,7 @@ class Driving(Concern):
 
     def _take_feedback(self, feedback: GoalFeedback, now: Instant) -> None:
         self._outbox.begin(now, GoalProgressed(feedback.goal))
-        self._planner.take_feedback(feedback)
+        self._planner.take_feedback(feedback, now)
 
     def _take_result(self, result: GoalResult, now: Instant) -> None:
         self._outbox.begin(now, GoalEnded(result.goal, result.succeeded, result.reason))
@@ -161,15 +169,42 @@ class Driving(Concern):
         self._planner.cancel(now)
 
     def _take_hold(self, request: HoldRequest, now: Instant) -> None:
-        self._planner.holds.check(request.owner)
-        self._planner.holds.check_room(request.owner)
+        self._planner.holds.check_set(request.owner)
         self._outbox.begin(now, HoldRequested(request.owner, request.reason), request.actor)
         self._planner.hold(request.owner, request.reason, request.actor.label, now)
+        # The hold with which the service ends has done its duty when the service runs again.
+        if request.actor != SERVICE:
+            self._keep(self._planner.holds.views[request.owner])
 
     def _take_release(self, request: ReleaseRequest, now: Instant) -> None:
-        self._planner.holds.check(request.owner)
+        self._planner.holds.check_release(request.owner)
         self._outbox.begin(now, HoldReleaseRequested(request.owner), request.actor)
         self._planner.release(request.owner, now)
+        if self._kept.pop(request.owner, None) is not None:
+            self._outbox.forget(KeptHold, request.owner)
+
+    def _keep(self, hold: HoldView) -> None:
+        kept = KeptHold(hold.owner, hold.reason, hold.by, hold.since)
+        if self._kept.get(hold.owner) != kept:
+            self._kept[hold.owner] = kept
+            self._outbox.keep(kept)
+
+    def _take_restored(self, restored: Restored, now: Instant) -> None:
+        """Set the holds again that somebody had set, and hold the task that had not ended."""
+        holds = sorted((h for h in restored.kept if isinstance(h, KeptHold)), key=_age)
+        for hold in holds:
+            if why := why_not_restored(hold.owner, len(self._kept)):
+                self._outbox.forget(KeptHold, hold.owner)
+                self._outbox.emit(NotRestored(f"the hold {hold.owner}", why))
+                continue
+            self._kept[hold.owner] = hold
+            self._planner.holds.set(hold.owner, hold.reason, hold.by, min(hold.since, now))
+        tasks, left_out = tasks_of(restored.kept, now)
+        for task, why in left_out.items():
+            self._outbox.forget(KeptTask, task)
+            self._outbox.forget(KeptProgress, task)
+            self._outbox.emit(NotRestored(f"the task {task}", why))
+        self._planner.restore(tasks, restored.next_task, now)
 
     # --- what can be seen ------------------------------------------------------------------------
 
@@ -222,6 +257,10 @@ class Driving(Concern):
     def tasks(self) -> Iterator[TaskView]:
         """Yield the tasks that are kept, the newest first."""
         return self._planner.tasks()
+
+
+def _age(hold: KeptHold) -> tuple[Instant, str]:
+    return hold.since, hold.owner
 
 
 def _words(errors: tuple[Blocker, ...]) -> str:

@@ -15,9 +15,23 @@ VEHICLE_HOLD = "vehicle"
 """Set while the pose of the vehicle is unknown or stale."""
 DRIVE_HOLD = "drive_process"
 """Set while drive commands do not reach the vehicle."""
+RESTART_HOLD = "restart"
+"""Set when a restart of the service found a task that had not ended; people release it."""
 
 RESERVED = frozenset({ERROR_HOLD, VEHICLE_HOLD, DRIVE_HOLD})
 MAX_HOLDS = 64
+
+
+def why_not_restored(owner: str, others: int) -> str:
+    """Return in words why a hold cannot be set again after a restart; empty: it can.
+
+    Args:
+        owner: Name of the hold.
+        others: Number of holds that are set again already.
+    """
+    if owner in RESERVED or owner == RESTART_HOLD:
+        return "only Pilothouse sets a hold of this name"
+    return f"there are {MAX_HOLDS} holds already" if others >= MAX_HOLDS else ""
 
 
 class Holds:
@@ -40,8 +54,8 @@ class Holds:
         """Return why no task may run, in words; empty: there are no holds."""
         return "; ".join(hold.reason or hold.owner for hold in self._holds.values())
 
-    def check(self, owner: str) -> None:
-        """Reject the name of a hold that only Pilothouse may set and release.
+    def check_release(self, owner: str) -> None:
+        """Reject the name of a hold that only Pilothouse may release.
 
         Raises:
             ReservedHoldError: The name is reserved.
@@ -49,12 +63,16 @@ class Holds:
         if owner in RESERVED:
             raise ReservedHoldError(owner)
 
-    def check_room(self, owner: str) -> None:
-        """Reject a new hold if there are too many.
+    def check_set(self, owner: str) -> None:
+        """Reject a hold that only Pilothouse may set, and a new one if there are too many.
 
         Raises:
+            ReservedHoldError: The name is reserved.
             TooManyHoldsError: There are `MAX_HOLDS` others.
         """
+        self.check_release(owner)
+        if owner == RESTART_HOLD:
+            raise ReservedHoldError(owner, is_released_by_people=True)
         if owner not in self._holds and len(self._holds) >= MAX_HOLDS:
             raise TooManyHoldsError(MAX_HOLDS)
 

@@ -7,12 +7,17 @@ not yet passed. Each start sends exactly one goal, where smart_polaris sends two
 Source: smart_polaris, `task_planner_node.py`.
 """
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 
 import numpy as np
 
 from domain.commands import Drive, PreemptGoal, SendGoal
-from domain.errors import FarStartError, InvalidValueError, UnknownControllerError
+from domain.errors import (
+    FarStartError,
+    InvalidValueError,
+    PilothouseError,
+    UnknownControllerError,
+)
 from domain.events.driving import (
     TASK_ENDS,
     HoldReleased,
@@ -29,7 +34,8 @@ from domain.inputs import GoalFeedback, GoalResult, TaskRequest
 from domain.outbox import Outbox
 from domain.paths.path import Path
 from domain.snapshot import TaskPhase, TaskStatus, TaskView
-from domain.tasks.holds import Holds
+from domain.tasks.holds import RESTART_HOLD, Holds
+from domain.tasks.kept_tasks import TaskKeeper
 from domain.tasks.settings import TaskSettings
 from domain.tasks.task import Task
 from domain.tasks.task_log import TaskLog
@@ -40,6 +46,7 @@ from domain.vehicle import Point, VehicleLimits
 
 MIN_CRUISE_MPS = 0.1
 """A slower task would soon be aborted for lack of progress."""
+RESTART_REASON = "the service was restarted: the task goes on when the hold restart is released"
 
 
 def check_cruise(speed_mps: float, limits: VehicleLimits) -> None:
@@ -83,6 +90,7 @@ class TaskPlanner:
         self._vehicle = vehicle
         self._outbox = outbox
         self._log = TaskLog()
+        self._keeper = TaskKeeper(outbox)
         self._current: Task | None = None
         self._tasks_accepted = 0
         self._goals_sent = 0
@@ -98,11 +106,8 @@ class TaskPlanner:
                 cannot drive the cruise speed.
             FarStartError: The path begins too far from the vehicle.
         """
-        if request.controller not in TRACKERS:
-            raise UnknownControllerError("controller", request.controller, tuple(TRACKERS))
         path, index = request.path, request.start_index
-        check_start(path, index)
-        check_cruise(request.speed_mps, self._limits)
+        self._check_drivable(path, index, request.controller, request.speed_mps)
         if (distance := self._too_far(path.waypoint(index))) is not None:
             limit_m = self._settings.max_start_distance_m
             raise FarStartError(distance, limit_m, self._nearest(path))
@@ -123,11 +128,12 @@ class TaskPlanner:
             self._drop_goal(self._current)
             self._end(self._current, TaskPhase.CANCELED, f"replaced by {task.id}", now)
         self._current = task
-        self._log.add(task)
+        self._add(task)
+        self._keeper.add(task)
         count, length_m = task.path.count, task.length_m
         accepted = self._emit(TaskServed(task.id, count, length_m))
         if self.holds:
-            self._pause(task, accepted, was_driving=False)
+            self._pause(task, accepted, now, was_driving=False)
         else:
             self._start(task, accepted, now)
         return task.id
@@ -138,6 +144,29 @@ class TaskPlanner:
             self._drop_goal(self._current)
             self._stop()
             self._end(self._current, TaskPhase.CANCELED, "canceled", now)
+            # There is no task any more that it could keep from going on by itself.
+            self.release(RESTART_HOLD, now)
+
+    def restore(self, tasks: Sequence[Task], next_number: int, now: Instant) -> None:
+        """Take over the tasks of an earlier run; one that has not ended waits for a person.
+
+        Args:
+            tasks: The oldest first; there is no other task yet.
+            next_number: Number of the next task that is submitted.
+            now: The current time.
+        """
+        self._tasks_accepted = next_number - 1
+        for task in tasks:
+            self._add(task)
+        for task in tasks:
+            if task.ended_at is not None:
+                continue
+            if why := self._why_not_driven(task, tasks[-1]):
+                self._end(task, TaskPhase.ABORTED, why, now)
+            else:
+                self._current = task
+                self.hold(RESTART_HOLD, RESTART_REASON, "", now)
+                self._emit(TaskPaused(task.id, task.reason))
 
     # --- holds -----------------------------------------------------------------------------------
 
@@ -161,7 +190,7 @@ class TaskPlanner:
         self._stop()
         held = self._outbox.emit(HoldSet(owner, reason), cause)
         if task is not None and task.phase is TaskPhase.RUNNING:
-            self._pause(task, held, was_driving=was_driving)
+            self._pause(task, held, now, was_driving=was_driving)
         self._renew_reason()
 
     def release(self, owner: str, now: Instant, cause: int | None = None) -> None:
@@ -181,12 +210,13 @@ class TaskPlanner:
 
     # --- what navigation and the vehicle say -----------------------------------------------------
 
-    def take_feedback(self, feedback: GoalFeedback) -> None:
+    def take_feedback(self, feedback: GoalFeedback, now: Instant) -> None:
         """Update the progress of the task; late feedback of another goal is ignored."""
         task = self._current
         if task is None or feedback.goal not in (task.goal, task.stopping):
             return
-        task.advance(feedback)
+        task.advance(feedback, self._vehicle.state)
+        self._keeper.note_driven(task, now)
         is_driving = feedback.goal == task.goal
         self._vehicle.told(feedback.command, feedback.lookahead if is_driving else None)
         self._outbox.task_changed = True
@@ -200,11 +230,12 @@ class TaskPlanner:
         phase = TaskPhase.SUCCEEDED if result.succeeded else TaskPhase.ABORTED
         self._end(task, phase, result.reason or None, now)
 
-    def note_standstill(self) -> None:
+    def note_standstill(self, now: Instant) -> None:
         """Record that the vehicle is at standstill: a pausing task is paused."""
         task = self._current
         if task is not None and task.phase is TaskPhase.PAUSING:
             task.phase = TaskPhase.PAUSED
+            self._keeper.note(task, now)
             self._emit(TaskPaused(task.id, task.reason))
 
     # --- what can be seen ------------------------------------------------------------------------
@@ -272,14 +303,16 @@ class TaskPlanner:
                 task.speed_mps,
                 task.reached_m,
                 task.left_out_m,
+                task.seen,
             )
         )
 
-    def _pause(self, task: Task, cause: int, *, was_driving: bool) -> None:
+    def _pause(self, task: Task, cause: int, now: Instant, *, was_driving: bool) -> None:
         """Pause until there are no holds; a vehicle that was driving is not yet at standstill."""
         stands = self._vehicle.stands and not was_driving
         task.phase = TaskPhase.PAUSED if stands else TaskPhase.PAUSING
         task.reason = self.holds.reason
+        self._keeper.note(task, now)
         kind = TaskPaused if stands else TaskPausing
         self._emit(kind(task.id, task.reason), cause)
 
@@ -311,6 +344,7 @@ class TaskPlanner:
         cause: int | None = None,
     ) -> None:
         task.end(phase, reason, now)
+        self._keeper.note(task, now)
         self._emit(TASK_ENDS[phase](task.id, reason, task.view().progress), cause)
         self._current = None
 
@@ -318,6 +352,35 @@ class TaskPlanner:
         """Record an event of a task."""
         self._outbox.task_changed = True
         return self._outbox.emit(event, cause)
+
+    def _add(self, task: Task) -> None:
+        for dropped in self._log.add(task):
+            self._keeper.forget(dropped)
+
+    def _check_drivable(
+        self, path: Path, start_index: int, controller: str, speed_mps: float
+    ) -> None:
+        """Reject a task that this vehicle can drive from nowhere.
+
+        Raises:
+            UnknownControllerError: There is no path tracker of that name.
+            InvalidValueError: The start index is out of range or leaves no path, or the vehicle
+                cannot drive the cruise speed.
+        """
+        if controller not in TRACKERS:
+            raise UnknownControllerError("controller", controller, tuple(TRACKERS))
+        check_start(path, start_index)
+        check_cruise(speed_mps, self._limits)
+
+    def _why_not_driven(self, task: Task, newest: Task) -> str:
+        """Return why a task of an earlier run cannot go on, in words; empty: it can."""
+        if task is not newest:
+            return "how it ended was not written down"
+        try:
+            self._check_drivable(task.path, task.start_index, task.controller, task.speed_mps)
+        except PilothouseError as error:
+            return error.message
+        return ""
 
     def _nearest(self, path: Path) -> tuple[int, float] | None:
         """Return index and distance, in m, of the nearest waypoint at which a task may begin."""

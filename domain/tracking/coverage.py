@@ -49,8 +49,18 @@ class Coverage:
         self._braking_mps2 = braking_mps2
         self._step_m = min(STEP_M, near_m / 4)
         self._last: VehicleState | None = None
+        self._unseen_s = 0.0
         self._trail: list[_Place] = []
         """Where the vehicle was since the path was judged last."""
+
+    def go_on_from(self, last: VehicleState, unseen_s: float) -> None:
+        """Go on from where a vehicle was seen last.
+
+        Args:
+            last: Of the vehicle, with the highest speed that it had thereafter.
+            unseen_s: So long it was driven on at most, s.
+        """
+        self._last, self._unseen_s = last, unseen_s
 
     def may_have_rolled(self, state: VehicleState) -> bool:
         """Tell whether the vehicle may have come here by itself since it was noted last.
@@ -61,7 +71,7 @@ class Coverage:
         if last is None:
             return False
         speed = abs(last.speed_mps)
-        unheard_s = to_seconds(COMMAND_VALID_FOR)
+        unheard_s = self._unseen_s + to_seconds(COMMAND_VALID_FOR)
         most_m = speed * unheard_s + speed * speed / (2 * self._braking_mps2)
         return _apart(_place(last), _place(state)) <= most_m
 
@@ -92,7 +102,7 @@ class Coverage:
         here = _place(state)
         if self._last is not None and self.may_have_rolled(state):
             self._trail += _between(_place(self._last), here, self._step_m)
-        self._last = state
+        self._last, self._unseen_s = state, 0.0
         moved = not self._trail or _apart(self._trail[-1], here) >= self._step_m
         is_ahead = distance_m is not None and distance_m > self.reached_m
         if moved or is_ahead:

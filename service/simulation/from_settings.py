@@ -13,7 +13,12 @@ from service.files.vehicle_block import VehicleBlock
 
 
 def make_simulated_robot(
-    model: SmhModel, robot: RobotSettings, start: Instant, *, mock: bool
+    model: SmhModel,
+    robot: RobotSettings,
+    start: Instant,
+    *,
+    mock: bool,
+    memory: object = None,
 ) -> SimulatedRobot:
     """Return a simulated robot.
 
@@ -22,12 +27,14 @@ def make_simulated_robot(
         robot: Settings of nodes and vehicle.
         start: Start time of the simulation.
         mock: Whether mock signals are published as well.
+        memory: What its `memory` returned in an earlier run; None: nodes and vehicle begin anew.
 
     Raises:
         UnknownPartError: The settings name a node that the model does not have.
     """
     nodes = {PartName(name): node_settings(block) for name, block in robot.nodes.items()}
-    return SimulatedRobot(model, start, nodes, vehicle_settings(robot.vehicle), mock=mock)
+    vehicle = vehicle_settings(robot.vehicle)
+    return SimulatedRobot(model, start, nodes, vehicle, mock=mock, memory=memory)
 
 
 def node_settings(block: NodeBlock) -> NodeSettings:

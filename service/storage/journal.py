@@ -92,6 +92,10 @@ class StorageStatus:
     """What this run could not write down."""
 
 
+NOTHING_KEPT = StorageStatus(":memory:", 0, None, None, "", 1, {})
+"""Status where nothing is kept, as in a simulation."""
+
+
 @dataclass(frozen=True, slots=True)
 class EventQuery:
     """Which events of the log are wanted; None: any."""
@@ -154,12 +158,27 @@ class Journal(Protocol):
         """Keep a value of the service itself, such as the state of a simulated robot."""
         ...
 
-    def checkpoint(self, at: Instant, state: bytes) -> None:
-        """Write down the whole state of the core after the last noted step."""
+    @property
+    def wants_checkpoint(self) -> bool:
+        """Tell whether a replay could not go on from what was written down lately.
+
+        So at the start, after a hole, with each new file of the log, and every few minutes.
+        """
+        ...
+
+    @property
+    def last_step(self) -> int:
+        """Return the number of the step that was noted last."""
+        ...
+
+    def checkpoint(self, step: int, at: Instant, state: bytes) -> None:
+        """Write down the whole state of the core as it was after a step."""
         ...
 
     async def commit(self, patience_s: float) -> bool:
         """Wait until all that was noted before is on disk; return whether it is, in that time.
+
+        Something is written in any case: success proves that storage works now.
 
         Raises:
             StorageDegradedError: Storage fails: it will not be, until it works again.

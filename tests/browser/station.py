@@ -56,7 +56,8 @@ class Service:
 
     def start(self) -> None:
         command = Path(sys.executable).with_name("pilothouse")
-        arguments = [str(command), "serve", "--port", str(self.port), *self.arguments]
+        arguments = [str(command), "serve", "--port", str(self.port), "--data", ":memory:"]
+        arguments += self.arguments
         self._process = subprocess.Popen(arguments, stdout=self.output, stderr=self.output)
         end = time.monotonic() + START_WITHIN_S
         while not self._is_ready():

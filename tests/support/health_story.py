@@ -44,7 +44,8 @@ class Robot:
         return self.health.acknowledge(error, START + seconds(at_s))
 
     def engage(self, at_s: float, engaged: bool = True) -> HealthChanges:
-        return self.health.set_emergency_stop(engaged, START + seconds(at_s))
+        now = START + seconds(at_s)
+        return self.health.set_emergency_stop(now if engaged else None, now)
 
     @property
     def errors(self) -> tuple[str, ...]:

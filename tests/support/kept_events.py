@@ -139,7 +139,17 @@ class EventJournal:
     def keep(self, name: str, value: Plain) -> None:
         """Keep nothing."""
 
-    def checkpoint(self, at: int, state: bytes) -> None:
+    @property
+    def wants_checkpoint(self) -> bool:
+        """Return False: steps are not kept."""
+        return False
+
+    @property
+    def last_step(self) -> int:
+        """Return 0: steps are not kept."""
+        return 0
+
+    def checkpoint(self, step: int, at: int, state: bytes) -> None:
         """Keep nothing."""
 
     def status(self) -> StorageStatus:

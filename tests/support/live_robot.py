@@ -14,8 +14,11 @@ from domain.timebase import Instant
 from service.clock import Clock
 from service.event_log import EventLog
 from service.files.model_file import LoadedModel
+from service.keeper import Stores
+from service.simulation.remembering import memories_of
 from service.simulation.simulated import SimulatedBackend
 from service.storage.journal import Journal
+from service.storage.trends.trends import Trends
 from service.supervisor import Supervisor
 from tests.support.manual_clock import ManualClock
 from tests.support.models import actuation_model
@@ -44,6 +47,7 @@ def make_live_robot(
     mock: bool = True,
     events: EventLog | None = None,
     journal: Journal | None = None,
+    trends: Trends | None = None,
 ) -> tuple[Supervisor, SimulatedBackend]:
     """Return a supervisor that does not run yet, and the simulated robot that it supervises."""
     clock = clock or ManualClock()
@@ -59,7 +63,7 @@ def make_live_robot(
         backend.readings,
         simulated=robot.what,
         events=events,
-        journal=journal,
+        stores=Stores(journal, trends, memories_of(robot)),
     )
     return supervisor, backend
 

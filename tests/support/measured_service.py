@@ -46,12 +46,15 @@ def measured_service(
         core: The only one to run on; None: any.
         environment: Variables beside those of this process.
     """
-    with tempfile.TemporaryFile("w+") as complaints:
+    with (
+        tempfile.TemporaryDirectory(prefix="pilothouse-state-") as state,
+        tempfile.TemporaryFile("w+") as complaints,
+    ):
         with pinned_to(core):
             process = subprocess.Popen(
                 command,
                 cwd=PROJECT,
-                env={**os.environ, **(environment or {})},
+                env={**os.environ, "XDG_STATE_HOME": state, **(environment or {})},
                 stdout=subprocess.PIPE,
                 stderr=complaints,
                 text=True,

@@ -56,6 +56,11 @@ class ServiceProcess:
         """Send SIGTERM, SIGINT, ..."""
         self._process.send_signal(number)
 
+    def kill(self) -> None:
+        """End it as a power cut would."""
+        self._process.kill()
+        self._process.wait()
+
     def ended(self, within_s: float = 10.0) -> tuple[int, float, str]:
         """Wait for the end; return the exit code, the seconds that took, and its complaints."""
         start = time.monotonic()
@@ -91,12 +96,14 @@ def service(*arguments: str, command: tuple[str, ...] = COMMAND) -> Iterator[Ser
     """
     # A pipe that nobody reads would stop the service once it is full.
     with (
+        tempfile.TemporaryDirectory(prefix="pilothouse-state-") as state,
         tempfile.TemporaryFile("w+") as complaints,
         subprocess.Popen(
             [*command, "serve", "--port", "0", *arguments],
             stdout=subprocess.PIPE,
             stderr=complaints,
             text=True,
+            env={**os.environ, "XDG_STATE_HOME": state},
         ) as process,
     ):
         try:

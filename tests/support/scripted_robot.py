@@ -5,7 +5,7 @@ from typing import Any, TypeVar
 
 from domain.commands import Command, Drive, PreemptGoal, SendGoal
 from domain.events.event import RecordedEvent
-from domain.identifiers import ChangeId
+from domain.identifiers import ChangeId, TaskId
 from domain.inputs import (
     ChangeRequest,
     GoalFeedback,
@@ -14,6 +14,7 @@ from domain.inputs import (
     TimePassed,
     VehicleReport,
 )
+from domain.kept import Kept, KeptProgress
 from domain.outbox import Outputs
 from domain.parts.system_model import SmhModel
 from domain.snapshot import TaskView
@@ -35,11 +36,14 @@ class ScriptedRobot(OperatorVerbs[Outputs, ChangeId, None]):
         pose: bool = True,
         good: bool = True,
         settings: SupervisionSettings | None = None,
+        start: Instant = 0,
     ) -> None:
-        self.now: Instant = 0
-        self.core = Supervision(SmhModel({}, {}), settings or SupervisionSettings(), 0)
+        self.now = start
+        self.core = Supervision(SmhModel({}, {}), settings or SupervisionSettings(), start)
         self.events: list[RecordedEvent] = []
         self.commands: list[Command] = []
+        self.kept: dict[tuple[type[Kept], str], Kept | None] = {}
+        """What the core wants to be kept; None: it is forgotten."""
         if good:
             self.read(**GOOD)
         if pose:
@@ -52,6 +56,7 @@ class ScriptedRobot(OperatorVerbs[Outputs, ChangeId, None]):
         outputs = self.core.handle(given, self.now)
         self.events += outputs.events
         self.commands += outputs.commands
+        self.kept |= {(item.kind, item.name): item.value for item in outputs.kept}
         return outputs
 
     def begin(self, request: ChangeRequest) -> ChangeId:
@@ -88,6 +93,18 @@ class ScriptedRobot(OperatorVerbs[Outputs, ChangeId, None]):
     def arrive(self, *, succeeded: bool = True, reason: str = "") -> Outputs:
         """Let navigation end its goal."""
         return self.give(GoalResult(self.goals[-1].goal, succeeded, reason))
+
+    # --- what is kept ----------------------------------------------------------------------------
+
+    def progress(self, task: str = "t1") -> KeptProgress:
+        """Return the progress of a task that is kept."""
+        kept = self.kept[KeptProgress, TaskId(task)]
+        assert isinstance(kept, KeptProgress)
+        return kept
+
+    def all_kept(self) -> tuple[Kept, ...]:
+        """Return all that is kept."""
+        return tuple(kept for kept in self.kept.values() if kept is not None)
 
     # --- what is seen ----------------------------------------------------------------------------
 

@@ -4,6 +4,7 @@ import argparse
 from pathlib import Path
 
 from api.cli.commands.command import Command
+from api.serving.data_folder import USUAL
 
 _TEXT = """\
 Run the service until Ctrl-C, SIGTERM or SIGHUP (an ssh session that closes);
@@ -14,6 +15,10 @@ set a token with PILOTHOUSE_TOKEN, or a file with the token with
 PILOTHOUSE_TOKEN_FILE; or use --anonymous to allow everybody. Browsers send the
 host name of the URL: allow a name other than localhost or an address of this
 machine with --allowed-host.
+
+What must not be forgotten (emergency stop, holds, targets, tasks) and the logs
+are kept in a folder per robot; the greeting says where. After a restart nothing
+moves before you ask for it. To forget, stop the service and delete the folder.
 
 With --backend ros2, the nodes are the ROS 2 nodes of the domain ROS_DOMAIN_ID.
 Source setup.bash of the ROS 2 distribution first. ROS 2 participants in that
@@ -30,6 +35,13 @@ def _add_options(parser: argparse.ArgumentParser) -> None:
         "model", nargs="?", type=Path, metavar="MODEL", help="model file; default: an example"
     )
     parser.add_argument("--robot", type=Path, metavar="FILE", help="robot file: settings")
+    parser.add_argument(
+        "--data",
+        default=USUAL,
+        metavar="DIR",
+        help="folder for what survives a restart; :memory: keeps nothing; default: "
+        "~/.local/state/pilothouse/NAME, where NAME is that of the robot file or of the model",
+    )
     parser.add_argument(
         "--backend",
         choices=("simulated", "ros2"),
@@ -90,6 +102,7 @@ def _run(options: argparse.Namespace) -> int:
             allowed_hosts=tuple(options.allowed_host),
             allowed_origins=tuple(options.allowed_origin),
             log_level=options.log_level,
+            data=options.data,
         )
     )
 

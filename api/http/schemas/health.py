@@ -130,6 +130,9 @@ class SystemStateJson(Json):
     reasons: list[BlockerJson]
     task_status: TaskStatus
     simulated: tuple[str, ...] = Field(description="Parts of the robot that are simulated")
+    storage_fault: str | None = Field(
+        description="Why what happens is not stored, so that a restart may forget it; null: it is"
+    )
 
     @classmethod
     def of(
@@ -158,6 +161,7 @@ class SystemStateJson(Json):
             reasons=[BlockerJson.of(reason, clock) for reason in view.reasons],
             task_status=view.task_status,
             simulated=tuple(simulated),
+            storage_fault=view.storage_fault,
         )
 
 

@@ -28,7 +28,9 @@ class HelloJson(Json):
     type: Literal["hello"] = "hello"
     epoch: str = Field(description="Name of this run of the service; another one after a restart")
     boot: int = Field(description="Number of this run, from 1; 1 if nothing is kept over restarts")
-    started_at: Timestamp = Field(description="Start of this run of the service")
+    started_at: Timestamp = Field(
+        description="Start of this run of the service; the next frame is complete"
+    )
     newest: int = Field(description="Id of the newest event: resume after it if none came since")
     topics: list[str] = Field(description="Topics that this client is subscribed to")
     period_s: float = Field(description="Time between two `state` frames")

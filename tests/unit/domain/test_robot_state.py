@@ -8,6 +8,7 @@ from domain.inputs import Reading, Readings
 from domain.outbox import Outbox
 from domain.robot_state import RobotState
 from domain.snapshot import SystemState, TaskStatus
+from domain.storage import Storage
 from domain.tasks.driving import Driving
 from tests.support.good import GOOD
 
@@ -19,7 +20,9 @@ class Robot:
         self.outbox = Outbox()
         self.health = Health(default_signals(), self.outbox, 0)
         self.driving = SimpleNamespace(status=TaskStatus.NO_TASK, still_moving=None)
-        self.state = RobotState(self.health, cast("Driving", self.driving), self.outbox)
+        self.state = RobotState(
+            self.health, cast("Driving", self.driving), Storage(self.outbox), self.outbox
+        )
 
     def read(self, **values: bool) -> None:
         items = tuple(Reading(name, value) for name, value in {**GOOD, **values}.items())

@@ -151,7 +151,7 @@ class Told:
 def do(health: StateManager, act: Act, now: int) -> HealthChanges | None:
     """Do one thing; return None if it is refused."""
     if isinstance(act, Engage):
-        return health.set_emergency_stop(act.engaged, now)
+        return health.set_emergency_stop(now if act.engaged else None, now)
     if isinstance(act, Acknowledge):
         return health.acknowledge(act.error, now)
     try:

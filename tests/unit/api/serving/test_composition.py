@@ -4,7 +4,7 @@ from types import SimpleNamespace
 
 import pytest
 
-from api.serving.composition import MisuseError, ServeOptions, compose
+from api.serving.composition import Composition, MisuseError, ServeOptions, compose, read_files
 from service.files.robot_file import RobotSettings
 from service.ros.graph.graph import UnknownFieldError, UnknownTypeError
 from service.start_task import StartTaskError
@@ -19,6 +19,10 @@ def robot(tmp_path: Path) -> Path:
     return tmp_path / "robot.yaml"
 
 
+def composed(options: ServeOptions) -> Composition:
+    return compose(options, ManualClock(), read_files(options))
+
+
 @pytest.fixture
 def _ros(monkeypatch: pytest.MonkeyPatch) -> None:
     """Let there be ROS 2 on this machine."""
@@ -27,7 +31,7 @@ def _ros(monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 def test_without_arguments_the_example_is_served_with_everything_simulated() -> None:
-    composition = compose(ServeOptions(), ManualClock())
+    composition = composed(ServeOptions())
 
     assert "actuation" in composition.supervisor.model.systems
     assert composition.supervisor.simulated == ("nodes", "signals", "vehicle")
@@ -37,21 +41,21 @@ def test_without_arguments_the_example_is_served_with_everything_simulated() -> 
 
 def test_a_robot_file_may_turn_the_mock_off(robot: Path) -> None:
     robot.write_text("mock: false\n")
-    supervisor = compose(ServeOptions(robot=robot), ManualClock()).supervisor
+    supervisor = composed(ServeOptions(robot=robot)).supervisor
 
     assert supervisor.simulated == ("nodes", "vehicle")
 
 
 def test_the_command_line_may_turn_the_mock_on_again(robot: Path) -> None:
     robot.write_text("mock: false\n")
-    supervisor = compose(ServeOptions(robot=robot, mock_signals=True), ManualClock()).supervisor
+    supervisor = composed(ServeOptions(robot=robot, mock_signals=True)).supervisor
 
     assert supervisor.readings.mock is not None
 
 
 def test_the_settings_of_a_robot_file_reach_the_core_and_the_service(robot: Path) -> None:
     robot.write_text("signals: {battery_level: {threshold: 0.3}}\nlimits: {stream_clients: 3}\n")
-    composition = compose(ServeOptions(robot=robot), ManualClock())
+    composition = composed(ServeOptions(robot=robot))
 
     signal = composition.supervisor.core.signal("battery_level")
     assert signal.settings["threshold"] == 0.3
@@ -63,7 +67,7 @@ def test_a_start_task_that_cannot_be_driven_is_told(robot: Path) -> None:
     robot.write_text("start_task: {file: path.csv}\n")
 
     with pytest.raises(StartTaskError, match=r"path\.csv"):
-        compose(ServeOptions(robot=robot), ManualClock())
+        composed(ServeOptions(robot=robot))
 
 
 def test_nothing_set_is_a_robot_file_without_content() -> None:
@@ -75,7 +79,7 @@ def test_nothing_set_is_a_robot_file_without_content() -> None:
 
 @pytest.mark.usefixtures("_ros")
 def test_real_nodes_are_reached_where_that_is_said() -> None:
-    composition = compose(ServeOptions(backend="ros2"), ManualClock())
+    composition = composed(ServeOptions(backend="ros2"))
 
     assert composition.gateway is not None
     assert composition.simulated is None
@@ -87,8 +91,8 @@ def test_real_nodes_are_reached_where_that_is_said() -> None:
 def test_a_robot_file_says_so_too_and_the_command_line_has_the_last_word(robot: Path) -> None:
     robot.write_text("backend: ros2\n")
 
-    assert compose(ServeOptions(robot=robot), ManualClock()).gateway is not None
-    simulated = compose(ServeOptions(robot=robot, backend="simulated"), ManualClock())
+    assert composed(ServeOptions(robot=robot)).gateway is not None
+    simulated = composed(ServeOptions(robot=robot, backend="simulated"))
     assert simulated.gateway is None
     assert simulated.supervisor.simulated == ("nodes", "signals", "vehicle")
 
@@ -103,7 +107,7 @@ def test_signals_of_a_real_robot_are_mocked_only_where_that_is_asked(
 ) -> None:
     robot.write_text(f"{text}\n")
     options = ServeOptions(robot=robot, backend="ros2", mock_signals=flag)
-    supervisor = compose(options, ManualClock()).supervisor
+    supervisor = composed(options).supervisor
 
     assert (supervisor.readings.mock is not None) is mocked
     assert supervisor.simulated == (("signals",) if mocked else ())
@@ -115,7 +119,7 @@ def test_without_rclpy_it_is_said_what_to_do(absent: str, monkeypatch: pytest.Mo
     monkeypatch.setitem(sys.modules, absent, None)
 
     with pytest.raises(MisuseError) as caught:
-        compose(ServeOptions(backend="ros2"), ManualClock())
+        composed(ServeOptions(backend="ros2"))
 
     for way in ("source the setup.bash", "pip install 'pilothouse[ros2]'"):
         assert way in str(caught.value)
@@ -129,7 +133,7 @@ def test_a_middleware_that_does_not_start_is_told(monkeypatch: pytest.MonkeyPatc
     monkeypatch.setitem(sys.modules, LINK, link)
 
     with pytest.raises(MisuseError, match="ROS 2 does not start: ROS_DOMAIN_ID is"):
-        compose(ServeOptions(backend="ros2"), ManualClock())
+        composed(ServeOptions(backend="ros2"))
 
 
 @pytest.mark.parametrize(
@@ -148,7 +152,7 @@ def test_a_type_that_the_robot_file_names_has_to_be_there(
     robot.write_text(f"ros2: {{{topics}}}\n")
 
     with pytest.raises(UnknownTypeError, match="install its package"):
-        compose(ServeOptions(robot=robot, backend="ros2"), ManualClock())
+        composed(ServeOptions(robot=robot, backend="ros2"))
 
 
 @pytest.mark.usefixtures("_ros")
@@ -157,7 +161,7 @@ def test_a_field_that_the_robot_file_names_has_to_be_there(robot: Path) -> None:
     robot.write_text(f"ros2: {{signals: {{temperature: {topic}}}}}\n")
 
     with pytest.raises(UnknownFieldError, match="has no field no_such_field; it has data"):
-        compose(ServeOptions(robot=robot, backend="ros2"), ManualClock())
+        composed(ServeOptions(robot=robot, backend="ros2"))
 
 
 def test_topics_of_a_robot_that_is_simulated_are_said_to_have_no_effect(
@@ -165,6 +169,6 @@ def test_topics_of_a_robot_that_is_simulated_are_said_to_have_no_effect(
 ) -> None:
     robot.write_text("ros2: {odometry: {topic: /odom}}\n")
 
-    compose(ServeOptions(robot=robot), ManualClock())
+    composed(ServeOptions(robot=robot))
 
     assert "`ros2` of the robot file has no effect" in caplog.text

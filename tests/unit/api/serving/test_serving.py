@@ -6,7 +6,7 @@ import pytest
 
 from api.access_token import FILE_VARIABLE, TOKEN_VARIABLE
 from api.http.access import Access
-from api.serving.composition import MisuseError, ServeOptions, compose
+from api.serving.composition import MisuseError, ServeOptions, compose, read_files
 from api.serving.serving import access_of, greet, serve
 from tests.support.manual_clock import ManualClock
 from tests.support.ros_graph import FakeGraph
@@ -18,7 +18,7 @@ TOKEN = "correct-horse-battery"
 
 
 def greeting(options: ServeOptions, access: Access | None = None) -> str:
-    composition = compose(options, ManualClock())
+    composition = compose(options, ManualClock(), read_files(options))
     return "\n".join(greet(composition, options, URL, access or Access.open()))
 
 

@@ -6,19 +6,24 @@ import pytest
 
 from domain.actor import NOBODY, Actor
 from domain.changes.settings import ChangeSettings
+from domain.errors import IllegalTransitionError
 from domain.inputs import (
     BackendStatus,
     CancelRequest,
+    ChangeRequest,
     EmergencyStopRequest,
+    Input,
     ModeRequest,
     NodeAnswer,
     NodeReport,
     ParametersRequest,
     Reading,
     Readings,
+    Restored,
     TimePassed,
     TransitionRequest,
 )
+from domain.kept import KeptTarget
 from domain.lifecycle import LifecycleState, Transition
 from domain.outbox import Outputs
 from domain.parameters import Parameters
@@ -30,10 +35,20 @@ from domain.supervision import Supervision, SupervisionSettings
 from domain.timebase import seconds
 from tests.support.core_robot import CoreRobot
 from tests.support.good import GOOD
-from tests.support.models import ACTUATION, ARM, BASE, FAST, PERFORMANCE, SLOW, actuation_model
+from tests.support.models import (
+    ACTUATION,
+    ARM,
+    BASE,
+    FAST,
+    PERFORMANCE,
+    SLOW,
+    active,
+    actuation_model,
+)
 
 S = LifecycleState
 BOTH = frozenset({BASE, ARM})
+FIRST_RUN = Restored()
 STARTED: Mapping[PartName, Parameters] = {
     BASE: {"max_speed": 0.0, "controller": "none"},
     ARM: {"max_torque": 0.0},
@@ -50,10 +65,11 @@ def virtual(
     return robot
 
 
-def bare() -> Supervision:
+def bare(first: Input = FIRST_RUN) -> Supervision:
     """Return a core whose nodes do nothing but what the test reports."""
     settings = SupervisionSettings(changes=ChangeSettings(restored_nodes=BOTH))
     core = Supervision(actuation_model(), settings, 0)
+    core.handle(first, 0)
     core.handle(Readings(tuple(Reading(n, v) for n, v in GOOD.items()), "test"), 0)
     return core
 
@@ -454,3 +470,71 @@ def test_whoever_frees_a_node_is_not_who_left_it_as_it_is() -> None:
 
     told = [event for event in outputs.events if event.kind == "node.not_restored"]
     assert [(event.actor.label, event.data["node"]) for event in told] == [("", BASE)]
+
+
+# --- after a restart of the service --------------------------------------------------------------
+
+
+def restarted() -> Supervision:
+    """Return a core that was restarted after the system was asked for `PERFORMANCE`."""
+    return bare(Restored((KeptTarget(ACTUATION, active(PERFORMANCE), 1),), boot=2))
+
+
+def test_after_a_restart_a_node_that_is_off_its_target_is_shown_and_left_as_it_is() -> None:
+    core = restarted()
+    told = starts(core, 1)
+
+    assert "node.restoring" not in kinds(told)
+    assert told.commands == ()
+    assert core.part(BASE).deviation_reason == "drive_base is unconfigured, target active.FAST"
+
+
+def test_after_a_restart_it_is_left_as_it_is_also_when_it_vanishes_and_returns() -> None:
+    core = restarted()
+    for at_s in range(10, 40, 10):
+        starts(core, at_s)
+        falls(core, at_s + 5)
+        assert core.changes() == ()
+
+
+@pytest.mark.parametrize(
+    "request_",
+    [
+        TransitionRequest(BASE, Transition.CONFIGURE),
+        ParametersRequest(BASE, {"max_speed": 0.5}),
+        ModeRequest(ACTUATION, PERFORMANCE),
+    ],
+    ids=["of the node", "of its parameters", "of its system"],
+)
+def test_once_something_is_requested_of_it_or_of_its_system_it_is_restored_again(
+    request_: ChangeRequest,
+) -> None:
+    core = restarted()
+    starts(core, 1)
+    core.handle(request_, seconds(2))
+    core.handle(TimePassed(), seconds(20))
+    falls(core, 20)
+
+    assert "node.restoring" in kinds(starts(core, 30))
+
+
+def test_a_request_of_another_part_or_one_that_is_rejected_changes_nothing_about_it() -> None:
+    core = restarted()
+    starts(core, 1)
+    core.handle(TransitionRequest(ARM, Transition.CONFIGURE), seconds(2))
+    with pytest.raises(IllegalTransitionError):
+        core.handle(TransitionRequest(BASE, Transition.DEACTIVATE), seconds(2))
+    falls(core, 20)
+
+    assert "node.restoring" not in kinds(starts(core, 30))
+
+
+def test_a_request_before_its_first_report_waits_until_the_node_says_what_it_is_in() -> None:
+    core = restarted()
+    asked = core.handle(ModeRequest(BASE, FAST), seconds(1))
+    assert asked.commands == ()
+
+    there: Parameters = {"max_speed": 0.9, "controller": "MPC"}
+    report = NodeReport(BASE, state=S.ACTIVE, parameters=there, reachable=True)
+    assert core.handle(report, seconds(2)).commands == (), "it runs in that mode already"
+    assert core.changes()[0].status is ChangeStatus.SUCCEEDED

@@ -1,11 +1,16 @@
+import pytest
+
 from domain.actor import Actor
 from domain.events.event import RecordedEvent
 from domain.health.emergency_stop import EmergencyStop
 from domain.health.health import Health
 from domain.health.signals import default_signals
-from domain.inputs import EmergencyStopRequest
+from domain.inputs import EmergencyStopRequest, Restored
+from domain.kept import Kept, KeptEmergencyStop
 from domain.outbox import Outbox
+from domain.restart import Restart
 from domain.snapshot import EmergencyStopView
+from domain.timebase import Instant
 
 RELEASED = EmergencyStopView(engaged=False, by=None, reason=None, since=None, standstill_at=None)
 
@@ -13,9 +18,12 @@ RELEASED = EmergencyStopView(engaged=False, by=None, reason=None, since=None, st
 class Robot:
     """A robot of which nothing but its emergency stop is of interest."""
 
-    def __init__(self) -> None:
+    def __init__(self, now: Instant = 0) -> None:
+        self.now = now
+        self.kept: list[Kept | None] = []
+        """What was kept in the last step."""
         self.outbox = Outbox()
-        self.health = Health(default_signals(), self.outbox, 0)
+        self.health = Health(default_signals(), self.outbox, now)
         self.stop = EmergencyStop(self.health, self.outbox)
 
     def engage(self, by: str, reason: str, now: int) -> list[str]:
@@ -30,8 +38,16 @@ class Robot:
         self.stop.note_standstill(now)
         return self._told()
 
+    def restore(self, *kept: KeptEmergencyStop, stop_because: str = "") -> list[str]:
+        restored = Restored(kept, stop_because=stop_because)
+        Restart(self.outbox).take_restored(restored, self.now)
+        self.stop.restore(restored, self.now)
+        return self._told()
+
     def _told(self) -> list[str]:
-        events: tuple[RecordedEvent, ...] = self.outbox.take().events
+        outputs = self.outbox.take()
+        self.kept = [item.value for item in outputs.kept]
+        events: tuple[RecordedEvent, ...] = outputs.events
         return [event.kind for event in events]
 
 
@@ -126,3 +142,86 @@ def test_another_stop_waits_for_a_standstill_of_its_own() -> None:
     robot.engage("anna", "another child", 30)
 
     assert robot.stop.view().standstill_at is None
+
+
+# --- over a restart ------------------------------------------------------------------------------
+
+
+def test_whoever_engages_or_releases_it_is_kept() -> None:
+    robot = Robot()
+    robot.engage("anna", "child on the track", 7)
+    assert robot.kept == [KeptEmergencyStop(True, "anna", "child on the track", 7)]
+    robot.engage("bert", "me too", 9)
+    assert robot.kept == []
+
+    robot.release("bert", "track is clear", 20)
+    assert robot.kept == [KeptEmergencyStop(False, "bert", "track is clear", 20)]
+
+
+def test_after_a_restart_it_is_engaged_as_it_was() -> None:
+    robot = Robot(now=100)
+    told = robot.restore(KeptEmergencyStop(True, "anna", "child on the track", 7))
+
+    assert told[:2] == ["service.restored", "error.raised"]
+    assert robot.stop.view() == EmergencyStopView(
+        engaged=True, by="anna", reason="child on the track", since=7, standstill_at=None
+    )
+    (reason,) = robot.health.stop_reasons
+    assert (reason.code, reason.since) == ("ESTOP", 7)
+    assert robot.kept == [], "it is kept already"
+
+
+def test_after_a_restart_a_released_one_says_who_released_it() -> None:
+    robot = Robot(now=100)
+    robot.restore(KeptEmergencyStop(False, "bert", "track is clear", 20))
+
+    assert robot.stop.view() == EmergencyStopView(
+        engaged=False, by="bert", reason="track is clear", since=20, standstill_at=None
+    )
+    assert not robot.health.is_stopped
+
+
+def test_a_clock_that_went_back_makes_no_time_to_come() -> None:
+    robot = Robot(now=100)
+    robot.restore(KeptEmergencyStop(True, "anna", "child on the track", 250))
+
+    assert robot.stop.view().since == 100
+    assert [reason.since for reason in robot.health.stop_reasons] == [100]
+
+
+def test_whoever_releases_it_after_a_restart_clears_estop() -> None:
+    robot = Robot(now=100)
+    robot.restore(KeptEmergencyStop(True, "anna", "child on the track", 7))
+    robot.release("bert", "track is clear", 120)
+    robot.health.pass_time(10**9)
+
+    assert not robot.health.is_stopped
+
+
+@pytest.mark.parametrize(
+    "kept",
+    [
+        (),
+        (KeptEmergencyStop(False, "bert", "track is clear", 20),),
+        (KeptEmergencyStop(True, "anna", "child on the track", 7),),
+    ],
+    ids=["nothing", "released", "engaged"],
+)
+def test_what_cannot_be_read_engages_it_whatever_was_kept(
+    kept: tuple[KeptEmergencyStop, ...],
+) -> None:
+    robot = Robot(now=100)
+    told = robot.restore(*kept, stop_because="state.db is broken")
+
+    assert told[:3] == ["service.restored", "emergency_stop.engaged", "error.raised"]
+    assert robot.stop.view() == EmergencyStopView(
+        engaged=True, by="service", reason="state.db is broken", since=100, standstill_at=None
+    )
+    assert robot.kept == [KeptEmergencyStop(True, "service", "state.db is broken", 100)]
+
+
+def test_the_first_run_of_a_robot_leaves_it_as_it_is() -> None:
+    robot = Robot()
+
+    assert robot.restore() == []
+    assert robot.stop.view() == RELEASED

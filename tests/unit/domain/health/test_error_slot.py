@@ -136,3 +136,18 @@ def test_nothing_is_acknowledged_in_advance() -> None:
     slot.update(None, 11)
 
     assert slot.error == "ESTOP"
+
+
+def test_an_error_of_an_earlier_run_waits_without_a_cause() -> None:
+    slot = acknowledged(min_on=5)
+    slot.restore("TEMPERATURE_HIGH", 10)
+    slot.update(None, 100)
+    assert (slot.error, slot.since, slot.waits_for_acknowledgement) == (
+        "TEMPERATURE_HIGH",
+        10,
+        True,
+    )
+
+    slot.acknowledge()
+    slot.update(None, 100)
+    assert slot.error is None

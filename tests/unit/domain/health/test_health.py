@@ -1,5 +1,6 @@
 """What is told of the robot's health, and what led to it."""
 
+from dataclasses import replace
 from types import SimpleNamespace
 from typing import cast
 
@@ -8,31 +9,48 @@ import pytest
 from domain.events.event import RecordedEvent
 from domain.events.service import TimeWasDue
 from domain.health.health import Health
-from domain.health.signals import default_signals
-from domain.inputs import Reading, Readings, SignalValue
+from domain.health.signals import Recovery, SignalSettings, default_signals
+from domain.inputs import AcknowledgeRequest, Reading, Readings, Restored, SignalValue
+from domain.kept import KeptError
 from domain.outbox import Outbox, Outputs
+from domain.restart import Restart
 from domain.robot_state import RobotState
 from domain.snapshot import TaskStatus
+from domain.storage import Storage
 from domain.tasks.driving import Driving
-from domain.timebase import seconds
+from domain.timebase import Instant, seconds
 from tests.support.good import GOOD
 
 
 class Robot:
     """The health of a robot, and its state, with what is told of both."""
 
-    def __init__(self) -> None:
+    def __init__(
+        self, signals: tuple[SignalSettings, ...] = default_signals(), now: Instant = 0
+    ) -> None:
         self.outbox = Outbox()
-        self.health = Health(default_signals(), self.outbox, 0)
+        self.health = Health(signals, self.outbox, now)
         self.driving = SimpleNamespace(status=TaskStatus.NO_TASK, still_moving=None)
-        self.state = RobotState(self.health, cast("Driving", self.driving), self.outbox)
+        self.state = RobotState(
+            self.health, cast("Driving", self.driving), Storage(self.outbox), self.outbox
+        )
         self.events: dict[int, RecordedEvent] = {}
-        self.now = 0
+        self.now = now
         self.last = Outputs()
 
     def read(self, stamp: int | None = None, /, **values: SignalValue) -> list[RecordedEvent]:
         items = tuple(Reading(name, value, stamp) for name, value in values.items())
         self.health.take_readings(Readings(items, "test"), self.now)
+        return self._taken()
+
+    def acknowledge(self, error: str) -> list[RecordedEvent]:
+        self.health.acknowledge(AcknowledgeRequest(error), self.now)
+        return self._taken()
+
+    def restore(self, *kept: KeptError) -> list[RecordedEvent]:
+        restored = Restored(kept)
+        Restart(self.outbox).take_restored(restored, self.now)
+        self.health.restore(restored, self.now)
         return self._taken()
 
     def keep_reading(self, duration_s: float, **values: SignalValue) -> list[RecordedEvent]:
@@ -252,3 +270,127 @@ def test_a_reading_that_releases_nothing_is_not(health: Robot) -> None:
     health.read(**GOOD)
 
     assert [event.kind for event in health.read(estop=False)] == []
+
+
+# --- over a restart ------------------------------------------------------------------------------
+
+
+HOT = KeptError("temperature", "TEMPERATURE_HIGH", seconds(3), "temperature 60 °C is above 55 °C")
+
+
+def waiting_settings() -> tuple[SignalSettings, ...]:
+    """Return the signals, of which the temperature waits for an acknowledgement."""
+    return tuple(
+        replace(item, recovery=Recovery.ACKNOWLEDGE) if item.spec.name == "temperature" else item
+        for item in default_signals()
+    )
+
+
+def kept_by(robot: Robot) -> list[tuple[str, KeptError | None]]:
+    return [(item.name, cast("KeptError | None", item.value)) for item in robot.last.kept]
+
+
+@pytest.fixture
+def waiting() -> Robot:
+    robot = Robot(waiting_settings())
+    robot.read(**GOOD)
+    robot.now = seconds(3)
+    return robot
+
+
+def test_an_error_is_kept_from_when_it_waits_until_it_is_acknowledged(waiting: Robot) -> None:
+    waiting.read(temperature=60.0)
+    assert kept_by(waiting) == [("TEMPERATURE_HIGH", HOT)]
+
+    waiting.read(temperature=61.0)
+    waiting.read(temperature=20.0)
+    assert kept_by(waiting) == [], "what was measured first is kept"
+
+    waiting.acknowledge("TEMPERATURE_HIGH")
+    assert kept_by(waiting) == [("TEMPERATURE_HIGH", None)]
+
+
+def test_an_error_that_clears_by_itself_is_not_kept(waiting: Robot) -> None:
+    waiting.read(battery_level=0.42)
+
+    assert kept_by(waiting) == []
+
+
+def test_an_error_whose_cause_comes_back_waits_again_and_is_kept_again(waiting: Robot) -> None:
+    waiting.read(temperature=60.0)
+    waiting.acknowledge("TEMPERATURE_HIGH")
+    assert kept_by(waiting) == [("TEMPERATURE_HIGH", None)]
+    waiting.read(temperature=20.0)
+    waiting.pass_time(1.0)
+    waiting.read(temperature=62.0)
+
+    ((_, kept),) = kept_by(waiting)
+    assert kept is not None
+    assert (kept.since, kept.message) == (seconds(4), "temperature 62 °C is above 55 °C")
+
+
+def test_after_a_restart_an_error_waits_before_anything_is_read() -> None:
+    robot = Robot(waiting_settings(), seconds(9))
+    events = robot.restore(HOT)
+
+    assert _kinds(events) == ["service.restored", "error.raised", "system_state.changed"]
+    assert _only(events, "error.raised").cause == events[0].id
+    assert "TEMPERATURE_HIGH" in robot.health.errors
+    assert robot.health.signal("temperature").needs_acknowledgement
+    (reason,) = [item for item in robot.health.reasons if item.code == HOT.error]
+    assert reason.since == HOT.since
+    assert HOT.message in reason.message
+    assert kept_by(robot) == [], "it is kept already"
+
+
+def test_a_good_reading_does_not_end_an_error_of_an_earlier_run() -> None:
+    robot = Robot(waiting_settings(), seconds(9))
+    robot.restore(HOT)
+    robot.read(**GOOD)
+    assert list(robot.health.errors) == ["TEMPERATURE_HIGH"]
+
+    events = robot.acknowledge("TEMPERATURE_HIGH")
+    assert "error.cleared" in _kinds(events)
+    assert kept_by(robot) == [("TEMPERATURE_HIGH", None)]
+    assert list(robot.health.errors) == []
+
+
+def test_an_error_of_an_earlier_run_can_be_acknowledged_before_anything_is_read() -> None:
+    robot = Robot(waiting_settings(), seconds(9))
+    robot.restore(HOT)
+    robot.acknowledge("TEMPERATURE_HIGH")
+
+    assert robot.health.errors == ("STALE_DATA",)
+
+
+def test_an_error_from_a_time_to_come_is_of_now() -> None:
+    robot = Robot(waiting_settings(), seconds(1))
+    robot.restore(HOT)
+
+    assert [item.since for item in robot.health.reasons if item.code == HOT.error] == [seconds(1)]
+
+
+@pytest.mark.parametrize(
+    ("kept", "reason"),
+    [
+        (
+            KeptError("tilt", "TILTED", 3, "tilt 9 ° is above 5 °"),
+            "there is no signal tilt any more",
+        ),
+        (
+            KeptError("battery_level", "BATTERY_LOW", 3, "battery 42 % is below 50 %"),
+            "battery_level has no such error to acknowledge any more",
+        ),
+    ],
+    ids=["no such signal", "it clears by itself now"],
+)
+def test_an_error_that_is_not_there_any_more_is_left_out_and_told(
+    kept: KeptError, reason: str
+) -> None:
+    robot = Robot(waiting_settings())
+    events = robot.restore(kept, HOT)
+
+    told = _only(events, "service.not_restored")
+    assert told.data == {"what": f"the error {kept.error}", "reason": reason}
+    assert kept_by(robot) == [(kept.error, None)], "it is no longer kept"
+    assert "TEMPERATURE_HIGH" in robot.health.errors

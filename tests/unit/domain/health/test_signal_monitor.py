@@ -255,16 +255,16 @@ def test_an_engaged_stop_is_not_delayed_by_what_delays_its_readings() -> None:
     stop.read(0.5, True)
     assert stop.monitor.view.error is None
 
-    stop.monitor.set_engaged(engaged=True, now=START + seconds(0.6))
+    stop.monitor.set_engaged(START + seconds(0.6), START + seconds(0.6))
     assert stop.monitor.view.error == "ESTOP"
 
 
 def test_readings_go_on_being_judged_while_the_stop_is_engaged() -> None:
     pressed = Condition("ESTOP", Comparison.EQUAL, threshold=True, for_=seconds(1))
     stop = Story(replace(DEFAULTS["estop"], conditions=(pressed,)))
-    stop.monitor.set_engaged(engaged=True, now=START)
+    stop.monitor.set_engaged(START, START)
     stop.read(9, False)
-    stop.monitor.set_engaged(engaged=False, now=START + seconds(9.1))
+    stop.monitor.set_engaged(None, START + seconds(9.1))
     stop.read(9.5, True)
 
     assert stop.wakes_at_s == 10.5
@@ -273,7 +273,7 @@ def test_readings_go_on_being_judged_while_the_stop_is_engaged() -> None:
 def test_engaging_twice_keeps_when_it_was_engaged_first() -> None:
     stop = Story(DEFAULTS["estop"])
     for at_s in (1, 2):
-        stop.monitor.set_engaged(engaged=True, now=START + seconds(at_s))
+        stop.monitor.set_engaged(START + seconds(at_s), START + seconds(at_s))
 
     assert [reason.since for reason in stop.monitor.reasons()] == [START + seconds(1)]
 
@@ -394,7 +394,7 @@ def test_an_error_kept_after_its_cause_is_told_as_that_until_it_is_acknowledged(
 
 def test_a_stop_is_told_once_for_the_latch_and_once_for_who_presses_it() -> None:
     stop = Story(DEFAULTS["estop"])
-    stop.monitor.set_engaged(engaged=True, now=START + seconds(1))
+    stop.monitor.set_engaged(START + seconds(1), START + seconds(1))
     stop.read(2, True)
     latch, pressed = stop.monitor.reasons()
 
@@ -432,3 +432,35 @@ def test_staleness_that_has_just_ended_stays_on_for_a_moment_and_says_so() -> No
     assert reason.code == STALE_DATA
     assert "stays active for at least 0.2 s" in reason.message
     assert monitor.wake_at() == START + seconds(2.2) + 1
+
+
+def test_an_error_of_an_earlier_run_says_what_was_measured_until_something_is_read() -> None:
+    settings = replace(DEFAULTS["temperature"], stale_after=0, recovery=Recovery.ACKNOWLEDGE)
+    monitor = SignalMonitor(settings, START)
+    monitor.restore("TEMPERATURE_HIGH", START - seconds(9), "temperature 60 °C", START)
+    (waits,) = monitor.reasons()
+    assert (waits.code, waits.since) == ("TEMPERATURE_HIGH", START - seconds(9))
+    assert waits.message == "before the restart: temperature 60 °C; waits for acknowledgement"
+    assert monitor.view.needs_acknowledgement
+    assert monitor.present == set()
+
+    monitor.receive(Reading("temperature", 20.0), "pad", START + seconds(1))
+    (waits,) = monitor.reasons()
+    assert waits.message == (
+        "temperature no longer causes TEMPERATURE_HIGH, which waits for acknowledgement"
+    )
+
+
+@pytest.mark.parametrize(
+    ("error", "recovery", "waits"),
+    [
+        ("TEMPERATURE_HIGH", Recovery.ACKNOWLEDGE, True),
+        ("TEMPERATURE_HIGH", Recovery.AUTOMATIC, False),
+        ("TEMPERATURE_LOW", Recovery.ACKNOWLEDGE, False),
+        (STALE_DATA, Recovery.ACKNOWLEDGE, False),
+    ],
+)
+def test_which_errors_wait_for_acknowledgement(error: str, recovery: Recovery, waits: bool) -> None:
+    monitor = SignalMonitor(replace(DEFAULTS["temperature"], recovery=recovery), START)
+
+    assert monitor.waits_with(error) is waits

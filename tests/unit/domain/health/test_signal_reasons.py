@@ -4,7 +4,13 @@ import pytest
 
 from domain.health.error_slot import ErrorSlot
 from domain.health.held_readings import HeldReadings
-from domain.health.signal_reasons import kept_reason, pressed_reason, stale_reason, value_reason
+from domain.health.signal_reasons import (
+    kept_reason,
+    pressed_reason,
+    restored_reason,
+    stale_reason,
+    value_reason,
+)
 from domain.health.signals import (
     Comparison,
     Condition,
@@ -213,3 +219,11 @@ def test_all_good_members_are_told() -> None:
     words = value_reason(SignalSettings(spec, (condition,)), condition, "N", seconds(3))
 
     assert words == "gear is N, not D or R for 3 s"
+
+
+def test_an_error_of_an_earlier_run_is_told_with_what_was_measured_then() -> None:
+    measured = "temperature 60 °C is above 55 °C"
+
+    assert restored_reason(measured) == (
+        "before the restart: temperature 60 °C is above 55 °C; waits for acknowledgement"
+    )

@@ -2,7 +2,7 @@ import pytest
 
 from domain.errors import ReservedHoldError, TooManyHoldsError
 from domain.snapshot import HoldView
-from domain.tasks.holds import MAX_HOLDS, Holds
+from domain.tasks.holds import MAX_HOLDS, Holds, why_not_restored
 
 
 def test_there_is_none_at_first() -> None:
@@ -39,17 +39,40 @@ def test_releasing_what_is_not_held_changes_nothing() -> None:
 @pytest.mark.parametrize("owner", ["error", "vehicle", "drive_process"])
 def test_the_names_of_pilothouse_are_reserved(owner: str) -> None:
     with pytest.raises(ReservedHoldError, match=owner):
-        Holds().check(owner)
+        Holds().check_set(owner)
+    with pytest.raises(ReservedHoldError, match=owner):
+        Holds().check_release(owner)
+
+
+def test_the_hold_of_a_restart_is_released_by_people_and_set_by_nobody() -> None:
+    Holds().check_release("restart")
+    with pytest.raises(ReservedHoldError, match="only Pilothouse sets the hold 'restart'") as said:
+        Holds().check_set("restart")
+
+    assert said.value.hint == "use another name, such as operator"
+
+
+@pytest.mark.parametrize(
+    ("owner", "others", "why"),
+    [
+        ("gate", MAX_HOLDS - 1, ""),
+        ("gate", MAX_HOLDS, f"there are {MAX_HOLDS} holds already"),
+        ("vehicle", 0, "only Pilothouse sets a hold of this name"),
+        ("restart", 0, "only Pilothouse sets a hold of this name"),
+    ],
+)
+def test_which_holds_are_not_set_again_after_a_restart(owner: str, others: int, why: str) -> None:
+    assert why_not_restored(owner, others) == why
 
 
 def test_one_too_many_is_refused_and_one_that_is_there_is_not() -> None:
     holds = Holds()
     for number in range(MAX_HOLDS):
         holds.set(f"o{number}", "", "", 0)
-    holds.check_room("o0")
+    holds.check_set("o0")
 
     with pytest.raises(TooManyHoldsError, match=f"there are {MAX_HOLDS} holds"):
-        holds.check_room("another")
+        holds.check_set("another")
 
 
 def test_a_hold_set_again_takes_the_new_reason_and_keeps_who_set_it_first() -> None:
@@ -72,7 +95,8 @@ def test_releasing_the_last_hold_leaves_none() -> None:
 
 
 def test_a_name_that_is_not_reserved_may_be_used() -> None:
-    Holds().check("operator")
+    Holds().check_set("operator")
+    Holds().check_release("operator")
 
 
 def test_the_views_are_another_object_after_each_change_and_only_then() -> None:

@@ -68,3 +68,10 @@ def test_no_more_is_forgotten_than_has_to_be(monkeypatch: pytest.MonkeyPatch) ->
     log.add(task(2, straight(40.0)))
 
     assert [kept.id for kept in log.newest_first()] == ["t2"]
+
+
+def test_which_tasks_are_dropped_is_told(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("domain.tasks.task_log.MAX_KEPT", 2)
+    log = TaskLog()
+
+    assert [log.add(task(number)) for number in range(4)] == [[], [], ["t0"], ["t1"]]

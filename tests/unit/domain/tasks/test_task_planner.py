@@ -1,3 +1,6 @@
+from dataclasses import replace
+from typing import Any
+
 import numpy as np
 import pytest
 
@@ -9,13 +12,16 @@ from domain.errors import (
     UnknownTaskError,
 )
 from domain.identifiers import GoalId
-from domain.inputs import GoalFeedback, VehicleReport
+from domain.inputs import GoalFeedback, Restored, VehicleReport
+from domain.kept import KeptProgress, KeptTask
 from domain.outbox import Outputs
 from domain.paths.path import Path
 from domain.snapshot import TaskPhase
-from domain.tasks.task_planner import MIN_CRUISE_MPS, check_cruise
+from domain.supervision import SupervisionSettings
+from domain.tasks.task_planner import MIN_CRUISE_MPS, RESTART_REASON, check_cruise
 from domain.timebase import seconds
 from domain.vehicle import DriveCommand, Point, Pose, VehicleLimits, VehicleState
+from tests.support.good import GOOD
 from tests.support.paths import straight
 from tests.support.scripted_robot import ScriptedRobot
 
@@ -528,10 +534,11 @@ def test_a_goal_tells_navigation_everything_about_the_task(robot: ScriptedRobot)
     robot.give(GoalFeedback(goal, 8, 7.5, 0.0, ahead, command, left_out_m=0.7))
     robot.hold()
     robot.release()
+    seen = VehicleState(Pose(3.0, 0.0, 0.0), 0.0, 0.0)
 
     assert robot.goals == [
         SendGoal(GoalId(1), path, 3, 3, "stanley", 2.8, 3.0, 0.0),
-        SendGoal(GoalId(2), path, 3, 8, "stanley", 2.8, 7.5, 0.7),
+        SendGoal(GoalId(2), path, 3, 8, "stanley", 2.8, 7.5, 0.7, seen),
     ]
 
 
@@ -612,3 +619,228 @@ def test_the_nearest_waypoint_is_the_one_near_where_the_vehicle_is(robot: Script
         robot.submit_task(Path(np.array(places)))
 
     assert refused.value.nearest == (2, 3.0)
+
+
+# --- over a restart ------------------------------------------------------------------------------
+
+
+def restarted(before: ScriptedRobot, settings: SupervisionSettings | None = None) -> ScriptedRobot:
+    """Return a robot whose service was started anew, before it hears of its vehicle."""
+    robot = ScriptedRobot(pose=False, good=False, settings=settings, start=before.now)
+    robot.give(Restored(before.all_kept(), boot=2, next_task=8))
+    return robot
+
+
+def test_a_task_is_kept_when_it_is_accepted(robot: ScriptedRobot) -> None:
+    robot.submit_task(straight(30.0), start_index=2)
+
+    kept = robot.kept[KeptTask, "t1"]
+    assert isinstance(kept, KeptTask)
+    assert (kept.path.count, kept.start_index, kept.speed_mps) == (31, 2, 2.8)
+
+
+def test_the_first_progress_of_a_run_is_kept_at_once(robot: ScriptedRobot) -> None:
+    """Also what a vehicle rolled over unseen while the service was restarted."""
+    robot.submit_task()
+    robot.feedback(4)
+
+    assert (robot.progress().has_run, robot.progress().distance_m) == (True, 3.5)
+
+
+def test_progress_is_kept_at_once_when_the_task_is_held(robot: ScriptedRobot) -> None:
+    robot.submit_task()
+    robot.feedback(3)
+    robot.hold()
+    assert (robot.progress().target_index, robot.progress().distance_m) == (3, 2.5)
+
+    robot.feedback(4)
+    robot.report()
+    assert robot.task.status is TaskPhase.PAUSED
+    assert (robot.progress().target_index, robot.progress().distance_m) == (4, 3.5)
+
+
+def test_progress_is_kept_while_the_task_drives(robot: ScriptedRobot) -> None:
+    robot.submit_task()
+    for waypoint in range(1, 11):
+        robot.advance(0.1, speed_mps=2.8)
+        robot.feedback(waypoint)
+
+    assert robot.task.distance_m - robot.progress().distance_m <= 3.0, "0.3 s ago"
+
+
+@pytest.mark.parametrize("succeeded", [True, False])
+def test_how_a_task_ended_is_kept(robot: ScriptedRobot, succeeded: bool) -> None:
+    robot.submit_task()
+    robot.arrive(succeeded=succeeded, reason="" if succeeded else "no progress")
+    after = restarted(robot)
+
+    assert after.task == robot.task
+    assert "restart" not in after.core.driving.holds
+    assert after.status == "NO_TASK"
+
+
+def test_a_task_that_replaces_another_is_the_only_one_that_waits(robot: ScriptedRobot) -> None:
+    robot.submit_task()
+    robot.submit_task()
+    after = restarted(robot)
+
+    assert [(task.id, task.status) for task in after.core.driving.tasks()] == [
+        ("t2", "PAUSED"),
+        ("t1", "CANCELED"),
+    ]
+
+
+def test_a_task_that_is_no_longer_shown_is_no_longer_kept(
+    robot: ScriptedRobot, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("domain.tasks.task_log.MAX_KEPT", 2)
+    for _ in range(3):
+        robot.submit_task()
+
+    assert robot.kept[KeptTask, "t1"] is robot.kept[KeptProgress, "t1"] is None
+    assert [task.id for task in restarted(robot).core.driving.tasks()] == ["t3", "t2"]
+
+
+def test_after_a_restart_the_task_waits_for_a_person(robot: ScriptedRobot) -> None:
+    robot.submit_task()
+    robot.feedback(9)
+    robot.hold()
+    robot.release()
+    after = restarted(robot)
+    assert (after.task.id, after.task.status, after.task.distance_m) == ("t1", "PAUSED", 8.5)
+    hold = after.core.driving.holds["restart"]
+    assert (hold.by, hold.since, hold.reason) == ("", after.now, RESTART_REASON)
+    assert after.happened("hold.set") == [{"owner": "restart", "reason": RESTART_REASON}]
+    assert [event["task"] for event in after.happened("task.paused")] == ["t1"]
+
+    after.advance(5.0)
+    assert after.goals == []
+    assert after.task.reason == RESTART_REASON
+    assert after.status == "PAUSED_TASK"
+
+
+def test_the_task_goes_on_from_where_it_was_when_the_hold_is_released(
+    robot: ScriptedRobot,
+) -> None:
+    robot.submit_task()
+    robot.report(2.0, 8.4)
+    robot.feedback(9)
+    robot.hold()
+    after = restarted(robot)
+    after.advance(0.5)
+    after.release("restart")
+    assert after.goals == [], "somebody else holds it as well"
+    after.release()
+
+    (goal,) = after.goals
+    assert (goal.start_index, goal.reached_m, goal.path.count) == (9, 8.5, 21)
+    assert goal.seen is not None
+    assert (goal.seen.pose.x_m, goal.seen.speed_mps) == (8.4, 2.0)
+    after.arrive()
+    assert (after.task.status, after.task.progress) == ("SUCCEEDED", 1.0)
+
+
+def test_where_the_vehicle_was_seen_stays_with_the_progress_until_there_is_more(
+    robot: ScriptedRobot,
+) -> None:
+    robot.submit_task()
+    robot.report(2.0, 8.4)
+    robot.feedback(9)
+    robot.hold()
+    after = restarted(robot)
+    after.read(**GOOD)
+    after.report(0.0, 12.0)
+    after.release()
+    after.release("restart")
+    after.hold()
+    after.release()
+    after.feedback(13)
+    after.hold()
+    after.release()
+
+    assert [goal.seen.pose.x_m for goal in after.goals if goal.seen] == [8.4, 8.4, 12.0]
+
+
+def test_a_task_that_never_ran_is_checked_for_its_start_when_it_does(robot: ScriptedRobot) -> None:
+    robot.hold()
+    robot.submit_task()
+    after = restarted(robot)
+    after.advance(0.5)
+    after.report(x_m=9.0)
+    after.release()
+    after.release("restart")
+
+    assert after.task.status is TaskPhase.ABORTED
+    assert after.task.reason is not None
+    assert after.task.reason.startswith("the path begins 9.0 m from the vehicle")
+
+
+def test_the_hold_of_the_restart_ends_with_the_task_and_not_with_its_replacement(
+    robot: ScriptedRobot,
+) -> None:
+    robot.submit_task()
+    after = restarted(robot)
+    after.advance(0.5)
+    after.submit_task()
+    assert (after.task.id, after.task.status, after.goals) == ("t8", "PAUSED", [])
+
+    after.cancel_task()
+    assert dict(after.core.driving.holds) == {}
+    assert after.happened("hold.released")[-1] == {"owner": "restart"}
+    after.submit_task()
+    assert (after.task.id, after.task.status) == ("t9", "RUNNING")
+
+
+def test_a_second_restart_holds_the_task_again(robot: ScriptedRobot) -> None:
+    robot.submit_task()
+    first = restarted(robot)
+    first.kept = robot.kept | first.kept
+    first.advance(0.5)
+    first.release("restart")
+    second = restarted(first)
+
+    assert second.task.status is TaskPhase.PAUSED
+    assert "restart" in second.core.driving.holds
+
+
+@pytest.mark.parametrize(
+    ("change", "reason"),
+    [
+        ({"controller": "magic"}, "there is no controller 'magic'"),
+        ({"speed_mps": 20.0}, "speed 20 m/s is not within 0.1 to 11.2 m/s"),
+    ],
+)
+def test_a_task_that_cannot_be_driven_any_more_is_aborted_and_told(
+    robot: ScriptedRobot, change: dict[str, Any], reason: str
+) -> None:
+    robot.submit_task()
+    kept = robot.kept[KeptTask, "t1"]
+    assert isinstance(kept, KeptTask)
+    robot.kept[KeptTask, "t1"] = replace(kept, **change)
+    after = restarted(robot)
+
+    assert (after.task.status, after.task.reason) == ("ABORTED", reason)
+    assert [event["reason"] for event in after.happened("task.aborted")] == [reason]
+    assert "restart" not in after.core.driving.holds
+    assert after.progress().ended_as == "ABORTED"
+
+
+def test_a_task_whose_end_was_lost_is_not_driven_after_a_newer_one(robot: ScriptedRobot) -> None:
+    robot.submit_task()
+    robot.submit_task()
+    robot.kept[KeptProgress, "t1"] = None
+    after = restarted(robot)
+
+    assert [(task.id, task.status, task.reason) for task in after.core.driving.tasks()][1:] == [
+        ("t1", "ABORTED", "how it ended was not written down")
+    ]
+    assert after.task.status is TaskPhase.PAUSED
+
+
+def test_a_first_run_begins_without_a_task(robot: ScriptedRobot) -> None:
+    after = ScriptedRobot(pose=False, good=False)
+
+    assert after.give(Restored()) == Outputs()
+    after.advance(0.5)
+    after.submit_task()
+    assert (after.task.id, after.task.status) == ("t1", "RUNNING")

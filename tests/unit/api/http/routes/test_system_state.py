@@ -19,6 +19,7 @@ async def test_a_robot_with_good_signals_and_no_task_is_idle(robot: HttpRobot) -
         "reasons": [],
         "task_status": "NO_TASK",
         "simulated": ["nodes", "signals", "vehicle"],
+        "storage_fault": None,
     }
 
 

@@ -1,0 +1,64 @@
+"""The name of each class in records.
+
+Names, names of fields and defaults are a format that is read for years: a class may be renamed,
+its name here may not. A field may be added with a default; a default never changes, since a field
+that holds it may be left out. `tests/data/codec` has a sample of each, which every later release
+must read.
+"""
+
+from collections.abc import Mapping
+
+from domain import commands, inputs, kept
+from domain.actor import Actor
+from domain.events.event import RecordedEvent
+from domain.events.kinds import EVENTS
+from service.codec.recorded_step import RecordedStep
+
+NAMES: Mapping[type, str] = {
+    Actor: "actor",
+    RecordedEvent: "recorded_event",
+    RecordedStep: "recorded_step",
+    # Inputs.
+    inputs.NodeReport: "node_report",
+    inputs.NodeAnswer: "node_answer",
+    inputs.Readings: "readings",
+    inputs.VehicleReport: "vehicle_report",
+    inputs.DriveStatus: "drive_status",
+    inputs.BackendStatus: "backend_status",
+    inputs.ReportBacklog: "report_backlog",
+    inputs.StorageStatus: "storage_status",
+    inputs.GoalFeedback: "goal_feedback",
+    inputs.GoalResult: "goal_result",
+    inputs.TimePassed: "time_passed",
+    inputs.ServiceStall: "service_stall",
+    inputs.WriteRecord: "write_record",
+    inputs.ModeRequest: "mode_request",
+    inputs.TransitionRequest: "transition_request",
+    inputs.ParametersRequest: "parameters_request",
+    inputs.CancelRequest: "cancel_request",
+    inputs.EmergencyStopRequest: "emergency_stop_request",
+    inputs.AcknowledgeRequest: "acknowledge_request",
+    inputs.TaskRequest: "task_request",
+    inputs.CancelTaskRequest: "cancel_task_request",
+    inputs.HoldRequest: "hold_request",
+    inputs.ReleaseRequest: "release_request",
+    inputs.Restored: "restored",
+    # Commands.
+    commands.AskTransition: "ask_transition",
+    commands.AskParameters: "ask_parameters",
+    commands.AskFacts: "ask_facts",
+    commands.Drive: "drive",
+    commands.SendGoal: "send_goal",
+    commands.PreemptGoal: "preempt_goal",
+    # What is kept.
+    kept.Keeping: "keeping",
+    kept.KeptTarget: "kept_target",
+    kept.KeptChange: "kept_change",
+    kept.KeptEmergencyStop: "kept_emergency_stop",
+    kept.KeptError: "kept_error",
+    kept.KeptHold: "kept_hold",
+    kept.KeptTask: "kept_task",
+    kept.KeptProgress: "kept_progress",
+    # Events have the name that clients know as well.
+    **{event: kind for kind, event in EVENTS.items()},
+}

@@ -1,0 +1,50 @@
+"""One step of the core as it is recorded: the input, and all that followed."""
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+from zlib import crc32
+
+from domain.commands import Command
+from domain.events.event import RecordedEvent
+from domain.inputs import Input
+from domain.kept import Keeping
+from domain.outbox import Outputs
+from domain.timebase import Instant
+
+
+@dataclass(frozen=True, slots=True)
+class RecordedStep:
+    """What a core that is in the same state does again, given the same input at the same time."""
+
+    at: Instant
+    given: Input
+    is_late: bool
+    """Whether it was late by our own fault: `Onboard.take_in`, not `handle`."""
+    commands: tuple[Command, ...] = ()
+    events: tuple[RecordedEvent, ...] = ()
+    kept: tuple[Keeping, ...] = ()
+    views: int | None = None
+    """Checksum of what else the outputs say: which views changed, and what a request began; None:
+    it was not recorded."""
+
+
+def recorded_step(at: Instant, given: Input, is_late: bool, outputs: Outputs) -> RecordedStep:
+    """Return a step as it is recorded."""
+    return RecordedStep(
+        at, given, is_late, outputs.commands, outputs.events, outputs.kept, _checksum(outputs)
+    )
+
+
+def _checksum(outputs: Outputs) -> int:
+    """Return 0 for outputs without changed views, and else what depends on nothing but them."""
+    flags = (outputs.system_state, outputs.task_changed, outputs.vehicle_changed)
+    begun = (outputs.change or "", outputs.task or "")
+    if not (any(flags) or any(begun) or outputs.parts or outputs.signals):
+        return 0
+    # The order in which a set is walked differs from process to process.
+    lines = (repr(flags), *begun, _joined(outputs.parts), _joined(outputs.signals))
+    return crc32("\n".join(lines).encode())
+
+
+def _joined(names: Iterable[str]) -> str:
+    return "\t".join(sorted(names))

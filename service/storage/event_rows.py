@@ -1,0 +1,97 @@
+"""Events as the log keeps them: readable without the classes that they were made from."""
+
+import re
+from collections.abc import Iterator
+from dataclasses import fields
+from typing import NamedTuple, get_type_hints
+
+from pydantic_core import from_json, to_json
+
+from domain.events.event import Event, RecordedEvent
+from domain.state_and_mode import PartName
+from domain.timebase import Instant
+from service.clock import to_datetime
+from service.storage.journal import StoredEvent
+
+
+class EventRow(NamedTuple):
+    """An event as a row of the log."""
+
+    id: int
+    at: Instant
+    wall_ns: int
+    """Nanoseconds since 1970 UTC, by the system clock when it was noted; whole microseconds."""
+    kind: str
+    cause: int | None
+    actor: str
+    """Label of the actor."""
+    parts: tuple[PartName, ...]
+    """Parts that its data name."""
+    data: str
+    """JSON."""
+    words: str
+    notable: bool
+
+
+def event_row(recorded: RecordedEvent, wall_ns: int) -> EventRow:
+    """Return an event as a row; `wall_ns` is the wall time of its step."""
+    event = recorded.event
+    return EventRow(
+        recorded.id,
+        recorded.at,
+        wall_ns,
+        event.kind,
+        recorded.cause,
+        recorded.actor.label,
+        _parts_of(event),
+        to_json(event.data(), inf_nan_mode="null").decode(),
+        event.words,
+        event.notable,
+    )
+
+
+def stored_event(row: EventRow, boot: int, epoch: str) -> StoredEvent:
+    """Return a row as readers of the log get it."""
+    return StoredEvent(
+        row.id,
+        boot,
+        epoch,
+        row.at,
+        to_datetime(row.wall_ns),
+        row.kind,
+        row.cause,
+        row.actor,
+        from_json(row.data),
+        row.words,
+        row.notable,
+    )
+
+
+def kind_pattern(kind: str) -> re.Pattern[str]:
+    """Return what the kinds match that a query asks for: a kind, a prefix, or a `*` pattern."""
+    if "*" in kind:
+        return re.compile(".*".join(re.escape(piece) for piece in kind.split("*")))
+    return re.compile(re.escape(kind) + r"(\..*)?")
+
+
+def _parts_of(event: Event) -> tuple[PartName, ...]:
+    names = (getattr(event, name) for name in _part_fields(type(event)))
+    return tuple(dict.fromkeys(name for name in names if name))
+
+
+_PART_FIELDS: dict[type[Event], tuple[str, ...]] = {}
+
+
+def _part_fields(kind: type[Event]) -> tuple[str, ...]:
+    """Return the fields of a class of events that name a part, looked up once per class."""
+    known = _PART_FIELDS.get(kind)
+    if known is None:
+        known = _PART_FIELDS[kind] = tuple(_fields_of(kind))
+    return known
+
+
+def _fields_of(kind: type[Event]) -> Iterator[str]:
+    hints = get_type_hints(kind)
+    for item in fields(kind):  # type: ignore[arg-type]
+        if hints[item.name] in (PartName, PartName | None):
+            yield item.name

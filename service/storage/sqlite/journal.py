@@ -1,0 +1,334 @@
+"""The journal in a folder: its front on the event loop, which never waits for a disk.
+
+What is noted is gathered in a batch. While one flight of batches is with the writer's thread the
+next is gathered, so that all who wait share one sync.
+"""
+
+import asyncio
+import logging
+from collections.abc import Sequence
+from contextlib import suppress
+from typing import Final
+
+from pydantic_core import to_json
+
+from domain.errors import PilothouseError, StorageDegradedError
+from domain.outbox import NOTHING, Outputs
+from domain.timebase import Duration, Instant, seconds
+from service.clock import Clock, since_epoch
+from service.codec.codec import KEPT, STEPS
+from service.codec.names import NAMES
+from service.codec.recorded_step import recorded_step
+from service.storage.event_rows import event_row
+from service.storage.journal import (
+    Boot,
+    EventQuery,
+    Found,
+    Plain,
+    Step,
+    StorageStatus,
+    StoredEvent,
+)
+from service.storage.sqlite.backlog import Backlog
+from service.storage.sqlite.batch import IDS, OWN, Flight
+from service.storage.sqlite.connection import FAILURES, words
+from service.storage.sqlite.disk_thread import DiskThread
+from service.storage.sqlite.folder import Report
+from service.storage.sqlite.opening import Opened, StoreSettings, open_folder
+from service.storage.sqlite.reading import read_events
+from service.storage.sqlite.status import status_of
+
+BATCH_S: Final = 0.05
+"""How long what nobody waits for is gathered."""
+RETRY_S: Final = 1.0
+SLOW_S: Final = 1.0
+"""Storage that takes longer for one flight is degraded."""
+CLOSE_PATIENCE_S: Final = 5.0
+CHECKPOINT_EVERY: Final[Duration] = seconds(600.0)
+_READ_PATIENCE_S: Final = 0.5
+_READ_LIMIT_S: Final = 5.0
+
+_log = logging.getLogger(__name__)
+
+
+class SqliteJournal:
+    """A `Journal` in a folder; made by `open`."""
+
+    def __init__(
+        self, settings: StoreSettings, boot: Boot, clock: Clock, writer: DiskThread, opened: Opened
+    ) -> None:
+        self._settings = settings
+        self._boot = boot
+        self._clock = clock
+        self._writer = writer
+        self._opened = opened
+        self._report = opened.report
+        self._reader = DiskThread("journal-reader")
+        self._backlog = Backlog(settings.backlog_bytes, opened.next.batch, opened.next.step)
+        self._waiters: list[asyncio.Future[None]] = []
+        self._must_last = False
+        self._timer: asyncio.Handle | None = None
+        self._is_due = False
+        self._flying: asyncio.Task[None] | None = None
+        self._took_off_at = 0.0
+        self._fault: str | None = None
+        self._is_closed = False
+        self._wants_checkpoint = True
+        self._checkpoint_at: Instant = boot.started_at
+        if opened.fault is not None:
+            self._fail(opened.fault, [])
+            self._go_on()
+
+    @classmethod
+    async def open(cls, settings: StoreSettings, boot: Boot, clock: Clock) -> "SqliteJournal":
+        """Take the folder of a robot, and write down that a run begins.
+
+        Raises:
+            UnusableFolderError: It is in use, of another robot, or cannot be used at all.
+        """
+        writer = DiskThread("journal-writer")
+        try:
+            opened = await writer.run(lambda: open_folder(settings, boot))
+        except BaseException:
+            writer.end()
+            raise
+        return cls(settings, boot, clock, writer, opened)
+
+    @property
+    def found(self) -> Found:
+        """Return what was there when the journal was opened."""
+        return self._opened.found
+
+    @property
+    def boot(self) -> Boot:
+        """Return this run."""
+        return self._boot
+
+    @property
+    def wants_checkpoint(self) -> bool:
+        """Tell whether a replay could not go on from what was written down lately."""
+        return self._wants_checkpoint
+
+    def note(self, step: Step) -> None:
+        """Write a step down soon, all of it or nothing."""
+        if self._is_closed:
+            return
+        outputs = step.outputs
+        wall_ns = since_epoch(self._clock.wall_time(step.at))
+        try:
+            line = STEPS.encode(recorded_step(step.at, step.given, step.is_late, outputs))
+            rows = [event_row(event, wall_ns) for event in outputs.events]
+        except PilothouseError as error:
+            self._backlog.lose(step.at, len(outputs.events), error.message)
+        else:
+            self._backlog.add_step(line, step.at, wall_ns, rows)
+        if outputs is not NOTHING:
+            self._note_kept(outputs)
+        if step.at - self._checkpoint_at >= CHECKPOINT_EVERY:
+            self._wants_checkpoint = True
+        self._schedule()
+
+    def keep(self, name: str, value: Plain) -> None:
+        """Keep a value of the service itself."""
+        if not self._is_closed:
+            self._backlog.change((OWN, name), to_json(value))
+            self._schedule()
+
+    @property
+    def last_step(self) -> int:
+        """Return the number of the step that was noted last."""
+        return self._backlog.last_step
+
+    def checkpoint(self, step: int, at: Instant, state: bytes) -> None:
+        """Write down the whole state of the core as it was after a step."""
+        if not self._is_closed and self._backlog.add_checkpoint(step, at, state):
+            self._wants_checkpoint, self._checkpoint_at = False, at
+            self._schedule()
+
+    async def commit(self, patience_s: float) -> bool:
+        """Wait until all that was noted before is on disk; return whether it is, in that time."""
+        if self._is_closed:
+            raise StorageDegradedError("storage is closed")
+        if self._fault is not None:
+            raise StorageDegradedError(self._fault)
+        self._must_last = True
+        return await self._landed(patience_s)
+
+    def status(self) -> StorageStatus:
+        """Return how storage is doing."""
+        return status_of(
+            self._settings.folder,
+            self._opened.found.restored.boot,
+            self._report,
+            self._fault or self._slowness() or self._report.state_fault,
+            (self._backlog.lost_steps, self._backlog.lost_events),
+        )
+
+    async def events(self, query: EventQuery) -> Sequence[StoredEvent]:
+        """Return events in the order of their ids, also those of earlier runs."""
+        if self._fault is None and not self._is_closed and not self._is_landed:
+            with suppress(StorageDegradedError):
+                await self._landed(_READ_PATIENCE_S)
+        files = self._report.files
+        reading = self._reader.run(lambda: read_events(files, query))
+        try:
+            async with asyncio.timeout(_READ_LIMIT_S):
+                return await reading
+        except TimeoutError:
+            raise StorageDegradedError("the log takes too long to be read") from None
+        except FAILURES as error:
+            raise StorageDegradedError(words(error)) from error
+
+    async def close(self) -> None:
+        """Write down what is noted, note that the run ended, and release the folder."""
+        if self._is_closed:
+            return
+        self._is_closed = True
+        if self._timer is not None:
+            self._timer.cancel()
+        try:
+            async with asyncio.timeout(CLOSE_PATIENCE_S):
+                await self._end()
+        except TimeoutError:
+            _log.error("storage is too slow: the last entries may be lost")
+        self._writer.end()
+        self._reader.end()
+
+    async def _end(self) -> None:
+        if self._flying is not None:
+            await self._flying
+        for kind, first in self._opened.ids.exact().items():
+            self._backlog.change((IDS, kind), _id_text(first))
+        self._backlog.end_run()
+        flight = self._backlog.take(must_last=True)
+        folder, is_degraded = self._opened.folder, self._fault is not None
+
+        def end() -> None:
+            try:
+                (folder.recover if is_degraded else folder.write)(flight)
+                folder.follow(flight)
+            finally:
+                folder.close()
+                self._opened.lock.release()
+
+        try:
+            await self._writer.run(end)
+        except Exception as error:
+            _log.error("storage fails: the last entries are lost: %s", words(error))
+            self._settle(self._waiters, StorageDegradedError(words(error)))
+        self._settle(self._waiters, None)
+
+    # --- from one flight to the next --------------------------------------------------------------
+
+    @property
+    def _is_landed(self) -> bool:
+        return self._backlog.is_empty and self._flying is None
+
+    async def _landed(self, patience_s: float) -> bool:
+        """Wait until all that was noted is written; return whether it is, in that time."""
+        waiter: asyncio.Future[None] = asyncio.get_running_loop().create_future()
+        self._waiters.append(waiter)
+        self._hurry()
+        try:
+            async with asyncio.timeout(patience_s):
+                await waiter
+        except TimeoutError:
+            return False
+        return True
+
+    def _schedule(self) -> None:
+        """Let a flight take off soon, unless one is in the air or due."""
+        if self._timer is None and self._flying is None:
+            self._timer = asyncio.get_running_loop().call_later(BATCH_S, self._take_off)
+
+    def _hurry(self) -> None:
+        """Let a flight take off when all who are about to wait in this turn of the loop do."""
+        if self._flying is None and not self._is_due and self._fault is None:
+            if self._timer is not None:
+                self._timer.cancel()
+            self._is_due = True
+            self._timer = asyncio.get_running_loop().call_soon(self._take_off)
+
+    def _take_off(self) -> None:
+        self._timer, self._is_due = None, False
+        flight = self._backlog.take(self._must_last)
+        waiters, self._waiters, self._must_last = self._waiters, [], False
+        loop = asyncio.get_running_loop()
+        self._took_off_at = loop.time()
+        self._flying = loop.create_task(self._fly(flight, waiters))
+
+    async def _fly(self, flight: Flight, waiters: "list[asyncio.Future[None]]") -> None:
+        """Write a flight down, and see to the next one."""
+        folder = self._opened.folder
+        write = folder.write if self._fault is None else folder.recover
+        try:
+            await self._writer.run(lambda: write(flight))
+            self._backlog.written()
+            self._wants_checkpoint |= any(batch.hole for batch in flight.batches)
+            self._settle(waiters, None)
+            self._take_report(await self._writer.run(lambda: folder.follow(flight)))
+        except FAILURES as error:
+            self._fail(words(error), waiters)
+        except Exception as error:
+            _log.exception("steps cannot be written down")
+            self._backlog.discard(words(error))
+            self._fail(words(error), waiters)
+        self._flying = None
+        self._go_on()
+
+    def _go_on(self) -> None:
+        if self._is_closed:
+            return
+        if self._fault is not None:
+            self._timer = asyncio.get_running_loop().call_later(RETRY_S, self._take_off)
+        elif self._waiters:
+            self._hurry()
+        elif not self._backlog.is_empty:
+            self._schedule()
+
+    def _take_report(self, report: Report) -> None:
+        self._report = report
+        self._wants_checkpoint |= report.began_file
+        if self._fault is not None:
+            _log.warning("storage works again")
+            self._fault = None
+
+    def _fail(self, reason: str, waiters: "list[asyncio.Future[None]]") -> None:
+        if self._fault is None:
+            _log.error("storage fails, and is tried again every second: %s", reason)
+        self._fault = reason
+        self._settle([*waiters, *self._waiters], StorageDegradedError(reason))
+        self._waiters = []
+
+    def _settle(
+        self, waiters: "list[asyncio.Future[None]]", error: StorageDegradedError | None
+    ) -> None:
+        for waiter in waiters:
+            if waiter.done():
+                continue
+            if error is None:
+                waiter.set_result(None)
+            else:
+                waiter.set_exception(error)
+
+    def _slowness(self) -> str | None:
+        if self._flying is None:
+            return None
+        waited = asyncio.get_running_loop().time() - self._took_off_at
+        return f"no answer from the disk for {waited:.1f} s" if waited >= SLOW_S else None
+
+    def _note_kept(self, outputs: Outputs) -> None:
+        for change in outputs.kept:
+            try:
+                text = None if change.value is None else KEPT.encode(change.value)
+            except PilothouseError as error:
+                _log.error("%s cannot be kept: %s", change.name, error.message)
+                continue
+            self._backlog.change((NAMES[change.kind], change.name), text)
+        if self._opened.ids.see(outputs):
+            for kind, end in self._opened.ids.reserve().items():
+                self._backlog.change((IDS, kind), _id_text(end))
+
+
+def _id_text(first: int) -> bytes:
+    return str(first).encode()

@@ -1,0 +1,269 @@
+"""One file of the log. The newest is written; the others stay as they are until they are dropped.
+
+Each file stands for itself: it begins with the run that goes on in it, and with all that is kept.
+"""
+
+import time
+import zlib
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+import apsw
+
+from domain.timebase import Duration, seconds
+from service.storage.journal import Boot
+from service.storage.sqlite.batch import Batch, Changes, Flight, Key
+from service.storage.sqlite.connection import finish, new_file, open_to_write
+from service.storage.sqlite.log_summary import LogSummary, summary_of
+from service.storage.sqlite.schema import LOG, bring_up, describe, examine
+
+_COMPRESSION = 1
+_CHECKPOINT_AT_PAGES = 1_000
+_SYNC_EVERY: Duration = seconds(0.5)
+"""What nobody waits for may be lost with the power for so long."""
+
+
+@dataclass(frozen=True, slots=True)
+class Run:
+    """A run of the service as the log knows it."""
+
+    number: int
+    boot: Boot
+    wall_ns: int
+    """Wall time of its start."""
+
+
+class LogFile:
+    """The newest file of the log; used by the writer's thread alone."""
+
+    def __init__(self, path: Path, number: int, connection: apsw.Connection) -> None:
+        self.path = path
+        self.number = number
+        self._connection = connection
+        self._pages = 0
+        self._synced_at = 0
+        connection.set_wal_hook(self._on_commit)
+        self.summary = summary_of(connection, path, number)
+        self.last_change: int = _number(connection, "SELECT max(number) FROM changes")
+
+    @classmethod
+    def open(cls, path: Path, number: int) -> "LogFile":
+        """Open a file, and migrate it if it is of an earlier version.
+
+        Raises:
+            BrokenFileError: It is damaged, or it was never begun.
+            NewerFileError: A later version wrote it.
+            apsw.Error: It cannot be read or written.
+        """
+        examine(path, LOG)
+        connection = open_to_write(path)
+        try:
+            bring_up(connection, path, LOG)
+            return cls(path, number, connection)
+        except BaseException:
+            connection.close(True)
+            raise
+
+    @classmethod
+    def begin(
+        cls, path: Path, number: int, robot: str, run: Run, kept: Mapping[Key, bytes], next_: "Next"
+    ) -> "LogFile":
+        """Make a new file, complete or not at all.
+
+        Raises:
+            apsw.Error: It cannot be written.
+        """
+        with new_file(path) as connection:
+            bring_up(connection, path, LOG)
+            describe(connection, robot=robot, next_step=next_.step, next_batch=next_.batch)
+            _insert_run(connection, run, next_)
+            _insert_changes(connection, kept.items())
+        return cls(path, number, open_to_write(path))
+
+    def begin_run(self, run: Run, changes: Changes, next_: "Next") -> None:
+        """Write down that a run begins, and what it keeps from the start on."""
+        self._set_sync(True)
+        with self._connection:
+            _insert_run(self._connection, run, next_)
+            _insert_changes(self._connection, changes.items())
+        self._count_changes(changes)
+
+    def write(self, flight: Flight, run: Run, changes: Changes) -> None:
+        """Write batches down, without those that an attempt that failed wrote all the same.
+
+        Args:
+            flight: What to write.
+            run: The run that it belongs to.
+            changes: What changes of what is kept.
+
+        Raises:
+            apsw.Error: Nothing was written, or nobody knows.
+        """
+        now = time.monotonic_ns()
+        is_synced = flight.must_last or now - self._synced_at >= _SYNC_EVERY
+        self._set_sync(is_synced)
+        summary = self.summary
+        with self._connection:
+            for batch in flight.batches:
+                if batch.number > self.summary.last_batch:
+                    summary = self._insert(batch, run, summary)
+                _insert_hole(self._connection, batch, run)
+            _insert_changes(self._connection, changes.items())
+        self.summary = summary
+        self._count_changes(changes)
+        if is_synced:
+            self._synced_at = now
+
+    def changes_after(self, number: int) -> Iterable[tuple[str, str, bytes | None]]:
+        """Return kind, name and value of what changed after a change."""
+        sql = "SELECT kind, name, value FROM changes WHERE number > ? ORDER BY number"
+        return self._connection.execute(sql, (number,))
+
+    def tidy(self) -> None:
+        """Take what is in the write-ahead log into the file, if that is worth it."""
+        if self._pages >= _CHECKPOINT_AT_PAGES:
+            self._pages = 0
+            self._connection.wal_checkpoint(mode=apsw.SQLITE_CHECKPOINT_PASSIVE)
+
+    def size(self) -> int:
+        """Return its size on disk, in bytes."""
+        wal = self.path.with_name(f"{self.path.name}-wal")
+        return self.path.stat().st_size + (wal.stat().st_size if wal.exists() else 0)
+
+    def finish(self) -> None:
+        """Close it as one plain file."""
+        finish(self._connection)
+
+    def close(self) -> None:
+        """Close it after a failure."""
+        self._connection.close(True)
+
+    def _on_commit(self, connection: apsw.Connection, name: str, pages: int) -> int:
+        self._pages = pages
+        return apsw.SQLITE_OK
+
+    def _set_sync(self, is_synced: bool) -> None:
+        self._connection.execute(f"PRAGMA synchronous={'FULL' if is_synced else 'NORMAL'}")
+
+    def _count_changes(self, changes: Changes) -> None:
+        self.last_change += len(changes)
+
+    def _insert(self, batch: Batch, run: Run, so_far: LogSummary) -> LogSummary:
+        steps = zlib.compress(b"\n".join(batch.steps), _COMPRESSION) if batch.steps else b""
+        event_bytes = sum(len(row.data) + len(row.words) for row in batch.events)
+        now = replace(
+            _advanced(so_far, batch, run),
+            last_batch=batch.number,
+            next_step=batch.first_step + len(batch.steps),
+            step_bytes=so_far.step_bytes + len(steps),
+            event_bytes=so_far.event_bytes + event_bytes,
+        )
+        self._connection.execute(
+            "INSERT INTO batches VALUES (?,?,?,?,?,?,?,?,?,?,?)",
+            (
+                *(batch.number, run.number, batch.first_step, len(batch.steps), batch.first_at),
+                *(now.last_at, now.wall_ns, steps),
+                *(now.running_ns, now.step_bytes, now.event_bytes),
+            ),
+        )
+        self._insert_events(batch, run)
+        for taken in batch.checkpoints:
+            state = zlib.compress(taken.state, _COMPRESSION)
+            self._connection.execute(
+                "INSERT OR REPLACE INTO checkpoints VALUES (?,?,?,?,?,?)",
+                (taken.step, batch.number, run.number, taken.at, run.boot.version, state),
+            )
+        if batch.ends_run:
+            self._connection.execute(
+                "UPDATE boots SET ended_wall_ns = ? WHERE number = ?", (now.wall_ns, run.number)
+            )
+        return now.with_events(batch.events)
+
+    def _insert_events(self, batch: Batch, run: Run) -> None:
+        if not batch.events:
+            return
+        self._connection.executemany(
+            "INSERT OR REPLACE INTO events VALUES (?,?,?,?,?,?,?,?,?,?)",
+            (
+                (
+                    e.id,
+                    run.number,
+                    e.at,
+                    e.wall_ns,
+                    e.kind,
+                    e.cause,
+                    e.actor,
+                    e.data,
+                    e.words,
+                    e.notable,
+                )
+                for e in batch.events
+            ),
+        )
+        self._connection.executemany(
+            "INSERT OR IGNORE INTO event_parts VALUES (?,?)",
+            ((part, event.id) for event in batch.events for part in event.parts),
+        )
+
+
+@dataclass(frozen=True, slots=True)
+class Next:
+    """The first numbers that are not used yet."""
+
+    step: int = 1
+    batch: int = 1
+    event: int = 1
+
+
+def _advanced(so_far: LogSummary, batch: Batch, run: Run) -> LogSummary:
+    """Return the times of a file after one more batch."""
+    if not batch.steps:
+        return so_far
+    since = so_far.last_at if so_far.last_boot == run.number else batch.first_at
+    return replace(
+        so_far,
+        last_boot=run.number,
+        last_at=batch.last_at,
+        first_wall_ns=so_far.first_wall_ns or batch.wall_ns,
+        wall_ns=batch.wall_ns,
+        running_ns=so_far.running_ns + max(0, batch.last_at - since),
+    )
+
+
+def _insert_run(connection: apsw.Connection, run: Run, next_: Next) -> None:
+    boot = run.boot
+    texts = (zlib.compress(text.encode()) for text in (boot.model, boot.robot))
+    connection.execute(
+        "INSERT OR IGNORE INTO boots VALUES (?,?,?,?,?,?,?,?,?,NULL)",
+        (
+            *(run.number, boot.epoch, boot.version, boot.started_at, run.wall_ns),
+            *(*texts, next_.batch, next_.event),
+        ),
+    )
+
+
+def _insert_changes(
+    connection: apsw.Connection, changes: Iterable[tuple[Key, bytes | None]]
+) -> None:
+    connection.executemany(
+        "INSERT INTO changes (kind, name, value) VALUES (?,?,?)",
+        ((*key, value) for key, value in changes),
+    )
+
+
+def _insert_hole(connection: apsw.Connection, batch: Batch, run: Run) -> None:
+    """Write down what was lost after a batch; that may have grown since an attempt that failed."""
+    hole = batch.hole
+    if hole is not None:
+        connection.execute(
+            "INSERT OR REPLACE INTO holes VALUES (?,?,?,?,?,?,?,?)",
+            (
+                *(batch.number, run.number, hole.after_step, hole.steps, hole.events),
+                *(hole.from_at, hole.to_at, hole.reason),
+            ),
+        )
+
+
+def _number(connection: apsw.Connection, sql: str) -> int:
+    return int(connection.execute(sql).get or 0)

@@ -1,0 +1,124 @@
+"""The small file with what is kept at present, and how much of the log is in it.
+
+It only saves reading: the log has all of it as well. It may lag behind the log after a loss of
+power, and is brought up to it at the start.
+"""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+
+import apsw
+
+from service.storage.sqlite.batch import Changes, Key
+from service.storage.sqlite.connection import finish, new_file, open_to_write
+from service.storage.sqlite.schema import STATE, bring_up, describe, examine
+
+_CHECKPOINT_AT_PAGES = 100
+
+
+@dataclass(frozen=True, slots=True)
+class Applied:
+    """The last change that is in the state."""
+
+    log: int
+    """Number of the file of the log."""
+    change: int
+
+
+class StateFile:
+    """Used by the writer's thread alone."""
+
+    def __init__(self, connection: apsw.Connection) -> None:
+        self._connection = connection
+        self._pages = 0
+        # The log's commit is what counts: this file needs no sync of its own.
+        connection.execute("PRAGMA synchronous=NORMAL")
+        connection.set_wal_hook(self._on_commit)
+
+    @classmethod
+    def open(cls, path: Path) -> "StateFile":
+        """Open a file, and migrate it if it is of an earlier version.
+
+        Raises:
+            BrokenFileError: It is damaged.
+            NewerFileError: A later version wrote it.
+            apsw.Error: It cannot be read or written.
+        """
+        examine(path, STATE)
+        connection = open_to_write(path)
+        try:
+            bring_up(connection, path, STATE)
+            return cls(connection)
+        except BaseException:
+            connection.close(True)
+            raise
+
+    @classmethod
+    def begin(
+        cls, path: Path, robot: str, kept: Mapping[Key, bytes], applied: Applied
+    ) -> "StateFile":
+        """Make a new file.
+
+        Raises:
+            apsw.Error: It cannot be written.
+        """
+        with new_file(path) as connection:
+            bring_up(connection, path, STATE)
+            describe(connection, robot=robot)
+            _apply(connection, dict(kept), applied)
+        return cls(open_to_write(path))
+
+    def applied(self) -> Applied:
+        """Return how much of the log is in it."""
+        meta = dict(self._connection.execute("SELECT name, value FROM meta"))
+        return Applied(meta["applied_log"], meta["applied_change"])
+
+    def kept(self) -> dict[Key, bytes]:
+        """Return all that is kept."""
+        rows = self._connection.execute("SELECT kind, name, value FROM current ORDER BY rowid")
+        return {(kind, name): value for kind, name, value in rows}
+
+    def apply(self, changes: Changes, applied: Applied) -> None:
+        """Bring it up to a change of the log.
+
+        Raises:
+            apsw.Error: It cannot be written.
+        """
+        with self._connection:
+            _apply(self._connection, changes, applied)
+        if self._pages >= _CHECKPOINT_AT_PAGES:
+            self._pages = 0
+            self._connection.wal_checkpoint(mode=apsw.SQLITE_CHECKPOINT_PASSIVE)
+
+    def sync(self) -> None:
+        """Write all of it to the disk itself."""
+        self._connection.wal_checkpoint(mode=apsw.SQLITE_CHECKPOINT_FULL)
+
+    def finish(self) -> None:
+        """Close it as one plain file."""
+        finish(self._connection)
+
+    def close(self) -> None:
+        """Close it after a failure."""
+        self._connection.close(True)
+
+    def _on_commit(self, connection: apsw.Connection, name: str, pages: int) -> int:
+        self._pages = pages
+        return apsw.SQLITE_OK
+
+
+def _apply(connection: apsw.Connection, changes: Changes, applied: Applied) -> None:
+    for (kind, name), value in changes.items():
+        if value is None:
+            connection.execute("DELETE FROM current WHERE kind = ? AND name = ?", (kind, name))
+        else:
+            connection.execute(
+                "INSERT INTO current VALUES (?, ?, ?)"
+                " ON CONFLICT (kind, name) DO UPDATE SET value = excluded.value",
+                (kind, name, value),
+            )
+    connection.execute(
+        "INSERT OR REPLACE INTO meta VALUES ('applied_log', ?), ('applied_change', ?)",
+        (applied.log, applied.change),
+    )

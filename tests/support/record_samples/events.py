@@ -1,0 +1,268 @@
+"""A value or two of each kind of event: with all fields, and with every default."""
+
+from collections.abc import Mapping
+
+from domain.events.changes import (
+    BackendAvailable,
+    BackendUnavailable,
+    ChangeCanceled,
+    ChangeCancelRequested,
+    ChangeFailed,
+    ChangeRequested,
+    ChangeSucceeded,
+    ChangeSuperseded,
+    ChangeTimedOut,
+    NodeAnswered,
+    NodeNotRestored,
+    NodeRestoring,
+    StepEnded,
+    StepStarted,
+)
+from domain.events.driving import (
+    DriveAvailable,
+    DriveUnavailable,
+    GoalEnded,
+    GoalProgressed,
+    HoldReleased,
+    HoldReleaseRequested,
+    HoldRequested,
+    HoldSet,
+    TaskAborted,
+    TaskCanceled,
+    TaskCancelRequested,
+    TaskPaused,
+    TaskPausing,
+    TaskRequested,
+    TaskResumed,
+    TaskServed,
+    TaskStarted,
+    TaskSucceeded,
+    VehicleReported,
+    VehicleStandstillUnknown,
+    VehicleStillMoving,
+    VehicleStopped,
+)
+from domain.events.health import (
+    EmergencyStopEngaged,
+    EmergencyStopReleased,
+    EmergencyStopStandstill,
+    ErrorAcknowledged,
+    ErrorCleared,
+    ErrorRaised,
+    SignalPending,
+    SignalRead,
+    SignalSettled,
+    SignalSkewed,
+    SystemStateChanged,
+)
+from domain.events.parts import (
+    DeviationBegan,
+    DeviationEnded,
+    NodeReachable,
+    NodeReported,
+    NodeUnreachable,
+    PartActualChanged,
+)
+from domain.events.service import (
+    NotRestored,
+    ServiceRestored,
+    ServiceStalled,
+    StorageDegraded,
+    StorageRecovered,
+    TimeWasDue,
+    WriteAnswered,
+)
+from domain.identifiers import ChangeId, GoalId, TaskId
+from domain.lifecycle import LifecycleState, Transition
+from domain.snapshot import StepStatus, SystemState
+from domain.state_and_mode import ModeName, PartName, StateAndMode
+from tests.support.record_samples.pieces import PARAMETERS
+
+EVENTS: Mapping[str, tuple[object, ...]] = {
+    "audit.write": (WriteAnswered(method="POST", path="/tasks", status=201, address="10.0.0.7"),),
+    "backend.available": (BackendAvailable(reason='Größe ≤ 3 — "gripper\\jam"'),),
+    "backend.unavailable": (BackendUnavailable(reason='Größe ≤ 3 — "gripper\\jam"'),),
+    "change.cancel_requested": (ChangeCancelRequested(change="17"),),
+    "change.canceled": (
+        ChangeCanceled(
+            change=ChangeId("17"), part=PartName("arm"), reason='Größe ≤ 3 — "gripper\\jam"'
+        ),
+    ),
+    "change.failed": (
+        ChangeFailed(
+            change=ChangeId("17"), part=PartName("arm"), reason='Größe ≤ 3 — "gripper\\jam"'
+        ),
+    ),
+    "change.requested": (
+        ChangeRequested(
+            part=PartName("arm"), mode="FAST", transition=Transition.ACTIVATE, parameters=PARAMETERS
+        ),
+        ChangeRequested(part=PartName("arm"), mode=None, transition=None, parameters=None),
+    ),
+    "change.step_ended": (
+        StepEnded(
+            change=ChangeId("17"),
+            node=PartName("left/arm"),
+            action="activate",
+            status=StepStatus.SUCCEEDED,
+            error="LOW_BATTERY",
+        ),
+    ),
+    "change.step_started": (
+        StepStarted(change=ChangeId("17"), node=PartName("left/arm"), action="activate"),
+    ),
+    "change.succeeded": (
+        ChangeSucceeded(
+            change=ChangeId("17"), part=PartName("arm"), reason='Größe ≤ 3 — "gripper\\jam"'
+        ),
+    ),
+    "change.superseded": (
+        ChangeSuperseded(
+            change=ChangeId("17"), part=PartName("arm"), reason='Größe ≤ 3 — "gripper\\jam"'
+        ),
+    ),
+    "change.timed_out": (
+        ChangeTimedOut(
+            change=ChangeId("17"), part=PartName("arm"), reason='Größe ≤ 3 — "gripper\\jam"'
+        ),
+    ),
+    "drive.available": (DriveAvailable(),),
+    "drive.unavailable": (DriveUnavailable(reason='Größe ≤ 3 — "gripper\\jam"'),),
+    "emergency_stop.engaged": (EmergencyStopEngaged(reason='Größe ≤ 3 — "gripper\\jam"'),),
+    "emergency_stop.released": (EmergencyStopReleased(reason='Größe ≤ 3 — "gripper\\jam"'),),
+    "emergency_stop.standstill": (EmergencyStopStandstill(),),
+    "error.acknowledged": (ErrorAcknowledged(error="LOW_BATTERY"),),
+    "error.cleared": (ErrorCleared(error="LOW_BATTERY"),),
+    "error.raised": (
+        ErrorRaised(error="LOW_BATTERY", message="12.5 % < 20 %", value=12.5, threshold=12.5),
+    ),
+    "goal.ended": (GoalEnded(goal=GoalId(5), succeeded=True, reason='Größe ≤ 3 — "gripper\\jam"'),),
+    "goal.feedback": (GoalProgressed(goal=GoalId(5)),),
+    "hold.release_requested": (HoldReleaseRequested(owner="operator"),),
+    "hold.released": (HoldReleased(owner="operator"),),
+    "hold.requested": (HoldRequested(owner="operator", reason='Größe ≤ 3 — "gripper\\jam"'),),
+    "hold.set": (HoldSet(owner="operator", reason='Größe ≤ 3 — "gripper\\jam"'),),
+    "node.answered": (
+        NodeAnswered(node=PartName("left/arm"), accepted=True, reason='Größe ≤ 3 — "gripper\\jam"'),
+    ),
+    "node.not_restored": (
+        NodeNotRestored(
+            node=PartName("left/arm"),
+            target=StateAndMode(state=LifecycleState.INACTIVE, mode=ModeName("FAST")),
+            reason='Größe ≤ 3 — "gripper\\jam"',
+        ),
+    ),
+    "node.reachable": (NodeReachable(node=PartName("left/arm")),),
+    "node.reported": (
+        NodeReported(
+            node=PartName("left/arm"),
+            state=LifecycleState.INACTIVE,
+            mode=ModeName("FAST"),
+            parameters=PARAMETERS,
+            reachable=True,
+        ),
+        NodeReported(
+            node=PartName("left/arm"), state=None, mode=None, parameters=None, reachable=None
+        ),
+    ),
+    "node.restoring": (
+        NodeRestoring(
+            node=PartName("left/arm"),
+            target=StateAndMode(state=LifecycleState.INACTIVE, mode=ModeName("FAST")),
+        ),
+    ),
+    "node.unreachable": (NodeUnreachable(node=PartName("left/arm")),),
+    "part.actual_changed": (
+        PartActualChanged(
+            part=PartName("arm"),
+            actual=StateAndMode(state=LifecycleState.INACTIVE, mode=ModeName("FAST")),
+            was=StateAndMode(state=LifecycleState.INACTIVE, mode=ModeName("FAST")),
+            reason='Größe ≤ 3 — "gripper\\jam"',
+            of_system=True,
+        ),
+        PartActualChanged(
+            part=PartName("arm"),
+            actual=StateAndMode(state=LifecycleState.INACTIVE, mode=ModeName("FAST")),
+            was=StateAndMode(state=LifecycleState.INACTIVE, mode=ModeName("FAST")),
+            reason='Größe ≤ 3 — "gripper\\jam"',
+            of_system=False,
+        ),
+    ),
+    "part.deviation_began": (
+        DeviationBegan(
+            part=PartName("arm"),
+            target=StateAndMode(state=LifecycleState.INACTIVE, mode=ModeName("FAST")),
+            actual=StateAndMode(state=LifecycleState.INACTIVE, mode=ModeName("FAST")),
+            reason='Größe ≤ 3 — "gripper\\jam"',
+        ),
+    ),
+    "part.deviation_ended": (
+        DeviationEnded(
+            part=PartName("arm"),
+            target=StateAndMode(state=LifecycleState.INACTIVE, mode=ModeName("FAST")),
+            actual=StateAndMode(state=LifecycleState.INACTIVE, mode=ModeName("FAST")),
+            reason='Größe ≤ 3 — "gripper\\jam"',
+        ),
+    ),
+    "service.not_restored": (NotRestored(what="node left/arm", reason="not in the model"),),
+    "service.restored": (
+        ServiceRestored(
+            boot=4,
+            targets=2,
+            changes=1,
+            tasks=1,
+            holds=3,
+            errors=0,
+            emergency_stop=True,
+            reason="the store was broken",
+        ),
+    ),
+    "storage.degraded": (StorageDegraded(reason="disk full"),),
+    "storage.recovered": (StorageRecovered(),),
+    "service.stalled": (ServiceStalled(late_s=0.4),),
+    "signal.pending": (SignalPending(signal="battery_level", error="LOW_BATTERY"),),
+    "signal.read": (
+        SignalRead(source="ros", values={"battery_level": 12.5, "estop": True, "gear": "R"}),
+    ),
+    "signal.settled": (SignalSettled(signal="battery_level", error="LOW_BATTERY", stale=True),),
+    "signal.skewed": (SignalSkewed(signal="battery_level"),),
+    "system_state.changed": (
+        SystemStateChanged(
+            state=SystemState.ERROR,
+            was=SystemState.ERROR,
+            errors=("ESTOP", "STALE_DATA"),
+            error_code=68,
+        ),
+    ),
+    "task.aborted": (
+        TaskAborted(
+            task=TaskId("3"), reason='Größe ≤ 3 — "gripper\\jam"', progress=0.30000000000000004
+        ),
+    ),
+    "task.cancel_requested": (TaskCancelRequested(),),
+    "task.canceled": (
+        TaskCanceled(
+            task=TaskId("3"), reason='Größe ≤ 3 — "gripper\\jam"', progress=0.30000000000000004
+        ),
+    ),
+    "task.paused": (TaskPaused(task=TaskId("3"), reason='Größe ≤ 3 — "gripper\\jam"'),),
+    "task.pausing": (TaskPausing(task=TaskId("3"), reason='Größe ≤ 3 — "gripper\\jam"'),),
+    "task.requested": (
+        TaskRequested(
+            waypoints=120, length_m=98.5, start_index=2, controller="stanley", speed_mps=1.5
+        ),
+    ),
+    "task.resumed": (TaskResumed(task=TaskId("3"), goal=GoalId(5), target_index=12),),
+    "task.served": (TaskServed(task=TaskId("3"), waypoints=120, length_m=98.5),),
+    "task.started": (TaskStarted(task=TaskId("3"), goal=GoalId(5), target_index=12),),
+    "task.succeeded": (
+        TaskSucceeded(
+            task=TaskId("3"), reason='Größe ≤ 3 — "gripper\\jam"', progress=0.30000000000000004
+        ),
+    ),
+    "time.passed": (TimeWasDue(),),
+    "vehicle.reported": (VehicleReported(x_m=-12.25, y_m=1e-07, speed_mps=1.5),),
+    "vehicle.standstill_unknown": (VehicleStandstillUnknown(after_s=2.5),),
+    "vehicle.still_moving": (VehicleStillMoving(speed_mps=1.5, after_s=2.5),),
+    "vehicle.stopped": (VehicleStopped(after_s=2.5),),
+}

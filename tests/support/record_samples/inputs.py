@@ -1,0 +1,256 @@
+"""A value or two of each input: with all fields, and with every default."""
+
+from collections.abc import Mapping
+from math import inf, nan
+
+from domain.actor import Actor
+from domain.identifiers import ChangeId, GoalId
+from domain.inputs import (
+    AcknowledgeRequest,
+    BackendStatus,
+    CancelRequest,
+    CancelTaskRequest,
+    DriveStatus,
+    EmergencyStopRequest,
+    GoalFeedback,
+    GoalResult,
+    HoldRequest,
+    ModeRequest,
+    NodeAnswer,
+    NodeReport,
+    ParametersRequest,
+    Reading,
+    Readings,
+    ReleaseRequest,
+    ReportBacklog,
+    Restored,
+    ServiceStall,
+    StorageStatus,
+    TaskRequest,
+    TimePassed,
+    TransitionRequest,
+    VehicleReport,
+    WriteRecord,
+)
+from domain.lifecycle import LifecycleState, Transition
+from domain.state_and_mode import ModeName, PartName
+from domain.vehicle import DriveCommand, Point, Pose, VehicleState
+from tests.support.record_samples.pieces import KEPT, PARAMETERS, PATH
+
+INPUTS: Mapping[str, tuple[object, ...]] = {
+    "node_report": (
+        NodeReport(
+            node=PartName("left/arm"),
+            state=LifecycleState.INACTIVE,
+            mode=ModeName("FAST"),
+            parameters=PARAMETERS,
+            reachable=True,
+            has_lifecycle=True,
+        ),
+        NodeReport(
+            node=PartName("left/arm"),
+            state=None,
+            mode=None,
+            parameters=None,
+            reachable=None,
+            has_lifecycle=None,
+        ),
+    ),
+    "node_answer": (
+        NodeAnswer(
+            request=41,
+            node=PartName("left/arm"),
+            accepted=True,
+            reason='Größe ≤ 3 — "gripper\\jam"',
+        ),
+        NodeAnswer(request=41, node=PartName("left/arm"), accepted=True, reason=""),
+    ),
+    "readings": (
+        Readings(
+            items=(Reading(signal="battery_level", value=12.5, stamp=1764419999987654321),),
+            source="ros",
+            actor=Actor(name="ada", way="http", address="10.0.0.7"),
+        ),
+        Readings(
+            items=(Reading(signal="battery_level", value=12.5, stamp=1764419999987654321),),
+            source="ros",
+            actor=Actor(name="", way="", address=""),
+        ),
+        Readings(
+            items=(
+                Reading(signal="speed", value=nan),
+                Reading(signal="speed", value=-inf),
+                Reading(signal="laps", value=3),
+                Reading(signal="estop", value=False),
+                Reading(signal="gear", value="nan"),
+            ),
+            source="ros",
+            actor=Actor(name="", way="", address=""),
+        ),
+    ),
+    "vehicle_report": (
+        VehicleReport(
+            state=VehicleState(
+                pose=Pose(x_m=-12.25, y_m=1e-07, yaw_rad=-3.125),
+                speed_mps=1.5,
+                steering_angle_rad=0.0625,
+            )
+        ),
+    ),
+    "drive_status": (
+        DriveStatus(available=True, reason='Größe ≤ 3 — "gripper\\jam"'),
+        DriveStatus(available=True, reason=""),
+    ),
+    "backend_status": (
+        BackendStatus(available=True, reason='Größe ≤ 3 — "gripper\\jam"'),
+        BackendStatus(available=True, reason=""),
+    ),
+    "storage_status": (
+        StorageStatus(available=False, reason="disk full"),
+        StorageStatus(available=True, reason=""),
+    ),
+    "report_backlog": (ReportBacklog(source="ros", since=1764420000123456789),),
+    "goal_feedback": (
+        GoalFeedback(
+            goal=GoalId(5),
+            target_index=12,
+            distance_m=51.3,
+            cross_track_error_m=-0.125,
+            lookahead=Point(x_m=-12.25, y_m=1e-07),
+            command=DriveCommand(speed_mps=1.5, steering_angle_rad=0.0625),
+            left_out_m=0.75,
+        ),
+        GoalFeedback(
+            goal=GoalId(5),
+            target_index=12,
+            distance_m=51.3,
+            cross_track_error_m=-0.125,
+            lookahead=Point(x_m=-12.25, y_m=1e-07),
+            command=DriveCommand(speed_mps=1.5, steering_angle_rad=0.0625),
+            left_out_m=0.0,
+        ),
+    ),
+    "goal_result": (
+        GoalResult(goal=GoalId(5), succeeded=True, reason='Größe ≤ 3 — "gripper\\jam"'),
+        GoalResult(goal=GoalId(5), succeeded=True, reason=""),
+    ),
+    "time_passed": (TimePassed(),),
+    "service_stall": (ServiceStall(late=400000000),),
+    "write_record": (
+        WriteRecord(
+            method="POST",
+            path="/tasks",
+            status=201,
+            address="10.0.0.7",
+            actor=Actor(name="ada", way="http", address="10.0.0.7"),
+        ),
+        WriteRecord(
+            method="POST",
+            path="/tasks",
+            status=201,
+            address="10.0.0.7",
+            actor=Actor(name="", way="", address=""),
+        ),
+    ),
+    "mode_request": (
+        ModeRequest(
+            part=PartName("arm"),
+            mode="FAST",
+            actor=Actor(name="ada", way="http", address="10.0.0.7"),
+        ),
+        ModeRequest(part=PartName("arm"), mode="FAST", actor=Actor(name="", way="", address="")),
+    ),
+    "transition_request": (
+        TransitionRequest(
+            part=PartName("arm"),
+            transition=Transition.ACTIVATE,
+            actor=Actor(name="ada", way="http", address="10.0.0.7"),
+        ),
+        TransitionRequest(
+            part=PartName("arm"),
+            transition=Transition.ACTIVATE,
+            actor=Actor(name="", way="", address=""),
+        ),
+    ),
+    "parameters_request": (
+        ParametersRequest(
+            node=PartName("left/arm"),
+            values=PARAMETERS,
+            actor=Actor(name="ada", way="http", address="10.0.0.7"),
+        ),
+        ParametersRequest(
+            node=PartName("left/arm"), values=PARAMETERS, actor=Actor(name="", way="", address="")
+        ),
+    ),
+    "cancel_request": (
+        CancelRequest(
+            change=ChangeId("17"), actor=Actor(name="ada", way="http", address="10.0.0.7")
+        ),
+        CancelRequest(change=ChangeId("17"), actor=Actor(name="", way="", address="")),
+    ),
+    "emergency_stop_request": (
+        EmergencyStopRequest(
+            engaged=True,
+            reason='Größe ≤ 3 — "gripper\\jam"',
+            actor=Actor(name="ada", way="http", address="10.0.0.7"),
+        ),
+        EmergencyStopRequest(
+            engaged=True,
+            reason='Größe ≤ 3 — "gripper\\jam"',
+            actor=Actor(name="", way="", address=""),
+        ),
+    ),
+    "acknowledge_request": (
+        AcknowledgeRequest(
+            error="LOW_BATTERY", actor=Actor(name="ada", way="http", address="10.0.0.7")
+        ),
+        AcknowledgeRequest(error="LOW_BATTERY", actor=Actor(name="", way="", address="")),
+    ),
+    "task_request": (
+        TaskRequest(
+            path=PATH,
+            start_index=2,
+            controller="stanley",
+            speed_mps=1.5,
+            actor=Actor(name="ada", way="http", address="10.0.0.7"),
+        ),
+        TaskRequest(
+            path=PATH,
+            start_index=2,
+            controller="stanley",
+            speed_mps=1.5,
+            actor=Actor(name="", way="", address=""),
+        ),
+    ),
+    "cancel_task_request": (
+        CancelTaskRequest(actor=Actor(name="ada", way="http", address="10.0.0.7")),
+        CancelTaskRequest(actor=Actor(name="", way="", address="")),
+    ),
+    "hold_request": (
+        HoldRequest(
+            owner="operator",
+            reason='Größe ≤ 3 — "gripper\\jam"',
+            actor=Actor(name="ada", way="http", address="10.0.0.7"),
+        ),
+        HoldRequest(
+            owner="operator",
+            reason='Größe ≤ 3 — "gripper\\jam"',
+            actor=Actor(name="", way="", address=""),
+        ),
+    ),
+    "release_request": (
+        ReleaseRequest(owner="operator", actor=Actor(name="ada", way="http", address="10.0.0.7")),
+        ReleaseRequest(owner="operator", actor=Actor(name="", way="", address="")),
+    ),
+    "restored": (
+        Restored(
+            kept=KEPT,
+            boot=4,
+            next_event=10001,
+            next_change=18,
+            next_task=4,
+            stop_because="the store was broken",
+        ),
+        Restored(kept=(), boot=1, next_event=1, next_change=1, next_task=1, stop_because=""),
+    ),
+}

@@ -1,0 +1,200 @@
+"""A value or two of each command, of what is kept, and of an event as it is recorded."""
+
+from collections.abc import Mapping
+
+from domain.actor import Actor
+from domain.commands import AskFacts, AskParameters, AskTransition, Drive, PreemptGoal, SendGoal
+from domain.events.changes import StepEnded
+from domain.events.event import RecordedEvent
+from domain.events.service import TimeWasDue
+from domain.identifiers import ChangeId, GoalId, TaskId
+from domain.inputs import TimePassed
+from domain.kept import (
+    Keeping,
+    KeptChange,
+    KeptEmergencyStop,
+    KeptError,
+    KeptHold,
+    KeptProgress,
+    KeptTarget,
+    KeptTask,
+)
+from domain.lifecycle import LifecycleState, Transition
+from domain.snapshot import StepStatus
+from domain.state_and_mode import ModeName, PartName, StateAndMode
+from domain.vehicle import DriveCommand, Pose, VehicleState
+from service.codec.recorded_step import RecordedStep
+from tests.support.record_samples.pieces import PARAMETERS, PATH
+
+OTHERS: Mapping[str, tuple[object, ...]] = {
+    "ask_transition": (
+        AskTransition(request=41, node=PartName("left/arm"), transition=Transition.ACTIVATE),
+    ),
+    "ask_parameters": (AskParameters(request=41, node=PartName("left/arm"), values=PARAMETERS),),
+    "ask_facts": (AskFacts(request=41, node=PartName("left/arm")),),
+    "drive": (Drive(command=DriveCommand(speed_mps=1.5, steering_angle_rad=0.0625)),),
+    "send_goal": (
+        SendGoal(
+            goal=GoalId(5),
+            path=PATH,
+            first_index=1,
+            start_index=2,
+            controller="stanley",
+            speed_mps=1.5,
+            reached_m=20.5,
+            left_out_m=0.75,
+        ),
+        SendGoal(
+            goal=GoalId(5),
+            path=PATH,
+            first_index=1,
+            start_index=2,
+            controller="stanley",
+            speed_mps=1.5,
+            reached_m=0.0,
+            left_out_m=0.0,
+        ),
+    ),
+    "preempt_goal": (PreemptGoal(goal=GoalId(5)),),
+    "actor": (
+        Actor(name="ada", way="http", address="10.0.0.7"),
+        Actor(name="", way="", address=""),
+    ),
+    "recorded_step": (
+        RecordedStep(
+            at=1764420000123456789,
+            given=TimePassed(),
+            is_late=True,
+            commands=(Drive(command=DriveCommand(speed_mps=1.5, steering_angle_rad=0.0625)),),
+            events=(RecordedEvent(41, 1764420000123456789, None, Actor(), TimeWasDue()),),
+            kept=(Keeping(kind=KeptHold, name="operator", value=None),),
+            views=4294967295,
+        ),
+        RecordedStep(
+            at=0, given=TimePassed(), is_late=False, commands=(), events=(), kept=(), views=None
+        ),
+    ),
+    "recorded_event": (
+        RecordedEvent(
+            id=41,
+            at=1764420000123456789,
+            cause=40,
+            actor=Actor(name="ada", way="http", address="10.0.0.7"),
+            event=StepEnded(
+                change=ChangeId("17"),
+                node=PartName("left/arm"),
+                action="activate",
+                status=StepStatus.SUCCEEDED,
+                error="LOW_BATTERY",
+            ),
+        ),
+    ),
+    "keeping": (
+        Keeping(
+            kind=KeptTarget,
+            name="arm",
+            value=KeptTarget(
+                part=PartName("arm"),
+                target=StateAndMode(state=LifecycleState.ACTIVE, mode=ModeName("FAST")),
+                order=9,
+            ),
+        ),
+        Keeping(kind=KeptHold, name="operator", value=None),
+    ),
+    "kept_target": (
+        KeptTarget(
+            part=PartName("arm"),
+            target=StateAndMode(state=LifecycleState.INACTIVE, mode=ModeName("FAST")),
+            order=9,
+            staying={PartName("left/arm"): LifecycleState.UNCONFIGURED},
+        ),
+        KeptTarget(
+            part=PartName("arm"),
+            target=StateAndMode(state=LifecycleState.INACTIVE, mode=ModeName("FAST")),
+            order=9,
+            staying={},
+        ),
+    ),
+    "kept_change": (
+        KeptChange(
+            id=ChangeId("3"),
+            part=PartName("arm"),
+            started_at=1764420000123456789,
+            cause=40,
+            mode="FAST",
+            transition=Transition.ACTIVATE,
+            parameters=PARAMETERS,
+        ),
+        KeptChange(
+            id=ChangeId("3"),
+            part=PartName("arm"),
+            started_at=1764420000123456789,
+            cause=40,
+            mode=None,
+            transition=None,
+            parameters=None,
+        ),
+    ),
+    "kept_emergency_stop": (
+        KeptEmergencyStop(
+            engaged=True, by="ada", reason='Größe ≤ 3 — "gripper\\jam"', since=1764420000123456789
+        ),
+    ),
+    "kept_error": (
+        KeptError(
+            signal="battery_level",
+            error="LOW_BATTERY",
+            since=1764420000123456789,
+            message="12.5 % < 20 %",
+        ),
+    ),
+    "kept_hold": (
+        KeptHold(
+            owner="operator",
+            reason='Größe ≤ 3 — "gripper\\jam"',
+            by="ada",
+            since=1764420000123456789,
+        ),
+    ),
+    "kept_task": (
+        KeptTask(
+            id=TaskId("3"),
+            path=PATH,
+            controller="stanley",
+            speed_mps=1.5,
+            start_index=2,
+            created_at=1764420000123456789,
+            cause=40,
+        ),
+    ),
+    "kept_progress": (
+        KeptProgress(
+            task=TaskId("3"),
+            has_run=True,
+            target_index=12,
+            distance_m=51.3,
+            left_out_m=0.75,
+            cross_track_error_m=-0.125,
+            ended_as="ABORTED",
+            reason='Größe ≤ 3 — "gripper\\jam"',
+            ended_at=1764420001123456789,
+            seen=VehicleState(
+                pose=Pose(x_m=-12.25, y_m=1e-07, yaw_rad=-3.125),
+                speed_mps=1.5,
+                steering_angle_rad=0.0625,
+            ),
+        ),
+        KeptProgress(
+            task=TaskId("3"),
+            has_run=True,
+            target_index=12,
+            distance_m=51.3,
+            left_out_m=0.75,
+            cross_track_error_m=None,
+            ended_as=None,
+            reason=None,
+            ended_at=None,
+            seen=None,
+        ),
+    ),
+}
