@@ -41,7 +41,7 @@ def read_events(files: Sequence[LogSummary], query: EventQuery) -> list[StoredEv
     """
     is_forward = query.after is not None
     found: list[StoredEvent] = []
-    current = files[-1]
+    current = files[-1] if files else None
     for file in files if is_forward else reversed(files):
         if len(found) < query.limit and (file is current or _may_hold(file, query)):
             found += _read_file(file.path, query, query.limit - len(found))
