@@ -5,6 +5,7 @@ request is on disk then. What makes the robot safer is carried out at once. Eith
 its outcome is on disk, or when that takes too long.
 """
 
+import logging
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
@@ -27,8 +28,11 @@ from domain.lifecycle import Transition
 from domain.outbox import Outputs
 from domain.timebase import Duration, Instant, seconds
 from service.clock import Clock
+from service.forked_call import ForkedCallError, forked_call
 from service.storage.journal import Journal, Plain
 from service.storage.trends.trends import Trends
+
+log = logging.getLogger(__name__)
 
 BARRIER_S = 2.0
 """A request that starts something is rejected if the disk takes longer."""
@@ -38,6 +42,7 @@ SAFER_S = 0.1
 """The answer to what makes the robot safer waits no longer."""
 
 LOOK_EVERY = seconds(0.25)
+RETRY_CHECKPOINT = seconds(60.0)
 _RAISING = frozenset({Transition.CONFIGURE, Transition.ACTIVATE})
 LAST_REQUEST = "last_request"
 """Under this name the journal has the last request that starts or loosens something."""
@@ -61,7 +66,16 @@ class Memory:
     revision: Callable[[], object]
     """Differs when the value does; cheap."""
     every: Duration
-    """Kept at most so often; so much may be lost."""
+    """Kept at most so often; so much may be lost. 0: with the step that tells of it."""
+
+
+@dataclass(frozen=True, slots=True)
+class Checkpoint:
+    """How the state of the core is written down, so that a replay can begin there."""
+
+    state: Callable[[], bytes]
+    """Returns it as it is now; of a large robot in a fork, since that takes most of a second."""
+    is_large: bool
 
 
 @dataclass(frozen=True, slots=True)
@@ -112,6 +126,7 @@ class Keeper:
         submit: Callable[[Input], Outputs],
         clock: Clock,
         memories: Sequence[Memory] = (),
+        checkpoint: Checkpoint | None = None,
     ) -> None:
         """Prepare.
 
@@ -120,11 +135,13 @@ class Keeper:
             submit: Passes an input to the core, and notes the step in the journal.
             clock: Of the service.
             memories: What else the service keeps.
+            checkpoint: How the state of the core is written down; None: it is not.
         """
         self._journal = journal
         self._submit = submit
         self._clock = clock
         self._memories = memories
+        self._checkpoint = checkpoint
         self._remembered: dict[str, tuple[Instant, object]] = {}
         """By memory, when it was kept last, and its revision then."""
         self._fault: str | None = None
@@ -135,20 +152,37 @@ class Keeper:
         while True:
             await self._clock.sleep_until(self._clock.now() + LOOK_EVERY)
             self.look()
+            if self._checkpoint is not None and self._journal.wants_checkpoint:
+                await self._write_checkpoint(self._checkpoint)
 
     def look(self) -> None:
         """Keep memories that changed, and tell the core if storage fails or works again."""
-        now = self._clock.now()
-        for memory in self._memories:
-            kept_at, kept = self._remembered.get(memory.name, (now - memory.every, None))
-            revision = memory.revision()
-            if revision != kept and now - kept_at >= memory.every:
-                self._remembered[memory.name] = now, revision
-                self._journal.keep(memory.name, memory.value())
+        self.keep_memories(self._clock.now())
         fault = self._journal.status().reason
         if (fault is None) is not (self._fault is None):
             self._fault = fault
             self._submit(StorageStatus(available=fault is None, reason=fault or ""))
+
+    async def _write_checkpoint(self, checkpoint: Checkpoint) -> None:
+        """Write down the state of the core as it is now."""
+        step, at = self._journal.last_step, self._clock.now()
+        if not checkpoint.is_large:
+            self._journal.checkpoint(step, at, checkpoint.state())
+            return
+        try:
+            self._journal.checkpoint(step, at, await forked_call(checkpoint.state))
+        except (OSError, ForkedCallError) as error:
+            log.warning("no checkpoint was written, it is tried again: %s", error)
+            await self._clock.sleep_until(at + RETRY_CHECKPOINT)
+
+    def keep_memories(self, now: Instant) -> None:
+        """Keep memories that changed, with the step that tells of it."""
+        for memory in self._memories:
+            kept_at, kept = self._remembered.get(memory.name, (now - memory.every, None))
+            if now - kept_at < memory.every or (revision := memory.revision()) == kept:
+                continue
+            self._remembered[memory.name] = now, revision
+            self._journal.keep(memory.name, memory.value())
 
     async def request(self, given: Input, *, volatile: bool = False) -> Taken:
         """Pass a request to the core, and return when its outcome is on disk or takes too long.

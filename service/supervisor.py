@@ -6,6 +6,7 @@ when it expires (`submitter`); the tick only publishes (`frame_publisher`).
 
 from collections.abc import Callable, Sequence
 from contextlib import suppress
+from functools import partial
 
 from domain.actor import SERVICE
 from domain.commands import PreemptGoal, SendGoal
@@ -20,11 +21,12 @@ from domain.supervision import Supervision
 from domain.timebase import Duration, seconds
 from service.catch_up import CatchUp
 from service.change_ends import ChangeEnds
+from service.checkpoint import checkpoint_of
 from service.clock import Clock
 from service.event_log import EventLog
 from service.files.model_file import LoadedModel
 from service.frame_publisher import PERIOD, FramePublisher
-from service.keeper import NO_STORES, Keeper, Stores, Taken
+from service.keeper import NO_STORES, Checkpoint, Keeper, Stores, Taken
 from service.node_incidents import log_node_incidents
 from service.ports import RobotBackend
 from service.readings import DirectReadings, ReadingInput, Submit
@@ -37,6 +39,10 @@ from service.watchdog import hanging
 
 STALL: Duration = seconds(0.25)
 """A tick that is later is told: the pose of a vehicle that reports every 0.05 s is too old then."""
+
+
+_LARGE = 200
+"""Parts of a robot whose state is written down in a fork; of fewer it takes some 2 ms."""
 
 
 class Supervisor:
@@ -92,6 +98,7 @@ class Supervisor:
         self.publisher.on_tick.append(self._note_tick)
         self.readings = readings(self.submit)
         """The input for external readings."""
+        self._keeper: Keeper | None = None
         self._keeper = self._restore(stores)
 
     def _restore(self, stores: Stores) -> Keeper | None:
@@ -99,7 +106,11 @@ class Supervisor:
         if stores.journal is None:
             return None
         self.submit(stores.journal.found.restored)
-        return Keeper(stores.journal, self.submit, self.clock, stores.memories)
+        version = stores.journal.boot.version
+        checkpoint = Checkpoint(
+            partial(checkpoint_of, self._onboard, version), len(self.model.parts) > _LARGE
+        )
+        return Keeper(stores.journal, self.submit, self.clock, stores.memories, checkpoint)
 
     @property
     def model(self) -> SmhModel:
@@ -123,8 +134,13 @@ class Supervisor:
 
     @property
     def epoch(self) -> str:
-        """Return the name of this run of the service; event ids count from 1 in each."""
+        """Return the name of this run of the service."""
         return self.events.epoch
+
+    @property
+    def boot(self) -> int:
+        """Return the number of this run, from 1; always 1 where nothing is kept."""
+        return 1 if self.journal is None else self.journal.found.restored.boot
 
     async def run(self) -> None:
         """Run until cancelled; the first task that ends cancels the others.
@@ -187,8 +203,13 @@ class Supervisor:
             self.submit(HoldRequest("service", "the service ends", SERVICE))
 
     def _note_tick(self, since_s: float) -> None:
-        """Let deadlines wait after a tick that was late, and tell of one that was very late."""
+        """Let deadlines wait after a tick that was late, and tell of one that was very late.
+
+        The history of the signals is written every few seconds, which it learns here.
+        """
         self._catch_up.note_tick(self.clock.now())
+        if self.trends is not None:
+            self.trends.pass_time(self.clock.now())
         late = seconds(since_s) - PERIOD
         if late > STALL:
             self.submit(ServiceStall(late))
@@ -200,6 +221,8 @@ class Supervisor:
             # Goals are for the navigation on board; the rest is for nodes and the vehicle.
             if not isinstance(command, SendGoal | PreemptGoal):
                 self._backend.send(command)
+        if self._keeper is not None:
+            self._keeper.keep_memories(step.at)
         if self.journal is not None:
             self.journal.note(step)
         if self._sampling is not None and outputs.signals:
@@ -215,7 +238,12 @@ def _event_log(journal: Journal | None) -> EventLog:
     """Return an empty log that goes on after the events of earlier runs."""
     if journal is None:
         return EventLog()
-    return EventLog(epoch=journal.boot.epoch, before=journal.found.restored.next_event - 1)
+    found = journal.found
+    return EventLog(
+        epoch=journal.boot.epoch,
+        before=found.restored.next_event - 1,
+        earlier=found.epochs,
+    )
 
 
 def _sampling(stores: Stores, core: Supervision) -> Sampling | None:

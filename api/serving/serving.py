@@ -278,8 +278,7 @@ def _remembering(supervisor: Supervisor) -> Iterator[str]:
         yield f"THE EMERGENCY STOP IS ENGAGED: {found.restored.stop_because}"
     elif not found.is_new:
         at = "" if found.ended_at is None else f" of {found.ended_at:%Y-%m-%d %H:%M:%S} UTC"
-        count = counted(len(found.restored.kept), "thing")
-        yield f"  goes on from run {found.restored.boot - 1}{at}: {count} kept; nothing moves yet"
+        yield f"  goes on from run {found.restored.boot - 1}{at}: nothing moves before you ask"
     for left in found.left_out:
         yield f"  left out: {left}"
 

@@ -6,7 +6,7 @@ from typing import Any, Generic, TypeVar
 from pydantic_core import to_json
 
 from api.http.part_text import part_text
-from api.http.schemas.base import timestamp
+from api.http.schemas.base import rfc3339, timestamp
 from api.http.schemas.health import EmergencyStopJson, StreamedSignalJson, SystemStateJson
 from api.http.schemas.tasks import HoldJson, TaskJson, VehicleJson
 from domain.actor import Actor
@@ -21,6 +21,7 @@ from domain.snapshot import (
     VehicleView,
 )
 from domain.timebase import Instant
+from service.storage.journal import StoredEvent
 from service.supervisor import Supervisor
 
 View = TypeVar("View")
@@ -85,16 +86,16 @@ class RobotEncoder:
     def event(self, event: RecordedEvent) -> str:
         """Return an `event` frame, which has the same form in `/events` and in simulations."""
         told = event.event
-        cause = "null" if event.cause is None else event.cause
-        head = (
-            f'{{"type":"event","epoch":{self._epoch},"id":{event.id},'
-            f'"at":"{self._moments.text(event.at)}","kind":"{event.kind}","cause":{cause},'
-            f'"actor":{self._actors.text(event.actor)},'
-        )
-        rest = {"data": told.data(), "words": told.words, "notable": told.notable}
-        # A node may report a parameter that is NaN, which JSON cannot hold.
-        text = to_json(rest, inf_nan_mode="null", fallback=_plain).decode()
-        return head + text[1:]
+        actor, at = self._actors.text(event.actor), self._moments.text(event.at)
+        return _event_text(self._epoch, at, event, actor, told.words, notable=told.notable)
+
+    def stored_event(self, event: StoredEvent) -> str:
+        """Return the same frame for an event that was written down."""
+        # Of this run the clock knows better: it may have been set since.
+        is_of_this_run = event.epoch == self._supervisor.epoch
+        at = timestamp(self._clock, event.at) if is_of_this_run else rfc3339(event.wall_at)
+        epoch, actor = to_json(event.epoch).decode(), to_json(event.actor).decode()
+        return _event_text(epoch, at, event, actor, event.words, notable=event.notable)
 
     def _encode_holds(self, views: Mapping[str, HoldView]) -> str:
         return to_json(
@@ -149,6 +150,35 @@ class LatestCache(Generic[View]):
         if self._known is None or self._known[0] is not view:
             self._known = (view, self._encode(view))
         return self._known[1]
+
+
+def _event_text(
+    epoch: str,
+    at: str,
+    event: RecordedEvent | StoredEvent,
+    actor: str,
+    words: str,
+    *,
+    notable: bool,
+) -> str:
+    """Return an `event` frame.
+
+    Args:
+        epoch: Of its run, as JSON.
+        at: When it was, RFC 3339.
+        event: The event.
+        actor: Label of the actor, as JSON.
+        words: What happened.
+        notable: Whether a short list shows it.
+    """
+    cause = "null" if event.cause is None else event.cause
+    head = (
+        f'{{"type":"event","epoch":{epoch},"id":{event.id},"at":"{at}","kind":"{event.kind}",'
+        f'"cause":{cause},"actor":{actor},'
+    )
+    rest = {"data": event.data, "words": words, "notable": notable}
+    # A node may report a parameter that is NaN, which JSON cannot hold.
+    return head + to_json(rest, inf_nan_mode="null", fallback=_plain).decode()[1:]
 
 
 def _plain(value: object) -> object:

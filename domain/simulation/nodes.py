@@ -238,6 +238,11 @@ class SimulatedNodes:
             raise refusal
         self._take_over(it, values, now)
 
+    @property
+    def count(self) -> int:
+        """Return how many nodes there are."""
+        return len(self._nodes)
+
     def state_of(self, node: PartName) -> LifecycleState:
         """Return the actual state of a node; `unknown` without a process or a lifecycle.
 

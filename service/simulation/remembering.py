@@ -15,27 +15,31 @@ from service.storage.journal import Found, Plain
 
 NODES, VEHICLE = "simulated_nodes", "simulated_vehicle"
 
-_EVERY = seconds(0.25)
 _MANY_NODES = 500
-_EVERY_OF_MANY = seconds(5.0)
-"""To gather the states of 10,000 nodes takes some 20 ms."""
+_EVERY_OF_MANY = seconds(1.0)
+"""To gather the states of 10,000 nodes takes some 5 ms."""
+_EVERY_OF_VEHICLE = seconds(0.25)
 
 
 def memories_of(robot: SimulatedRobot) -> tuple[Memory, ...]:
-    """Return what is kept of a simulated robot."""
+    """Return what is kept of a simulated robot.
+
+    Few nodes are kept with the step that tells what they are in: one that was seen inactive must
+    not be found active.
+    """
     nodes, vehicle = robot.nodes, robot.vehicle
     return (
         Memory(
             NODES,
             lambda: cast("Plain", nodes.memory()),
             lambda: nodes.revision,
-            _EVERY if len(nodes.memory()) <= _MANY_NODES else _EVERY_OF_MANY,
+            0 if nodes.count <= _MANY_NODES else _EVERY_OF_MANY,
         ),
         Memory(
             VEHICLE,
             lambda: cast("Plain", plain_vehicle(vehicle.state)),
             lambda: (vehicle.state.pose, vehicle.state.steering_angle_rad),
-            _EVERY,
+            _EVERY_OF_VEHICLE,
         ),
     )
 
@@ -45,4 +49,4 @@ def memory_in(found: Found) -> Mapping[str, Plain] | None:
     own = found.own or {}
     if NODES not in own and VEHICLE not in own:
         return None
-    return {"nodes": own.get(NODES, {}), "vehicle": own.get(VEHICLE)}
+    return {"nodes": own.get(NODES, ()), "vehicle": own.get(VEHICLE)}

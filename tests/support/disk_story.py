@@ -57,7 +57,7 @@ async def _run(disk: FaultyDisk, number: int, told: Told) -> None:
         told.events.append(robot.next_event - 1)
         robot.reads()
         if step == 1:
-            journal.checkpoint(robot.now, b"state" * 2_000)
+            journal.checkpoint(journal.last_step, robot.now, b"state" * 2_000)
         try:
             if await journal.commit(5.0):
                 told.durable = len(told.reasons) - 1

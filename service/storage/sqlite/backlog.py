@@ -46,6 +46,11 @@ class Backlog:
         """Size of what waits, in bytes."""
         return self._size
 
+    @property
+    def last_step(self) -> int:
+        """Number of the last step."""
+        return self._next_step - 1
+
     def add_step(
         self, text: bytes, at: Instant, wall_ns: int, rows: Sequence[EventRow] = ()
     ) -> None:
@@ -83,12 +88,12 @@ class Backlog:
         """Keep a value, or keep it no longer (None)."""
         self._open.changes[key] = value
 
-    def add_checkpoint(self, at: Instant, state: bytes) -> bool:
-        """Add the state after the last step; return whether there was room."""
+    def add_checkpoint(self, step: int, at: Instant, state: bytes) -> bool:
+        """Add the state after a step; return whether there was room."""
         if self._size + len(state) > self._limit:
             return False
         batch = self._open_after_hole()
-        batch.checkpoints.append(Checkpoint(self._next_step - 1, at, state))
+        batch.checkpoints.append(Checkpoint(step, at, state))
         self._grow(len(state))
         return True
 

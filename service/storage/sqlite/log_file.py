@@ -184,9 +184,20 @@ class LogFile:
         if not batch.events:
             return
         self._connection.executemany(
-            "INSERT OR REPLACE INTO events VALUES (?,?,?,?,?,?,?,?,?)",
+            "INSERT OR REPLACE INTO events VALUES (?,?,?,?,?,?,?,?,?,?)",
             (
-                (e.id, run.number, e.at, e.wall_ns, e.kind, e.cause, e.actor, e.data, e.words)
+                (
+                    e.id,
+                    run.number,
+                    e.at,
+                    e.wall_ns,
+                    e.kind,
+                    e.cause,
+                    e.actor,
+                    e.data,
+                    e.words,
+                    e.notable,
+                )
                 for e in batch.events
             ),
         )

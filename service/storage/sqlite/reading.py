@@ -25,7 +25,7 @@ SELECT kind FROM found WHERE kind IS NOT NULL
 _LARGEST = 2**63 - 1
 _COLUMNS = (
     "events.id, events.boot, boots.epoch, events.at, events.wall_ns, events.kind, events.cause,"
-    " events.actor, events.data, events.words"
+    " events.actor, events.data, events.words, events.notable"
 )
 
 
@@ -109,6 +109,6 @@ def _kinds(connection: apsw.Connection, kind: str) -> Sequence[str]:
 
 
 def _event(row: tuple[Any, ...]) -> StoredEvent:
-    number, boot, epoch, at, wall_ns, kind, cause, actor, data, words = row
-    found = EventRow(number, at, wall_ns, kind, cause, actor, (), data, words)
+    number, boot, epoch, at, wall_ns, kind, cause, actor, data, words, notable = row
+    found = EventRow(number, at, wall_ns, kind, cause, actor, (), data, words, bool(notable))
     return stored_event(found, boot, epoch)

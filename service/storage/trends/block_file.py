@@ -11,8 +11,8 @@ from pathlib import Path
 
 import apsw
 
-from domain.errors import PilothouseError
 from domain.timebase import Duration, Instant
+from service.storage.sqlite.connection import open_to_write
 from service.storage.trends.tiers import Tier
 
 MEMORY = ":memory:"
@@ -27,10 +27,8 @@ _AT_ONCE = 1_000
 """Blocks that are deleted at most with one write."""
 
 
-class ForeignVersionError(PilothouseError):
+class ForeignVersionError(Exception):
     """A file that a newer version of Pilothouse wrote."""
-
-    code = "FOREIGN_VERSION"
 
     def __init__(self, path: str, version: int) -> None:
         super().__init__(f"{path} has version {version}; this Pilothouse knows {VERSION}")
@@ -65,9 +63,11 @@ class BlockFile:
         Raises:
             ForeignVersionError: It is of a newer version.
             apsw.Error: It cannot be opened, or is no such file.
+            OSError: It cannot be created.
         """
         self._tiers = tuple(tiers)
-        self._connection = apsw.Connection(path)
+        in_memory = path == MEMORY
+        self._connection = apsw.Connection(path) if in_memory else open_to_write(Path(path))
         try:
             self._prepare(path)
             self._bytes = {tier.name: self._measured(tier) for tier in tiers}
@@ -160,9 +160,8 @@ class BlockFile:
         version = self._value("PRAGMA user_version") or 0
         if version > VERSION:
             raise ForeignVersionError(path, version)
-        run("PRAGMA journal_mode = WAL")
         run("PRAGMA synchronous = NORMAL")
-        run("PRAGMA mmap_size = 0")
+        run("PRAGMA wal_autocheckpoint = 1000")
         with self._connection:
             run(
                 "CREATE TABLE IF NOT EXISTS signals"

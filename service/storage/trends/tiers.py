@@ -10,9 +10,10 @@ MILLISECOND: Duration = seconds(0.001)
 _MINUTE, _HOUR, _DAY = 60.0, 3_600.0, 86_400.0
 _MIB = 1024 * 1024
 
+_ROWS = 16_000
 _ROWS_PER_POINT = 16
-"""A chart is merged from at most so many rows per point: a finer tier would take longer to read,
-and could not be seen."""
+"""A chart is merged from at most so many rows, or so many per point: a finer tier would take longer
+to read, and could not be seen."""
 
 _RAW_PER_S = 16
 """Single readings are read for a chart as if there were so many in a second."""
@@ -88,4 +89,4 @@ def pick_tier(
 
 def _is_quick(tier: Tier, span: Duration, points: int) -> bool:
     rows = span // tier.width if tier.width else span * _RAW_PER_S // seconds(1.0)
-    return rows <= _ROWS_PER_POINT * points
+    return rows <= max(_ROWS, _ROWS_PER_POINT * points)

@@ -23,12 +23,13 @@ from domain.inputs import (
 )
 from domain.lifecycle import Transition
 from domain.outbox import NOTHING, Outputs
-from domain.timebase import to_seconds
-from service.keeper import LOOK_EVERY, SAFER_S, Keeper, Memory, starts_or_loosens
+from domain.timebase import Instant, to_seconds
+from service.keeper import LOOK_EVERY, SAFER_S, Checkpoint, Keeper, Memory, starts_or_loosens
 from service.storage.journal import Plain
 from service.storage.journal import StorageStatus as StorageStatusView
 from tests.support.manual_clock import ManualClock
 from tests.support.models import BASE
+from tests.support.waiting import until
 
 RELEASE = ReleaseRequest("operator")
 HOLD = HoldRequest("operator", "lunch")
@@ -213,3 +214,44 @@ async def test_it_looks_four_times_a_second(disk: Disk, clock: ManualClock, keep
     looking.cancel()
 
     assert disk.given == [StorageStatus(available=False, reason="the disk is full")]
+
+
+class WithCheckpoints(Disk):
+    """A journal that wants a checkpoint."""
+
+    wants_checkpoint = True
+    last_step = 7
+
+    def checkpoint(self, step: int, at: Instant, state: bytes) -> None:
+        self.wants_checkpoint = False
+        self.done.append(f"checkpoint after step {step}: {state.decode()}")
+
+
+@pytest.mark.parametrize("is_large", [False, True])
+async def test_a_checkpoint_is_of_the_moment_in_which_it_was_begun(
+    clock: ManualClock, is_large: bool
+) -> None:
+    disk = WithCheckpoints()
+    checkpoint = Checkpoint(lambda: b"state", is_large)
+    keeper = Keeper(disk, disk.submit, clock, checkpoint=checkpoint)  # type: ignore[arg-type]
+    keeping = asyncio.create_task(keeper.run())
+    await asyncio.sleep(0)
+    await clock.advance(0.25)
+    await until(lambda: bool(disk.done))
+    keeping.cancel()
+
+    assert disk.done == ["checkpoint after step 7: state"]
+
+
+def test_a_memory_that_is_kept_with_each_step_never_waits(disk: Disk, clock: ManualClock) -> None:
+    state = ["active"]
+    memory = Memory("nodes", lambda: list(state), lambda: state[0], 0)
+    keeper = Keeper(disk, disk.submit, clock, [memory])  # type: ignore[arg-type]
+    keeper.keep_memories(clock.now())
+    state[0] = "inactive"
+    keeper.keep_memories(clock.now())
+
+    assert disk.kept == {"nodes": ["inactive"]}
+    disk.done.clear()
+    keeper.keep_memories(clock.now())
+    assert disk.done == []

@@ -37,6 +37,6 @@ async def test_the_status_says_that_it_is_memory() -> None:
 
 async def test_no_state_is_wanted_from_which_nothing_is_replayed() -> None:
     kept = journal()
-    kept.checkpoint(0, b"state")
+    kept.checkpoint(0, 0, b"state")
 
     assert not kept.wants_checkpoint

@@ -151,7 +151,7 @@ async def test_what_does_not_fit_is_lost_and_told_but_values_are_not(
     folder: Path, disk: Disk
 ) -> None:
     robot = await started(folder, backlog_bytes=20_000)
-    robot.journal.checkpoint(robot.now, b"state")
+    robot.journal.checkpoint(robot.journal.last_step, robot.now, b"state")
     disk.error = OSError(5, "Input/output error")
     for number in range(100):
         robot.holds("operator", f"reason {number}")
@@ -196,7 +196,7 @@ async def test_a_state_of_the_core_is_wanted_at_the_start_now_and_then_and_in_ea
     assert robot.journal.wants_checkpoint
 
     robot.reads()
-    robot.journal.checkpoint(robot.now, b"first state")
+    robot.journal.checkpoint(robot.journal.last_step, robot.now, b"first state")
     await robot.journal.commit(ENOUGH_S)
     assert not robot.journal.wants_checkpoint
 
@@ -204,7 +204,7 @@ async def test_a_state_of_the_core_is_wanted_at_the_start_now_and_then_and_in_ea
     robot.reads()
     assert robot.journal.wants_checkpoint
 
-    robot.journal.checkpoint(robot.now, b"second state" * 2_000)
+    robot.journal.checkpoint(robot.journal.last_step, robot.now, b"second state" * 2_000)
     while not robot.journal.wants_checkpoint:
         robot.holds("operator")
         await robot.journal.commit(ENOUGH_S)

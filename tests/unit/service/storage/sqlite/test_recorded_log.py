@@ -65,7 +65,7 @@ async def test_a_folder_is_read_as_a_kill_left_it(folder: Path) -> None:
 async def test_a_state_that_was_dropped_is_said(folder: Path) -> None:
     robot = await started(folder)
     robot.reads()
-    robot.journal.checkpoint(robot.now, b"state")
+    robot.journal.checkpoint(robot.journal.last_step, robot.now, b"state")
     await robot.journal.close()
     log = RecordedLog(folder)
     (checkpoint,) = log.checkpoints()

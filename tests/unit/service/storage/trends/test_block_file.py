@@ -82,6 +82,7 @@ def test_all_is_there_when_it_is_opened_again(tmp_path: Path) -> None:
     file.write(0, [BLOCK], 77)
     size = file.size
     file.close()
+    assert Path(path).stat().st_mode & 0o777 == 0o600
 
     again = BlockFile(path, SMALL_TIERS)
 

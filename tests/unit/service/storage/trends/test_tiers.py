@@ -23,7 +23,8 @@ EVERYTHING = [0] * len(TIERS)
         (7 * 86_400, 1_000, 60),
         (366 * 86_400, 1_000, 600),
         (86_400, 10_000, 1),
-        (60, 2, 10),
+        (60, 2, 0),
+        (86_400, 2, 10),
     ],
 )
 def test_the_longer_the_chart_the_coarser_the_tier(
