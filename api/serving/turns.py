@@ -95,7 +95,7 @@ class Turns:
         self._call()
 
     def _is_overtaken(self, rank: int) -> bool:
-        """Tell whether somebody of a queue that comes first began to wait after the first of one."""
+        """Tell whether somebody who is served before a queue began to wait after its first."""
         queue = self._queues[rank]
         return bool(queue) and any(
             before[-1][0] > queue[0][0] for before in self._queues[:rank] if before
