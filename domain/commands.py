@@ -61,7 +61,10 @@ class SendGoal:
     left_out_m: float = 0.0
     """Part of `reached_m` that the vehicle never came near, in m."""
     seen: VehicleState | None = None
-    """The vehicle as it was seen last before a restart of the service; None: there was none."""
+    """The vehicle when `reached_m` was noted; None: no earlier goal of the task noted anything.
+
+    Navigation knows more of a goal that it preempted itself; of others, this is all.
+    """
 
 
 @dataclass(frozen=True, slots=True)

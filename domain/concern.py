@@ -60,6 +60,8 @@ class NotSettledError(RuntimeError):
 def settle(concerns: Sequence[Concern], now: Instant, max_rounds: int) -> None:
     """Let concerns react to each other, round by round, until nothing changes any more.
 
+    That is so once each has settled since the last one that changed something.
+
     Args:
         concerns: In their order.
         now: The current time.
@@ -69,8 +71,15 @@ def settle(concerns: Sequence[Concern], now: Instant, max_rounds: int) -> None:
         NotSettledError: Concerns still change after `max_rounds`.
     """
     moving: list[Concern] = []
+    quiet = 0
     for _ in range(max_rounds):
-        moving = [concern for concern in concerns if concern.settle(now)]
-        if not moving:
-            return
+        moving = []
+        for concern in concerns:
+            if concern.settle(now):
+                moving.append(concern)
+                quiet = 0
+                continue
+            quiet += 1
+            if quiet == len(concerns):
+                return
     raise NotSettledError(tuple(type(concern).__name__ for concern in moving), max_rounds)

@@ -9,6 +9,7 @@
     |   +-- UnknownChangeError
     |   +-- UnknownParameterError
     |   +-- UnknownTaskError
+    |   +-- UnknownEventError
     |   +-- UnknownControllerError
     +-- InvalidValueError             a value that is never valid: type, range, NaN
     |   +-- FarStartError             a path that begins too far from the vehicle
@@ -144,6 +145,12 @@ class UnknownTaskError(UnknownNameError):
     """An unknown task: it was never submitted, or it is too old to be kept."""
 
     code = "UNKNOWN_TASK"
+
+
+class UnknownEventError(UnknownNameError):
+    """An unknown event: it never happened, or it is too old to be kept."""
+
+    code = "UNKNOWN_EVENT"
 
 
 class UnknownControllerError(UnknownNameError):
@@ -288,3 +295,4 @@ class StorageDegradedError(PilothouseError):
 
     def __init__(self, reason: str) -> None:
         super().__init__(f"nothing was done, since it cannot be stored: {reason}")
+        self.reason = reason

@@ -137,7 +137,7 @@ class KeptProgress:
     """How it ended; None: it has not, or there is nothing more to say."""
     ended_at: Instant | None = None
     seen: VehicleState | None = None
-    """The vehicle at that moment: what it rolls thereafter, unseen, is driven; None: unknown."""
+    """The vehicle when it had got so far: what it rolls thereafter, unseen, is driven."""
 
     @property
     def name(self) -> str:

@@ -5,13 +5,12 @@ stops the vehicle in the same step.
 """
 
 from collections.abc import Callable, Sequence
-from dataclasses import replace
 from typing import TypeAlias
 
 from domain.commands import Command, Drive, PreemptGoal, SendGoal
 from domain.inputs import Input, TimePassed
 from domain.navigation import Navigation
-from domain.outbox import NOTHING, Outputs
+from domain.outbox import Outputs
 from domain.supervision import Supervision
 from domain.timebase import Instant
 
@@ -96,7 +95,7 @@ class Onboard:
         goals = [c for c in outputs.commands if isinstance(c, SendGoal | PreemptGoal)]
         if goals:
             others = tuple(c for c in outputs.commands if not isinstance(c, SendGoal | PreemptGoal))
-            outputs = replace(outputs, commands=others)
+            outputs = outputs._replace(commands=others)
         self._untold.append(outputs)
         for goal in goals:
             self.navigation.handle(goal, now)
@@ -106,7 +105,7 @@ class Onboard:
     def _let_navigation_act(self, now: Instant, take: _Take) -> None:
         for message in self.navigation.advance(now):
             if isinstance(message, Drive):
-                self._untold.append(replace(NOTHING, commands=(message,)))
+                self._untold.append(Outputs(commands=(message,)))
             else:
                 self._take(message, now, take)
 

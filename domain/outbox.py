@@ -1,6 +1,6 @@
 """Gathers the consequences of one input: commands, events with causes, and changed views."""
 
-from dataclasses import dataclass
+from typing import NamedTuple
 
 from domain.actor import NOBODY, Actor
 from domain.commands import Command
@@ -12,9 +12,8 @@ from domain.state_and_mode import PartName
 from domain.timebase import Instant
 
 
-@dataclass(frozen=True, slots=True)
-class Outputs:
-    """The consequences of one input."""
+class Outputs(NamedTuple):
+    """The consequences of one input; a tuple, since there are thousands a second."""
 
     commands: tuple[Command, ...] = ()
     events: tuple[RecordedEvent, ...] = ()

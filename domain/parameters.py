@@ -1,6 +1,6 @@
 """Values of ROS 2 parameters: types and equality."""
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from typing import TypeAlias
 
 from domain.errors import InvalidValueError
@@ -25,6 +25,17 @@ def same_value(one: ParameterValue, other: ParameterValue) -> bool:
     if type(one) is not type(other) or one != other:
         return False
     return not isinstance(one, tuple) or value_type(one) == value_type(other)
+
+
+def check_values(values: Iterable[ParameterValue]) -> None:
+    """Check that values are parameter values.
+
+    Raises:
+        InvalidValueError: One is not.
+    """
+    for value in values:
+        if type(value) not in _TYPE_NAMES:
+            value_type(value)
 
 
 def value_type(value: ParameterValue) -> str:

@@ -4,7 +4,7 @@ Nothing here refers to a live object, so a snapshot may be kept, compared and se
 """
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from enum import StrEnum
 from typing import Literal
 
@@ -47,11 +47,12 @@ class Actual:
     undecidable: bool = False
     reason: str | None = None
     """Why it is undecidable: the part, and what is not known about it."""
+    state_and_mode: StateAndMode = field(init=False, compare=False, repr=False)
+    """Both as a pair; made once, since the parts of a robot share most of these objects."""
 
-    @property
-    def state_and_mode(self) -> StateAndMode:
-        """Return state and mode as a pair."""
-        return StateAndMode(self.state, self.mode)
+    def __post_init__(self) -> None:
+        """Make the pair."""
+        object.__setattr__(self, "state_and_mode", StateAndMode(self.state, self.mode))
 
 
 @dataclass(frozen=True, slots=True)

@@ -182,7 +182,10 @@ class Supervision:
     def _settle(self) -> None:
         settle(self._settling, self._now, self._max_rounds)
         self._wake_at = self._next_wake()
-        self._has_more = any(concern.has_more for concern in self._portioned)
+        self._has_more = False
+        for concern in self._portioned:
+            if concern.has_more:
+                self._has_more = True
 
     def _next_wake(self) -> Instant | None:
         due = None

@@ -5,7 +5,8 @@ request is on disk then. What makes the robot safer is carried out at once. Eith
 its outcome is on disk, or when that takes too long.
 """
 
-from collections.abc import Callable
+import logging
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 from domain.errors import StorageDegradedError
@@ -19,12 +20,19 @@ from domain.inputs import (
     ModeRequest,
     ParametersRequest,
     ReleaseRequest,
+    StorageStatus,
     TaskRequest,
     TransitionRequest,
 )
 from domain.lifecycle import Transition
 from domain.outbox import Outputs
-from service.storage.journal import Journal
+from domain.timebase import Duration, Instant, seconds
+from service.clock import Clock
+from service.forked_call import ForkedCallError, forked_call
+from service.storage.journal import Journal, Plain
+from service.storage.trends.trends import Trends
+
+log = logging.getLogger(__name__)
 
 BARRIER_S = 2.0
 """A request that starts something is rejected if the disk takes longer."""
@@ -33,6 +41,8 @@ OUTCOME_S = 2.0
 SAFER_S = 0.1
 """The answer to what makes the robot safer waits no longer."""
 
+LOOK_EVERY = seconds(0.25)
+RETRY_CHECKPOINT = seconds(60.0)
 _RAISING = frozenset({Transition.CONFIGURE, Transition.ACTIVATE})
 LAST_REQUEST = "last_request"
 """Under this name the journal has the last request that starts or loosens something."""
@@ -45,6 +55,50 @@ class Taken:
     outputs: Outputs
     is_durable: bool
     """Whether its outcome is on disk."""
+
+
+@dataclass(frozen=True, slots=True)
+class Memory:
+    """Something besides the core that survives a restart, such as where a simulated robot is."""
+
+    name: str
+    value: Callable[[], Plain]
+    revision: Callable[[], object]
+    """Differs when the value does; cheap."""
+    every: Duration
+    """Kept at most so often; so much may be lost. 0: with the step that tells of it."""
+
+
+@dataclass(frozen=True, slots=True)
+class Checkpoint:
+    """How the state of the core is written down, so that a replay can begin there."""
+
+    state: Callable[[], bytes]
+    """Returns it as it is now; of a large robot in a fork, since that takes most of a second."""
+    is_large: bool
+
+
+@dataclass(frozen=True, slots=True)
+class Stores:
+    """Where the service keeps what survives it."""
+
+    journal: Journal | None = None
+    """What happens, and what must not be forgotten; None: nothing is kept."""
+    trends: Trends | None = None
+    """The history of the signals; None: there is none."""
+    memories: Sequence[Memory] = ()
+    """What the journal keeps besides the core."""
+
+    async def close(self) -> None:
+        """Write down what is noted, and release the folder."""
+        if self.trends is not None:
+            await self.trends.close()
+        if self.journal is not None:
+            await self.journal.close()
+
+
+NO_STORES = Stores()
+"""Nothing survives."""
 
 
 def starts_or_loosens(given: Input) -> bool:
@@ -66,16 +120,69 @@ def starts_or_loosens(given: Input) -> bool:
 class Keeper:
     """Passes requests on, each with the order of disk and robot that it needs."""
 
-    def __init__(self, journal: Journal, submit: Callable[[Input], Outputs]) -> None:
+    def __init__(
+        self,
+        journal: Journal,
+        submit: Callable[[Input], Outputs],
+        clock: Clock,
+        memories: Sequence[Memory] = (),
+        checkpoint: Checkpoint | None = None,
+    ) -> None:
         """Prepare.
 
         Args:
             journal: Keeps what follows from each input.
             submit: Passes an input to the core, and notes the step in the journal.
+            clock: Of the service.
+            memories: What else the service keeps.
+            checkpoint: How the state of the core is written down; None: it is not.
         """
         self._journal = journal
         self._submit = submit
+        self._clock = clock
+        self._memories = memories
+        self._checkpoint = checkpoint
+        self._remembered: dict[str, tuple[Instant, object]] = {}
+        """By memory, when it was kept last, and its revision then."""
+        self._fault: str | None = None
         self._requests = 0
+
+    async def run(self) -> None:
+        """Keep what changes without a request, and tell how storage is, until cancelled."""
+        while True:
+            await self._clock.sleep_until(self._clock.now() + LOOK_EVERY)
+            self.look()
+            if self._checkpoint is not None and self._journal.wants_checkpoint:
+                await self._write_checkpoint(self._checkpoint)
+
+    def look(self) -> None:
+        """Keep memories that changed, and tell the core if storage fails or works again."""
+        self.keep_memories(self._clock.now())
+        fault = self._journal.status().reason
+        if (fault is None) is not (self._fault is None):
+            self._fault = fault
+            self._submit(StorageStatus(available=fault is None, reason=fault or ""))
+
+    async def _write_checkpoint(self, checkpoint: Checkpoint) -> None:
+        """Write down the state of the core as it is now."""
+        step, at = self._journal.last_step, self._clock.now()
+        if not checkpoint.is_large:
+            self._journal.checkpoint(step, at, checkpoint.state())
+            return
+        try:
+            self._journal.checkpoint(step, at, await forked_call(checkpoint.state))
+        except (OSError, ForkedCallError) as error:
+            log.warning("no checkpoint was written, it is tried again: %s", error)
+            await self._clock.sleep_until(at + RETRY_CHECKPOINT)
+
+    def keep_memories(self, now: Instant) -> None:
+        """Keep memories that changed, with the step that tells of it."""
+        for memory in self._memories:
+            kept_at, kept = self._remembered.get(memory.name, (now - memory.every, None))
+            if now - kept_at < memory.every or (revision := memory.revision()) == kept:
+                continue
+            self._remembered[memory.name] = now, revision
+            self._journal.keep(memory.name, memory.value())
 
     async def request(self, given: Input, *, volatile: bool = False) -> Taken:
         """Pass a request to the core, and return when its outcome is on disk or takes too long.

@@ -6,6 +6,7 @@ when it expires (`submitter`); the tick only publishes (`frame_publisher`).
 
 from collections.abc import Callable, Sequence
 from contextlib import suppress
+from functools import partial
 
 from domain.actor import SERVICE
 from domain.commands import PreemptGoal, SendGoal
@@ -20,22 +21,28 @@ from domain.supervision import Supervision
 from domain.timebase import Duration, seconds
 from service.catch_up import CatchUp
 from service.change_ends import ChangeEnds
+from service.checkpoint import checkpoint_of
 from service.clock import Clock
 from service.event_log import EventLog
 from service.files.model_file import LoadedModel
 from service.frame_publisher import PERIOD, FramePublisher
-from service.keeper import Keeper, Taken
+from service.keeper import NO_STORES, Checkpoint, Keeper, Stores, Taken
 from service.node_incidents import log_node_incidents
 from service.ports import RobotBackend
 from service.readings import DirectReadings, ReadingInput, Submit
 from service.refused_readings import RefusedReadings
 from service.running import run_forever
 from service.storage.journal import Journal, Step
+from service.storage.trends.sampling import Sampling
 from service.submitter import Submitter
 from service.watchdog import hanging
 
 STALL: Duration = seconds(0.25)
 """A tick that is later is told: the pose of a vehicle that reports every 0.05 s is too old then."""
+
+
+_LARGE = 200
+"""Parts of a robot whose state is written down in a fork; of fewer it takes some 2 ms."""
 
 
 class Supervisor:
@@ -50,7 +57,7 @@ class Supervisor:
         readings: Callable[[Submit], ReadingInput] = DirectReadings,
         simulated: Sequence[str] = (),
         events: EventLog | None = None,
-        journal: Journal | None = None,
+        stores: Stores = NO_STORES,
     ) -> None:
         """Prepare; nothing runs yet.
 
@@ -62,7 +69,7 @@ class Supervisor:
             readings: Makes the input for external readings.
             simulated: The simulated pieces of the robot, as in `Frame`.
             events: The event log; None: a new one.
-            journal: Keeps what must survive a restart, and brings it back; None: nothing is kept.
+            stores: Keep what must survive a restart, and bring it back.
         """
         self.core: Supervision = onboard.core
         """Only for reading; inputs go through `submit`."""
@@ -70,15 +77,18 @@ class Supervisor:
         self.started_at = clock.now()
         """Start of this run of the service, and of its epoch."""
         self.simulated = tuple(simulated)
-        self.events = events or _event_log(journal)
+        self.journal = stores.journal
+        """Keeps what must survive a restart; None: nothing is kept."""
+        self.trends = stores.trends
+        """The history of the signals; None: there is none."""
+        self._sampling = _sampling(stores, onboard.core)
+        self.events = events or _event_log(self.journal)
         self.publisher = FramePublisher(onboard.core, clock, self.simulated)
         self.frames = self.publisher.frames
         self._catch_up = CatchUp(clock, self.publisher.tick_due)
         self.change_ends = ChangeEnds(onboard.core, clock, self._catch_up.wait)
         self._loaded = loaded
         self._onboard = onboard
-        self.journal = journal
-        """Keeps what must survive a restart; None: nothing is kept."""
         self._backend = backend
         self.refused_readings = RefusedReadings()
         """Rejected readings, on all ways in."""
@@ -88,9 +98,19 @@ class Supervisor:
         self.publisher.on_tick.append(self._note_tick)
         self.readings = readings(self.submit)
         """The input for external readings."""
-        self._keeper = None if journal is None else Keeper(journal, self.submit)
-        if journal is not None:
-            self.submit(journal.found.restored)
+        self._keeper: Keeper | None = None
+        self._keeper = self._restore(stores)
+
+    def _restore(self, stores: Stores) -> Keeper | None:
+        """Bring back what an earlier run left; return who keeps it from now on."""
+        if stores.journal is None:
+            return None
+        self.submit(stores.journal.found.restored)
+        version = stores.journal.boot.version
+        checkpoint = Checkpoint(
+            partial(checkpoint_of, self._onboard, version), len(self.model.parts) > _LARGE
+        )
+        return Keeper(stores.journal, self.submit, self.clock, stores.memories, checkpoint)
 
     @property
     def model(self) -> SmhModel:
@@ -114,8 +134,13 @@ class Supervisor:
 
     @property
     def epoch(self) -> str:
-        """Return the name of this run of the service; event ids count from 1 in each."""
+        """Return the name of this run of the service."""
         return self.events.epoch
+
+    @property
+    def boot(self) -> int:
+        """Return the number of this run, from 1; always 1 where nothing is kept."""
+        return 1 if self.journal is None else self.journal.found.restored.boot
 
     async def run(self) -> None:
         """Run until cancelled; the first task that ends cancels the others.
@@ -124,14 +149,15 @@ class Supervisor:
             ExceptionGroup: Of a `TaskFailedError` that names the task; its cause is what the task
                 raised.
         """
-        await run_forever(
-            {
-                "robot": self._backend.run(self.deliver),
-                "deadlines": self._submitter.run(),
-                "log": log_node_incidents(self.events),
-                "tick": self.publisher.run(),
-            }
-        )
+        work = {
+            "robot": self._backend.run(self.deliver),
+            "deadlines": self._submitter.run(),
+            "log": log_node_incidents(self.events),
+            "tick": self.publisher.run(),
+        }
+        if self._keeper is not None:
+            work["keeper"] = self._keeper.run()
+        await run_forever(work)
 
     def submit(self, given: Input) -> Outputs:
         """Pass an input to the core.
@@ -177,8 +203,13 @@ class Supervisor:
             self.submit(HoldRequest("service", "the service ends", SERVICE))
 
     def _note_tick(self, since_s: float) -> None:
-        """Let deadlines wait after a tick that was late, and tell of one that was very late."""
+        """Let deadlines wait after a tick that was late, and tell of one that was very late.
+
+        The history of the signals is written every few seconds, which it learns here.
+        """
         self._catch_up.note_tick(self.clock.now())
+        if self.trends is not None:
+            self.trends.pass_time(self.clock.now())
         late = seconds(since_s) - PERIOD
         if late > STALL:
             self.submit(ServiceStall(late))
@@ -190,8 +221,12 @@ class Supervisor:
             # Goals are for the navigation on board; the rest is for nodes and the vehicle.
             if not isinstance(command, SendGoal | PreemptGoal):
                 self._backend.send(command)
+        if self._keeper is not None:
+            self._keeper.keep_memories(step.at)
         if self.journal is not None:
             self.journal.note(step)
+        if self._sampling is not None and outputs.signals:
+            self._sampling.note(outputs.signals, step.at)
         self.publisher.note(outputs)
         self.events.append(*outputs.events)
         self.change_ends.note(outputs.events)
@@ -203,4 +238,13 @@ def _event_log(journal: Journal | None) -> EventLog:
     """Return an empty log that goes on after the events of earlier runs."""
     if journal is None:
         return EventLog()
-    return EventLog(epoch=journal.boot.epoch, before=journal.found.restored.next_event - 1)
+    found = journal.found
+    return EventLog(
+        epoch=journal.boot.epoch,
+        before=found.restored.next_event - 1,
+        earlier=found.epochs,
+    )
+
+
+def _sampling(stores: Stores, core: Supervision) -> Sampling | None:
+    return None if stores.trends is None else Sampling(stores.trends, core.signal)

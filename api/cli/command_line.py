@@ -12,7 +12,7 @@ import sys
 from collections.abc import Sequence
 from typing import NoReturn
 
-from api.cli.commands import change, check, monitor, serve, simulate, task
+from api.cli.commands import change, check, monitor, profile, serve, simulate, task
 from api.cli.standard_files import give_up_output, open_missing
 from api.distribution import ForeignPackageError, check_packages, installed_version
 from api.terminal_text import complain
@@ -30,6 +30,7 @@ _COMMANDS = (
     change.STATE,
     task.COMMAND,
     simulate.COMMAND,
+    profile.COMMAND,
 )
 
 _EXAMPLES = """\
@@ -43,6 +44,7 @@ examples:
   pilothouse task track.csv --preview     preview the waypoints of a task
   pilothouse task track.csv               submit a task, and follow its progress
   pilothouse simulate scenario.yaml       run a scenario, and compare results
+  pilothouse profile --plot               measure how fast the robot is stopped
 """
 
 

@@ -36,6 +36,7 @@ from domain.errors import (
     UnknownChangeError,
     UnknownControllerError,
     UnknownErrorNameError,
+    UnknownEventError,
     UnknownModeError,
     UnknownNameError,
     UnknownParameterError,
@@ -64,6 +65,7 @@ STATUS_OF: Mapping[type[PilothouseError], HTTPStatus] = {
     UnknownErrorNameError: HTTPStatus.NOT_FOUND,
     UnknownChangeError: HTTPStatus.NOT_FOUND,
     UnknownTaskError: HTTPStatus.NOT_FOUND,
+    UnknownEventError: HTTPStatus.NOT_FOUND,
     # Modes and parameters are named in bodies, not in paths.
     UnknownModeError: HTTPStatus.UNPROCESSABLE_ENTITY,
     UnknownParameterError: HTTPStatus.UNPROCESSABLE_ENTITY,

@@ -3,7 +3,7 @@
 import logging
 import os
 import secrets
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from importlib import resources
 from pathlib import Path
 from typing import Literal, TypeAlias
@@ -19,6 +19,7 @@ from service.files.model_file import LoadedModel, load_model
 from service.files.robot_file import RobotSettings, read_robot_file
 from service.files.ros2_block import Ros2Block
 from service.files.text_file import read_text_file
+from service.keeper import NO_STORES, Stores
 from service.onboard_parts import make_onboard
 from service.ros.backend.backend import Ros2Backend
 from service.ros.gateway import RosGateway
@@ -26,12 +27,14 @@ from service.ros.graph.graph import RosGraph, UnknownTypeError
 from service.ros.interface.interface import RosInterface
 from service.simulation.from_settings import make_simulated_robot
 from service.simulation.mock_source import MockSource
+from service.simulation.remembering import memories_of, memory_in
 from service.simulation.simulated import SimulatedBackend
 from service.start_task import submit_start_task
-from service.storage.journal import Boot, Journal
+from service.storage.journal import Boot
 from service.storage.memory import MemoryJournal
 from service.storage.sqlite.journal import SqliteJournal
 from service.storage.sqlite.opening import StoreSettings
+from service.storage.trends.trends import Trends
 from service.supervisor import Supervisor
 
 log = logging.getLogger(__name__)
@@ -109,7 +112,7 @@ def read_files(options: ServeOptions) -> RobotFiles:
     return RobotFiles(robot_name(settings.name, model), loaded, settings, text)
 
 
-async def open_journal(options: ServeOptions, files: RobotFiles, clock: Clock) -> Journal:
+async def open_stores(options: ServeOptions, files: RobotFiles, clock: Clock) -> Stores:
     """Open what an earlier run of the service left of the robot.
 
     Raises:
@@ -125,13 +128,15 @@ async def open_journal(options: ServeOptions, files: RobotFiles, clock: Clock) -
         files.text,
     )
     folder = data_folder(options.data, files.name, os.environ)
+    signals = files.settings.to_signal_settings()
     if folder is None:
-        return MemoryJournal(boot, clock)
-    return await SqliteJournal.open(StoreSettings(folder, files.name), boot, clock)
+        return Stores(MemoryJournal(boot, clock), Trends(signals))
+    journal = await SqliteJournal.open(StoreSettings(folder, files.name), boot, clock)
+    return Stores(journal, Trends(signals, str(folder / "trends.db")))
 
 
 def compose(
-    options: ServeOptions, clock: Clock, files: RobotFiles, journal: Journal | None = None
+    options: ServeOptions, clock: Clock, files: RobotFiles, stores: Stores = NO_STORES
 ) -> Composition:
     """Return the parts of a service for the robot that the options describe.
 
@@ -139,7 +144,7 @@ def compose(
         options: Of the command.
         clock: Of the service.
         files: What `read_files` returned for the options.
-        journal: Keeps what must survive a restart; None: nothing is kept.
+        stores: Keep what must survive a restart.
 
     Raises:
         StartTaskError: The start task cannot be driven.
@@ -149,7 +154,7 @@ def compose(
     """
     is_real = (options.backend or files.settings.backend) == "ros2"
     make = _with_ros2 if is_real else _with_simulated
-    composition = make(options, files.loaded, files.settings, clock, journal)
+    composition = make(options, files.loaded, files.settings, clock, stores)
     start_task = files.settings.start_task
     if options.robot is not None and start_task is not None:
         submit_start_task(composition.supervisor, start_task, options.robot)
@@ -161,7 +166,7 @@ def _with_simulated(
     loaded: LoadedModel,
     robot: RobotSettings,
     clock: Clock,
-    journal: Journal | None,
+    stores: Stores,
 ) -> Composition:
     """Simulate everything, by default also the signals.
 
@@ -171,11 +176,15 @@ def _with_simulated(
     if robot.ros2 != Ros2Block():
         log.warning("`ros2` of the robot file has no effect: everything is simulated")
     now = clock.now()
-    simulated = make_simulated_robot(loaded.model, robot, now, mock=mocked)
+    memory = None if stores.journal is None else memory_in(stores.journal.found)
+    simulated = make_simulated_robot(loaded.model, robot, now, mock=mocked, memory=memory)
+    for left in simulated.left_out:
+        log.warning("left out: %s", left)
     backend = SimulatedBackend(simulated, clock)
     onboard = make_onboard(loaded.model, robot, now)
+    stores = replace(stores, memories=memories_of(simulated))
     supervisor = Supervisor(
-        loaded, onboard, clock, backend, backend.readings, simulated.what, journal=journal
+        loaded, onboard, clock, backend, backend.readings, simulated.what, stores=stores
     )
     limits, parts = ServiceLimits.of(robot.limits), SimulatedParts(onboard, simulated)
     return Composition(supervisor, limits, simulated=parts)
@@ -186,7 +195,7 @@ def _with_ros2(
     loaded: LoadedModel,
     robot: RobotSettings,
     clock: Clock,
-    journal: Journal | None,
+    stores: Stores,
 ) -> Composition:
     """Reach real nodes; signals are mocked only on request."""
     mocked = options.mock_signals or robot.mock is True
@@ -199,10 +208,10 @@ def _with_ros2(
         mock = MockSource(MockSignals(now), clock)
         backend = CompositeRobot(dict.fromkeys(loaded.model.nodes, ros), ros, (ros, mock))
         supervisor = Supervisor(
-            loaded, onboard, clock, backend, mock.readings, ("signals",), journal=journal
+            loaded, onboard, clock, backend, mock.readings, ("signals",), stores=stores
         )
     else:
-        supervisor = Supervisor(loaded, onboard, clock, ros, journal=journal)
+        supervisor = Supervisor(loaded, onboard, clock, ros, stores=stores)
     mapped = {block.topic for block in robot.ros2.signals.values()}
     gateway = RosGateway(RosInterface(supervisor), graph, mapped)
     return Composition(supervisor, ServiceLimits.of(robot.limits), gateway)

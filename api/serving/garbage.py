@@ -1,18 +1,20 @@
 """Keeps garbage collections from holding up the event loop.
 
 Each full collection looks at every object that is not frozen. The events alone are tens of
-thousands after a while, which takes 50 ms, just when much is going on.
+thousands after a while, which takes 50 ms, just when much is going on. And Python collects when
+many objects are new, which is in the longest turns: those would take twice as long.
 """
 
+import asyncio
 import gc
 import time
 from collections.abc import Callable
 
-_YOUNG, _MIDDLE = 700, 10
-"""Python's own thresholds."""
-_OLD = 3
-"""Collections of the middle generation, after which all that is not frozen is looked at: some
-20,000 new objects. Python's own 10 would make each of these longer."""
+_AFTER = (700, 7_000, 21_000)
+"""New objects since the last collection of each generation, above which the next tick begins one.
+Roughly as with Python's own thresholds, but all of them have looked at once after 21,000."""
+_AT_THE_LATEST = 50_000
+"""New objects, above which Python does not wait for a tick."""
 _FULL = 2
 _GROWTH = 1.5
 _COUNTED_EVERY_S = 600.0
@@ -39,18 +41,31 @@ class Heap:
         self._frozen = 0
         """Objects that were frozen when all had been looked at."""
         self._is_thawed = False
+        self._new = [0, 0, 0]
+        """New objects between the last collection of each generation and the last one of all."""
 
     def settle(self) -> None:
         """Begin: freeze all that exists now, and from now on what survives a full collection."""
-        gc.set_threshold(_YOUNG, _MIDDLE, _OLD)
+        gc.set_threshold(_AT_THE_LATEST, 1, 1)
         gc.callbacks.append(self.follow)
         self._is_thawed = True
         gc.collect()
         # Python waits with the next one until a quarter of the survivors of this one is new.
         gc.collect()
 
+    def note_tick(self, _since_s: float) -> None:
+        """Collect in a turn of its own, if that is due: called by the tick, which comes first."""
+        young = gc.get_count()[0]
+        due = [number for number, most in enumerate(_AFTER) if self._new[number] + young > most]
+        if due:
+            asyncio.get_running_loop().call_soon(gc.collect, due[-1])
+
     def follow(self, phase: str, info: dict[str, int]) -> None:
         """Before a full collection, thaw if much is frozen; after it, freeze. Called by Python."""
+        if phase == "start":
+            young = gc.get_count()[0]
+            for number in range(len(self._new)):
+                self._new[number] = 0 if number <= info["generation"] else self._new[number] + young
         if info["generation"] != _FULL:
             return
         if phase == "start":

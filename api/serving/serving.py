@@ -9,6 +9,7 @@ import os
 import socket
 import sys
 from collections.abc import Iterator, Sequence
+from contextlib import ExitStack
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -24,7 +25,7 @@ from api.serving.composition import (
     RobotFiles,
     ServeOptions,
     compose,
-    open_journal,
+    open_stores,
     read_files,
 )
 from api.serving.data_folder import MEMORY
@@ -82,7 +83,10 @@ def _serve(options: ServeOptions, output: Output, errors: Output) -> int:
         files = read_files(options)
         sockets = listen(options.host, options.port)
         network = Network(access, origins, sockets)
-        with asyncio.Runner(loop_factory=_new_event_loop) as runner:
+        with ExitStack() as stack:
+            for item in sockets:
+                stack.callback(item.close)
+            runner = stack.enter_context(asyncio.Runner(loop_factory=_new_event_loop))
             return runner.run(_run(options, files, network, manager, output))
     except _MISUSES as error:
         return _end(str(error), MISUSED)
@@ -112,14 +116,16 @@ async def _run(
 ) -> int:
     """Run the service on what earlier runs left, and return the exit code of the process."""
     clock = continuous_clock()
-    journal = await open_journal(options, files, clock)
+    stores = await open_stores(options, files, clock)
     try:
-        composition = compose(options, clock, files, journal)
+        composition = compose(options, clock, files, stores)
         server = _make_server(composition, options, network, manager, output)
-        Heap().settle()
+        heap = Heap()
+        heap.settle()
+        composition.supervisor.publisher.on_tick.append(heap.note_tick)
         return await run_service(composition, server, network.sockets, manager)
     finally:
-        await journal.close()
+        await stores.close()
 
 
 def _make_server(
@@ -272,8 +278,7 @@ def _remembering(supervisor: Supervisor) -> Iterator[str]:
         yield f"THE EMERGENCY STOP IS ENGAGED: {found.restored.stop_because}"
     elif not found.is_new:
         at = "" if found.ended_at is None else f" of {found.ended_at:%Y-%m-%d %H:%M:%S} UTC"
-        count = counted(len(found.restored.kept), "thing")
-        yield f"  goes on from run {found.restored.boot - 1}{at}: {count} kept; nothing moves yet"
+        yield f"  goes on from run {found.restored.boot - 1}{at}: nothing moves before you ask"
     for left in found.left_out:
         yield f"  left out: {left}"
 

@@ -5,9 +5,9 @@ from copy import copy
 from api.streaming.client_input import StreamQuery
 from api.streaming.encoder import StreamEncoder
 from api.streaming.websocket_frames import text_frame
-from domain.events.event import RecordedEvent
-from service.event_log import EventReader, Gap
+from service.event_log import Gap
 from service.frame_feed import Frame, FrameReader
+from service.history.event_pages import EventPages, HistoryReader, Told
 from service.supervisor import Supervisor
 
 _EVENTS_AT_ONCE = 256
@@ -30,7 +30,7 @@ class FrameBytes:
             known = self._frames[key] = text_frame(self._encoder.frame(frame, skipped, topics))
         return known
 
-    def event(self, item: RecordedEvent | Gap) -> bytes:
+    def event(self, item: Told) -> bytes:
         """Return an `event` or `gap` frame."""
         if isinstance(item, Gap):
             return text_frame(self._encoder.gap(item))
@@ -43,20 +43,19 @@ class FrameBytes:
 class Cursor:
     """A position in the frames and events; everything before it was sent."""
 
-    def __init__(self, supervisor: Supervisor, query: StreamQuery) -> None:
+    def __init__(self, supervisor: Supervisor, pages: EventPages, query: StreamQuery) -> None:
         """Start with a complete frame, and after the event that `query` names."""
         self.topics = query.topics
         self.took_complete = False
         """Whether the frame that was taken last is complete."""
         self._frames = FrameReader(supervisor.frames) if query.wants_state else None
-        self._events = (
-            EventReader(supervisor.events, query.after, query.epoch) if query.wants_events else None
-        )
+        self.events = HistoryReader(pages, query.after, query.epoch) if query.wants_events else None
+        """Position in the events; None: the client wants none."""
 
     @property
     def has_events(self) -> bool:
-        """Tell whether there are events after this cursor."""
-        return self._events is not None and self._events.is_behind
+        """Tell whether there are events after this cursor that need not be loaded first."""
+        return self.events is not None and self.events.is_behind
 
     def take(self, encoded: FrameBytes) -> tuple[bytes, int]:
         """Advance past some events and to the newest frame.
@@ -66,8 +65,8 @@ class Cursor:
         """
         content: list[bytes] = []
         skipped = 0
-        if self._events is not None and self._events.is_behind:
-            content += map(encoded.event, self._events.take(_EVENTS_AT_ONCE))
+        if self.events is not None and self.events.is_behind:
+            content += map(encoded.event, self.events.take(_EVENTS_AT_ONCE))
         self.took_complete = False
         taken = self._frames.take() if self._frames is not None else None
         if taken is not None:
@@ -84,11 +83,12 @@ class Cursor:
     @property
     def position(self) -> tuple[object, object]:
         """Return a value that is equal for cursors of the same topics at the same position."""
-        frames, events = self._frames, self._events
+        frames, events = self._frames, self.events
         return frames and frames.position, events and events.position
 
     def copy(self) -> "Cursor":
         """Return an independent cursor at the same position."""
         other = copy(self)
-        other._frames, other._events = copy(self._frames), copy(self._events)  # noqa: SLF001
+        other._frames = copy(self._frames)  # noqa: SLF001
+        other.events = self.events and self.events.copy()
         return other

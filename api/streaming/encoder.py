@@ -1,8 +1,9 @@
 """Encodes frames and events as JSON, once for all clients that get the same text."""
 
 import asyncio
-from collections.abc import Iterator
-from typing import TypeAlias
+from collections import OrderedDict
+from collections.abc import Callable, Iterator
+from typing import TypeAlias, TypeVar
 
 from api.distribution import installed_version
 from api.http.problems import problem_of
@@ -11,21 +12,25 @@ from api.http.schemas.stream import GapJson, HelloJson
 from api.streaming.client_input import STATE_TOPICS, TOPICS
 from api.streaming.robot_encoder import RobotEncoder
 from domain.errors import PilothouseError
-from domain.events.event import RecordedEvent
 from domain.timebase import to_seconds
 from service.event_log import DEFAULT_CAPACITY, Gap
 from service.frame_feed import PARTS_AT_ONCE, Frame
 from service.frame_publisher import PERIOD
+from service.history.event_history import ToldEvent
+from service.storage.journal import StoredEvent
 from service.supervisor import Supervisor
 
 _EVENTS_KEPT = DEFAULT_CAPACITY
 """All that a client can ask for, some 5 MB: two hundred clients that come back at different places
 would otherwise have the same events encoded again and again."""
+_EARLIER_KEPT = 2_000
+"""Of the events that are read from the journal, for clients that come back together."""
 _MEMBERS_AT_ONCE = 100
 _PASSES = 3
 """Over the parts that changed, each for those that changed during the one before."""
 _PATH = "/ws"
 
+Told = TypeVar("Told", bound=ToldEvent)
 _Shape: TypeAlias = tuple[bool, frozenset[str]]
 """Distinguishes the texts of one frame: whether it is complete, and its topics."""
 
@@ -39,7 +44,9 @@ class StreamEncoder:
         self._robot = RobotEncoder(supervisor)
         self._texts: dict[_Shape, tuple[Frame, _StateText]] = {}
         """The newest text of each shape, shared by the clients of the same topics."""
-        self._events: dict[int, str] = {}
+        self._events: OrderedDict[int, str] = OrderedDict()
+        """Ordered, since the first entry of a plain one is found behind all that were removed."""
+        self._earlier: OrderedDict[int, str] = OrderedDict()
         self._prepared = 0
         """Number of the frame up to which parts are encoded."""
 
@@ -47,6 +54,7 @@ class StreamEncoder:
         """Return the `hello` frame."""
         return HelloJson(
             epoch=self._supervisor.epoch,
+            boot=self._supervisor.boot,
             started_at=timestamp(self._clock, self._supervisor.started_at),
             topics=[topic for topic in TOPICS if topic in topics],
             period_s=to_seconds(PERIOD),
@@ -82,14 +90,11 @@ class StreamEncoder:
             self._texts[_shape(frame, topics)] = (frame, known)
         return known.after(skipped)
 
-    def event(self, event: RecordedEvent) -> str:
+    def event(self, event: ToldEvent) -> str:
         """Return an `event` frame."""
-        text = self._events.get(event.id)
-        if text is None:
-            text = self._events[event.id] = self._robot.event(event)
-            if len(self._events) > _EVENTS_KEPT:
-                del self._events[next(iter(self._events))]
-        return text
+        if isinstance(event, StoredEvent):
+            return _remembered(self._earlier, event, self._robot.stored_event, _EARLIER_KEPT)
+        return _remembered(self._events, event, self._robot.event, _EVENTS_KEPT)
 
     def gap(self, gap: Gap) -> str:
         """Return a `gap` frame."""
@@ -126,6 +131,18 @@ class StreamEncoder:
             yield f'"holds":{robot.holds(frame.holds)}'
         if "emergency_stop" in topics and frame.emergency_stop_changed:
             yield f'"emergency_stop":{robot.emergency_stop(frame.emergency_stop)}'
+
+
+def _remembered(
+    texts: OrderedDict[int, str], event: Told, encode: Callable[[Told], str], most: int
+) -> str:
+    """Return the text of an event; the newest ones are kept by id."""
+    text = texts.get(event.id)
+    if text is None:
+        text = texts[event.id] = encode(event)
+        if len(texts) > most:
+            texts.popitem(last=False)
+    return text
 
 
 class _StateText:

@@ -12,12 +12,15 @@ from contextlib import contextmanager
 
 from websockets.frames import Close, CloseCode, Frame, Opcode
 
+from api.streaming.catching_up import CatchingUp
 from api.streaming.client_input import StreamQuery
 from api.streaming.cursor import Cursor, FrameBytes
 from api.streaming.encoder import StreamEncoder
 from api.streaming.stream_client import Group, StreamClient
 from api.streaming.websocket_frames import PING, Connection
 from domain.timebase import Instant, seconds
+from service.history.event_history import EventHistory
+from service.history.event_pages import EventPages
 from service.supervisor import Supervisor
 
 log = logging.getLogger(__name__)
@@ -37,13 +40,17 @@ _CLOSING_S = 1.0
 class FanOut:
     """The clients, and the task that writes to them, which runs while there are any."""
 
-    def __init__(self, supervisor: Supervisor, encoder: StreamEncoder) -> None:
+    def __init__(
+        self, supervisor: Supervisor, encoder: StreamEncoder, history: EventHistory
+    ) -> None:
         self.skipped = 0
         """Frames skipped so far, of all clients."""
         self.dropped = 0
         """Clients dropped so far because they did not read."""
         self._supervisor = supervisor
         self._encoder = encoder
+        self._pages = EventPages(history)
+        self._catching_up = CatchingUp(supervisor.clock, self._wake)
         self._groups: dict[frozenset[str], Group] = {}
         self._ping_at = supervisor.clock.now() + PING_EVERY
         self._aged: deque[StreamClient] = deque()
@@ -72,10 +79,9 @@ class FanOut:
         """
         group = self._groups.get(query.topics)
         if group is None:
-            from_now_on = StreamQuery(query.topics, None, None)
-            group = Group(Cursor(self._supervisor, from_now_on))
+            group = Group(self._cursor_from_now_on(query.topics))
             self._groups[query.topics] = group
-        cursor = Cursor(self._supervisor, query)
+        cursor = Cursor(self._supervisor, self._pages, query)
         client = StreamClient(group, connection.transport, cursor, address, self._supervisor.clock)
         group.add(client)
         connection.listen(client)
@@ -88,6 +94,8 @@ class FanOut:
         finally:
             connection.listen(None)
             group.remove(client)
+            if client.cursor.events is not None:
+                self._catching_up.forget(client.cursor.events)
             if group.is_empty and self._groups.get(query.topics) is group:
                 del self._groups[query.topics]
             if not self._groups and self._task is not None:
@@ -120,6 +128,7 @@ class FanOut:
                 self._refresh_some()
                 for group in tuple(self._groups.values()):
                     await self._encoder.prepare(group.cursor.topics)
+                    self._keep_up(group)
                     await self._write_in_step(group, encoded, ping)
                     await self._write_apart(group, encoded, ping)
                 # Writing to a transport with room never suspends, and a long history takes many
@@ -127,6 +136,16 @@ class FanOut:
                 await self._let_others_run()
                 if not self._woken.is_set():
                     self._owing_since = None
+
+    def _cursor_from_now_on(self, topics: frozenset[str]) -> Cursor:
+        return Cursor(self._supervisor, self._pages, StreamQuery(topics, None, None))
+
+    def _keep_up(self, group: Group) -> None:
+        """Let all clients continue alone if more happened at once than memory keeps."""
+        if group.cursor.events is not None and group.cursor.events.needs_page:
+            for client in tuple(group.in_step.values()):
+                group.part_from(client)
+            group.cursor = self._cursor_from_now_on(group.cursor.topics)
 
     def _wake(self) -> None:
         self._woken.set()
@@ -167,7 +186,7 @@ class FanOut:
         if not content and not ping:
             return
         content += ping
-        self._wake_if_more(group.cursor)
+        self._go_on_if_more(group.cursor)
         self.skipped += skipped * len(group.in_step)
         transports = tuple(group.in_step)
         count = min(_CLIENTS_AT_ONCE, 1 + _BYTES_AT_ONCE // len(content))
@@ -192,7 +211,7 @@ class FanOut:
                     client.transport.write(content + ping)
                 if client.cursor.took_complete:
                     client.note_complete(len(content))
-                self._wake_if_more(client.cursor)
+                self._go_on_if_more(client.cursor)
                 group.take_in_if_level(client)
             elif client.is_stuck(now):
                 group.remove(client)
@@ -201,9 +220,11 @@ class FanOut:
                 written = 0
                 await self._let_others_run()
 
-    def _wake_if_more(self, cursor: Cursor) -> None:
+    def _go_on_if_more(self, cursor: Cursor) -> None:
         if cursor.has_events:
             self._wake()
+        elif cursor.events is not None and cursor.events.needs_page:
+            self._catching_up.ask(cursor.events)
 
     def _ended(self, task: asyncio.Task[None]) -> None:
         """Disconnect all clients if the task failed: a silent connection would mislead them."""

@@ -5,10 +5,11 @@ from typing import Any, Generic, TypeVar
 
 from pydantic_core import to_json
 
-from api.http.schemas.base import timestamp
+from api.http.part_text import part_text
+from api.http.schemas.base import rfc3339, timestamp
 from api.http.schemas.health import EmergencyStopJson, StreamedSignalJson, SystemStateJson
-from api.http.schemas.parts import PartJson
 from api.http.schemas.tasks import HoldJson, TaskJson, VehicleJson
+from domain.actor import Actor
 from domain.events.event import RecordedEvent
 from domain.snapshot import (
     EmergencyStopView,
@@ -20,6 +21,7 @@ from domain.snapshot import (
     VehicleView,
 )
 from domain.timebase import Instant
+from service.storage.journal import StoredEvent
 from service.supervisor import Supervisor
 
 View = TypeVar("View")
@@ -36,13 +38,17 @@ class RobotEncoder:
         """
         self._supervisor = supervisor
         self._clock = clock = supervisor.clock
-        self.parts = MemberCache[PartView](lambda view: PartJson.of(view, clock).model_dump_json())
+        since = LatestCache[Instant](lambda at: timestamp(clock, at))
+        """Most parts that deviate do so since the same moment."""
+        self.parts = MemberCache[PartView](lambda view: part_text(view, since.text))
         self.signals = MemberCache[SignalView](
             lambda view: StreamedSignalJson.of(view, clock).model_dump_json()
         )
         self._holds = LatestCache[Mapping[str, HoldView]](self._encode_holds)
         self._moments = LatestCache[Instant](lambda at: timestamp(clock, at))
         """An input and what follows from it are at the same moment."""
+        self._actors = LatestCache[Actor](lambda actor: to_json(actor.label).decode())
+        self._epoch = to_json(supervisor.epoch).decode()
         self._emergency_stop = LatestCache[EmergencyStopView](
             lambda view: EmergencyStopJson.of(view, clock).model_dump_json()
         )
@@ -79,20 +85,17 @@ class RobotEncoder:
 
     def event(self, event: RecordedEvent) -> str:
         """Return an `event` frame, which has the same form in `/events` and in simulations."""
-        shown = {
-            "type": "event",
-            "epoch": self._supervisor.epoch,
-            "id": event.id,
-            "at": self._moments.text(event.at),
-            "kind": event.kind,
-            "cause": event.cause,
-            "actor": event.actor.label,
-            "data": event.data,
-            "words": event.event.words,
-            "notable": event.event.notable,
-        }
-        # A node may report a parameter that is NaN, which JSON cannot hold.
-        return to_json(shown, inf_nan_mode="null", fallback=_plain).decode()
+        told = event.event
+        actor, at = self._actors.text(event.actor), self._moments.text(event.at)
+        return _event_text(self._epoch, at, event, actor, told.words, notable=told.notable)
+
+    def stored_event(self, event: StoredEvent) -> str:
+        """Return the same frame for an event that was written down."""
+        # Of this run the clock knows better: it may have been set since.
+        is_of_this_run = event.epoch == self._supervisor.epoch
+        at = timestamp(self._clock, event.at) if is_of_this_run else rfc3339(event.wall_at)
+        epoch, actor = to_json(event.epoch).decode(), to_json(event.actor).decode()
+        return _event_text(epoch, at, event, actor, event.words, notable=event.notable)
 
     def _encode_holds(self, views: Mapping[str, HoldView]) -> str:
         return to_json(
@@ -147,6 +150,35 @@ class LatestCache(Generic[View]):
         if self._known is None or self._known[0] is not view:
             self._known = (view, self._encode(view))
         return self._known[1]
+
+
+def _event_text(
+    epoch: str,
+    at: str,
+    event: RecordedEvent | StoredEvent,
+    actor: str,
+    words: str,
+    *,
+    notable: bool,
+) -> str:
+    """Return an `event` frame.
+
+    Args:
+        epoch: Of its run, as JSON.
+        at: When it was, RFC 3339.
+        event: The event.
+        actor: Label of the actor, as JSON.
+        words: What happened.
+        notable: Whether a short list shows it.
+    """
+    cause = "null" if event.cause is None else event.cause
+    head = (
+        f'{{"type":"event","epoch":{epoch},"id":{event.id},"at":"{at}","kind":"{event.kind}",'
+        f'"cause":{cause},"actor":{actor},'
+    )
+    rest = {"data": event.data, "words": words, "notable": notable}
+    # A node may report a parameter that is NaN, which JSON cannot hold.
+    return head + to_json(rest, inf_nan_mode="null", fallback=_plain).decode()[1:]
 
 
 def _plain(value: object) -> object:

@@ -14,6 +14,7 @@ from api.http.access import Access
 from api.http.gate.refusals import Refusals
 from api.streaming.encoder import StreamEncoder
 from api.streaming.fan_out import FanOut
+from service.history.event_history import EventHistory
 from service.supervisor import Supervisor
 
 MAX_STRANGERS = 100
@@ -31,7 +32,8 @@ class StreamServer:
         self.access = access
         self.refusals = refusals
         self.encoder = StreamEncoder(supervisor)
-        self.fan_out = FanOut(supervisor, self.encoder)
+        self.history = EventHistory(supervisor.events, supervisor.journal, supervisor.clock)
+        self.fan_out = FanOut(supervisor, self.encoder, self.history)
         supervisor.publisher.owing_since = self.fan_out.owing_since
         self.clients = 0
         self._strangers: OrderedDict[asyncio.WriteTransport, None] = OrderedDict()

@@ -25,6 +25,8 @@ _CODES = {
     LifecycleState.FINALIZED: "FINALIZED",
     LifecycleState.ERROR_PROCESSING: "ERROR_PROCESSING",
 }
+_IN_DOUBT = frozenset({LifecycleState.UNKNOWN, *_CODES})
+"""States in which something may block a node from its goal."""
 _WORDS = {
     LifecycleState.FINALIZED: "is finalized: its process must be restarted",
     LifecycleState.ERROR_PROCESSING: "is processing an error",
@@ -121,7 +123,9 @@ class ChangeAdmission:
         """Find the blockers of a request: those that reject it first, at most `MAX_BLOCKERS`."""
         part = part_of(request)
         resting = isinstance(request, TransitionRequest) and request.transition in TOWARDS_REST
-        codes = [(self._code(node, want, resting), node) for node, want in goal.nodes.items()]
+        facts = self._facts
+        doubtful = [node for node in goal.nodes if facts[node].known_state in _IN_DOUBT]
+        codes = [(self._code(node, goal.nodes[node], resting), node) for node in doubtful]
         found = sorted(
             ((code, node) for code, node in codes if code is not None),
             key=lambda item: item[0] in ADVISORY,

@@ -3,7 +3,6 @@
 What a change wants of its nodes is the work of `node_steps.py`.
 """
 
-from collections import deque
 from collections.abc import Iterable, Mapping, Sequence
 from itertools import islice
 
@@ -59,7 +58,6 @@ class Changes:
         self._changes: dict[ChangeId, Change] = {}
         self._running: dict[ChangeId, Change] = {}
         self._kept_targets = KeptTargets(parts.model, outbox)
-        self._to_start: deque[Pursuit] = deque()
         self._to_pack: dict[ChangeId, Change] = {}
         self._count = 0
 
@@ -120,21 +118,19 @@ class Changes:
         identity = ChangeId(f"c{self._count}")
         cause = self._outbox.record_input()
         change = Change(identity, part, request, dict(goal.targets), now, cause)
-        nodes = {*goal.nodes, *self._inference.model.nodes_below(part)}
-        self._supersede(nodes, change, now)
+        if self._running or not self._steps.is_idle:
+            nodes = {*goal.nodes, *self._inference.model.nodes_below(part)}
+            self._supersede(nodes, change, now)
         self._changes[identity] = self._running[identity] = change
-        self._parts.put_under(identity, {part, *goal.targets, *goal.nodes})
+        self._parts.put_under(identity, (part, *goal.targets, *goal.nodes))
         self._parts.ask(goal.targets)
         if goal.targets:
             self._kept_targets.note(part, goal.targets)
         self._outbox.keep(kept_of(change))
-        change.pursuits = {n: Pursuit(identity, n, goal) for n, goal in goal.nodes.items()}
-        change.open, change.node_count = set(goal.nodes), len(goal.nodes)
-        self._steps.add(change.pursuits)
-        to_start = iter(tuple(change.pursuits.values()))
-        for pursuit in islice(to_start, STARTS_AT_ONCE):
-            self._steps.start(pursuit, now)
-        self._to_start.extend(to_start)
+        change.set_out(goal.nodes)
+        self._steps.add(change)
+        for node in islice(goal.nodes, STARTS_AT_ONCE):
+            self._steps.start(node, now)
         self._conclude(change, now)
         self._forget_old()
         return identity
@@ -150,7 +146,7 @@ class Changes:
         found = self.get(change)
         if found.open:
             self._outbox.record_input()
-        self._drop([found.pursuits[node] for node in sorted(found.open)], StepStatus.CANCELED, now)
+        self._drop(sorted(found.open), StepStatus.CANCELED, now)
         if found.status is ChangeStatus.RUNNING:
             self._end(found, ChangeStatus.CANCELED, "canceled on request", now)
 
@@ -176,38 +172,35 @@ class Changes:
             if self._to_pack:
                 self._to_pack.pop(next(iter(self._to_pack))).pack()
             return
-        identity = self._to_start[0].change
-        if (change := self._changes.get(identity)) is not None:
-            self._outbox.resume(now, change.cause, change.request.actor)
-        for _ in range(STARTS_AT_ONCE):
-            if not self._to_start or self._to_start[0].change != identity:
-                return
-            self._steps.start(self._to_start.popleft(), now)
+        change = next(iter(self._steps.waiting.values()))
+        self._outbox.resume(now, change.cause, change.request.actor)
+        first = list(islice(self._steps.waiting.items(), STARTS_AT_ONCE))
+        for node in [node for node, waited_for in first if waited_for is change]:
+            self._steps.start(node, now)
 
     # --- inside ----------------------------------------------------------------------------------
 
     @property
     def _may_start(self) -> bool:
-        return bool(self._to_start) and self._steps.count_in_flight <= _ENOUGH_IN_FLIGHT
+        return bool(self._steps.waiting) and self._steps.count_in_flight <= _ENOUGH_IN_FLIGHT
 
     def _supersede(self, nodes: set[PartName], newer: Change, now: Instant) -> None:
         """Drop pursuits of `nodes`; a change that loses a node ends, but its other nodes go on."""
-        lost = [self._steps.pursuit_of(node) for node in sorted(nodes & self._steps.nodes)]
-        self._drop(lost, StepStatus.SUPERSEDED, now)
+        self._drop(sorted(self._steps.on_their_way(nodes)), StepStatus.SUPERSEDED, now)
         reason = f"superseded by change {newer.id} of {newer.part}"
         for change in list(self._running.values()):
             if nodes & change.pursuits.keys():
                 self._end(change, ChangeStatus.SUPERSEDED, reason, now)
 
-    def _drop(self, pursuits: Sequence[Pursuit], status: StepStatus, now: Instant) -> None:
-        """Start no further step of nodes, which may be of several changes."""
+    def _drop(self, nodes: Iterable[PartName], status: StepStatus, now: Instant) -> None:
+        """Start no further step of nodes on their way, which may be of several changes."""
         let_go: dict[ChangeId, list[PartName]] = {}
-        for pursuit in pursuits:
-            change = self._changes[pursuit.change]
-            if self._steps.drop(pursuit, status, now):
-                change.loose += 1
-            change.open.discard(pursuit.node)
-            let_go.setdefault(pursuit.change, []).append(pursuit.node)
+        for node in nodes:
+            identity, is_in_flight = self._steps.drop(node, status, now)
+            change = self._changes[identity]
+            change.loose += is_in_flight
+            change.open.discard(node)
+            let_go.setdefault(identity, []).append(node)
         for identity, nodes in let_go.items():
             change = self._changes[identity]
             self._let_go(change, nodes)

@@ -8,7 +8,7 @@ of its node waits until it ends or times out.
 from collections.abc import Callable, Mapping, Set
 
 from domain.changes.plan import SetParameters, next_steps, presumed_steps
-from domain.changes.record import Pursuit, Step
+from domain.changes.record import Change, Pursuit, Step
 from domain.changes.settings import ChangeSettings
 from domain.changes.step_judgement import judge_report
 from domain.commands import AskFacts, AskParameters, AskTransition
@@ -57,6 +57,8 @@ class NodeSteps:
         self._health = health
         self._ended = ended
         self._loose_ended = loose_ended
+        self._waiting: dict[PartName, Change] = {}
+        """By node that waits for its turn, in this order, the change that wants something of it."""
         self._pursuits: dict[PartName, Pursuit] = {}
         self._in_flight: dict[PartName, Step] = {}
         self._deadlines: Deadlines[PartName] = Deadlines()
@@ -66,13 +68,18 @@ class NodeSteps:
     # --- what can be seen ------------------------------------------------------------------------
 
     @property
-    def nodes(self) -> Set[PartName]:
-        """Return the nodes that are on their way."""
-        return self._pursuits.keys()
+    def waiting(self) -> Mapping[PartName, Change]:
+        """Return the nodes that wait for `start`, in order, each with its change; read only."""
+        return self._waiting
 
-    def pursuit_of(self, node: PartName) -> Pursuit:
-        """Return the pursuit of a node that is on its way."""
-        return self._pursuits[node]
+    def on_their_way(self, nodes: Set[PartName]) -> Set[PartName]:
+        """Return those nodes that are on their way, or wait for their turn."""
+        return (nodes & self._pursuits.keys()) | (nodes & self._waiting.keys())
+
+    @property
+    def is_idle(self) -> bool:
+        """Tell whether no node is on its way."""
+        return not (self._pursuits or self._waiting)
 
     def in_flight(self, node: PartName) -> Step | None:
         """Return the step that a node is executing."""
@@ -90,35 +97,37 @@ class NodeSteps:
 
     # --- pursuits --------------------------------------------------------------------------------
 
-    def add(self, pursuits: Mapping[PartName, Pursuit]) -> None:
-        """Take over nodes, whose earlier pursuits were dropped; `start` lets each move."""
-        self._pursuits.update(pursuits)
+    def add(self, change: Change) -> None:
+        """Take over the nodes of a change, none of which is on its way; `start` lets each move."""
+        self._waiting.update(dict.fromkeys(change.goals, change))
 
-    def start(self, pursuit: Pursuit, now: Instant) -> None:
-        """Plan the steps of an added pursuit, and start the first unless one is in flight.
+    def start(self, node: PartName, now: Instant) -> None:
+        """Plan the steps of a node that waits, and start the first unless one is in flight."""
+        pursuit = self._take_up(node)
+        if pursuit is not None:
+            self._foresee(pursuit)
+            self._advance(node, now)
 
-        It may have been dropped since it was added, or a report may have started it.
-        """
-        if pursuit.steps or pursuit.waiting or self._pursuits.get(pursuit.node) is not pursuit:
-            return
-        self._foresee(pursuit)
-        self._advance(pursuit.node, now)
-
-    def drop(self, pursuit: Pursuit, status: StepStatus, now: Instant) -> bool:
-        """Start no further step of a node; return whether one is in flight, which ends by itself.
+    def drop(self, node: PartName, status: StepStatus, now: Instant) -> tuple[ChangeId, bool]:
+        """Start no further step of a node that is on its way.
 
         Args:
-            pursuit: Of the node.
+            node: On its way, or waiting for its turn.
             status: Of the steps that are not started: superseded or canceled.
             now: The current time.
+
+        Returns:
+            The change that drove it, and whether a step of that is in flight; it ends by itself.
         """
+        if (waited_for := self._waiting.pop(node, None)) is not None:
+            return waited_for.id, False
+        pursuit = self._pursuits.pop(node)
         pursuit.outcome = status
         pursuit.drop_pending(status, now)
-        del self._pursuits[pursuit.node]
-        step = self._in_flight.get(pursuit.node)
+        step = self._in_flight.get(node)
         if step is None:
-            self._deadlines.clear(pursuit.node)
-        return step is not None and step.change == pursuit.change
+            self._deadlines.clear(node)
+        return pursuit.change, step is not None and step.change == pursuit.change
 
     # --- what happens ----------------------------------------------------------------------------
 
@@ -152,7 +161,7 @@ class NodeSteps:
             self._backlogs[source] = since
 
     def _judged_until(self, now: Instant) -> Instant:
-        return min((now, *self._backlogs.values()))
+        return min((now, *self._backlogs.values())) if self._backlogs else now
 
     def pass_time(self, now: Instant) -> None:
         """Handle all deadlines up to `now`, unless a report may wait that came before them."""
@@ -167,8 +176,7 @@ class NodeSteps:
 
     def _advance(self, node: PartName, now: Instant) -> None:
         """Start the next step of a node, unless one is in flight."""
-        pursuit = self._pursuits.get(node)
-        if pursuit is None or node in self._in_flight:
+        if node in self._in_flight or (pursuit := self._take_up(node)) is None:
             return
         facts = self._facts[node]
         state = facts.known_state
@@ -194,6 +202,16 @@ class NodeSteps:
             self._finish(pursuit, StepStatus.FAILED, why, now)
         else:
             self._begin_step(pursuit, step, now)
+
+    def _take_up(self, node: PartName) -> Pursuit | None:
+        """Return the pursuit of a node; its turn comes now, if it waited. None: nothing is wanted.
+
+        A report may come before the turn of its node.
+        """
+        waited_for = self._waiting.pop(node, None)
+        if waited_for is not None:
+            self._pursuits[node] = waited_for.pursue(node)
+        return self._pursuits.get(node)
 
     def _foresee(self, pursuit: Pursuit) -> None:
         """Plan the steps ahead; each step is planned again from the facts before it starts."""

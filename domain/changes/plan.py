@@ -87,6 +87,21 @@ class NodeGoals:
             return self._in_mode[node][target.mode or DEFAULT_MODE]
         return self._in_state[configures][target.state]
 
+    def of_all(
+        self, targets: Mapping[PartName, StateAndMode], facts: Mapping[PartName, NodeFacts]
+    ) -> dict[PartName, NodeGoal]:
+        """Return the goals of all nodes that have a target; as `of`, in one go for ten thousand."""
+        in_mode, in_state = self._in_mode, self._in_state[True]
+        goals: dict[PartName, NodeGoal] = {}
+        for part, target in targets.items():
+            if part not in facts:
+                continue
+            if target.state is LifecycleState.ACTIVE and part in in_mode:
+                goals[part] = in_mode[part][target.mode or DEFAULT_MODE]
+            else:
+                goals[part] = in_state[target.state]
+        return goals
+
 
 def goal_of(
     model: SmhModel,
@@ -119,8 +134,7 @@ def goal_of(
     _spread(model, request.part, wanted, targets)
     goals = goals or NodeGoals(model)
     if not isinstance(request, TransitionRequest):
-        nodes = {part: goals.of(part, targets[part]) for part in targets if part in facts}
-        return ChangeGoal(targets, nodes)
+        return ChangeGoal(targets, goals.of_all(targets, facts))
     _pass_by(request, facts, targets)
     configures = request.transition is not Transition.DEACTIVATE
     nodes = {
@@ -143,11 +157,14 @@ def _spread(
     if system is None:
         return
     if wanted.state is LifecycleState.ACTIVE:
-        for child, want in system.modes.get(wanted.mode or DEFAULT_MODE, {}).items():
-            _spread(model, child, want, targets)
+        wants = system.modes.get(wanted.mode or DEFAULT_MODE, {})
     else:
-        for child in system.parts:
-            _spread(model, child, wanted, targets)
+        wants = dict.fromkeys(system.parts, wanted)
+    for child, want in wants.items():
+        if child in model.systems:
+            _spread(model, child, want, targets)
+        elif child not in targets:
+            targets[child] = want
 
 
 def _pass_by(
@@ -217,10 +234,11 @@ def _parameters_missing(facts: NodeFacts, goal: NodeGoal) -> bool:
     if goal.mode is not None and facts.mode is not None and facts.mode != goal.mode:
         return True
     known = facts.parameters
-    return any(
-        name not in known or not same_value(known[name], value)
-        for name, value in goal.parameters.items()
-    )
+    # A plain loop, which is faster than a generator.
+    for name, value in goal.parameters.items():
+        if name not in known or not same_value(known[name], value):
+            return True
+    return False
 
 
 def presumed_steps(goal: NodeGoal) -> tuple[Action, ...]:

@@ -1,6 +1,6 @@
 """The record of a change: its request, its steps and its result."""
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Literal, overload
 
@@ -120,15 +120,18 @@ class Pursuit:
 
     def plan(self, actions: tuple[Action, ...]) -> None:
         """Replace the pending steps, if the path to the goal has changed."""
-        done = [step for step in self.steps if step.status is not StepStatus.PENDING]
         pending = [step.action for step in self.steps if step.status is StepStatus.PENDING]
         if pending != list(actions):
+            done = [step for step in self.steps if step.status is not StepStatus.PENDING]
             new = [Step(self.change, self.node, action) for action in actions]
             self.steps = (*done, *new)
 
     def next_step(self) -> Step | None:
         """Return the first pending step; None: there is none."""
-        return next((step for step in self.steps if step.status is StepStatus.PENDING), None)
+        for step in self.steps:
+            if step.status is StepStatus.PENDING:
+                return step
+        return None
 
     def drop_pending(self, status: StepStatus, now: Instant) -> None:
         """End all pending steps."""
@@ -150,8 +153,10 @@ class Change:
     status: ChangeStatus = ChangeStatus.RUNNING
     reason: str | None = None
     ended_at: Instant | None = None
-    pursuits: dict[PartName, Pursuit] = field(default_factory=dict)
+    goals: Mapping[PartName, NodeGoal] = field(default_factory=dict)
     """Of each node; empty once the change is packed."""
+    pursuits: dict[PartName, Pursuit | None] = field(default_factory=dict)
+    """Of each node; None: it waits for its turn. Empty once the change is packed."""
     open: set[PartName] = field(default_factory=set)
     """Nodes that are still on their way."""
     loose: int = 0
@@ -160,6 +165,20 @@ class Change:
     """All steps, once none of them changes any more."""
     node_count: int = 0
 
+    def set_out(self, goals: Mapping[PartName, NodeGoal]) -> None:
+        """Begin: all nodes wait for their turn.
+
+        A pursuit is made when its turn comes: ten thousand at once would take longer than a turn
+        may take, and Python's garbage collection would look through all of them.
+        """
+        self.goals, self.pursuits = goals, dict.fromkeys(goals)
+        self.open, self.node_count = set(goals), len(goals)
+
+    def pursue(self, node: PartName) -> Pursuit:
+        """Return the new pursuit of a node whose turn has come."""
+        pursuit = self.pursuits[node] = Pursuit(self.id, node, self.goals[node])
+        return pursuit
+
     @property
     def is_over(self) -> bool:
         """Tell whether nothing about this change changes any more."""
@@ -167,12 +186,12 @@ class Change:
 
     def errors_of(self, outcome: StepStatus) -> list[str]:
         """Return why nodes ended with `outcome`, in the order of the nodes."""
-        return [p.error for p in self.pursuits.values() if p.outcome is outcome and p.error]
+        return [p.error for p in self._begun() if p.outcome is outcome and p.error]
 
     def pack(self) -> None:
         """Keep only what `view` shows, of a change that has ended in all its nodes."""
         self.packed = self._table()
-        self.pursuits = {}
+        self.goals, self.pursuits = {}, {}
 
     def view(self) -> ChangeView:
         """Return this change as it is now."""
@@ -189,4 +208,7 @@ class Change:
         )
 
     def _table(self) -> StepTable:
-        return StepTable([step for pursuit in self.pursuits.values() for step in pursuit.steps])
+        return StepTable([step for pursuit in self._begun() for step in pursuit.steps])
+
+    def _begun(self) -> Iterator[Pursuit]:
+        return (pursuit for pursuit in self.pursuits.values() if pursuit is not None)

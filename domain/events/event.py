@@ -7,7 +7,7 @@ short list (`notable`).
 
 from collections.abc import Mapping
 from dataclasses import dataclass, fields
-from enum import Enum
+from enum import Enum, StrEnum
 from typing import ClassVar
 
 from domain.actor import Actor
@@ -51,11 +51,12 @@ class Event:
 
     def data(self) -> dict[str, object]:
         """Return the fields as clients see them: labels, texts, numbers, lists and mappings."""
-        shown = {}
+        shown: dict[str, object] = {}
         for name in _keys(type(self)):
             value = getattr(self, name)
-            if value is not None or name not in self.optional:
-                shown[name] = _plain(value)
+            if value is None and name in self.optional:
+                continue
+            shown[name] = value if type(value) in _ARE_PLAIN else _plain(value)
         return shown
 
 
@@ -95,7 +96,13 @@ def _keys(kind: type[Event]) -> tuple[str, ...]:
     return known
 
 
+_ARE_PLAIN = frozenset({str, int, float, bool, type(None)})
+"""Classes of most values, told apart from the others at once."""
+
+
 def _plain(value: object) -> object:
+    if isinstance(value, StrEnum):
+        return str(value)
     if isinstance(value, StateAndMode):
         return value.label
     if isinstance(value, Enum):

@@ -5,8 +5,8 @@ A part has converged when it and all its parts are where their targets say. D4.8
 converged.
 """
 
-from bisect import bisect_left, insort
-from collections.abc import Iterable, Mapping, Set
+from bisect import bisect_left
+from collections.abc import Collection, Iterable, Mapping, Set
 from heapq import heapify, heappop, heappush
 
 from domain.errors import shortened
@@ -46,13 +46,17 @@ class _Laggards:
 
     def note(self, part: PartName, *, lags: bool) -> None:
         """Record whether a part lags; without effect if that is recorded already."""
-        number = self._number[part]
-        place = bisect_left(self._numbers, number)
-        is_known = place < len(self._numbers) and self._numbers[place] == number
-        if lags and not is_known:
-            insort(self._numbers, number)
-        elif is_known and not lags:
-            del self._numbers[place]
+        numbers, number = self._numbers, self._number[part]
+        if not numbers or numbers[-1] < number:
+            # Nodes are asked in the order of the file.
+            if lags:
+                numbers.append(number)
+            return
+        place = bisect_left(numbers, number)
+        if lags and numbers[place] != number:
+            numbers.insert(place, number)
+        elif not lags and numbers[place] == number:
+            del numbers[place]
 
     def last(self, target: StateAndMode | None) -> PartName | None:
         """Return the last laggard of the parts that a system with this target has."""
@@ -113,21 +117,17 @@ class Convergence:
         is_why = actual.state in (LifecycleState.UNKNOWN, target.state)
         return shortened(because(words, actual.reason if is_why else None), MAX_REASON)
 
-    def renew(self, parts: Iterable[PartName]) -> set[PartName]:
+    def renew(self, parts: Collection[PartName]) -> set[PartName]:
         """Judge parts whose target or actual changed, and bottom-up the systems above them.
 
         Returns:
             Parts of which `converged` or `reason` changed.
         """
         moved = set(parts)
-        renewed: set[PartName] = set()
-        waiting: set[PartName] = set()
-        for part in moved:
-            if part in self._depth:
-                waiting.add(part)
-            elif self._renew_node(part):
-                renewed.add(part)
-                waiting.update(self._parents.get(part, ()))
+        waiting = {part for part in parts if part in self._depth}
+        renewed = self._renew_nodes(part for part in parts if part not in waiting)
+        for node in renewed:
+            waiting.update(self._parents.get(node, ()))
         order = [(-self._depth[name], name) for name in waiting]
         heapify(order)
         while order:
@@ -141,22 +141,28 @@ class Convergence:
                     heappush(order, (-self._depth[parent], parent))
         return renewed
 
-    def _renew_node(self, node: PartName) -> bool:
-        """Judge a node that moved; return whether what is told of it may have changed.
+    def _renew_nodes(self, nodes: Iterable[PartName]) -> set[PartName]:
+        """Judge nodes that moved; return those of which what is told may have changed.
 
         As `_renew`, with less work: the cause of a node is the node itself, and a request may move
         ten thousand of them.
         """
-        lags = self._own_cause(node) is not None
-        if lags is (node in self._causes):
-            return lags
-        if lags:
-            self._causes[node] = node
-        else:
-            del self._causes[node]
-        for parent in self._parents.get(node, ()):
-            self._laggards[parent].note(node, lags=lags)
-        return True
+        causes, laggards, parents = self._causes, self._laggards, self._parents
+        renewed: set[PartName] = set()
+        for node in nodes:
+            lags = self._is_behind(node)
+            if lags:
+                renewed.add(node)
+            if lags is (node in causes):
+                continue
+            renewed.add(node)
+            if lags:
+                causes[node] = node
+            else:
+                del causes[node]
+            for parent in parents.get(node, ()):
+                laggards[parent].note(node, lags=lags)
+        return renewed
 
     def _renew(self, part: PartName, cause: PartName | None, moved: set[PartName]) -> bool:
         """Take over the cause of a part; return whether that or what is told of it changed."""
@@ -174,18 +180,20 @@ class Convergence:
 
     def _cause(self, system: PartName) -> PartName | None:
         last = self._laggards[system].last(self._targets.get(system))
-        return self._own_cause(system) if last is None else self._causes[last]
+        if last is not None:
+            return self._causes[last]
+        return system if self._is_behind(system) else None
 
-    def _own_cause(self, part: PartName) -> PartName | None:
-        """Return a part itself, if it is not where its own target says."""
-        target, actual = self._targets.get(part), self._actuals[part]
+    def _is_behind(self, part: PartName) -> bool:
+        """Tell whether a part is not where its own target says.
+
+        A known plain node is always active; a target in which it is not is a transition of its
+        system, which asks nothing of it.
+        """
+        target = self._targets.get(part)
         if target is None:
-            return None
-        if actual.state is target.state and is_there(actual, target):
-            return None
-        return None if part in self._plain and self._is_asked_nothing(part, target) else part
-
-    def _is_asked_nothing(self, plain: PartName, target: StateAndMode) -> bool:
-        """Tell whether a target of a known plain node is only a transition of its system."""
-        is_active = self._actuals[plain].state is LifecycleState.ACTIVE
-        return is_active and target.state is not LifecycleState.ACTIVE
+            return False
+        actual = self._actuals[part]
+        if actual.state is target.state:
+            return not is_there(actual, target)
+        return not (part in self._plain and actual.state is LifecycleState.ACTIVE)

@@ -91,17 +91,19 @@ class ModeInference:
         Raises:
             UnknownPartError: A part is not in the model; no target was set.
         """
-        for part in targets:
-            if part not in self.model:
-                raise UnknownPartError("part", part, self.model.parts)
+        # In bulk where it can be: there may be ten thousand.
+        for part in sorted(targets.keys() - self._actual.keys()):
+            raise UnknownPartError("part", part, self.model.parts)
         for part, target in targets.items():
             if target is None:
                 self._targets.pop(part, None)
             else:
                 self._targets[part] = target
         nodes = targets.keys() & self._wavering
-        changed = self._infer((*nodes, *(part for part in targets if part in self._systems)))
-        return changed | self._convergence.renew(changed | targets.keys())
+        changed = self._infer((*nodes, *(targets.keys() & self._systems.keys())))
+        # In the order of the targets: in that of a set, what belongs together is far apart.
+        renewed = self._convergence.renew((*targets, *(changed - targets.keys())))
+        return changed | renewed
 
     def target(self, part: PartName) -> StateAndMode | None:
         """Return the target in force of a part; None: it has none."""
@@ -110,6 +112,11 @@ class ModeInference:
     def actual(self, part: PartName) -> Actual:
         """Return the actual state and mode of a part."""
         return self._actual[part]
+
+    @property
+    def actuals(self) -> Mapping[PartName, Actual]:
+        """Return the actual state and mode of each part; read only."""
+        return self._actual
 
     @property
     def facts(self) -> Mapping[PartName, NodeFacts]:
@@ -172,6 +179,8 @@ class ModeInference:
             elif self._renew(part, self._infer_node(part)):
                 changed.add(part)
                 waiting.update(self._parents.get(part, ()))
+        if not waiting:
+            return changed
         order = [(-self._depth[name], name) for name in waiting]
         heapify(order)
         while order:

@@ -18,7 +18,7 @@ from domain.identifiers import ChangeId
 from domain.inputs import NodeReport, Restored
 from domain.lifecycle import LifecycleState
 from domain.outbox import Outbox
-from domain.parameters import value_type
+from domain.parameters import check_values
 from domain.parts.convergence import is_there
 from domain.parts.deviations import Deviations
 from domain.parts.mode_inference import ModeInference
@@ -64,6 +64,8 @@ class Parts(Concern):
         """Parts about which something changed since the last `settle`."""
         self._moved: set[PartName] = set()
         """Those of them whose actual or target changed, so that a deviation may begin or end."""
+        self._untold: set[PartName] = set()
+        """Those of them whose actual may differ from the published one."""
         self._to_look: dict[PartName, _Cause] = {}
         """Parts whose deviations are told in later turns; their views show them already."""
         self._views: dict[PartName, PartView] = {}
@@ -104,8 +106,8 @@ class Parts(Concern):
             InvalidValueError: A value is not a ROS 2 parameter value.
             UnknownPartError: The node is not in the model.
         """
-        for value in (report.parameters or {}).values():
-            value_type(value)
+        if report.parameters:
+            check_values(report.parameters.values())
         facts = self.inference.facts_of(report.node)
         if self._to_look:
             self._look_late(sorted({report.node, *self.model.ancestors[report.node]}), now)
@@ -113,15 +115,16 @@ class Parts(Concern):
         self.state_before = facts.known_state
         changed = self.inference.report(report, now)
         self._note_reachable(report.node, reachable=bool(facts.reachable))
-        self.touch(changed)
+        self._touched |= changed
         self._moved |= changed
         self._tell_actuals(changed)
 
     def ask(self, wanted: Mapping[PartName, StateAndMode]) -> None:
         """Set requested targets; they are in force at once."""
         moved = self._targets.ask(wanted) | wanted.keys()
-        self.touch(moved)
+        self._touched |= moved
         self._moved |= moved
+        self._untold |= moved
 
     def put_under(self, change: ChangeId, parts: Iterable[PartName]) -> None:
         """Record that a change drives parts; it replaces an earlier one."""
@@ -150,14 +153,16 @@ class Parts(Concern):
 
     def settle(self, now: Instant) -> bool:
         """Publish states of changed parts, and deviations that began or ended."""
-        touched, self._touched = self._touched, set()
-        if not touched:
+        if not self._touched:
             return False
+        touched, self._touched = self._touched, set()
         self._outbox.parts |= touched
         for part in touched:
             self._views.pop(part, None)
+        if self._untold:
+            untold, self._untold = self._untold, set()
+            self._tell_actuals(untold)
         moved, self._moved = sorted(self._moved), set()
-        self._tell_actuals(moved)
         for part in moved[:LOOKS_AT_ONCE]:
             self._to_look.pop(part, None)
             self._look(part, now)
@@ -233,9 +238,10 @@ class Parts(Concern):
 
     def _tell_actuals(self, parts: Iterable[PartName]) -> None:
         """Publish the parts whose actual state or mode differs from the last published one."""
-        for part in sorted(parts):
-            actual, was = self.inference.actual(part), self._told.get(part, _UNKNOWN)
-            if actual is was or (actual.state is was.state and actual.mode == was.mode):
+        actuals, told = self.inference.actuals, self._told
+        for part in sorted([p for p in parts if actuals[p] is not told.get(p)]):
+            actual, was = actuals[part], told.get(part, _UNKNOWN)
+            if actual.state is was.state and actual.mode == was.mode:
                 continue
             self._told[part] = actual
             self._outbox.emit(

@@ -20,6 +20,7 @@ _ON_THE_WAY = {
     LifecycleState.FINALIZED: LifecycleState.SHUTTING_DOWN,
 }
 _ERROR = Actual(LifecycleState.ERROR_PROCESSING, inferred=True)
+_ACTIVATING = Actual(LifecycleState.ACTIVATING, inferred=True)
 _DEACTIVATING = Actual(LifecycleState.DEACTIVATING, inferred=True)
 _HALTING = (LifecycleState.UNKNOWN, LifecycleState.ERROR_PROCESSING)
 """States of a part that decide about its system at once."""
@@ -38,6 +39,10 @@ class _Mode:
     name: ModeName
     parts: frozenset[int]
     """Numbers of the parts that it names."""
+    active: Actual
+    """What a system in this mode is; one object, as below, so that it is told apart at once."""
+    activating: Actual
+    """What a system is on its way to a mode, while its parts match this one."""
     missing: int = 0
     """Parts that keep a system with this target from being active."""
     unmatched: int = 0
@@ -54,20 +59,20 @@ class _Line:
     in_default: bool
     """Whether the part is one of `__DEFAULT__`."""
 
-    def matches(self, actual: Actual) -> bool:
-        """Tell whether a part is in exactly this state and, if active, in this mode."""
-        if actual.state is not self.state:
-            return False
-        return self.state is not LifecycleState.ACTIVE or actual.mode == self.wanted
-
     def count(self, actual: Actual, by: int) -> None:
-        """Add `by` to what is missing, if a part in `actual` misses this line."""
-        if self.matches(actual):
+        """Add `by` to what is missing, if a part in `actual` misses this line.
+
+        A part matches if it is in exactly this state and, if active, in this mode.
+        """
+        state = actual.state
+        if state is self.state and (
+            state is not LifecycleState.ACTIVE or actual.mode == self.wanted
+        ):
             return
         if self.in_default:
             self.mode.unmatched += by
         # A part that shall be inactive may as well not be configured yet.
-        at_rest = actual.state is LifecycleState.UNCONFIGURED
+        at_rest = state is LifecycleState.UNCONFIGURED
         if not (at_rest and self.state is LifecycleState.INACTIVE):
             self.mode.missing += by
 
@@ -97,7 +102,9 @@ class SystemInference:
         self._modes: dict[ModeName, _Mode] = {}
         for name in sorted(system.modes, key=by_bytes):
             wanted = system.modes[name]
-            mode = _Mode(name, frozenset(self._number[part] for part in wanted))
+            named = frozenset(self._number[part] for part in wanted)
+            active, activating = LifecycleState.ACTIVE, LifecycleState.ACTIVATING
+            mode = _Mode(name, named, _in(active, name), _in(activating, name))
             self._modes[name] = mode
             for part, pair in wanted.items():
                 line = _Line(mode, pair.state, pair.mode, part in default)
@@ -212,18 +219,21 @@ class SystemInference:
             if halting is not None:
                 return self._halted(halting)
             if not wanted.missing:
-                return Actual(LifecycleState.ACTIVE, target, inferred=True, mode_inferred=True)
+                return wanted.active
         halting = self._first_halting(self._in_default.__getitem__)
         if halting is not None:
             return self._halted(halting)
         for mode in self._modes.values():
             if not mode.unmatched:
-                name = mode.name
-                return Actual(LifecycleState.ACTIVATING, name, inferred=True, mode_inferred=True)
-        return Actual(LifecycleState.ACTIVATING, inferred=True)
+                return mode.activating
+        return _ACTIVATING
 
     def _first_halting(self, is_meant: Callable[[int], bool]) -> int | None:
-        return next(filter(is_meant, self._halting), None)
+        return next(filter(is_meant, self._halting), None) if self._halting else None
+
+
+def _in(state: LifecycleState, mode: ModeName) -> Actual:
+    return Actual(state, mode, inferred=True, mode_inferred=True)
 
 
 def _undecidable(reason: str) -> Actual:

@@ -135,13 +135,14 @@ class SmhModel:
         found: dict[PartName, None] = {}
         seen: set[PartName] = set()
         waiting = [part]
+        nodes, systems = self.nodes, self.systems
         while waiting:
             name = waiting.pop()
-            if name in self.nodes:
+            if name in nodes:
                 found[name] = None
             elif name not in seen:
                 seen.add(name)
-                waiting.extend(reversed(self.systems[name].parts))
+                waiting.extend(reversed(systems[name].parts))
         return tuple(found)
 
 

@@ -21,15 +21,12 @@ class Targets:
     def __init__(self, inference: ModeInference) -> None:
         self._inference = inference
         self._asked: dict[PartName, StateAndMode] = {}
-        self._effective: dict[PartName, EffectiveTarget] = {}
         self._shared: dict[tuple[LifecycleState, ModeName | None], EffectiveTarget] = {}
         """One object for all parts with the same target."""
 
     def ask(self, wanted: Mapping[PartName, StateAndMode]) -> set[PartName]:
         """Set requested targets, in force at once; return the parts whose actual changed."""
-        for part, target in wanted.items():
-            self._asked[part] = target
-            self._effective[part] = self._requested(target)
+        self._asked.update(wanted)
         return self._inference.set_targets(wanted)
 
     def asked(self, part: PartName) -> StateAndMode | None:
@@ -38,9 +35,9 @@ class Targets:
 
     def effective(self, part: PartName) -> EffectiveTarget | None:
         """Return the target in force of a part, with its reason; None: there is none."""
-        return self._effective.get(part)
-
-    def _requested(self, target: StateAndMode) -> EffectiveTarget:
+        target = self._asked.get(part)
+        if target is None:
+            return None
         key = (target.state, target.mode)
         shared = self._shared.get(key)
         if shared is None:

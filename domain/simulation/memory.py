@@ -30,10 +30,6 @@ class NodeMemory:
     """A primary one; `unknown` for a plain node."""
     parameters: Parameters = field(default_factory=dict)
 
-    def plain(self) -> dict[str, object]:
-        """Return it as plain values."""
-        return {"state": str(self.state), "parameters": dict(self.parameters)}
-
 
 @dataclass(frozen=True, slots=True)
 class Memory:
@@ -52,6 +48,13 @@ def rest_of(state: LifecycleState) -> LifecycleState:
     A transition ends where it was going, except that no node becomes active while nobody watches.
     """
     return LifecycleState.INACTIVE if state is LifecycleState.ACTIVATING else arrival(state)
+
+
+def plain_nodes(
+    state: LifecycleState, parameters: Parameters, names: Sequence[PartName]
+) -> dict[str, object]:
+    """Return nodes that are all in the same state, with the same parameters, as plain values."""
+    return {"state": str(rest_of(state)), "parameters": dict(parameters), "nodes": names}
 
 
 def plain_vehicle(state: VehicleState) -> dict[str, object]:
@@ -75,7 +78,7 @@ def read_memory(memory: object, model: SmhModel) -> Memory:
     if not isinstance(memory, Mapping):
         return Memory(left_out=("the memory of the simulated robot is not a mapping",))
     left_out: list[str] = []
-    nodes = _read_nodes(memory.get("nodes", {}), model, left_out)
+    nodes = _read_nodes(memory.get("nodes", ()), model, left_out)
     vehicle = _read_vehicle(memory.get("vehicle"), left_out)
     more = len(left_out) - _MOST_TOLD
     told = [*left_out[:_MOST_TOLD], *([f"and {more} more"] if more > 0 else [])]
@@ -83,40 +86,58 @@ def read_memory(memory: object, model: SmhModel) -> Memory:
 
 
 def _read_nodes(given: object, model: SmhModel, left_out: list[str]) -> dict[PartName, NodeMemory]:
-    if not isinstance(given, Mapping):
-        left_out.append("the memory of the simulated nodes is not a mapping")
+    if not isinstance(given, Sequence) or isinstance(given, str):
+        left_out.append("the memory of the simulated nodes is not a list")
         return {}
     found: dict[PartName, NodeMemory] = {}
-    for name, node in model.nodes.items():
-        if name not in given:
-            continue
+    for group in given:
         try:
-            found[name] = _read_node(given[name], declared_parameters(node))
+            found |= _read_group(group, model, left_out)
         except InvalidValueError as error:
-            left_out.append(f"the memory of the simulated node {name}: {error.message}")
+            left_out.append(f"the memory of some simulated nodes: {error.message}")
     return found
 
 
-def _read_node(given: object, declared: Parameters) -> NodeMemory:
-    """Return where a node was.
+def _read_group(given: object, model: SmhModel, left_out: list[str]) -> dict[PartName, NodeMemory]:
+    """Return the nodes that are all in the same state, with the same parameters.
 
     Raises:
-        InvalidValueError: It cannot have been there.
+        InvalidValueError: No node can be so.
     """
-    if not isinstance(given, Mapping):
-        raise InvalidValueError("it is not a mapping")
-    named = given.get("state")
+    names, named, values = _fields(given)
     state = next((state for state in LifecycleState if state == named), None)
     if state is None or not (state.is_primary or state is LifecycleState.UNKNOWN):
         raise InvalidValueError(f"{shortened(repr(named), 40)} is not a state to rest in")
-    values = given.get("parameters", {})
+    parameters = {name: _parameter(value) for name, value in values.items()}
+    found: dict[PartName, NodeMemory] = {}
+    for name in names:
+        if not isinstance(name, str) or name not in model.nodes:
+            continue
+        node = PartName(name)
+        declared = declared_parameters(model.nodes[node])
+        known = {name: parameters[name] for name in declared if name in parameters}
+        refusal = find_refusal(declared, known)
+        if refusal is None:
+            found[node] = NodeMemory(state, known)
+        else:
+            left_out.append(f"the memory of the simulated node {name}: {refusal.message}")
+    return found
+
+
+def _fields(given: object) -> tuple[Sequence[object], object, Mapping[str, object]]:
+    """Return names, state and parameters.
+
+    Raises:
+        InvalidValueError: There are no such fields.
+    """
+    if not isinstance(given, Mapping):
+        raise InvalidValueError("it is not a mapping")
+    names, values = given.get("nodes"), given.get("parameters")
+    if not isinstance(names, Sequence) or isinstance(names, str):
+        raise InvalidValueError("its nodes are not a list")
     if not isinstance(values, Mapping):
         raise InvalidValueError("its parameters are not a mapping")
-    known = {name: _parameter(values[name]) for name in declared if name in values}
-    refusal = find_refusal(declared, known)
-    if refusal is not None:
-        raise InvalidValueError(refusal.message)
-    return NodeMemory(state, known)
+    return names, given.get("state"), values
 
 
 def _parameter(value: object) -> ParameterValue:

@@ -17,7 +17,7 @@ from domain.inputs import NodeAnswer, NodeReport
 from domain.lifecycle import ERROR_PROCESSED, LifecycleState, Transition, TransitionRule, rule_for
 from domain.parameters import Parameters, ParameterValue
 from domain.parts.system_model import SmhModel
-from domain.simulation.memory import NodeMemory, rest_of
+from domain.simulation.memory import NodeMemory, plain_nodes
 from domain.simulation.node_parameters import declared_parameters, find_refusal, start_parameters
 from domain.simulation.node_settings import NOTICED_AFTER, SLOWDOWN, Fault, NodeSettings
 from domain.state_and_mode import PartName
@@ -43,6 +43,15 @@ class _Node:
     unreachable_at: Instant | None = None
     """When the backend will notice that the node sends nothing."""
     told_unreachable: bool = False
+    known_likeness: str = ""
+    """Empty: it is to be found anew."""
+
+    @property
+    def likeness(self) -> str:
+        """Return the same for all nodes in the same state with the same parameters."""
+        if not self.known_likeness:
+            self.known_likeness = f"{self.state} {self.parameters!r}"
+        return self.known_likeness
 
     @property
     def runs(self) -> bool:
@@ -201,8 +210,8 @@ class SimulatedNodes:
             UnknownPartError: There is no such node.
         """
         self._catch_up(now)
-        self.revision += 1
         it = self._require(node)
+        self._touch(it)
         before, it.fault = it.fault, fault
         if fault is Fault.DIE:
             it.stop()
@@ -229,6 +238,11 @@ class SimulatedNodes:
             raise refusal
         self._take_over(it, values, now)
 
+    @property
+    def count(self) -> int:
+        """Return how many nodes there are."""
+        return len(self._nodes)
+
     def state_of(self, node: PartName) -> LifecycleState:
         """Return the actual state of a node; `unknown` without a process or a lifecycle.
 
@@ -245,16 +259,17 @@ class SimulatedNodes:
         """
         return dict(self._require(node).parameters)
 
-    def memory(self) -> dict[PartName, dict[str, object]]:
-        """Return where each running node is, as plain values.
+    def memory(self) -> list[dict[str, object]]:
+        """Return where the running nodes are, as plain values: those that are in the same together.
 
         A parameter set in progress is not part of it: nobody was told that it was done.
         """
-        return {
-            name: NodeMemory(rest_of(node.state), node.parameters).plain()
-            for name, node in self._nodes.items()
-            if node.runs
-        }
+        groups: dict[str, list[PartName]] = {}
+        for name, node in self._nodes.items():
+            if node.runs:
+                groups.setdefault(node.likeness, []).append(name)
+        alike = ((self._nodes[names[0]], names) for names in groups.values())
+        return [plain_nodes(node.state, node.parameters, names) for node, names in alike]
 
     def _require(self, name: PartName) -> _Node:
         if name in self._systems:
@@ -333,14 +348,19 @@ class SimulatedNodes:
         else:
             self._enter(node, rule.failure if node.fault is Fault.FAIL else rule.success, at)
 
+    def _touch(self, node: _Node) -> None:
+        """Note that there is something new to remember of a node."""
+        self.revision += 1
+        node.known_likeness = ""
+
     def _enter(self, node: _Node, state: LifecycleState, at: Instant) -> None:
         node.state = state
-        self.revision += 1
+        self._touch(node)
         self._say(node, NodeReport(node.name, state=state), at)
 
     def _take_over(self, node: _Node, values: Parameters, at: Instant) -> None:
         node.parameters.update(values)
-        self.revision += 1
+        self._touch(node)
         # All values of the request, changed or not, as in ROS 2 parameter events.
         self._say(node, NodeReport(node.name, parameters=MappingProxyType(dict(values))), at)
 

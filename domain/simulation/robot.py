@@ -10,7 +10,7 @@ from typing import TypeAlias
 from domain.commands import Drive, NodeCommand
 from domain.inputs import Readings, VehicleReport
 from domain.parts.system_model import SmhModel
-from domain.simulation.memory import plain_vehicle, read_memory
+from domain.simulation.memory import read_memory
 from domain.simulation.mock_signals import MockSignals
 from domain.simulation.node_settings import NodeSettings
 from domain.simulation.nodes import NodeMessage, SimulatedNodes
@@ -18,7 +18,6 @@ from domain.simulation.vehicle import SimulatedVehicle
 from domain.simulation.vehicle_settings import VehicleSettings
 from domain.state_and_mode import PartName
 from domain.timebase import Instant
-from domain.vehicle import Pose
 
 RobotMessage: TypeAlias = NodeMessage | Readings | VehicleReport
 
@@ -50,7 +49,7 @@ class SimulatedRobot:
             nodes: Settings of the nodes that differ from the default.
             vehicle: Settings of the vehicle; None: an ideal one at the origin.
             mock: Whether to publish the five mock signals.
-            memory: What `memory` returned in an earlier run, so that nodes and vehicle are where
+            memory: `nodes` and `vehicle` as they were in an earlier run, so that both are where
                 they were, at standstill; None: they begin anew.
         """
         remembered = read_memory(memory, model)
@@ -59,20 +58,6 @@ class SimulatedRobot:
         self.nodes = SimulatedNodes(model, nodes, start, remembered.nodes)
         self.mock = MockSignals(start) if mock else None
         self.vehicle = SimulatedVehicle(vehicle or VehicleSettings(), start, remembered.vehicle)
-
-    def memory(self) -> dict[str, object]:
-        """Return where nodes and vehicle are, as plain values that JSON can hold.
-
-        A transition in progress counts as ended: where it was going, except that no node becomes
-        active while nobody watches.
-        """
-        return {"nodes": self.nodes.memory(), "vehicle": plain_vehicle(self.vehicle.state)}
-
-    @property
-    def revision(self) -> tuple[int, Pose, float]:
-        """Return what differs when `memory` does; cheap to get and to compare."""
-        state = self.vehicle.state
-        return self.nodes.revision, state.pose, state.steering_angle_rad
 
     @property
     def what(self) -> tuple[str, ...]:

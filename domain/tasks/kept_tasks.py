@@ -7,7 +7,6 @@ from domain.identifiers import TaskId
 from domain.kept import Kept, KeptProgress, KeptTask
 from domain.outbox import Outbox
 from domain.tasks.task import Task
-from domain.tasks.vehicle_watch import VehicleWatch
 from domain.timebase import Duration, Instant, seconds
 
 LOST_AT_MOST: Duration = seconds(0.5)
@@ -21,10 +20,9 @@ _ENDS = {phase.value: phase for phase in TASK_ENDS}
 class TaskKeeper:
     """Keeps tasks: the path once, the progress often while a task is driven."""
 
-    def __init__(self, vehicle: VehicleWatch, outbox: Outbox) -> None:
-        self._vehicle = vehicle
+    def __init__(self, outbox: Outbox) -> None:
         self._outbox = outbox
-        self._kept_at: Instant = 0
+        self._kept_at: Instant | None = None
 
     def add(self, task: Task) -> None:
         """Keep a new task."""
@@ -55,13 +53,13 @@ class TaskKeeper:
                 ended_as=task.phase.value if has_ended else None,
                 reason=task.reason if has_ended else None,
                 ended_at=task.ended_at,
-                seen=None if has_ended else self._vehicle.state,
+                seen=None if has_ended else task.seen,
             )
         )
 
     def note_driven(self, task: Task, now: Instant) -> None:
         """Keep how far a task got, unless that was kept a moment ago."""
-        if now - self._kept_at >= _KEEP_EVERY:
+        if self._kept_at is None or now - self._kept_at >= _KEEP_EVERY:
             self.note(task, now)
 
     def forget(self, identity: TaskId) -> None:

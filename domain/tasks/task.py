@@ -35,7 +35,7 @@ class Task:
     reason: str | None = None
     ended_at: Instant | None = None
     seen: VehicleState | None = None
-    """Where an earlier run of the service saw the vehicle last; None: this run drove it already."""
+    """The vehicle when the progress was updated last; None: that was never."""
 
     def __post_init__(self) -> None:
         self.target_index = self.start_index
@@ -50,13 +50,14 @@ class Task:
         """Return the distance reached along the path, from waypoint 0."""
         return self.path.distance_of(self.start_index) + self.distance_m
 
-    def advance(self, feedback: GoalFeedback) -> None:
-        """Update the progress; it never goes backwards."""
+    def advance(self, feedback: GoalFeedback, seen: VehicleState | None) -> None:
+        """Update the progress, which never goes backwards, with the vehicle as it is seen now."""
         begun = self.path.distance_of(self.start_index)
         self.target_index = max(self.target_index, feedback.target_index)
         self.distance_m = max(self.distance_m, feedback.distance_m - begun)
         self.cross_track_error_m = feedback.cross_track_error_m
         self.left_out_m = feedback.left_out_m
+        self.seen = seen
 
     def end(self, phase: TaskPhase, reason: str | None, now: Instant) -> None:
         """Record the end of the task."""

@@ -90,7 +90,7 @@ class TaskPlanner:
         self._vehicle = vehicle
         self._outbox = outbox
         self._log = TaskLog()
-        self._keeper = TaskKeeper(vehicle, outbox)
+        self._keeper = TaskKeeper(outbox)
         self._current: Task | None = None
         self._tasks_accepted = 0
         self._goals_sent = 0
@@ -215,7 +215,7 @@ class TaskPlanner:
         task = self._current
         if task is None or feedback.goal not in (task.goal, task.stopping):
             return
-        task.advance(feedback)
+        task.advance(feedback, self._vehicle.state)
         self._keeper.note_driven(task, now)
         is_driving = feedback.goal == task.goal
         self._vehicle.told(feedback.command, feedback.lookahead if is_driving else None)
@@ -306,8 +306,6 @@ class TaskPlanner:
                 task.seen,
             )
         )
-        task.seen = None
-        self._keeper.note(task, now)
 
     def _pause(self, task: Task, cause: int, now: Instant, *, was_driving: bool) -> None:
         """Pause until there are no holds; a vehicle that was driving is not yet at standstill."""

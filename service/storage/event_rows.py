@@ -30,6 +30,7 @@ class EventRow(NamedTuple):
     data: str
     """JSON."""
     words: str
+    notable: bool
 
 
 def event_row(recorded: RecordedEvent, wall_ns: int) -> EventRow:
@@ -45,6 +46,7 @@ def event_row(recorded: RecordedEvent, wall_ns: int) -> EventRow:
         _parts_of(event),
         to_json(event.data(), inf_nan_mode="null").decode(),
         event.words,
+        event.notable,
     )
 
 
@@ -61,6 +63,7 @@ def stored_event(row: EventRow, boot: int, epoch: str) -> StoredEvent:
         row.actor,
         from_json(row.data),
         row.words,
+        row.notable,
     )
 
 

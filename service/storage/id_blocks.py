@@ -1,6 +1,7 @@
 """Ids that are never used twice: reserved in blocks, on disk, before they are used."""
 
 from collections.abc import Mapping
+from datetime import UTC, datetime, timedelta
 from typing import NewType
 
 from domain.identifiers import ChangeId, TaskId
@@ -11,8 +12,19 @@ EVENT, CHANGE, TASK, BOOT = IdKind("event"), IdKind("change"), IdKind("task"), I
 
 BLOCKS: Mapping[IdKind, int] = {EVENT: 10_000, CHANGE: 1_000, TASK: 1_000}
 """How many ids are reserved at once; half of them are left when the next block is."""
+_BEGINNING = datetime(2020, 1, 1, tzinfo=UTC)
 UNKNOWN_TAIL = 100
 """Blocks that are skipped when it is unknown what was reserved last."""
+
+
+def unreserved(first: Mapping[IdKind, int], wall_at: datetime) -> dict[IdKind, int]:
+    """Return ids for a run that cannot reserve any, since nothing can be written.
+
+    No other run uses them, since they are counted from the milliseconds of its start: the next one
+    goes on from what was reserved on disk, or starts later.
+    """
+    base = (wall_at - _BEGINNING) // timedelta(milliseconds=1)
+    return {kind: id_ if kind == BOOT else max(id_, base) for kind, id_ in first.items()}
 
 
 class IdBlocks:

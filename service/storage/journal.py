@@ -97,12 +97,15 @@ class EventQuery:
     """Which events of the log are wanted; None: any."""
 
     after: int | None = None
-    """Only ids above; without it the newest are returned."""
+    """Only ids above, and of these the first; without it the newest are returned."""
     before: int | None = None
+    """Only ids below."""
     from_at: datetime | None = None
+    """Not before this moment."""
     to_at: datetime | None = None
+    """Not after this moment."""
     kind: str | None = None
-    """A kind, a prefix such as `change`, or a pattern with `*`."""
+    """A kind, a prefix such as `change`, or a pattern with `*`: see `KindPattern`."""
     part: PartName | None = None
     """Events whose data name this part."""
     actor: str | None = None
@@ -119,12 +122,15 @@ class StoredEvent:
     epoch: str
     at: Instant
     wall_at: datetime
+    """`at` as UTC, as the system clock was set when the event was written down."""
     kind: str
     cause: int | None
     actor: str
     data: Mapping[str, Plain]
     """As clients see it."""
     words: str
+    notable: bool
+    """Whether a short list for operators shows this event."""
 
 
 class Journal(Protocol):
@@ -156,8 +162,13 @@ class Journal(Protocol):
         """
         ...
 
-    def checkpoint(self, at: Instant, state: bytes) -> None:
-        """Write down the whole state of the core after the last noted step."""
+    @property
+    def last_step(self) -> int:
+        """Return the number of the step that was noted last."""
+        ...
+
+    def checkpoint(self, step: int, at: Instant, state: bytes) -> None:
+        """Write down the whole state of the core as it was after a step."""
         ...
 
     async def commit(self, patience_s: float) -> bool:

@@ -100,7 +100,12 @@ class MemoryJournal:
         if not self._is_closed:
             self._store.own[name] = value
 
-    def checkpoint(self, at: Instant, state: bytes) -> None:
+    @property
+    def last_step(self) -> int:
+        """Return 0: steps are not kept."""
+        return 0
+
+    def checkpoint(self, step: int, at: Instant, state: bytes) -> None:
         """Do nothing: see `wants_checkpoint`."""
 
     async def commit(self, patience_s: float) -> bool:

@@ -248,7 +248,7 @@ async def test_nothing_is_written_after_the_end(service: Service) -> None:
 
     robot.holds("planner")
     robot.journal.keep("page", 1)
-    robot.journal.checkpoint(robot.now, b"state")
+    robot.journal.checkpoint(0, robot.now, b"state")
     with pytest.raises(StorageDegradedError):
         await robot.journal.commit(ENOUGH_S)
 

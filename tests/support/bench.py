@@ -6,7 +6,7 @@ from collections.abc import Mapping, Sequence
 from datetime import UTC, datetime
 from pathlib import Path
 
-from tests.support.machine import machine_facts
+from api.profiling.machine import machine_facts
 
 PROJECT = Path(__file__).resolve().parents[2]
 RESULTS = PROJECT / "build" / "bench"

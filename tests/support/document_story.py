@@ -152,6 +152,7 @@ _MODES_AND_STATES = (
 _HEALTH = (
     Asked("GET /signals", "All is well"),
     Asked("GET /signals/{signal}", "All is well", BATTERY),
+    Asked("GET /signals/{signal}/history", "At most three points", BATTERY, {"points": "3"}),
     Asked("GET /system_state", "All is well"),
     Asked("GET /mock", "All is well"),
     Asked(

@@ -21,7 +21,9 @@ from domain.simulation.vehicle_settings import VehicleSettings
 from domain.state_and_mode import PartName
 from domain.supervision import SupervisionSettings
 from service.files.model_file import LoadedModel, read_model
+from service.keeper import Stores
 from service.simulation.simulated import SimulatedBackend
+from service.storage.trends.trends import Trends
 from service.supervisor import Supervisor
 from tests.support.live_robot import make_onboard, make_supervisor, running
 from tests.support.manual_clock import ManualClock, settle
@@ -95,6 +97,7 @@ class HttpRobot:
             self.backend,
             self.backend.readings,
             simulated=robot.what,
+            stores=Stores(trends=Trends((settings or SupervisionSettings()).signals)),
         )
         self.app = create_app(
             self.supervisor,

@@ -12,8 +12,13 @@ from domain.simulation.robot import SimulatedRobot
 from domain.supervision import Supervision, SupervisionSettings
 from domain.timebase import Instant
 from service.clock import Clock
+from service.event_log import EventLog
 from service.files.model_file import LoadedModel
+from service.keeper import Stores
+from service.simulation.remembering import memories_of
 from service.simulation.simulated import SimulatedBackend
+from service.storage.journal import Journal
+from service.storage.trends.trends import Trends
 from service.supervisor import Supervisor
 from tests.support.manual_clock import ManualClock
 from tests.support.models import actuation_model
@@ -26,9 +31,12 @@ def make_supervisor(
     warnings: Sequence[Finding] = (),
     *,
     mock: bool = True,
+    events: EventLog | None = None,
+    journal: Journal | None = None,
 ) -> Supervisor:
     """Return a supervisor of simulated nodes that does not run yet."""
-    return make_live_robot(clock, model, warnings, mock=mock)[0]
+    robot = make_live_robot(clock, model, warnings, mock=mock, events=events, journal=journal)
+    return robot[0]
 
 
 def make_live_robot(
@@ -37,6 +45,9 @@ def make_live_robot(
     warnings: Sequence[Finding] = (),
     *,
     mock: bool = True,
+    events: EventLog | None = None,
+    journal: Journal | None = None,
+    trends: Trends | None = None,
 ) -> tuple[Supervisor, SimulatedBackend]:
     """Return a supervisor that does not run yet, and the simulated robot that it supervises."""
     clock = clock or ManualClock()
@@ -51,6 +62,8 @@ def make_live_robot(
         backend,
         backend.readings,
         simulated=robot.what,
+        events=events,
+        stores=Stores(journal, trends, memories_of(robot)),
     )
     return supervisor, backend
 

@@ -1,6 +1,6 @@
 """A robot whose steps are noted in a journal; it decides nothing, and counts as the core does."""
 
-from datetime import UTC, datetime
+from datetime import UTC, datetime, timedelta
 
 from domain.actor import NOBODY, Actor
 from domain.events.changes import ChangeRequested, StepStarted
@@ -20,7 +20,8 @@ ADA = Actor("ada", "http", "10.0.0.7")
 
 def boot(number: int, started_at: Instant = 0) -> Boot:
     """Return the run of a number, each with an epoch of its own."""
-    return Boot(f"epoch-{number}", "1.2.3", started_at, START, "model: text", "name: robot")
+    wall_at = START + timedelta(days=number)
+    return Boot(f"epoch-{number}", "1.2.3", started_at, wall_at, "model: text", "name: robot")
 
 
 class NotedRobot:

@@ -75,10 +75,10 @@ export function mayMove(state) {
   return movingAt(state) !== null || Boolean(ALARMS[state.systemState?.reasons[0]?.code]);
 }
 
-/** What was lost in a restart of the service; empty without one. */
+/** That the service was restarted; empty without a restart. */
 export function restartWords({ restartedAt }) {
   if (restartedAt === null) return "";
-  return `Service restarted at ${timeOfDay(restartedAt)}: earlier tasks and holds are gone.`;
+  return `Service restarted at ${timeOfDay(restartedAt)}: nothing moves before somebody asks.`;
 }
 
 function sentence([level, sign], word, text, more = []) {

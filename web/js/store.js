@@ -43,7 +43,7 @@ const FOLDERS = {
     if (epoch === state.epoch) return state;
     if (state.epoch === null) return { ...state, epoch };
     const note = {
-      note: "The service was restarted: earlier tasks and holds are gone.",
+      note: "The service was restarted: nothing moves before somebody asks.",
       id: `restart-${epoch}`,
     };
     const events = keep([...state.events, note]);

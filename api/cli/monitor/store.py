@@ -82,7 +82,7 @@ def _hello(robot: Robot, frame: Json) -> Robot:
     if robot.epoch in (None, frame["epoch"]):
         return replace(robot, epoch=frame["epoch"])
     at = frame["started_at"]
-    note = Note(at, "the service was restarted: earlier tasks and holds are gone")
+    note = Note(at, "the service was restarted: nothing moves before somebody asks")
     return Robot(epoch=frame["epoch"], restarted_at=at, notes=_kept((*robot.notes, note)))
 
 

@@ -4,6 +4,7 @@ Both kinds have the same routes, below `/systems` and `/nodes`. A name may conta
 """
 
 import asyncio
+from functools import partial
 
 from fastapi import APIRouter, Request, Response
 
@@ -11,8 +12,10 @@ from api.http.body_parsing import InvalidBodyError
 from api.http.change_answers import CHANGE_RESPONSES, ChangeOptionsDep, answer_change
 from api.http.dependencies import ActorDep, PartDep, SupervisorDep
 from api.http.list_answers import json_list
+from api.http.part_text import part_text
 from api.http.request_body import JsonRoute
 from api.http.route_policy import AuditClass, Permission, policy
+from api.http.schemas.base import timestamp
 from api.http.schemas.parts import (
     EnterableModeJson,
     ModeBody,
@@ -38,7 +41,7 @@ async def list_parts(request: Request, supervisor: SupervisorDep) -> Response:
     kind = "system" if request.url.path == "/systems" else "node"
     views = (view for view in supervisor.core.parts().values() if view.kind == kind)
     clock = supervisor.clock
-    return await json_list(PartJson.of(view, clock).model_dump_json() for view in views)
+    return await json_list(part_text(view, partial(timestamp, clock)) for view in views)
 
 
 @router.get("/{part:path}/state")

@@ -1,12 +1,17 @@
 """Signals and their readings."""
 
 from collections.abc import Mapping
+from datetime import datetime
+from http import HTTPStatus
 from typing import Annotated
 
-from fastapi import APIRouter, Body, Path
+from fastapi import APIRouter, Body, Path, Query, Response
+from pydantic import AwareDatetime
 
 from api.http.body_parsing import InvalidBodyError
 from api.http.dependencies import ActorDep, SupervisorDep
+from api.http.list_answers import joined
+from api.http.problems import HttpError
 from api.http.route_policy import Permission, policy
 from api.http.routes.system_state import current_system_state
 from api.http.schemas.health import (
@@ -16,16 +21,24 @@ from api.http.schemas.health import (
     SignalsJson,
     TakenReadingsJson,
 )
+from api.http.schemas.history import HistoryPointJson, SignalHistoryJson
+from api.http.schemas.problem import BodyFault
 from api.http.schemas.sent_values import SentSignalName, SentSignalValue
 from api.http.stop_route import IgnoredDep, StopRoute
 from domain.errors import InvalidValueError, UnknownSignalError
 from domain.health.signals import signal_name
 from domain.inputs import Reading, SignalValue
+from domain.timebase import Duration, Instant, seconds, to_seconds
 from service.supervisor import Supervisor
 
 router = APIRouter(prefix="/signals", tags=["health"], route_class=StopRoute)
 
 SignalPath = Annotated[SentSignalName, Path(description="One of those in `GET /signals`")]
+
+_MAX_POINTS = 10_000
+_DEFAULT_POINTS = 1_000
+_DEFAULT_SPAN: Duration = seconds(3_600.0)
+_MOMENT = "RFC 3339 with an offset, such as `2026-05-04T12:00:00Z`. Default: "
 
 
 @router.get("")
@@ -35,6 +48,37 @@ async def list_signals(supervisor: SupervisorDep) -> SignalsJson:
     clock, now = supervisor.clock, supervisor.clock.now()
     views = supervisor.core.signals().values()
     return SignalsJson(items=[SignalJson.at(view, clock, now) for view in views])
+
+
+@router.get("/{signal:path}/history", response_model=SignalHistoryJson)
+@policy(Permission.OBSERVE)
+async def get_history(
+    signal: SignalPath,
+    supervisor: SupervisorDep,
+    from_at: Annotated[
+        AwareDatetime | None, Query(description=f"{_MOMENT}one hour before `to_at`")
+    ] = None,
+    to_at: Annotated[AwareDatetime | None, Query(description=f"{_MOMENT}now")] = None,
+    points: Annotated[
+        int, Query(ge=2, le=_MAX_POINTS, description="At most so many")
+    ] = _DEFAULT_POINTS,
+) -> Response:
+    """Show the history of a signal, for a chart.
+
+    The older, the coarser: single readings are kept for minutes, buckets of 10 min for a year. A
+    bucket has the least and the greatest of all its readings, so that no spike is lost. One that
+    begins before `from_at` counts as a whole.
+    """
+    if supervisor.trends is None:
+        detail = "a simulation keeps no history of its signals"
+        raise HttpError(HTTPStatus.NOT_FOUND, "NO_HISTORY", detail)
+    name = supervisor.core.signal(signal).signal
+    begin, end = _span(supervisor, from_at, to_at)
+    trend = await supervisor.trends.history(name, begin, end, points)
+    clock = supervisor.clock
+    texts = (HistoryPointJson.of(point, clock).model_dump_json() for point in trend.points)
+    text = f'{{"items":[{await joined(texts)}],"tier_s":{to_seconds(trend.width)}}}'
+    return Response(text, media_type="application/json")
 
 
 @router.get("/{signal:path}")
@@ -116,6 +160,24 @@ def _named(body: Mapping[str, SignalValue]) -> dict[str, SignalValue]:
             raise InvalidBodyError.at(signal, error)
         values[signal] = value
     return values
+
+
+def _span(
+    supervisor: Supervisor, from_at: datetime | None, to_at: datetime | None
+) -> tuple[Instant, Instant]:
+    """Return begin and end of a history.
+
+    Raises:
+        InvalidBodyError: It does not begin before it ends.
+    """
+    clock = supervisor.clock
+    end = clock.now() if to_at is None else clock.from_wall(to_at)
+    begin = end - _DEFAULT_SPAN if from_at is None else clock.from_wall(from_at)
+    if begin >= end:
+        message = "query from_at: must be before to_at, which is now unless it is given"
+        fault = BodyFault(pointer="", code=InvalidValueError.code, message=message)
+        raise InvalidBodyError([fault], "INVALID_QUERY")
+    return begin, end
 
 
 def _taken(supervisor: Supervisor, ignored: Mapping[str, object]) -> TakenReadingsJson:

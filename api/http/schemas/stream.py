@@ -26,9 +26,10 @@ class HelloJson(Json):
     model_config = _WHOLE
 
     type: Literal["hello"] = "hello"
-    epoch: str = Field(description="Epoch of the event ids; changes with each restart")
+    epoch: str = Field(description="Name of this run of the service; another one after a restart")
+    boot: int = Field(description="Number of this run, from 1; 1 if nothing is kept over restarts")
     started_at: Timestamp = Field(
-        description="Start of this run of the service; tasks and holds of earlier runs are gone"
+        description="Start of this run of the service; the next frame is complete"
     )
     topics: list[str] = Field(description="Topics that this client is subscribed to")
     period_s: float = Field(description="Time between two `state` frames")
@@ -84,8 +85,8 @@ class EventJson(Json):
     model_config = _WHOLE
 
     type: Literal["event"] = "event"
-    epoch: str
-    id: int = Field(description="Rises by one per event within an epoch")
+    epoch: str = Field(description="Run of the service in which it happened")
+    id: int = Field(description="Rises with each event, also over restarts if runs are kept")
     at: Timestamp
     kind: str = Field(description="What happened", examples=["change.succeeded"])
     cause: int | None = Field(description="Id of the event that led to this one; null: outside")
@@ -104,7 +105,7 @@ class GapJson(Json, serialize_by_alias=True):
     first: int = Field(serialization_alias="from", description="Id of the first of them")
     last: int | None = Field(
         serialization_alias="to",
-        description="Id of the last of them; null: unknown, the service was restarted",
+        description="Id of the last of them; null: unknown, of a run that is not kept",
     )
     epoch: str = Field(description="Epoch that the ids belong to")
 
@@ -112,10 +113,16 @@ class GapJson(Json, serialize_by_alias=True):
 class EventsJson(Json):
     """A piece of the event log, in order."""
 
-    epoch: str
+    epoch: str = Field(description="Of this run of the service")
     oldest: int = Field(description="Id of the oldest event that is kept")
     newest: int = Field(description="Id of the newest event; 0 before the first")
     gaps: list[GapJson] = Field(description="Requested events that are no longer kept")
+    items: list[EventJson]
+
+
+class CausesJson(Json):
+    """An event, then its cause, the cause of that and so on."""
+
     items: list[EventJson]
 
 

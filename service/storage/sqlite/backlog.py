@@ -84,11 +84,11 @@ class Backlog:
         """Keep a value, or keep it no longer (None)."""
         self._open.changes[key] = value
 
-    def add_checkpoint(self, at: Instant, state: bytes) -> bool:
-        """Add the state after the last step; return whether there was room."""
+    def add_checkpoint(self, step: int, at: Instant, state: bytes) -> bool:
+        """Add the state after a step; return whether there was room."""
         if self._hole is not None or self.size + len(state) > self._limit:
             return False
-        self._open.checkpoints.append(Checkpoint(self.last_step, at, state))
+        self._open.checkpoints.append(Checkpoint(step, at, state))
         self._open_bytes += len(state)
         return True
 

@@ -2,7 +2,7 @@
 
 import os
 from collections.abc import Iterator
-from contextlib import closing, contextmanager
+from contextlib import closing, contextmanager, suppress
 from pathlib import Path
 
 import apsw
@@ -19,6 +19,8 @@ SETTINGS = (
     "PRAGMA temp_store=MEMORY",
 )
 
+SUFFIXES = ("", "-wal", "-shm")
+"""A file, and those that SQLite keeps beside it."""
 FAILURES = (apsw.Error, OSError)
 """What a disk makes fail."""
 
@@ -79,17 +81,65 @@ def sync_folder(folder: Path) -> None:
         os.close(fd)
 
 
-def open_to_read(path: Path) -> apsw.Connection:
-    """Open a file that this process or another one may be writing.
+@contextmanager
+def reading(path: Path) -> Iterator[apsw.Connection]:
+    """Yield a connection to a file that this process or another one may be writing.
 
     Raises:
-        apsw.Error: It cannot be opened.
+        FileNotFoundError: There is no such file.
+        apsw.Error: It cannot be read, or it is no database.
     """
-    connection = apsw.Connection(str(path), flags=apsw.SQLITE_OPEN_READONLY)
-    connection.set_busy_timeout(_PATIENCE_MS)
-    for setting in SETTINGS:
-        connection.execute(setting)
+    connection = _open_to_read(path)
+    try:
+        yield connection
+    finally:
+        connection.close(True)
+
+
+def _open_to_read(path: Path) -> apsw.Connection:
+    try:
+        return _opened(path, apsw.SQLITE_OPEN_READONLY)
+    except (apsw.ReadOnlyError, apsw.CantOpenError):
+        if not path.exists():
+            raise FileNotFoundError(path) from None
+    # Its write-ahead log was left by a kill, and has to be gone through first.
+    try:
+        return _opened(path, apsw.SQLITE_OPEN_READWRITE)
+    except (apsw.ReadOnlyError, apsw.CantOpenError):
+        if path.with_name(f"{path.name}-wal").exists():
+            raise
+    # On a disk that nobody can write, nothing changes.
+    return _opened(f"{path.resolve().as_uri()}?immutable=1", apsw.SQLITE_OPEN_READONLY)
+
+
+def _opened(name: Path | str, flags: int) -> apsw.Connection:
+    connection = apsw.Connection(str(name), flags=flags | apsw.SQLITE_OPEN_URI)
+    try:
+        connection.set_busy_timeout(_PATIENCE_MS)
+        for setting in (*SETTINGS, "PRAGMA query_only=ON", "SELECT count(*) FROM sqlite_master"):
+            connection.execute(setting).fetchall()
+    except apsw.Error:
+        connection.close(True)
+        raise
     return connection
+
+
+def finish(connection: apsw.Connection) -> None:
+    """Close a file that this process wrote, as one plain file that needs no other to be read.
+
+    If that fails, or another process reads it at this moment, it keeps its write-ahead log; nothing
+    is lost.
+    """
+    with suppress(*FAILURES):
+        connection.pragma("journal_mode", "delete")
+    connection.close(True)
+
+
+def remove(path: Path) -> None:
+    """Delete a file of SQLite."""
+    # The file first: without it, a log of it that is left cannot be taken for another one's.
+    for suffix in SUFFIXES:
+        path.with_name(f"{path.name}{suffix}").unlink(missing_ok=True)
 
 
 def words(error: BaseException) -> str:

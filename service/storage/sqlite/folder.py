@@ -12,10 +12,11 @@ from pathlib import Path
 
 from domain.timebase import Duration, seconds
 from service.storage.sqlite.batch import Changes, Flight, Key
-from service.storage.sqlite.connection import FAILURES, sync_folder, words
+from service.storage.sqlite.connection import FAILURES, SUFFIXES, remove, sync_folder, words
 from service.storage.sqlite.log_file import LogFile, Next, Run
 from service.storage.sqlite.log_summary import LogSummary
-from service.storage.sqlite.looking import Left, Places, is_fault_of_file
+from service.storage.sqlite.looking import Left, is_fault_of_file, look
+from service.storage.sqlite.places import Places
 from service.storage.sqlite.state_file import Applied, StateFile
 
 
@@ -50,30 +51,41 @@ class Report:
     """Whether the log went on in a new file since the last report."""
 
 
+@dataclass(frozen=True, slots=True)
+class Start:
+    """How a run begins."""
+
+    run: Run
+    changes: Changes
+    """What it changes of what is kept, before anything else."""
+    next: Next
+    """Its first numbers."""
+
+
 class Folder:
     """The files while the service runs."""
 
-    def __init__(self, places: Places, robot: str, retention: Retention, run: Run) -> None:
+    def __init__(self, places: Places, robot: str, retention: Retention, start: Start) -> None:
         self._places = places
         self._robot = robot
         self._retention = retention
-        self._run = run
+        self._start = start
+        self._run = start.run
+        self._next = start.next
+        self._has_started = False
         self._log: LogFile | None = None
         self._state: StateFile | None = None
         self._state_fault: str | None = None
         self._kept: dict[Key, bytes] = {}
         self._closed: list[LogSummary] = []
         self._last_number = 0
-        self._next = Next()
         self._began_file = False
 
-    def start(self, left: Left, changes: Changes, next_: Next) -> None:
+    def start(self, left: Left) -> None:
         """Begin the run: first what it keeps is in the log, then broken files are moved aside.
 
         Args:
-            left: What the earlier run left; the files become this object's.
-            changes: What the start changes of what is kept.
-            next_: The first numbers of this run.
+            left: What the earlier run left; its files become this object's.
 
         Raises:
             apsw.Error: It cannot be written.
@@ -81,16 +93,23 @@ class Folder:
         """
         self._log, self._state = left.log, left.state
         self._closed, self._last_number = left.closed, left.last_number
-        self._kept, self._next = left.kept, next_
+        self._kept = left.kept
+        changes = self._start.changes
+        if self._log is not None and self._log.summary.last_batch >= self._next.batch:
+            # It could not be read when the numbers of this run were chosen.
+            self._closed.append(self._log.summary)
+            self._log.close()
+            self._log = None
         if self._log is None:
             self._update(changes)
             self._log = self._new_log()
         else:
-            self._log.begin_run(self._run, changes, next_)
+            self._log.begin_run(self._run, changes, self._next)
             self._update(changes)
         for path in left.broken:
             _move_aside(path)
         self._follow(changes)
+        self._has_started = True
 
     def write(self, flight: Flight) -> None:
         """Write batches down.
@@ -127,9 +146,13 @@ class Folder:
             OSError: Likewise.
         """
         self._let_go()
+        if not self._has_started:
+            self.start(look(self._places, self._robot))
+        else:
+            self._log = self._reopened()
+        log = self._require_log()
         changes = _changes_of(flight)
         everything: Changes = {**self._kept, **changes}
-        log = self._log = self._reopened()
         log.write(replace(flight, must_last=True), self._run, everything)
         self._count(log)
         self._update(changes)
@@ -137,19 +160,23 @@ class Folder:
 
     def report(self) -> Report:
         """Return how the folder is."""
-        log = self._require_log()
         began_file, self._began_file = self._began_file, False
+        if self._log is None:
+            return Report((), 0, None, None, began_file)
         return Report(
-            (*self._closed, log.summary),
-            self._size(log),
+            (*self._closed, self._log.summary),
+            self._size(self._log),
             shutil.disk_usage(self._places.folder).free,
             self._state_fault,
             began_file,
         )
 
     def close(self) -> None:
-        """Close the files."""
-        self._let_go()
+        """Close the files as plain ones."""
+        for file in (self._log, self._state):
+            if file is not None:
+                file.finish()
+        self._log = self._state = None
 
     def _require_log(self) -> LogFile:
         if self._log is None:
@@ -188,9 +215,7 @@ class Folder:
 
     def _new_state(self, applied: Applied) -> StateFile:
         path = self._places.state
-        # The file first: without it, a log of it that is left cannot be taken for another one's.
-        for suffix in ("", "-wal", "-shm"):
-            path.with_name(f"{path.name}{suffix}").unlink(missing_ok=True)
+        remove(path)
         return StateFile.begin(path, self._robot, self._kept, applied)
 
     def _drop_state(self) -> None:
@@ -238,7 +263,7 @@ class Folder:
 
     def _drop_old(self, log: LogFile) -> None:
         while self._closed and self._is_too_much(log):
-            self._closed.pop(0).path.unlink(missing_ok=True)
+            remove(self._closed.pop(0).path)
 
     def _is_too_much(self, log: LogFile) -> bool:
         keep = self._retention
@@ -262,7 +287,7 @@ def _changes_of(flight: Flight) -> Changes:
 def _move_aside(path: Path) -> None:
     """Keep a broken file under a name that says when it was found."""
     stamp = datetime.now(UTC).strftime("%Y%m%dT%H%M%S.%fZ")
-    for suffix in ("", "-wal", "-shm"):
+    for suffix in SUFFIXES:
         part = path.with_name(f"{path.name}{suffix}")
         if part.exists():
             part.rename(path.with_name(f"{path.name}.broken-{stamp}{suffix}"))

@@ -1,8 +1,10 @@
 """One service per folder: a lock that ends with the process, however that ends."""
 
+import errno
 import fcntl
 import os
 import weakref
+from contextlib import suppress
 from pathlib import Path
 
 from service.storage.errors import FolderInUseError
@@ -26,7 +28,7 @@ class FolderLock:
             FolderInUseError: Another process has it.
             OSError: The file cannot be opened.
         """
-        self._fd = os.open(path, os.O_CREAT | os.O_RDWR | os.O_CLOEXEC, PRIVATE_FILE)
+        self._fd = _open(path)
         try:
             fcntl.flock(self._fd, fcntl.LOCK_EX | fcntl.LOCK_NB)
         except BlockingIOError:
@@ -38,17 +40,25 @@ class FolderLock:
             raise
         _held.add(self)
         # For whoever is told that the folder is in use; the lock does not depend on it.
-        try:
+        with suppress(OSError):
             os.ftruncate(self._fd, 0)
             os.pwrite(self._fd, f"{os.getpid()}\n".encode(), 0)
-        except OSError:
-            pass
 
     def release(self) -> None:
         """Give the lock back; may be called again."""
         if self._fd >= 0:
             os.close(self._fd)
             self._fd = -1
+
+
+def _open(path: Path) -> int:
+    try:
+        return os.open(path, os.O_CREAT | os.O_RDWR | os.O_CLOEXEC, PRIVATE_FILE)
+    except OSError as error:
+        if error.errno != errno.EROFS:
+            raise
+    # A lock needs no file that can be written.
+    return os.open(path, os.O_RDONLY | os.O_CLOEXEC)
 
 
 def _let_go_in_fork() -> None:

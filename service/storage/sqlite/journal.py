@@ -73,6 +73,9 @@ class SqliteJournal:
         self._is_closed = False
         self._wants_checkpoint = True
         self._checkpoint_at: Instant = boot.started_at
+        if opened.fault is not None:
+            self._fail(opened.fault, [])
+            self._go_on()
 
     @classmethod
     async def open(cls, settings: StoreSettings, boot: Boot, clock: Clock) -> "SqliteJournal":
@@ -129,9 +132,14 @@ class SqliteJournal:
             self._backlog.change((OWN, name), to_json(value))
             self._schedule()
 
-    def checkpoint(self, at: Instant, state: bytes) -> None:
-        """Write down the whole state of the core after the last noted step."""
-        if not self._is_closed and self._backlog.add_checkpoint(at, state):
+    @property
+    def last_step(self) -> int:
+        """Return the number of the step that was noted last."""
+        return self._backlog.last_step
+
+    def checkpoint(self, step: int, at: Instant, state: bytes) -> None:
+        """Write down the whole state of the core as it was after a step."""
+        if not self._is_closed and self._backlog.add_checkpoint(step, at, state):
             self._wants_checkpoint, self._checkpoint_at = False, at
             self._schedule()
 

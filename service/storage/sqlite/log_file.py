@@ -14,7 +14,7 @@ import apsw
 from domain.timebase import Duration, seconds
 from service.storage.journal import Boot
 from service.storage.sqlite.batch import Batch, Changes, Flight, Key
-from service.storage.sqlite.connection import new_file, open_to_write
+from service.storage.sqlite.connection import finish, new_file, open_to_write
 from service.storage.sqlite.log_summary import LogSummary, summary_of
 from service.storage.sqlite.schema import LOG, bring_up, version_of
 
@@ -144,16 +144,11 @@ class LogFile:
         return self.path.stat().st_size + (wal.stat().st_size if wal.exists() else 0)
 
     def finish(self) -> None:
-        """Close it for good, as one plain file; a reader of another process may put that off."""
-        try:
-            self._connection.pragma("journal_mode", "delete")
-        except apsw.BusyError:
-            pass
-        finally:
-            self.close()
+        """Close it as one plain file."""
+        finish(self._connection)
 
     def close(self) -> None:
-        """Close it, to go on with it later."""
+        """Close it after a failure."""
         self._connection.close(True)
 
     def _on_commit(self, connection: apsw.Connection, name: str, pages: int) -> int:
@@ -201,9 +196,20 @@ class LogFile:
         if not batch.events:
             return
         self._connection.executemany(
-            "INSERT OR REPLACE INTO events VALUES (?,?,?,?,?,?,?,?,?)",
+            "INSERT OR REPLACE INTO events VALUES (?,?,?,?,?,?,?,?,?,?)",
             (
-                (e.id, run.number, e.at, e.wall_ns, e.kind, e.cause, e.actor, e.data, e.words)
+                (
+                    e.id,
+                    run.number,
+                    e.at,
+                    e.wall_ns,
+                    e.kind,
+                    e.cause,
+                    e.actor,
+                    e.data,
+                    e.words,
+                    e.notable,
+                )
                 for e in batch.events
             ),
         )

@@ -1,10 +1,11 @@
 """What an earlier run left in a folder, found at the start; nothing is moved or changed yet."""
 
-import re
+import shutil
 from collections.abc import Callable
 from contextlib import closing
 from dataclasses import dataclass, field, replace
 from pathlib import Path
+from tempfile import TemporaryDirectory
 from typing import TypeVar
 
 import apsw
@@ -12,13 +13,13 @@ import apsw
 from service.storage.errors import ForeignFolderError
 from service.storage.id_blocks import BLOCKS, BOOT, EVENT, UNKNOWN_TAIL, IdKind
 from service.storage.sqlite.batch import IDS, Key
-from service.storage.sqlite.connection import open_to_read, open_to_write, words
+from service.storage.sqlite.connection import finish, open_to_write, reading, words
 from service.storage.sqlite.log_file import BrokenFileError, LogFile, Next
 from service.storage.sqlite.log_summary import LogSummary, summary_of
+from service.storage.sqlite.places import Places
 from service.storage.sqlite.schema import LOG, NewerFileError, bring_up, version_of
 from service.storage.sqlite.state_file import StateFile
 
-_LOG_NAME = re.compile(r"(\d{6,})\.db")
 _BROKEN = (
     *(apsw.CorruptError, apsw.NotADBError, apsw.SQLError, apsw.MismatchError),
     *(BrokenFileError, NewerFileError, KeyError, TypeError, ValueError),
@@ -29,37 +30,6 @@ _BAD_READS = (
 )
 
 FileType = TypeVar("FileType", LogFile, StateFile)
-
-
-@dataclass(frozen=True, slots=True)
-class Places:
-    """Where things are in a folder."""
-
-    folder: Path
-
-    @property
-    def lock(self) -> Path:
-        """Return the file that the service holds a lock on."""
-        return self.folder / "lock"
-
-    @property
-    def state(self) -> Path:
-        """Return the file with what is kept at present."""
-        return self.folder / "state.db"
-
-    @property
-    def logs(self) -> Path:
-        """Return the folder of the log."""
-        return self.folder / "log"
-
-    def log(self, number: int) -> Path:
-        """Return a file of the log."""
-        return self.logs / f"{number:06}.db"
-
-    def log_numbers(self) -> list[int]:
-        """Return which files of the log there are, oldest first."""
-        matches = (_LOG_NAME.fullmatch(path.name) for path in self.logs.iterdir())
-        return sorted(int(match[1]) for match in matches if match)
 
 
 @dataclass(slots=True)
@@ -106,9 +76,8 @@ class Left:
                 ids[kind] += UNKNOWN_TAIL * block
         return ids
 
-    def next_numbers(self) -> Next:
-        """Return where steps, batches and events go on."""
-        event = self.next_ids()[EVENT]
+    def next_numbers(self, event: int) -> Next:
+        """Return where steps and batches go on; events do with `event`."""
         newest = self.newest
         if newest is None:
             return Next(event=event)
@@ -156,6 +125,29 @@ def look(places: Places, robot: str) -> Left:
     return left
 
 
+def look_at_copy(places: Places, robot: str) -> Left:
+    """Return what is in a folder on a disk that cannot be written, without its files.
+
+    Raises:
+        apsw.Error: It cannot be read either.
+        OSError: Likewise.
+    """
+    numbers = places.log_numbers()
+    with TemporaryDirectory() as folder:
+        copy = Places(Path(folder))
+        copy.logs.mkdir()
+        for path in (places.state, *(places.log(number) for number in numbers[-1:])):
+            for file in path.parent.glob(f"{path.name}*"):
+                if file.name in (path.name, f"{path.name}-wal"):
+                    shutil.copyfile(file, copy.folder / file.relative_to(places.folder))
+        left = look(copy, robot)
+        if left.log is not None:
+            left.closed = [left.log.summary]
+        left.close()
+        left.state = left.log = None
+    return left
+
+
 def _owner(path: Path) -> str | None:
     """Return the robot that a file belongs to, without a lock or a trace; None: unknown."""
     try:
@@ -194,13 +186,11 @@ def _opened(left: Left, path: Path, open_file: Callable[[Path], FileType]) -> Fi
 def _summary(left: Left, path: Path, number: int) -> LogSummary | None:
     """Return what an older file of the log holds, which is finished if a kill left it open."""
     try:
-        with closing(open_to_read(path)) as connection:
+        with reading(path) as connection:
             is_older = version_of(connection) != len(LOG)
         if is_older or path.with_name(f"{path.name}-wal").exists():
-            with closing(open_to_write(path)) as connection:
-                bring_up(connection, path, LOG)
-                connection.pragma("journal_mode", "delete")
-        with closing(open_to_read(path)) as connection:
+            _finish(path)
+        with reading(path) as connection:
             summary = summary_of(connection, path, number)
             return replace(summary, file_bytes=path.stat().st_size)
     except Exception as error:
@@ -208,6 +198,16 @@ def _summary(left: Left, path: Path, number: int) -> LogSummary | None:
             raise
         left.broken[path] = words(error)
         return None
+
+
+def _finish(path: Path) -> None:
+    connection = open_to_write(path)
+    try:
+        bring_up(connection, path, LOG)
+    except BaseException:
+        connection.close(True)
+        raise
+    finish(connection)
 
 
 def _gather(left: Left) -> None:

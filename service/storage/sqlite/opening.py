@@ -1,6 +1,7 @@
 """Opens a folder for a run, and says what an earlier run left."""
 
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 from pydantic_core import from_json
@@ -10,15 +11,16 @@ from domain.inputs import Restored
 from domain.kept import Kept, KeptEmergencyStop
 from service.clock import since_epoch, to_datetime
 from service.storage.errors import UnusableFolderError
-from service.storage.id_blocks import BOOT, CHANGE, EVENT, TASK, IdBlocks
+from service.storage.id_blocks import BOOT, CHANGE, EVENT, TASK, IdBlocks, IdKind, unreserved
 from service.storage.journal import Boot, Found, Plain
 from service.storage.records import kept_from_text, kept_to_text, kind_name
 from service.storage.sqlite.batch import IDS, OWN, Changes
-from service.storage.sqlite.connection import PRIVATE_FOLDER, words
-from service.storage.sqlite.folder import DEFAULT_RETENTION, Folder, Report, Retention
+from service.storage.sqlite.connection import FAILURES, PRIVATE_FOLDER, words
+from service.storage.sqlite.folder import DEFAULT_RETENTION, Folder, Report, Retention, Start
 from service.storage.sqlite.folder_lock import FolderLock
 from service.storage.sqlite.log_file import Next, Run
-from service.storage.sqlite.looking import Left, Places, look
+from service.storage.sqlite.looking import Left, look, look_at_copy
+from service.storage.sqlite.places import Places
 
 
 @dataclass(frozen=True, slots=True)
@@ -43,10 +45,15 @@ class Opened:
     ids: IdBlocks
     next: Next
     report: Report
+    fault: str | None = None
+    """Why nothing can be written yet; None: the run has begun on disk."""
 
 
 def open_folder(settings: StoreSettings, boot: Boot) -> Opened:
     """Take a folder, bring it up to the end of its log, and write down that a run begins.
+
+    A disk that cannot be written is no obstacle: what is there is read, and the rest is up to
+    `Folder.recover`.
 
     Args:
         settings: The folder, which is made if it is missing, and whose it is.
@@ -63,47 +70,82 @@ def open_folder(settings: StoreSettings, boot: Boot) -> Opened:
     except OSError as error:
         raise UnusableFolderError(f"{places.folder} cannot be used: {words(error)}") from error
     try:
-        left = look(places, settings.robot)
-        try:
-            return _begin(settings, boot, lock, left)
-        except BaseException:
-            left.close()
-            raise
+        return _begin(settings, places, boot, lock)
     except BaseException:
         lock.release()
         raise
 
 
-def _begin(settings: StoreSettings, boot: Boot, lock: FolderLock, left: Left) -> Opened:
-    """Begin the run in a folder that was looked at."""
-    ids, next_ = left.next_ids(), left.next_numbers()
+def _begin(settings: StoreSettings, places: Places, boot: Boot, lock: FolderLock) -> Opened:
+    """Begin the run in a folder that this process has locked."""
+    left, fault = _looked(places, settings.robot)
+    ids = left.next_ids()
+    if fault is None:
+        opened = _prepared(settings, lock, left, boot, ids)
+        try:
+            opened.folder.start(left)
+        except FAILURES as error:
+            fault = words(error)
+            opened.folder.close()
+        else:
+            return replace(opened, report=opened.folder.report())
+    opened = _prepared(settings, lock, left, boot, unreserved(ids, boot.wall_at))
+    return replace(opened, fault=fault)
+
+
+def _prepared(
+    settings: StoreSettings, lock: FolderLock, left: Left, boot: Boot, ids: Mapping[IdKind, int]
+) -> Opened:
+    """Return a folder that nothing is written to yet."""
     blocks = IdBlocks(ids)
+    found = _found(left, boot, ids)
+    changes = _first_changes(found.restored, blocks, boot)
+    run = Run(ids[BOOT], boot, since_epoch(boot.wall_at))
+    start = Start(run, changes, left.next_numbers(ids[EVENT]))
+    folder = Folder(Places(settings.folder), settings.robot, settings.retention, start)
+    return Opened(lock, folder, found, blocks, start.next, folder.report())
+
+
+def _looked(places: Places, robot: str) -> tuple[Left, str | None]:
+    """Return what an earlier run left, and why nothing can be written there, if so."""
+    try:
+        return look(places, robot), None
+    except FAILURES as error:
+        fault = words(error)
+    try:
+        return look_at_copy(places, robot), fault
+    except FAILURES as error:
+        return Left(broken={places.folder: words(error)}), fault
+
+
+def _found(left: Left, boot: Boot, ids: Mapping[IdKind, int]) -> Found:
     values, left_out = _read_back(left)
-    changes: Changes = {}
     stop_because = _stop_because(left)
-    if stop_because:
-        stop = KeptEmergencyStop(True, "", stop_because, boot.started_at)
-        changes[kind_name(KeptEmergencyStop), stop.name] = kept_to_text(stop)
-    for kind, end in ({BOOT: ids[BOOT] + 1} | blocks.reserve()).items():
-        changes[IDS, kind] = str(end).encode()
-    found = Found(
+    newest = left.newest
+    return Found(
         Restored(values, ids[BOOT], ids[EVENT], ids[CHANGE], ids[TASK], stop_because),
         left.is_new,
-        to_datetime(left.newest.wall_ns) if left.newest and left.newest.wall_ns else None,
+        to_datetime(newest.wall_ns) if newest and newest.wall_ns else None,
         {epoch: last for file in left.files for epoch, last in file.epochs.items() if last},
         _own(left),
         left_out,
     )
-    run = Run(ids[BOOT], boot, since_epoch(boot.wall_at))
-    folder = Folder(Places(settings.folder), settings.robot, settings.retention, run)
-    folder.start(left, changes, next_)
-    return Opened(lock, folder, found, blocks, next_, folder.report())
+
+
+def _first_changes(first: Restored, blocks: IdBlocks, boot: Boot) -> Changes:
+    """Return what is kept from the start on, before the run does anything."""
+    changes: Changes = {}
+    if first.stop_because:
+        stop = KeptEmergencyStop(True, "", first.stop_because, boot.started_at)
+        changes[kind_name(KeptEmergencyStop), stop.name] = kept_to_text(stop)
+    for kind, end in ({BOOT: first.boot + 1} | blocks.reserve()).items():
+        changes[IDS, kind] = str(end).encode()
+    return changes
 
 
 def _stop_because(left: Left) -> str:
     """Return why the emergency stop is engaged; empty: it is as it was kept."""
-    faults = [f"{path.name} was put aside: {why}" for path, why in left.broken.items()]
-    return "; ".join(faults)
+    return "; ".join(f"{path.name} cannot be used: {why}" for path, why in left.broken.items())
 
 
 def _read_back(left: Left) -> tuple[tuple[Kept, ...], tuple[str, ...]]:

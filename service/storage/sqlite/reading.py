@@ -1,7 +1,7 @@
 """Reads events from the files of the log, also while they are written."""
 
 from collections.abc import Iterable, Sequence
-from contextlib import closing
+from contextlib import suppress
 from pathlib import Path
 from typing import Any
 
@@ -10,7 +10,7 @@ import apsw
 from service.clock import since_epoch
 from service.storage.event_rows import EventRow, kind_pattern, stored_event
 from service.storage.journal import EventQuery, StoredEvent
-from service.storage.sqlite.connection import open_to_read
+from service.storage.sqlite.connection import reading
 from service.storage.sqlite.log_summary import LogSummary
 
 _KINDS = """
@@ -25,7 +25,7 @@ SELECT kind FROM found WHERE kind IS NOT NULL
 _LARGEST = 2**63 - 1
 _COLUMNS = (
     "events.id, events.boot, boots.epoch, events.at, events.wall_ns, events.kind, events.cause,"
-    " events.actor, events.data, events.words"
+    " events.actor, events.data, events.words, events.notable"
 )
 
 
@@ -57,14 +57,7 @@ def _may_hold(file: LogSummary, query: EventQuery) -> bool:
 
 
 def _read_file(path: Path, query: EventQuery, limit: int) -> list[StoredEvent]:
-    try:
-        connection = open_to_read(path)
-    except apsw.CantOpenError:
-        if path.exists():
-            raise
-        # It was dropped a moment ago.
-        return []
-    with closing(connection):
+    with suppress(FileNotFoundError), reading(path) as connection:
         conditions, values = _conditions(connection, query)
         order = "DESC" if query.after is None else "ASC"
         where = f"WHERE {' AND '.join(conditions)}" if conditions else ""
@@ -74,6 +67,8 @@ def _read_file(path: Path, query: EventQuery, limit: int) -> list[StoredEvent]:
             (*values, limit),
         )
         return [_event(row) for row in rows]
+    # It was dropped a moment ago.
+    return []
 
 
 def _conditions(connection: apsw.Connection, query: EventQuery) -> tuple[list[str], list[Any]]:
@@ -114,6 +109,6 @@ def _kinds(connection: apsw.Connection, kind: str) -> Sequence[str]:
 
 
 def _event(row: tuple[Any, ...]) -> StoredEvent:
-    number, boot, epoch, at, wall_ns, kind, cause, actor, data, words = row
-    found = EventRow(number, at, wall_ns, kind, cause, actor, (), data, words)
+    number, boot, epoch, at, wall_ns, kind, cause, actor, data, words, notable = row
+    found = EventRow(number, at, wall_ns, kind, cause, actor, (), data, words, bool(notable))
     return stored_event(found, boot, epoch)

@@ -46,7 +46,7 @@ LOG: Steps = (
     CREATE TABLE events (
         id INTEGER PRIMARY KEY, boot INTEGER NOT NULL, at INTEGER NOT NULL,
         wall_ns INTEGER NOT NULL, kind TEXT NOT NULL, cause INTEGER, actor TEXT NOT NULL,
-        data TEXT NOT NULL, words TEXT NOT NULL
+        data TEXT NOT NULL, words TEXT NOT NULL, notable INTEGER NOT NULL
     );
     CREATE INDEX events_by_kind ON events (kind);
     CREATE INDEX events_by_actor ON events (actor) WHERE actor != '';

@@ -11,7 +11,7 @@ from pathlib import Path
 import apsw
 
 from service.storage.sqlite.batch import Changes, Key
-from service.storage.sqlite.connection import new_file, open_to_write
+from service.storage.sqlite.connection import finish, new_file, open_to_write
 from service.storage.sqlite.log_file import BrokenFileError
 from service.storage.sqlite.schema import STATE, bring_up, version_of
 
@@ -100,8 +100,12 @@ class StateFile:
         """Write all of it to the disk itself."""
         self._connection.wal_checkpoint(mode=apsw.SQLITE_CHECKPOINT_FULL)
 
+    def finish(self) -> None:
+        """Close it as one plain file."""
+        finish(self._connection)
+
     def close(self) -> None:
-        """Close it."""
+        """Close it after a failure."""
         self._connection.close(True)
 
     def _on_commit(self, connection: apsw.Connection, name: str, pages: int) -> int:

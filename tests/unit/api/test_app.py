@@ -37,6 +37,7 @@ CONTRACT = {
     "/inference": {"post"},
     "/signals": {"get", "post"},
     "/signals/{signal}": {"get", "post"},
+    "/signals/{signal}/history": {"get"},
     "/system_state": {"get"},
     "/errors/{error}/acknowledge": {"post"},
     "/emergency_stop": {"get", "put"},

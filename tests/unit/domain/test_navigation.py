@@ -462,3 +462,71 @@ def test_standing_beside_the_end_is_arriving_only_near_it(
     drive.step(19.85, y_m, speed_mps=0.0)
 
     assert (drive.result is not None) is arrives
+
+
+# --- after a restart of the service --------------------------------------------------------------
+
+
+def go_on(drive: Drive20Hz, seen: VehicleState | None) -> None:
+    """Send a goal of which an earlier run had driven 20 m."""
+    given = SendGoal(GoalId(1), drive.path, 0, 21, "test", 2.8, reached_m=20.0, seen=seen)
+    drive.navigation.handle(given, drive.now)
+    drive.act()
+
+
+def seen_at(x_m: float, speed_mps: float) -> VehicleState:
+    return VehicleState(Pose(x_m, 0.0, 0.0), speed_mps, 0.0)
+
+
+def left_out_m(drive: Drive20Hz) -> list[float]:
+    return [m.left_out_m for m in drive.said if isinstance(m, GoalFeedback)]
+
+
+def test_what_the_vehicle_rolled_while_the_service_was_away_is_driven() -> None:
+    drive = Drive20Hz(length_m=60.0)
+    drive.report(x_m=26.5)
+    go_on(drive, seen_at(20.0, 2.8))
+
+    assert drive.result is None
+    assert left_out_m(drive) == [0.0]
+    assert [m.distance_m for m in drive.said if isinstance(m, GoalFeedback)] == [26.5]
+
+
+def test_a_vehicle_that_was_carried_on_along_its_path_is_not_taken_for_one_that_rolled() -> None:
+    drive = Drive20Hz(length_m=60.0)
+    drive.report(x_m=27.0)
+    go_on(drive, seen_at(20.0, 0.0))
+
+    assert result_of(drive).reason.startswith("7.0 m from where the path goes on")
+
+
+def test_a_vehicle_that_stopped_beside_its_path_approaches_it_again() -> None:
+    drive = Drive20Hz(length_m=60.0)
+    drive.report(x_m=24.0, y_m=4.5)
+    go_on(drive, seen_at(20.0, 2.8))
+
+    assert drive.result is None, "6 m away, and yet by itself"
+
+
+def test_a_vehicle_that_was_carried_away_is_not_driven_back() -> None:
+    drive = Drive20Hz(length_m=60.0)
+    drive.report(x_m=24.0, y_m=9.0)
+    go_on(drive, seen_at(20.0, 2.8))
+
+    assert result_of(drive).reason.startswith("9.8 m from where the path goes on")
+
+
+def test_a_vehicle_that_drove_slowly_when_it_was_seen_may_have_become_faster() -> None:
+    drive = Drive20Hz(length_m=60.0)
+    drive.report(x_m=23.8)
+    go_on(drive, seen_at(20.0, 1.5))
+
+    assert left_out_m(drive) == [0.0]
+
+
+def test_a_goal_that_begins_anew_has_nothing_to_take_up() -> None:
+    drive = Drive20Hz(length_m=60.0)
+    drive.report(x_m=27.0)
+    go_on(drive, None)
+
+    assert result_of(drive).reason.startswith("7.0 m from where the path goes on")

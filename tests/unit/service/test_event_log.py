@@ -127,6 +127,54 @@ def test_a_reader_is_woken_by_each_event() -> None:
     assert len(wakes) == 1
 
 
+def test_ids_go_on_after_those_of_earlier_runs() -> None:
+    log = EventLog(10, "E3", before=50, earlier={"E1": 20, "E2": 45})
+    log.append(event(51))
+
+    assert (log.oldest, log.newest) == (51, 51)
+    assert [log.epoch_of(number) for number in (1, 20, 21, 45, 46, 51)] == [
+        *("E1", "E1", "E2", "E2", "E3", "E3")
+    ]
+
+
+@pytest.mark.parametrize(
+    ("after", "epoch", "is_foreign"),
+    [
+        (20, "E1", False),
+        (50, "E2", False),
+        (51, "E2", True),
+        (20, "E0", True),
+        (51, "E3", False),
+        (20, "E3", False),
+        (52, "E3", True),
+        (20, None, False),
+        (52, None, True),
+    ],
+)
+def test_a_cursor_of_a_run_that_is_kept_leads_on(
+    after: int, epoch: str | None, *, is_foreign: bool
+) -> None:
+    log = EventLog(10, "E3", before=50, earlier={"E1": 20, "E2": 45})
+    log.append(event(51))
+
+    assert log.is_foreign(after, epoch) is is_foreign
+
+
+def test_a_reader_from_an_unknown_run_begins_with_this_run() -> None:
+    log = EventLog(10, "E3", before=50, earlier={"E1": 20})
+    log.append(event(51))
+
+    assert EventReader(log, 7, "E0").take(10) == [Gap(8, None, "E0"), event(51)]
+
+
+def test_events_between_two_ids_are_those_that_are_kept() -> None:
+    log = log_of(25, capacity=10)
+
+    assert ids([*log.between(0)]) == list(range(16, 26))
+    assert ids([*log.between(17, 20)]) == [18, 19]
+    assert log.between(25) == log.between(30, 10) == log.between(0, 16) == []
+
+
 @given(
     capacity=st.integers(1, 8),
     after=st.integers(0, 30),

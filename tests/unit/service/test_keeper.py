@@ -1,5 +1,7 @@
 """What is on disk before a request is carried out, and what its answer waits for."""
 
+import asyncio
+
 import pytest
 
 from domain.errors import StorageDegradedError
@@ -15,14 +17,19 @@ from domain.inputs import (
     ModeRequest,
     ParametersRequest,
     ReleaseRequest,
+    StorageStatus,
     TimePassed,
     TransitionRequest,
 )
 from domain.lifecycle import Transition
 from domain.outbox import NOTHING, Outputs
-from service.keeper import SAFER_S, Keeper, starts_or_loosens
+from domain.timebase import Instant, to_seconds
+from service.keeper import LOOK_EVERY, SAFER_S, Checkpoint, Keeper, Memory, starts_or_loosens
 from service.storage.journal import Plain
+from service.storage.journal import StorageStatus as StorageStatusView
+from tests.support.manual_clock import ManualClock
 from tests.support.models import BASE
+from tests.support.waiting import until
 
 RELEASE = ReleaseRequest("operator")
 HOLD = HoldRequest("operator", "lunch")
@@ -32,11 +39,18 @@ class Disk:
     """The part of a journal that a keeper uses; what is done is told in order."""
 
     def __init__(self) -> None:
+        self.fault: str | None = None
         self.done: list[str] = []
+        self.kept: dict[str, Plain] = {}
+        self.given: list[Input] = []
         self.answers: list[bool | StorageDegradedError] = []
 
     def keep(self, name: str, value: Plain) -> None:
         self.done.append("store the request")
+        self.kept[name] = value
+
+    def status(self) -> StorageStatusView:
+        return StorageStatusView("/robot", 0, None, self.fault, "3", 1, {})
 
     async def commit(self, patience_s: float) -> bool:
         self.done.append(f"wait {patience_s:g} s for the disk")
@@ -47,7 +61,13 @@ class Disk:
 
     def submit(self, given: Input) -> Outputs:
         self.done.append(f"do {type(given).__name__}")
+        self.given.append(given)
         return NOTHING
+
+
+@pytest.fixture
+def clock() -> ManualClock:
+    return ManualClock()
 
 
 @pytest.fixture
@@ -56,8 +76,8 @@ def disk() -> Disk:
 
 
 @pytest.fixture
-def keeper(disk: Disk) -> Keeper:
-    return Keeper(disk, disk.submit)  # type: ignore[arg-type]
+def keeper(disk: Disk, clock: ManualClock) -> Keeper:
+    return Keeper(disk, disk.submit, clock)  # type: ignore[arg-type]
 
 
 async def test_a_release_is_on_disk_before_the_robot_may_drive(disk: Disk, keeper: Keeper) -> None:
@@ -146,3 +166,92 @@ def test_what_makes_safer_is_done_first(given: Input) -> None:
 def test_what_is_no_request_is_neither() -> None:
     with pytest.raises(TypeError, match="TimePassed"):
         starts_or_loosens(TimePassed())
+
+
+def test_a_disk_that_fails_is_told_to_the_core_once_and_its_recovery_too(
+    disk: Disk, keeper: Keeper
+) -> None:
+    keeper.look()
+    disk.fault = "the disk is full"
+    keeper.look()
+    keeper.look()
+    disk.fault = None
+    keeper.look()
+
+    assert disk.given == [
+        StorageStatus(available=False, reason="the disk is full"),
+        StorageStatus(available=True),
+    ]
+
+
+async def test_a_memory_is_kept_when_it_changed_and_not_too_often(
+    disk: Disk, clock: ManualClock
+) -> None:
+    pose = [0.0]
+    memory = Memory("pose", lambda: list(pose), lambda: pose[0], 2 * LOOK_EVERY)
+    keeper = Keeper(disk, disk.submit, clock, [memory])  # type: ignore[arg-type]
+    keeper.look()
+    assert disk.kept == {"pose": [0.0]}
+
+    pose[0] = 1.0
+    keeper.look()
+    assert disk.kept == {"pose": [0.0]}
+
+    await clock.advance(to_seconds(2 * LOOK_EVERY))
+    keeper.look()
+    assert disk.kept == {"pose": [1.0]}
+    disk.done.clear()
+    await clock.advance(to_seconds(2 * LOOK_EVERY))
+    keeper.look()
+    assert disk.done == []
+
+
+async def test_it_looks_four_times_a_second(disk: Disk, clock: ManualClock, keeper: Keeper) -> None:
+    looking = asyncio.create_task(keeper.run())
+    await asyncio.sleep(0)
+    disk.fault = "the disk is full"
+    await clock.advance(0.25)
+    looking.cancel()
+
+    assert disk.given == [StorageStatus(available=False, reason="the disk is full")]
+
+
+class WithCheckpoints(Disk):
+    """A journal that wants a checkpoint."""
+
+    wants_checkpoint = True
+    last_step = 7
+
+    def checkpoint(self, step: int, at: Instant, state: bytes) -> None:
+        self.wants_checkpoint = False
+        self.done.append(f"checkpoint after step {step}: {state.decode()}")
+
+
+@pytest.mark.parametrize("is_large", [False, True])
+async def test_a_checkpoint_is_of_the_moment_in_which_it_was_begun(
+    clock: ManualClock, is_large: bool
+) -> None:
+    disk = WithCheckpoints()
+    checkpoint = Checkpoint(lambda: b"state", is_large)
+    keeper = Keeper(disk, disk.submit, clock, checkpoint=checkpoint)  # type: ignore[arg-type]
+    keeping = asyncio.create_task(keeper.run())
+    await asyncio.sleep(0)
+    await clock.advance(0.25)
+    await until(lambda: bool(disk.done))
+    keeping.cancel()
+
+    assert disk.done == ["checkpoint after step 7: state"]
+
+
+def test_a_memory_that_is_kept_with_each_step_never_waits(disk: Disk, clock: ManualClock) -> None:
+    state = ["active"]
+    memory = Memory("nodes", lambda: list(state), lambda: state[0], 0)
+    keeper = Keeper(disk, disk.submit, clock, [memory])  # type: ignore[arg-type]
+    keeper.keep_memories(clock.now())
+    state[0] = "inactive"
+    keeper.keep_memories(clock.now())
+
+    assert disk.kept == {"nodes": ["inactive"]}
+    disk.done.clear()
+    keeper.keep_memories(clock.now())
+    assert disk.done == []

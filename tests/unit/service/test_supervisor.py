@@ -2,11 +2,13 @@
 
 import asyncio
 from collections.abc import Callable
+from pathlib import Path
 
 import pytest
 
 from domain.actor import Actor
 from domain.commands import Drive, NodeCommand
+from domain.health.signals import default_signals
 from domain.inputs import (
     BackendStatus,
     EmergencyStopRequest,
@@ -14,14 +16,17 @@ from domain.inputs import (
     TaskRequest,
 )
 from domain.tasks.holds import MAX_HOLDS
+from domain.timebase import seconds
 from service.files.model_file import LoadedModel
 from service.ports import BackendMessage
 from service.running import TaskFailedError
+from service.storage.trends.trends import Trends
 from service.supervisor import Supervisor
-from tests.support.live_robot import make_onboard, make_supervisor, running
+from tests.support.live_robot import make_live_robot, make_onboard, make_supervisor, running
 from tests.support.manual_clock import ManualClock
 from tests.support.models import actuation_model
 from tests.support.paths import straight
+from tests.support.waiting import until
 
 
 class Backend:
@@ -90,3 +95,20 @@ async def test_a_service_that_ends_does_so_also_where_there_is_no_room_for_a_hol
         supervisor.stop_driving()
 
         assert supervisor.core.driving.vehicle.command.speed_mps == 0.0
+
+
+async def test_the_history_of_signals_is_written_while_the_service_runs(tmp_path: Path) -> None:
+    clock = ManualClock()
+    signals, path = default_signals(), str(tmp_path / "trends.db")
+    trends = Trends(signals, path)
+    supervisor, _ = make_live_robot(clock, trends=trends)
+    async with running(supervisor):
+        await clock.advance(30)
+        await until(lambda: trends.status.bytes > 0)
+
+    # As after `kill -9`: only what was written is there.
+    later = Trends(signals, path)
+    found = await later.history("temperature", clock.now() - seconds(60.0), clock.now(), 100)
+    assert len(found.points) > 10
+    await later.close()
+    await trends.close()

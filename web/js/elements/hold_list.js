@@ -37,8 +37,8 @@ class HoldList extends HTMLElement {
   #add(hold) {
     const { owner, by } = hold;
     const [reason, since] = [el("span"), el("span", { class: "quiet" })];
-    // Pilothouse clears its own holds when their cause is gone.
-    const release = by ? el("ph-hold-button", { label: `Release ${owner} (hold)` }) : null;
+    // Pilothouse clears its own holds when their cause is gone, but for the one of a restart.
+    const release = !(owner in UNTIL) ? el("ph-hold-button", { label: `Release ${owner} (hold)` }) : null;
     release?.addEventListener("ph-held", () => {
       const detail = { owner, button: release.button };
       this.dispatchEvent(new CustomEvent("ph-release", { bubbles: true, detail }));
@@ -51,7 +51,7 @@ class HoldList extends HTMLElement {
   }
 }
 
-/** What ends the holds of Pilothouse itself. */
+/** What ends the holds that Pilothouse releases itself. */
 const UNTIL = {
   error: ", until the errors end",
   vehicle: ", until there is a pose",

@@ -7,8 +7,10 @@ from api.streaming.client_input import StreamQuery
 from api.streaming.cursor import Cursor, FrameBytes
 from api.streaming.encoder import StreamEncoder
 from service.event_log import Gap
+from service.history.event_pages import EventPages
 from service.supervisor import Supervisor
 from tests.support.frames import event, frame, part_view
+from tests.support.kept_events import history_of
 from tests.support.live_robot import make_supervisor
 from tests.support.websocket import texts_of
 
@@ -29,8 +31,13 @@ def read(content: bytes) -> list[dict[str, Any]]:
     return [json.loads(text) for text in texts_of(content)]
 
 
+def cursor_of(supervisor: Supervisor, topics: frozenset[str], after: int | None) -> Cursor:
+    pages = EventPages(history_of(supervisor))
+    return Cursor(supervisor, pages, StreamQuery(topics, after, None))
+
+
 def from_now_on(supervisor: Supervisor) -> Cursor:
-    return Cursor(supervisor, StreamQuery(ALL, None, None))
+    return cursor_of(supervisor, ALL, None)
 
 
 def test_bytes_are_made_once_for_all_who_missed_as_much(encoded: FrameBytes) -> None:
@@ -76,7 +83,7 @@ def test_frames_that_were_replaced_meanwhile_are_skipped_and_counted(
 
 
 def test_many_events_are_taken_some_at_a_time(supervisor: Supervisor, encoded: FrameBytes) -> None:
-    cursor = Cursor(supervisor, StreamQuery(frozenset({"events"}), 0, None))
+    cursor = cursor_of(supervisor, frozenset({"events"}), 0)
     for number in range(1, 301):
         supervisor.events.append(event(number))
 

@@ -1,11 +1,9 @@
 """Many clients of one robot, in virtual time, each with a transport that a test can clog."""
 
 import asyncio
-import json
 from collections.abc import AsyncIterator
 from contextlib import ExitStack
 from itertools import pairwise
-from typing import Any
 
 import pytest
 
@@ -13,68 +11,17 @@ from api.streaming import stream_client
 from api.streaming.client_input import TOPICS, StreamQuery
 from api.streaming.encoder import StreamEncoder
 from api.streaming.fan_out import FanOut
-from api.streaming.websocket_frames import PING, Connection, Listener
 from domain.actor import Actor
 from domain.inputs import EmergencyStopRequest
 from service.supervisor import Supervisor
+from tests.support.kept_events import history_of
 from tests.support.live_robot import make_supervisor, running
 from tests.support.manual_clock import ManualClock, settle
-from tests.support.websocket import texts_of
+from tests.support.stream_wire import Wire
 
 STATE = StreamQuery(frozenset({"system_state"}), None, None)
 EVENTS = StreamQuery(frozenset({"events"}), 0, None)
 ALL = StreamQuery(frozenset(TOPICS), None, None)
-
-
-class Wire(asyncio.WriteTransport):
-    """Takes what is written while it flows; else keeps it. Answers pings unless told otherwise."""
-
-    def __init__(self) -> None:
-        super().__init__()
-        self.written: list[bytes] = []
-        self.waiting = 0
-        self.flows = True
-        self.answers = True
-        self.closing = False
-        self.listener: Listener | None = None
-
-    @property
-    def connection(self) -> Connection:
-        return Connection(self, self._listen, lambda: None)
-
-    def write(self, data: Any) -> None:  # noqa: ANN401
-        assert not self.closing
-        self.written.append(data)
-        if not self.flows:
-            self.waiting += len(data)
-            if self.listener is not None:
-                self.listener.clogged()
-        elif data.endswith(PING) and self.answers and self.listener is not None:
-            self.listener.answered()
-
-    def get_write_buffer_size(self) -> int:
-        return self.waiting
-
-    def is_closing(self) -> bool:
-        return self.closing
-
-    def abort(self) -> None:
-        self.closing = True
-        if self.listener is not None:
-            self.listener.lost()
-
-    def close(self) -> None:
-        self.abort()
-
-    def flow(self) -> None:
-        self.flows, self.waiting = True, 0
-
-    @property
-    def frames(self) -> list[dict[str, Any]]:
-        return [json.loads(text) for text in texts_of(b"".join(self.written))]
-
-    def _listen(self, listener: Listener | None) -> None:
-        self.listener = listener
 
 
 @pytest.fixture
@@ -91,7 +38,7 @@ async def supervisor(clock: ManualClock) -> AsyncIterator[Supervisor]:
 
 @pytest.fixture
 def fan_out(supervisor: Supervisor) -> FanOut:
-    return FanOut(supervisor, StreamEncoder(supervisor))
+    return FanOut(supervisor, StreamEncoder(supervisor), history_of(supervisor))
 
 
 def press_and_release_the_stop(supervisor: Supervisor) -> None:

@@ -7,8 +7,10 @@ from api.streaming.cursor import Cursor, FrameBytes
 from api.streaming.encoder import StreamEncoder
 from api.streaming.stream_client import Group, StreamClient
 from domain.timebase import seconds
+from service.history.event_pages import EventPages
 from service.supervisor import Supervisor
 from tests.support.frames import frame
+from tests.support.kept_events import history_of
 from tests.support.live_robot import make_supervisor
 from tests.support.manual_clock import ManualClock
 
@@ -42,12 +44,14 @@ def supervisor(clock: ManualClock) -> Supervisor:
 
 @pytest.fixture
 def group(supervisor: Supervisor) -> Group:
-    return Group(Cursor(supervisor, STATE))
+    return Group(Cursor(supervisor, EventPages(history_of(supervisor)), STATE))
 
 
 @pytest.fixture
 def client(group: Group, supervisor: Supervisor, clock: ManualClock) -> StreamClient:
-    client = StreamClient(group, Wire(), Cursor(supervisor, STATE), "page", clock)
+    client = StreamClient(
+        group, Wire(), Cursor(supervisor, EventPages(history_of(supervisor)), STATE), "page", clock
+    )
     group.add(client)
     return client
 

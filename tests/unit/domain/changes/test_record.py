@@ -94,8 +94,8 @@ def _change() -> Change:
 def test_a_change_is_shown_with_the_steps_of_all_nodes_in_their_order() -> None:
     change = _change()
     for node in (BASE, ARM):
-        change.pursuits[node] = Pursuit(C1, node, GOAL)
-        change.pursuits[node].plan((CONFIGURE, ACTIVATE))
+        change.pursuits[node] = pursuit = Pursuit(C1, node, GOAL)
+        pursuit.plan((CONFIGURE, ACTIVATE))
     view = change.view()
     assert [(step.node, step.action) for step in view.steps] == [
         (BASE, CONFIGURE),

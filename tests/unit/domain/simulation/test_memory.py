@@ -11,24 +11,37 @@ from domain.commands import AskParameters, AskTransition, Drive, NodeCommand
 from domain.inputs import NodeReport, VehicleReport
 from domain.lifecycle import LifecycleState, Transition
 from domain.parts.system_model import NodeModel, SmhModel
-from domain.simulation.memory import Memory, NodeMemory, read_memory, rest_of
+from domain.simulation.memory import Memory, NodeMemory, plain_vehicle, read_memory, rest_of
 from domain.simulation.node_settings import Fault, NodeSettings
 from domain.simulation.robot import SimulatedRobot
 from domain.simulation.vehicle_settings import Plant, VehicleSettings
 from domain.state_and_mode import DEFAULT_MODE, PartName
 from domain.timebase import seconds
 from domain.vehicle import DriveCommand, Pose, VehicleLimits, VehicleState
+from tests.support.big_model import big_model
 from tests.support.models import ARM, BASE, actuation_model
 
 S, T = LifecycleState, Transition
 MODEL = actuation_model()
 LISTS = SmhModel({BASE: NodeModel(BASE, {DEFAULT_MODE: {"gains": (0.5, 1.0), "on": True}})}, {})
+EMPTY = SmhModel({}, {})
 VEHICLE = {"x_m": 1.0, "y_m": -2.0, "yaw_rad": 0.5, "steering_angle_rad": 0.1}
+
+
+def memory_of(robot: SimulatedRobot) -> dict[str, object]:
+    """Return what is kept of a robot."""
+    return {"nodes": robot.nodes.memory(), "vehicle": plain_vehicle(robot.vehicle.state)}
+
+
+def revision_of(robot: SimulatedRobot) -> object:
+    """Return what differs when the memory does."""
+    state = robot.vehicle.state
+    return robot.nodes.revision, state.pose, state.steering_angle_rad
 
 
 def restarted(robot: SimulatedRobot, model: SmhModel = MODEL) -> SimulatedRobot:
     """Return the robot of the next run, which starts at 100 s."""
-    return SimulatedRobot(model, seconds(100), memory=json.loads(json.dumps(robot.memory())))
+    return SimulatedRobot(model, seconds(100), memory=json.loads(json.dumps(memory_of(robot))))
 
 
 def reports(robot: SimulatedRobot) -> dict[PartName, NodeReport]:
@@ -96,7 +109,7 @@ def test_a_plain_node_keeps_its_parameters() -> None:
     plain = {BASE: NodeSettings(plain=True)}
     robot = SimulatedRobot(MODEL, 0, plain)
     robot.nodes.set_parameters(BASE, {"max_speed": 0.7}, 0)
-    again = SimulatedRobot(MODEL, seconds(100), plain, memory=robot.memory())
+    again = SimulatedRobot(MODEL, seconds(100), plain, memory=memory_of(robot))
 
     said = reports(again)[BASE]
     assert (said.state, said.has_lifecycle) == (None, False)
@@ -112,9 +125,9 @@ def test_a_node_that_was_plain_and_has_a_lifecycle_now_begins_unconfigured() -> 
 def test_a_node_that_is_dead_from_the_start_is_not_brought_to_life() -> None:
     dead = {BASE: NodeSettings(fault=Fault.DIE)}
     robot = SimulatedRobot(MODEL, 0, dead)
-    assert BASE not in robot.nodes.memory()
+    assert [alike["nodes"] for alike in robot.nodes.memory()] == [[ARM]]
 
-    again = SimulatedRobot(MODEL, seconds(100), dead, memory=SimulatedRobot(MODEL, 0).memory())
+    again = SimulatedRobot(MODEL, seconds(100), dead, memory=memory_of(SimulatedRobot(MODEL, 0)))
     assert set(reports(again)) == {ARM}
 
 
@@ -126,6 +139,34 @@ def test_nodes_that_the_model_no_longer_has_are_ignored() -> None:
 
     assert again.left_out == ()
     assert {node: report.state for node, report in reports(again).items()} == {BASE: S.INACTIVE}
+
+
+def test_nodes_that_are_in_the_same_are_remembered_together() -> None:
+    robot = SimulatedRobot(big_model(100), 0)
+    assert len(robot.nodes.memory()) == 1
+
+    do(robot, PartName("node_7"), T.SHUTDOWN)
+    robot.advance(seconds(1))
+    told = [(alike["state"], alike["nodes"]) for alike in robot.nodes.memory()]
+    others = [f"node_{number}" for number in range(100) if number != 7]
+    assert told == [("unconfigured", others), ("finalized", ["node_7"])]
+
+
+def test_values_that_are_equal_but_of_different_types_are_not_the_same() -> None:
+    whole, part = PartName("whole"), PartName("part")
+    model = SmhModel(
+        {
+            whole: NodeModel(whole, {DEFAULT_MODE: {"rate": 1}}),
+            part: NodeModel(part, {DEFAULT_MODE: {"rate": 1.0}}),
+        },
+        {},
+    )
+    said = reports(restarted(SimulatedRobot(model, 0), model))
+
+    assert {name: repr(report.parameters) for name, report in said.items()} == {
+        whole: "mappingproxy({'rate': 0})",
+        part: "mappingproxy({'rate': 0.0})",
+    }
 
 
 # --- vehicle -------------------------------------------------------------------------------------
@@ -163,10 +204,10 @@ def test_without_a_memory_it_begins_where_the_settings_say() -> None:
 
 def test_a_robot_at_rest_has_nothing_new_to_remember() -> None:
     robot = SimulatedRobot(MODEL, 0, vehicle=VehicleSettings(plant=Plant(steering_lag_s=0.2)))
-    revision = robot.revision
+    revision = revision_of(robot)
     robot.advance(seconds(60))
 
-    assert robot.revision == revision
+    assert revision_of(robot) == revision
 
 
 @pytest.mark.parametrize(
@@ -175,21 +216,21 @@ def test_a_robot_at_rest_has_nothing_new_to_remember() -> None:
 )
 def test_a_node_that_changes_is_something_new(command: NodeCommand) -> None:
     robot = SimulatedRobot(MODEL, 0)
-    revision, memory = robot.revision, robot.memory()
+    revision, memory = revision_of(robot), memory_of(robot)
     robot.handle(command, 0)
     robot.advance(seconds(1))
 
-    assert robot.memory() != memory
-    assert robot.revision != revision
+    assert memory_of(robot) != memory
+    assert revision_of(robot) != revision
 
 
 def test_a_vehicle_that_drives_is_something_new() -> None:
     robot = SimulatedRobot(MODEL, 0)
-    revision = robot.revision
+    revision = revision_of(robot)
     robot.handle(Drive(DriveCommand(1.0, 0.0)), 0)
     robot.advance(seconds(0.1))
 
-    assert robot.revision != revision
+    assert revision_of(robot) != revision
 
 
 # --- nonsense ------------------------------------------------------------------------------------
@@ -199,22 +240,26 @@ def test_a_vehicle_that_drives_is_something_new() -> None:
     ("memory", "reason"),
     [
         ("x", "the memory of the simulated robot is not a mapping"),
-        ({"nodes": []}, "the memory of the simulated nodes is not a mapping"),
-        ({"nodes": {BASE: 3}}, "the memory of the simulated node drive_base: it is not a mapping"),
+        ({"nodes": {}}, "the memory of the simulated nodes is not a list"),
+        ({"nodes": [3]}, "the memory of some simulated nodes: it is not a mapping"),
         (
-            {"nodes": {BASE: {"state": "flying"}}},
-            "the memory of the simulated node drive_base: 'flying' is not a state to rest in",
+            {"nodes": [{"state": "active", "nodes": 3, "parameters": {}}]},
+            "the memory of some simulated nodes: its nodes are not a list",
         ),
         (
-            {"nodes": {BASE: {"state": "activating"}}},
-            "the memory of the simulated node drive_base: 'activating' is not a state to rest in",
+            {"nodes": [{"state": "flying", "nodes": [BASE], "parameters": {}}]},
+            "the memory of some simulated nodes: 'flying' is not a state to rest in",
         ),
         (
-            {"nodes": {BASE: {"state": "active", "parameters": 1}}},
-            "the memory of the simulated node drive_base: its parameters are not a mapping",
+            {"nodes": [{"state": "activating", "nodes": [BASE], "parameters": {}}]},
+            "the memory of some simulated nodes: 'activating' is not a state to rest in",
         ),
         (
-            {"nodes": {BASE: {"state": "active", "parameters": {"max_speed": 1}}}},
+            {"nodes": [{"state": "active", "nodes": [BASE], "parameters": 1}]},
+            "the memory of some simulated nodes: its parameters are not a mapping",
+        ),
+        (
+            {"nodes": [{"state": "active", "nodes": [BASE], "parameters": {"max_speed": 1}}]},
             "the memory of the simulated node drive_base: max_speed is of type double, not integer",
         ),
         (
@@ -232,18 +277,18 @@ def test_nonsense_is_left_out_with_a_reason(memory: object, reason: str) -> None
     robot = SimulatedRobot(MODEL, 0, memory=memory)
 
     assert robot.left_out == (reason,)
-    assert robot.memory() == SimulatedRobot(MODEL, 0).memory()
+    assert memory_of(robot) == memory_of(SimulatedRobot(MODEL, 0))
 
 
 def test_of_very_much_nonsense_some_is_told() -> None:
-    nodes = {PartName(f"n{number}"): NodeModel(PartName(f"n{number}")) for number in range(30)}
-    left_out = read_memory({"nodes": dict.fromkeys(nodes, 1)}, SmhModel(nodes, {})).left_out
+    left_out = read_memory({"nodes": [1] * 30}, EMPTY).left_out
 
     assert (len(left_out), left_out[-1]) == (21, "and 10 more")
 
 
 def test_one_node_that_is_nonsense_keeps_no_other_from_being_remembered() -> None:
-    memory = {"nodes": {BASE: 3, ARM: {"state": "inactive"}}, "vehicle": VEHICLE}
+    alike = {"state": "inactive", "parameters": {"max_speed": 1}, "nodes": [BASE, ARM]}
+    memory = {"nodes": [3, alike], "vehicle": VEHICLE}
     read = read_memory(memory, MODEL)
 
     assert read.nodes == {ARM: NodeMemory(S.INACTIVE)}
@@ -286,16 +331,16 @@ def test_whatever_it_did_it_is_found_there_and_stays_there(
     story: list[tuple[int, NodeCommand | Drive]],
 ) -> None:
     robot, now = SimulatedRobot(MODEL, 0), seconds(0)
-    revision, memory = robot.revision, robot.memory()
+    revision, memory = revision_of(robot), memory_of(robot)
     for after, command in story:
         now += after
         robot.handle(command, now)
         robot.advance(now)
-        assert robot.revision != revision or robot.memory() == memory
-        revision, memory = robot.revision, robot.memory()
+        assert revision_of(robot) != revision or memory_of(robot) == memory
+        revision, memory = revision_of(robot), memory_of(robot)
     again = restarted(robot)
 
     assert again.left_out == ()
-    assert again.memory() == memory
+    assert memory_of(again) == memory
     again.advance(seconds(200))
-    assert again.memory() == memory
+    assert memory_of(again) == memory

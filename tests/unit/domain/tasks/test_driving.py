@@ -1,9 +1,14 @@
 import math
+from dataclasses import replace
 
 import pytest
 
+from domain.actor import SERVICE
 from domain.errors import InvalidValueError, ReservedHoldError, TooManyHoldsError
-from domain.inputs import DriveStatus, VehicleReport
+from domain.identifiers import TaskId
+from domain.inputs import DriveStatus, HoldRequest, Restored, VehicleReport
+from domain.kept import Kept, KeptHold, KeptProgress, KeptTask
+from domain.outbox import Outputs
 from domain.parts.system_model import SmhModel
 from domain.snapshot import HoldView, TaskPhase
 from domain.supervision import Supervision, SupervisionSettings
@@ -267,3 +272,137 @@ def test_a_vehicle_that_rolls_on_without_commands_is_told(robot: ScriptedRobot) 
     robot.advance(5.0, 2.0)
 
     assert robot.core.system_state().reasons[0].code == "STILL_MOVING"
+
+
+# --- over a restart ------------------------------------------------------------------------------
+
+
+GATE = KeptHold("gate-3", "closed", "http:10.0.0.7", seconds(1))
+LUNCH = KeptHold("operator", "lunch", "anna", seconds(2))
+
+
+def restarted(*kept: Kept) -> ScriptedRobot:
+    """Return a robot whose service was started anew, 100 s after the first start."""
+    robot = ScriptedRobot(pose=False, good=False, start=seconds(100))
+    robot.give(Restored(kept, boot=2))
+    return robot
+
+
+def test_a_hold_is_kept_until_it_is_released(robot: ScriptedRobot) -> None:
+    robot.hold("gate-3", "closed")
+    assert robot.all_kept() == (KeptHold("gate-3", "closed", "operator", 0),)
+    robot.hold("gate-3", "still closed")
+    assert robot.all_kept() == (KeptHold("gate-3", "still closed", "operator", 0),)
+
+    robot.release("gate-3")
+    assert robot.kept == {(KeptHold, "gate-3"): None}
+
+
+def test_a_hold_set_twice_alike_is_written_once(robot: ScriptedRobot) -> None:
+    robot.hold()
+
+    assert robot.hold() == Outputs()
+    assert robot.release("gate-3") == Outputs(), "nor is a release of what is not set"
+
+
+def test_the_holds_of_pilothouse_follow_from_what_is_read_and_are_not_kept(
+    robot: ScriptedRobot,
+) -> None:
+    robot.read(battery_level=0.42)
+    robot.give(DriveStatus(available=False, reason="no process"))
+    robot.stay_silent(1.0)
+
+    assert set(robot.core.driving.holds) == {"error", "vehicle", "drive_process"}
+    assert robot.all_kept() == ()
+
+
+def test_the_hold_with_which_the_service_ends_is_not_kept(robot: ScriptedRobot) -> None:
+    robot.give(HoldRequest("service", "the service ends", SERVICE))
+
+    assert "service" in robot.core.driving.holds
+    assert robot.all_kept() == ()
+
+
+def test_a_hold_of_that_name_which_a_person_set_is_kept_as_it_was_set(
+    robot: ScriptedRobot,
+) -> None:
+    robot.hold("service", "inspection")
+    robot.give(HoldRequest("service", "the service ends", SERVICE))
+
+    assert robot.all_kept() == (KeptHold("service", "inspection", "operator", 0),)
+
+
+def test_after_a_restart_the_holds_are_as_they_were_set() -> None:
+    robot = restarted(LUNCH, GATE)
+    holds = robot.core.driving.holds
+
+    assert [holds[name] for name in ("gate-3", "operator")] == [
+        HoldView("gate-3", "closed", "http:10.0.0.7", seconds(1)),
+        HoldView("operator", "lunch", "anna", seconds(2)),
+    ]
+    assert list(holds)[-2:] == ["gate-3", "operator"], "the one set first is told first"
+    assert "restart" not in holds
+    assert robot.happened("hold.set") == [], "they were set before"
+    assert robot.kept == {}, "they are kept already"
+    robot.advance(0.5)
+    robot.submit_task()
+    assert robot.task.reason == "closed; lunch"
+
+
+def test_a_hold_of_an_earlier_run_is_released_as_any_other() -> None:
+    robot = restarted(GATE)
+    robot.advance(0.5)
+    robot.submit_task()
+    robot.release("gate-3")
+
+    assert robot.task.status is TaskPhase.RUNNING
+    assert robot.kept[KeptHold, "gate-3"] is None
+
+
+def test_a_hold_that_was_set_at_a_time_to_come_is_set_now() -> None:
+    robot = restarted(replace(GATE, since=seconds(900)))
+
+    assert robot.core.driving.holds["gate-3"].since == seconds(100)
+
+
+def test_as_many_holds_as_there_may_be_come_back_beside_those_of_pilothouse() -> None:
+    many = [replace(GATE, owner=f"owner{n:03}", since=n) for n in range(MAX_HOLDS + 2)]
+    robot = restarted(*reversed(many))
+
+    assert set(robot.core.driving.holds) == {
+        "error",
+        "vehicle",
+        *(hold.owner for hold in many[:MAX_HOLDS]),
+    }
+    why = f"there are {MAX_HOLDS} holds already"
+    assert robot.happened("service.not_restored") == [
+        {"what": f"the hold {hold.owner}", "reason": why} for hold in many[MAX_HOLDS:]
+    ]
+    assert robot.kept == {(KeptHold, hold.owner): None for hold in many[MAX_HOLDS:]}
+
+
+@pytest.mark.parametrize("owner", ["vehicle", "restart"])
+def test_a_hold_whose_name_is_pilothouses_own_now_is_left_out(owner: str) -> None:
+    robot = restarted(replace(GATE, owner=owner))
+
+    assert [event["what"] for event in robot.happened("service.not_restored")] == [
+        f"the hold {owner}"
+    ]
+    assert "restart" not in robot.core.driving.holds
+
+
+def test_nobody_sets_the_hold_of_a_restart(robot: ScriptedRobot) -> None:
+    with pytest.raises(ReservedHoldError):
+        robot.hold("restart")
+    assert robot.release("restart") == Outputs(), "as of any hold that is not set"
+
+
+def test_a_task_that_makes_no_sense_is_left_out_and_told() -> None:
+    task = KeptTask(TaskId("t3"), straight(), "stanley", 2.8, 99, created_at=0, cause=1)
+    robot = restarted(task, KeptProgress(TaskId("t3"), True, 3, 2.0, 0.0))
+
+    assert list(robot.core.driving.tasks()) == []
+    assert robot.happened("service.not_restored") == [
+        {"what": "the task t3", "reason": "its path has no such waypoint"}
+    ]
+    assert robot.kept == {(KeptTask, "t3"): None, (KeptProgress, "t3"): None}

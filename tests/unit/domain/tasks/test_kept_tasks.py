@@ -9,9 +9,7 @@ from domain.kept import Keeping, Kept, KeptProgress, KeptTask
 from domain.outbox import Outbox
 from domain.snapshot import TaskPhase
 from domain.tasks.kept_tasks import TaskKeeper, tasks_of
-from domain.tasks.settings import TaskSettings
 from domain.tasks.task import Task
-from domain.tasks.vehicle_watch import VehicleWatch
 from domain.timebase import seconds
 from domain.vehicle import Pose, VehicleState
 from tests.support.paths import straight
@@ -33,7 +31,7 @@ class Keeper:
 
     def __init__(self) -> None:
         self.outbox = Outbox()
-        self.keeper = TaskKeeper(VehicleWatch(TaskSettings(), self.outbox), self.outbox)
+        self.keeper = TaskKeeper(self.outbox)
 
     def told(self) -> list[Keeping]:
         return list(self.outbox.take().kept)
@@ -68,6 +66,16 @@ def test_progress_is_kept_without_the_path_and_at_most_four_times_a_second() -> 
         written += [at_s for item in kept.told() if item.kind is KeptProgress]
 
     assert written == [1.25, 1.5, 2.0]
+
+
+def test_progress_is_kept_with_the_vehicle_as_it_was_then() -> None:
+    kept, driven = Keeper(), task()
+    driven.seen = DRIVEN.seen
+    kept.keeper.note(driven, 7)
+
+    (item,) = kept.told()
+    assert isinstance(item.value, KeptProgress)
+    assert item.value.seen == DRIVEN.seen
 
 
 def test_an_end_is_kept_with_its_reason_and_its_time() -> None:

@@ -25,8 +25,8 @@ def test_it_begins_at_its_start_with_nothing_covered() -> None:
 
 def test_it_advances_and_never_goes_back() -> None:
     driven = task()
-    driven.advance(feedback(8, 7.5))
-    driven.advance(feedback(6, 5.5))
+    driven.advance(feedback(8, 7.5), None)
+    driven.advance(feedback(6, 5.5), None)
     view = driven.view()
 
     assert (view.target_index, view.distance_m) == (8, 7.5)
@@ -35,14 +35,14 @@ def test_it_advances_and_never_goes_back() -> None:
 
 def test_a_vehicle_behind_the_start_has_covered_nothing() -> None:
     driven = task(start_index=4)
-    driven.advance(feedback(4, 3.2))
+    driven.advance(feedback(4, 3.2), None)
 
     assert driven.view().distance_m == 0.0
 
 
 def test_one_that_succeeded_is_done_to_the_last_bit() -> None:
     driven = task()
-    driven.advance(feedback(20, 19.8))
+    driven.advance(feedback(20, 19.8), None)
     driven.end(TaskPhase.SUCCEEDED, None, 90)
     view = driven.view()
 
@@ -51,7 +51,7 @@ def test_one_that_succeeded_is_done_to_the_last_bit() -> None:
 
 def test_one_that_was_given_up_keeps_what_it_had_covered() -> None:
     driven = task()
-    driven.advance(feedback(11, 10.0))
+    driven.advance(feedback(11, 10.0), None)
     driven.end(TaskPhase.ABORTED, "no progress for 20 s", 90)
     view = driven.view()
 
@@ -60,7 +60,7 @@ def test_one_that_was_given_up_keeps_what_it_had_covered() -> None:
 
 def test_all_that_is_known_of_it_can_be_seen() -> None:
     driven = task(start_index=4)
-    driven.advance(feedback(12, 11.0))
+    driven.advance(feedback(12, 11.0), None)
 
     assert driven.view() == TaskView(
         id=TaskId("t1"),
@@ -84,7 +84,7 @@ def test_all_that_is_known_of_it_can_be_seen() -> None:
 
 def test_progress_is_never_more_than_the_whole() -> None:
     driven = task()
-    driven.advance(feedback(20, 20.5))
+    driven.advance(feedback(20, 20.5), None)
 
     assert driven.view().progress == 1.0
 

@@ -21,6 +21,7 @@ from domain.supervision import SupervisionSettings
 from domain.tasks.task_planner import MIN_CRUISE_MPS, RESTART_REASON, check_cruise
 from domain.timebase import seconds
 from domain.vehicle import DriveCommand, Point, Pose, VehicleLimits, VehicleState
+from tests.support.good import GOOD
 from tests.support.paths import straight
 from tests.support.scripted_robot import ScriptedRobot
 
@@ -533,10 +534,11 @@ def test_a_goal_tells_navigation_everything_about_the_task(robot: ScriptedRobot)
     robot.give(GoalFeedback(goal, 8, 7.5, 0.0, ahead, command, left_out_m=0.7))
     robot.hold()
     robot.release()
+    seen = VehicleState(Pose(3.0, 0.0, 0.0), 0.0, 0.0)
 
     assert robot.goals == [
         SendGoal(GoalId(1), path, 3, 3, "stanley", 2.8, 3.0, 0.0),
-        SendGoal(GoalId(2), path, 3, 8, "stanley", 2.8, 7.5, 0.7),
+        SendGoal(GoalId(2), path, 3, 8, "stanley", 2.8, 7.5, 0.7, seen),
     ]
 
 
@@ -629,13 +631,20 @@ def restarted(before: ScriptedRobot, settings: SupervisionSettings | None = None
     return robot
 
 
-def test_a_task_and_its_start_are_kept_before_it_drives(robot: ScriptedRobot) -> None:
+def test_a_task_is_kept_when_it_is_accepted(robot: ScriptedRobot) -> None:
     robot.submit_task(straight(30.0), start_index=2)
 
     kept = robot.kept[KeptTask, "t1"]
     assert isinstance(kept, KeptTask)
     assert (kept.path.count, kept.start_index, kept.speed_mps) == (31, 2, 2.8)
-    assert robot.progress().has_run
+
+
+def test_the_first_progress_of_a_run_is_kept_at_once(robot: ScriptedRobot) -> None:
+    """Also what a vehicle rolled over unseen while the service was restarted."""
+    robot.submit_task()
+    robot.feedback(4)
+
+    assert (robot.progress().has_run, robot.progress().distance_m) == (True, 3.5)
 
 
 def test_progress_is_kept_at_once_when_the_task_is_held(robot: ScriptedRobot) -> None:
@@ -731,18 +740,25 @@ def test_the_task_goes_on_from_where_it_was_when_the_hold_is_released(
     assert (after.task.status, after.task.progress) == ("SUCCEEDED", 1.0)
 
 
-def test_where_the_earlier_run_saw_the_vehicle_is_of_no_interest_for_a_second_goal(
+def test_where_the_vehicle_was_seen_stays_with_the_progress_until_there_is_more(
     robot: ScriptedRobot,
 ) -> None:
     robot.submit_task()
+    robot.report(2.0, 8.4)
     robot.feedback(9)
+    robot.hold()
     after = restarted(robot)
-    after.advance(0.5)
+    after.read(**GOOD)
+    after.report(0.0, 12.0)
+    after.release()
     after.release("restart")
     after.hold()
     after.release()
+    after.feedback(13)
+    after.hold()
+    after.release()
 
-    assert [goal.seen is None for goal in after.goals] == [False, True]
+    assert [goal.seen.pose.x_m for goal in after.goals if goal.seen] == [8.4, 8.4, 12.0]
 
 
 def test_a_task_that_never_ran_is_checked_for_its_start_when_it_does(robot: ScriptedRobot) -> None:
@@ -811,9 +827,8 @@ def test_a_task_that_cannot_be_driven_any_more_is_aborted_and_told(
 
 def test_a_task_whose_end_was_lost_is_not_driven_after_a_newer_one(robot: ScriptedRobot) -> None:
     robot.submit_task()
-    before = robot.progress()
     robot.submit_task()
-    robot.kept[KeptProgress, "t1"] = before
+    robot.kept[KeptProgress, "t1"] = None
     after = restarted(robot)
 
     assert [(task.id, task.status, task.reason) for task in after.core.driving.tasks()][1:] == [

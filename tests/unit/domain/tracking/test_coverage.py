@@ -93,3 +93,21 @@ def test_of_a_jump_the_lower_bound_is_what_is_left_out(coverage: Coverage) -> No
 
     assert coverage.least_missed_m(at(40.0)) == pytest.approx(40.0 - 2 * 3.0)
     assert coverage.least_missed_m(at(2.0)) == 0.0, "it may have rolled there"
+
+
+def test_what_a_vehicle_may_have_driven_since_it_was_seen_last_counts_as_rolled(
+    coverage: Coverage,
+) -> None:
+    """At 5 m/s for 1 s until it is unheard, 0.5 s more, and then braking at 1 m/s2: 20 m."""
+    coverage.go_on_from(at(0.0, speed_mps=5.0), unseen_s=1.0)
+
+    assert coverage.may_have_rolled(at(20.0))
+    assert not coverage.may_have_rolled(at(20.1))
+
+
+def test_once_it_is_seen_again_only_what_is_unheard_counts(coverage: Coverage) -> None:
+    coverage.go_on_from(at(0.0, speed_mps=5.0), unseen_s=1.0)
+    coverage.note(at(20.0, speed_mps=0.0), 20.0)
+
+    assert (coverage.reached_m, coverage.left_out_m) == (20.0, 0.0)
+    assert not coverage.may_have_rolled(at(20.1))

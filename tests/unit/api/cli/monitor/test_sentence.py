@@ -142,6 +142,6 @@ def test_a_restart_is_told_for_ten_minutes() -> None:
 
     assert told is not None
     assert told.word == "RESTARTED"
-    assert told.text.endswith("earlier tasks and holds are gone")
+    assert told.text.endswith("nothing moves before somebody asks")
     assert restart_sentence(view(restarted, later_s=700.0)) is None
     assert restart_sentence(view(robot())) is None

@@ -59,7 +59,7 @@ def test_holds_and_the_stop_are_those_of_the_last_frame_that_told_them() -> None
 def test_after_a_restart_nothing_of_before_is_known_but_that_it_happened_and_when() -> None:
     known = fold(robot(parts=(part("arm"),)), hello("two", after(3)))
 
-    note = Note(after(3), "the service was restarted: earlier tasks and holds are gone")
+    note = Note(after(3), "the service was restarted: nothing moves before somebody asks")
     assert known == Robot(epoch="two", restarted_at=after(3), notes=(note,))
 
 

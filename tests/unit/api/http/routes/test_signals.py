@@ -282,3 +282,112 @@ async def test_what_is_pending_agrees_with_what_is_raised_and_with_what_it_says(
         assert reason["message"] == "load 1800 kg has been above 1500 kg for 3 s"
         assert reason["since_at"] == "2026-01-01T00:00:09.000Z"
         assert (await robot.get("/signals/load"))["pending"] is None
+
+
+# --- history ------------------------------------------------------------------------------------
+
+
+async def test_the_history_has_every_reading_and_its_error(unmocked: HttpRobot) -> None:
+    for value in (0.9, 0.42, 0.8):
+        await unmocked.http.post("/signals/battery_level", json={"value": value})
+        await unmocked.pass_time(1)
+
+    history = await unmocked.get("/signals/battery_level/history")
+
+    assert history["tier_s"] == 1.0
+    assert [(item["at"], item["last"], item["error"]) for item in history["items"]] == [
+        ("2026-01-01T00:00:00.000Z", 0.9, None),
+        ("2026-01-01T00:00:01.000Z", 0.42, "BATTERY_LOW"),
+        ("2026-01-01T00:00:02.000Z", 0.8, None),
+    ]
+    assert set(history["items"][0]) == {"at", "min", "max", "mean", "last", "error"}
+
+
+async def test_a_short_history_has_single_readings(unmocked: HttpRobot) -> None:
+    await unmocked.http.post("/signals/temperature", json={"value": 20})
+    await unmocked.http.post("/signals/temperature", json={"value": 21})
+
+    span = "from_at=2025-12-31T23:59:00Z&to_at=2026-01-01T01:00:01%2B01:00"
+    history = await unmocked.get(f"/signals/temperature/history?{span}")
+
+    assert [item["last"] for item in history["items"]] == [20.0, 21.0]
+    assert history["tier_s"] == 0.0
+
+
+async def test_a_history_of_few_points_keeps_a_spike(unmocked: HttpRobot) -> None:
+    for second in range(30):
+        value = 99.0 if second == 17 else 20.0
+        await unmocked.http.post("/signals/temperature", json={"value": value})
+        await unmocked.pass_time(1)
+
+    items = (await unmocked.get("/signals/temperature/history?points=3"))["items"]
+
+    assert 1 <= len(items) <= 3
+    assert max(item["max"] for item in items) == 99.0
+    assert {item["error"] for item in items} >= {"TEMPERATURE_HIGH"}
+
+
+async def test_the_history_of_members_and_of_a_stop(unmocked: HttpRobot) -> None:
+    for strength, pressed in (("CONNECTED", False), ("NOT_CONNECTED", True), ("CONNECTED", False)):
+        body = {"signal_strength": strength, "estop": pressed}
+        await unmocked.http.post("/signals", json=body)
+    await unmocked.pass_time(1)
+
+    (member,) = (await unmocked.get("/signals/signal_strength/history?points=2"))["items"]
+    (stop,) = (await unmocked.get("/signals/estop/history?points=2"))["items"]
+
+    assert (member["min"], member["max"]) == ("CONNECTED", "NOT_CONNECTED")
+    assert (member["mean"], member["last"]) == (None, "CONNECTED")
+    assert (stop["min"], stop["max"], stop["last"], stop["error"]) == (0.0, 1.0, 0.0, "ESTOP")
+    assert stop["mean"] == pytest.approx(1 / 3)
+
+
+async def test_a_signal_that_was_never_read_has_an_empty_history(unmocked: HttpRobot) -> None:
+    assert (await unmocked.get("/signals/temperature/history"))["items"] == []
+
+
+async def test_there_is_no_history_of_a_signal_that_there_is_not(robot: HttpRobot) -> None:
+    answer = await robot.http.get("/signals/temprature/history")
+
+    assert (answer.status_code, answer.json()["code"]) == (404, "UNKNOWN_SIGNAL")
+    assert "did you mean temperature?" in answer.json()["hint"]
+
+
+@pytest.mark.parametrize(
+    ("query", "parameter"),
+    [
+        ("points=1", "points"),
+        ("points=10001", "points"),
+        ("points=many", "points"),
+        ("from_at=yesterday", "from_at"),
+        ("from_at=2026-01-01T00:00:00", "from_at"),
+        ("to_at=2026-13-01T00:00:00Z", "to_at"),
+        ("from_at=2026-01-01T00:00:01Z&to_at=2026-01-01T00:00:01Z", "from_at"),
+        ("from_at=2027-01-01T00:00:00Z", "from_at"),
+    ],
+)
+async def test_a_history_that_cannot_be_is_refused_with_the_reason(
+    query: str, parameter: str, robot: HttpRobot
+) -> None:
+    answer = await robot.http.get(f"/signals/temperature/history?{query}")
+
+    assert (answer.status_code, answer.json()["code"]) == (422, "INVALID_QUERY")
+    (fault,) = answer.json()["errors"]
+    assert fault["message"].startswith(f"query {parameter}: ")
+
+
+async def test_a_history_from_the_first_year_to_the_last_is_answered(unmocked: HttpRobot) -> None:
+    await unmocked.http.post("/signals/temperature", json={"value": 20})
+
+    span = "from_at=0001-01-01T00:00:00Z&to_at=9999-12-31T23:59:59Z"
+    items = (await unmocked.get(f"/signals/temperature/history?{span}&points=2"))["items"]
+
+    assert [item["last"] for item in items] == [20.0]
+
+
+async def test_a_simulation_has_no_history() -> None:
+    async with http_robot() as robot:
+        robot.supervisor.trends = None
+        answer = await robot.http.get("/signals/temperature/history")
+
+    assert (answer.status_code, answer.json()["code"]) == (404, "NO_HISTORY")

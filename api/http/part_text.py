@@ -1,0 +1,52 @@
+"""JSON text of a part, the same as that of `PartJson`, made in a fraction of its time.
+
+A large robot that changes tells thousands of parts a second.
+"""
+
+from collections.abc import Callable
+
+from pydantic_core import to_json
+
+from domain.snapshot import PartView
+from domain.timebase import Instant
+
+
+def part_text(view: PartView, show: Callable[[Instant], str]) -> str:
+    """Return a part as clients see it.
+
+    Args:
+        view: Of the part.
+        show: Returns an instant as RFC 3339.
+    """
+    target, effective, actual, since = (
+        view.target,
+        view.effective_target,
+        view.actual,
+        view.deviation_since,
+    )
+    shown = {
+        "name": view.name,
+        "kind": view.kind,
+        "parts": view.parts,
+        "target": target and {"state": str(target.state), "mode": target.mode},
+        "effective_target": effective
+        and {
+            "state": str(effective.state),
+            "mode": effective.mode,
+            "because": effective.because,
+        },
+        "actual": {
+            "state": str(actual.state),
+            "mode": actual.mode,
+            "inferred": actual.inferred,
+            "mode_inferred": actual.mode_inferred,
+            "undecidable": actual.undecidable,
+            "reason": actual.reason,
+        },
+        "converged": view.converged,
+        "deviation_since_at": None if since is None else show(since),
+        "deviation_reason": view.deviation_reason,
+        "reachable": view.reachable,
+        "change": view.change,
+    }
+    return to_json(shown).decode()

@@ -1,0 +1,1 @@
+"""Measures how fast the supervisor reacts, and analyses what was measured."""

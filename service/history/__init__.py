@@ -1,0 +1,1 @@
+"""The event log over restarts: the newest events from memory, earlier ones from the journal."""

@@ -1,0 +1,86 @@
+"""Rows on their way to blocks: each tier gathers what the tier below has packed.
+
+So every reading is exactly once in the blocks of a tier, or among the rows that wait in that tier
+or in a finer one. A block of a tier holds whole blocks of the tier below: what waits when the
+process is killed is derived again from these.
+"""
+
+from collections.abc import Callable, Sequence
+from typing import TypeAlias
+
+from domain.timebase import Duration, Instant, seconds
+from service.storage.trends.rows import Rows
+from service.storage.trends.tiers import Tier
+
+Write: TypeAlias = Callable[[int, Rows], bool]
+"""Packs and writes rows of the tier with an index; returns whether that succeeded."""
+
+_PATIENCE = seconds(10.0)
+"""Rows that cannot be written are tried again for so long, or for as long as a block takes."""
+
+
+class Cascade:
+    """The rows of each tier that are in none of its blocks yet."""
+
+    def __init__(self, tiers: Sequence[Tier]) -> None:
+        self._tiers = tiers
+        self._waiting: list[list[Rows]] = [[] for _ in tiers]
+        self._since: list[Duration | None] = [None for _ in tiers]
+        """Running time when the first of them came."""
+        self.dropped = 0
+        """Rows that could not be written; the next tier has got them all the same."""
+
+    def add(self, rows: Rows, ran: Duration, tier: int = 0) -> None:
+        """Add rows to a tier.
+
+        Args:
+            rows: Not yet in any block of the tier.
+            ran: Running time.
+            tier: Index of the tier.
+        """
+        if len(rows):
+            self._waiting[tier].append(rows)
+            if self._since[tier] is None:
+                self._since[tier] = ran
+
+    def settle(self, write: Write, ran: Duration) -> None:
+        """Make blocks of what has waited long enough, and pass it on to the next tier.
+
+        Args:
+            write: Writes rows, sorted by signal and merged.
+            ran: Running time.
+        """
+        for index, tier in enumerate(self._tiers):
+            since = self._since[index]
+            if since is not None and ran - since >= tier.block:
+                overdue = ran - since - tier.block
+                self._pack(index, write, is_last_try=overdue >= max(tier.block, _PATIENCE))
+
+    def write_readings(self, write: Write) -> None:
+        """Make blocks of the single readings; the coarser tiers can be derived from these."""
+        if self._since[0] is not None:
+            self._pack(0, write, is_last_try=True)
+
+    def rows_of(self, tier: int, number: int) -> list[Rows]:
+        """Return what is in no block of a tier of a signal, in the order of arrival."""
+        return [
+            rows.of_signal(number) for index in range(tier, -1, -1) for rows in self._waiting[index]
+        ]
+
+    def oldest(self, tier: int, number: int) -> Instant | None:
+        """Return the time of the oldest of those rows; None: there is none."""
+        parts = [rows for rows in self.rows_of(tier, number) if len(rows)]
+        return min((int(rows.first.min()) for rows in parts), default=None)
+
+    def _pack(self, index: int, write: Write, *, is_last_try: bool) -> None:
+        rows = Rows.joined(self._waiting[index]).in_buckets(self._tiers[index].width)
+        self._waiting[index] = [rows]
+        is_written = write(index, rows)
+        if not is_written and not is_last_try:
+            return
+        if not is_written:
+            self.dropped += len(rows)
+        since = self._since[index]
+        self._waiting[index], self._since[index] = [], None
+        if index + 1 < len(self._tiers) and since is not None:
+            self.add(rows.in_buckets(self._tiers[index + 1].width), since, index + 1)

@@ -1,0 +1,104 @@
+"""One recorded story of two runs on a disk that may fail, and what must be true afterwards."""
+
+import shutil
+from dataclasses import dataclass, field
+from pathlib import Path
+
+from domain.errors import StorageDegradedError
+from domain.events.event import RecordedEvent
+from domain.kept import KeptHold
+from service.storage.journal import EventQuery
+from service.storage.records import step_from_line
+from service.storage.sqlite.folder import Retention
+from service.storage.sqlite.journal import SqliteJournal
+from service.storage.sqlite.opening import StoreSettings
+from service.storage.sqlite.recorded_log import RecordedLog
+from tests.support.faulty_disk import FaultyDisk, faulty
+from tests.support.manual_clock import ManualClock
+from tests.support.noted_robot import NotedRobot, boot
+
+STEPS = 5
+SMALL = Retention(file_bytes=60_000, total_bytes=10**9)
+"""A file of the log is full after two or three steps."""
+
+
+@dataclass
+class Told:
+    """What the story did, as those who got its answers know it."""
+
+    reasons: list[str] = field(default_factory=lambda: [""])
+    """Reason of the one hold after each step; empty: no hold."""
+    durable: int = 0
+    """How many steps were answered as durable."""
+    events: list[int] = field(default_factory=list)
+    """Ids of the events that were published."""
+
+
+async def tell(disk: FaultyDisk) -> Told:
+    """Let two runs of a service use a disk; none of them must notice more than it is told."""
+    told = Told()
+    with faulty(disk):
+        for number in (1, 2):
+            await _run(disk, number, told)
+    return told
+
+
+async def _run(disk: FaultyDisk, number: int, told: Told) -> None:
+    settings = StoreSettings(disk.folder, "robot", SMALL)
+    journal = await SqliteJournal.open(settings, boot(number), ManualClock())
+    robot = NotedRobot(journal)
+    for step in range(STEPS):
+        if disk.left is not None:
+            # Whoever is dead tells nobody anything.
+            break
+        reason = f"{number}.{step}"
+        robot.holds("operator", reason)
+        told.reasons.append(reason)
+        told.events.append(robot.next_event - 1)
+        robot.reads()
+        if step == 1:
+            journal.checkpoint(journal.last_step, robot.now, b"state" * 2_000)
+        try:
+            if await journal.commit(5.0):
+                told.durable = len(told.reasons) - 1
+        except StorageDegradedError:
+            pass
+    await journal.close()
+
+
+async def check(folder: Path, told: Told) -> None:
+    """Start once more on a disk that works, and look whether all is there that must be."""
+    settings = StoreSettings(folder, "robot", SMALL)
+    journal = await SqliteJournal.open(settings, boot(9), ManualClock())
+    first = journal.found.restored
+    await journal.close()
+
+    assert first.stop_because == "", first.stop_because
+    reasons = [hold.reason for hold in first.kept if isinstance(hold, KeptHold)]
+    assert (reasons or [""])[0] in told.reasons[told.durable :], (reasons, told)
+    next_ids = range(first.next_event, first.next_event + 1_000)
+    assert not [used for used in told.events if used in next_ids], (first, told)
+    assert len(told.events) == len(set(told.events)), told
+    _check_log(folder, told)
+
+
+def _check_log(folder: Path, told: Told) -> None:
+    """Check that each step is there once with its event, or not at all."""
+    log = RecordedLog(folder)
+    events = [event.id for event in log.events(EventQuery(after=0, limit=1_000))]
+    assert events == sorted(set(events))
+    in_steps: list[RecordedEvent] = []
+    for run in log.runs():
+        numbers = []
+        for number, line in log.lines(run.number):
+            numbers.append(number)
+            in_steps += step_from_line(line).outputs.events
+        assert numbers == sorted(set(numbers))
+    assert [event.id for event in in_steps] == events
+
+
+def fresh(folder: Path) -> Path:
+    """Return a folder that is not there yet."""
+    for path in (folder, folder.with_name(f"{folder.name}-left")):
+        shutil.rmtree(path, ignore_errors=True)
+    return folder

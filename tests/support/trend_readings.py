@@ -1,0 +1,46 @@
+"""Signals and readings for tests of their history."""
+
+from collections.abc import Iterable
+
+import numpy as np
+
+from domain.health.signals import Comparison, Condition, SignalKind, SignalSettings, SignalSpec
+from domain.timebase import Duration, Instant, seconds
+from service.storage.trends.rows import NO_ERROR, Rows
+from service.storage.trends.tiers import Tier
+
+START: Instant = 1_767_225_600_000_000_000
+"""2026-01-01T00:00:00Z."""
+
+SMALL_TIERS = (
+    Tier(0, 0, seconds(1e9), 10**9),
+    Tier(seconds(1.0), seconds(3.0), seconds(1e9), 10**9),
+    Tier(seconds(10.0), seconds(20.0), seconds(1e9), 10**9),
+    Tier(seconds(60.0), seconds(120.0), seconds(1e9), 10**9),
+)
+"""Whose blocks are soon full."""
+
+
+def load(name: str = "load", unit: str = "kg") -> SignalSettings:
+    """Return a number with two errors: OVERLOAD is worse than HEAVY."""
+    spec = SignalSpec(name, SignalKind.NUMBER, unit)
+    above = Comparison.ABOVE
+    conditions = (
+        Condition(f"{name.upper()}_OVERLOAD", above, 1500.0, key="overload"),
+        Condition(f"{name.upper()}_HEAVY", above, 1000.0, key="heavy"),
+    )
+    return SignalSettings(spec, conditions)
+
+
+def readings(
+    values: Iterable[float],
+    start: Instant = START,
+    every: Duration = seconds(0.05),
+    signal: int = 0,
+    errors: Iterable[int] | None = None,
+) -> Rows:
+    """Return readings of one signal at equal distances."""
+    value = np.array([*values], np.float64)
+    at = start + every * np.arange(len(value))
+    ranks = np.full(len(value), NO_ERROR) if errors is None else np.array([*errors], np.int64)
+    return Rows.of_readings(np.full(len(value), signal), at, value, ranks)

@@ -1,0 +1,50 @@
+"""Parts as text: the same as `PartJson` gives, whatever they are called and wherever they are."""
+
+from functools import partial
+
+from hypothesis import given
+from hypothesis import strategies as st
+
+from api.http.part_text import part_text
+from api.http.schemas.base import timestamp
+from api.http.schemas.parts import PartJson
+from domain.identifiers import ChangeId
+from domain.lifecycle import LifecycleState
+from domain.snapshot import Actual, EffectiveTarget, PartView
+from domain.state_and_mode import ModeName, PartName, StateAndMode
+from tests.support.manual_clock import ManualClock
+
+CLOCK = ManualClock()
+
+words = st.text(st.characters(exclude_categories=["Cs"]), max_size=12)
+names = words.map(PartName)
+states = st.sampled_from(LifecycleState)
+modes = st.none() | words.map(ModeName)
+views = st.builds(
+    PartView,
+    name=names,
+    kind=st.sampled_from(["system", "node"]),
+    parts=st.lists(names, max_size=3).map(tuple),
+    target=st.none() | st.builds(StateAndMode, states, modes),
+    effective_target=st.none() | st.builds(EffectiveTarget, states, modes, words),
+    actual=st.builds(
+        Actual,
+        states,
+        modes,
+        inferred=st.booleans(),
+        mode_inferred=st.booleans(),
+        undecidable=st.booleans(),
+        reason=st.none() | words,
+    ),
+    converged=st.booleans(),
+    deviation_since=st.none() | st.integers(0, 10**15),
+    deviation_reason=st.none() | words,
+    reachable=st.booleans(),
+    change=st.none() | words.map(ChangeId),
+)
+
+
+@given(views)
+def test_a_part_has_the_same_text_as_its_message(view: PartView) -> None:
+    shown = part_text(view, partial(timestamp, CLOCK))
+    assert shown == PartJson.of(view, CLOCK).model_dump_json()
