@@ -7,8 +7,8 @@ from pathlib import Path
 from domain.errors import StorageDegradedError
 from domain.events.event import RecordedEvent
 from domain.kept import KeptHold
+from service.codec.codec import STEPS
 from service.storage.journal import EventQuery
-from service.storage.records import step_from_line
 from service.storage.sqlite.folder import Retention
 from service.storage.sqlite.journal import SqliteJournal
 from service.storage.sqlite.opening import StoreSettings
@@ -17,7 +17,7 @@ from tests.support.faulty_disk import FaultyDisk, faulty
 from tests.support.manual_clock import ManualClock
 from tests.support.noted_robot import NotedRobot, boot
 
-STEPS = 5
+LENGTH = 5
 SMALL = Retention(file_bytes=60_000, total_bytes=10**9)
 """A file of the log is full after two or three steps."""
 
@@ -47,7 +47,7 @@ async def _run(disk: FaultyDisk, number: int, told: Told) -> None:
     settings = StoreSettings(disk.folder, "robot", SMALL)
     journal = await SqliteJournal.open(settings, boot(number), ManualClock())
     robot = NotedRobot(journal)
-    for step in range(STEPS):
+    for step in range(LENGTH):
         if disk.left is not None:
             # Whoever is dead tells nobody anything.
             break
@@ -92,7 +92,7 @@ def _check_log(folder: Path, told: Told) -> None:
         numbers = []
         for number, line in log.lines(run.number):
             numbers.append(number)
-            in_steps += step_from_line(line).outputs.events
+            in_steps += STEPS.decode(line).events
         assert numbers == sorted(set(numbers))
     assert [event.id for event in in_steps] == events
 

@@ -16,6 +16,9 @@ from domain.errors import PilothouseError, StorageDegradedError
 from domain.outbox import NOTHING, Outputs
 from domain.timebase import Duration, Instant, seconds
 from service.clock import Clock, since_epoch
+from service.codec.codec import KEPT, STEPS
+from service.codec.names import NAMES
+from service.codec.recorded_step import recorded_step
 from service.storage.event_rows import event_row
 from service.storage.journal import (
     Boot,
@@ -26,7 +29,6 @@ from service.storage.journal import (
     StorageStatus,
     StoredEvent,
 )
-from service.storage.records import kept_to_text, kind_name, step_to_line
 from service.storage.sqlite.backlog import Backlog
 from service.storage.sqlite.batch import IDS, OWN, Flight
 from service.storage.sqlite.connection import FAILURES, words
@@ -114,7 +116,7 @@ class SqliteJournal:
         outputs = step.outputs
         wall_ns = since_epoch(self._clock.wall_time(step.at))
         try:
-            line = step_to_line(step)
+            line = STEPS.encode(recorded_step(step.at, step.given, step.is_late, outputs))
             rows = [event_row(event, wall_ns) for event in outputs.events]
         except PilothouseError as error:
             self._backlog.lose(step.at, len(outputs.events), error.message)
@@ -318,11 +320,11 @@ class SqliteJournal:
     def _note_kept(self, outputs: Outputs) -> None:
         for change in outputs.kept:
             try:
-                text = None if change.value is None else kept_to_text(change.value)
+                text = None if change.value is None else KEPT.encode(change.value)
             except PilothouseError as error:
                 _log.error("%s cannot be kept: %s", change.name, error.message)
                 continue
-            self._backlog.change((kind_name(change.kind), change.name), text)
+            self._backlog.change((NAMES[change.kind], change.name), text)
         if self._opened.ids.see(outputs):
             for kind, end in self._opened.ids.reserve().items():
                 self._backlog.change((IDS, kind), _id_text(end))

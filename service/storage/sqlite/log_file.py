@@ -16,16 +16,12 @@ from service.storage.journal import Boot
 from service.storage.sqlite.batch import Batch, Changes, Flight, Key
 from service.storage.sqlite.connection import finish, new_file, open_to_write
 from service.storage.sqlite.log_summary import LogSummary, summary_of
-from service.storage.sqlite.schema import LOG, bring_up, version_of
+from service.storage.sqlite.schema import LOG, admit, bring_up, describe
 
 _COMPRESSION = 1
 _CHECKPOINT_AT_PAGES = 1_000
 _SYNC_EVERY: Duration = seconds(0.5)
 """What nobody waits for may be lost with the power for so long."""
-
-
-class BrokenFileError(Exception):
-    """A file does not hold what it should."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -62,12 +58,7 @@ class LogFile:
         """
         connection = open_to_write(path)
         try:
-            if not version_of(connection):
-                raise BrokenFileError("it is empty")
-            bring_up(connection, path, LOG)
-            found = connection.pragma("quick_check")
-            if found != "ok":
-                raise BrokenFileError(str(found))
+            admit(connection, path, LOG)
             return cls(path, number, connection)
         except BaseException:
             connection.close(True)
@@ -84,10 +75,7 @@ class LogFile:
         """
         with new_file(path) as connection:
             bring_up(connection, path, LOG)
-            connection.execute(
-                "INSERT INTO meta VALUES ('robot', ?), ('next_step', ?), ('next_batch', ?)",
-                (robot, next_.step, next_.batch),
-            )
+            describe(connection, robot=robot, next_step=next_.step, next_batch=next_.batch)
             _insert_run(connection, run, next_)
             _insert_changes(connection, kept.items())
         return cls(path, number, open_to_write(path))

@@ -14,10 +14,10 @@ from service.storage.errors import ForeignFolderError
 from service.storage.id_blocks import BLOCKS, BOOT, EVENT, UNKNOWN_TAIL, IdKind
 from service.storage.sqlite.batch import IDS, Key
 from service.storage.sqlite.connection import finish, open_to_write, reading, words
-from service.storage.sqlite.log_file import BrokenFileError, LogFile, Next
+from service.storage.sqlite.log_file import LogFile, Next
 from service.storage.sqlite.log_summary import LogSummary, summary_of
 from service.storage.sqlite.places import Places
-from service.storage.sqlite.schema import LOG, NewerFileError, bring_up, version_of
+from service.storage.sqlite.schema import LOG, BrokenFileError, NewerFileError, admit, version_of
 from service.storage.sqlite.state_file import StateFile
 
 _BROKEN = (
@@ -203,7 +203,7 @@ def _summary(left: Left, path: Path, number: int) -> LogSummary | None:
 def _finish(path: Path) -> None:
     connection = open_to_write(path)
     try:
-        bring_up(connection, path, LOG)
+        admit(connection, path, LOG)
     except BaseException:
         connection.close(True)
         raise

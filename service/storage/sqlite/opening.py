@@ -10,10 +10,11 @@ from domain.errors import PilothouseError
 from domain.inputs import Restored
 from domain.kept import Kept, KeptEmergencyStop
 from service.clock import since_epoch, to_datetime
+from service.codec.codec import KEPT
+from service.codec.names import NAMES
 from service.storage.errors import UnusableFolderError
 from service.storage.id_blocks import BOOT, CHANGE, EVENT, TASK, IdBlocks, IdKind, unreserved
 from service.storage.journal import Boot, Found, Plain
-from service.storage.records import kept_from_text, kept_to_text, kind_name
 from service.storage.sqlite.batch import IDS, OWN, Changes
 from service.storage.sqlite.connection import FAILURES, PRIVATE_FOLDER, words
 from service.storage.sqlite.folder import DEFAULT_RETENTION, Folder, Report, Retention, Start
@@ -137,7 +138,7 @@ def _first_changes(first: Restored, blocks: IdBlocks, boot: Boot) -> Changes:
     changes: Changes = {}
     if first.stop_because:
         stop = KeptEmergencyStop(True, "", first.stop_because, boot.started_at)
-        changes[kind_name(KeptEmergencyStop), stop.name] = kept_to_text(stop)
+        changes[NAMES[KeptEmergencyStop], stop.name] = KEPT.encode(stop)
     for kind, end in ({BOOT: first.boot + 1} | blocks.reserve()).items():
         changes[IDS, kind] = str(end).encode()
     return changes
@@ -155,7 +156,7 @@ def _read_back(left: Left) -> tuple[tuple[Kept, ...], tuple[str, ...]]:
         if kind in (IDS, OWN):
             continue
         try:
-            values.append(kept_from_text(text))
+            values.append(KEPT.decode(text))
         except PilothouseError as error:
             left_out.append(f"{kind} {name!r}: {error.message}")
     return tuple(values), tuple(left_out)

@@ -87,7 +87,7 @@ class RecordedLog:
         return [found[number] for number in sorted(found)]
 
     def lines(self, run: int, after_step: int = 0) -> Iterator[tuple[int, bytes]]:
-        """Yield the steps of a run in order, each with its number, as `step_from_line` reads them.
+        """Yield the steps of a run in order, each with its number; `STEPS` of the codec reads them.
 
         Args:
             run: Number of the run.

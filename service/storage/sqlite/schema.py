@@ -13,6 +13,8 @@ from typing import TypeAlias
 
 import apsw
 
+from service.codec.codec import VERSION
+
 Steps: TypeAlias = Sequence[str]
 """SQL of each step, from an empty file on."""
 
@@ -79,6 +81,10 @@ _SPARE_BYTES = 4 * 2**20
 """Free space that a migration leaves, beside twice the size of the file."""
 
 
+class BrokenFileError(Exception):
+    """A file does not hold what it should."""
+
+
 class NewerFileError(Exception):
     """A later version of Pilothouse wrote this file."""
 
@@ -90,6 +96,11 @@ class NoSpaceError(OSError):
 def version_of(connection: apsw.Connection) -> int:
     """Return how many steps a file has been through; 0: it is empty."""
     return int(connection.pragma("user_version"))
+
+
+def describe(connection: apsw.Connection, **meta: object) -> None:
+    """Write down what a new file is; the version of its records is added."""
+    connection.executemany("INSERT INTO meta VALUES (?, ?)", [*meta.items(), ("records", VERSION)])
 
 
 def bring_up(connection: apsw.Connection, path: Path, steps: Steps) -> None:
@@ -112,6 +123,26 @@ def bring_up(connection: apsw.Connection, path: Path, steps: Steps) -> None:
             connection.execute(step)
         connection.pragma("application_id", APPLICATION_ID)
         connection.pragma("user_version", len(steps))
+
+
+def admit(connection: apsw.Connection, path: Path, steps: Steps) -> None:
+    """Check that a file is whole, and bring it up to this release.
+
+    Raises:
+        BrokenFileError: It is damaged, or it is empty.
+        NewerFileError: It is of a later version, or holds records of one.
+        NoSpaceError: There is not enough free space to bring it up.
+        apsw.Error: It cannot be read or written.
+    """
+    if not version_of(connection):
+        raise BrokenFileError("it is empty")
+    found = connection.pragma("quick_check")
+    if found != "ok":
+        raise BrokenFileError(str(found))
+    bring_up(connection, path, steps)
+    records = connection.execute("SELECT value FROM meta WHERE name = 'records'").get
+    if not isinstance(records, int) or records > VERSION:
+        raise NewerFileError(f"records of version {records}; this release knows {VERSION}")
 
 
 def _require_space(path: Path) -> None:

@@ -12,8 +12,7 @@ import apsw
 
 from service.storage.sqlite.batch import Changes, Key
 from service.storage.sqlite.connection import finish, new_file, open_to_write
-from service.storage.sqlite.log_file import BrokenFileError
-from service.storage.sqlite.schema import STATE, bring_up, version_of
+from service.storage.sqlite.schema import STATE, admit, bring_up, describe
 
 _CHECKPOINT_AT_PAGES = 100
 
@@ -48,12 +47,7 @@ class StateFile:
         """
         connection = open_to_write(path)
         try:
-            if not version_of(connection):
-                raise BrokenFileError("it is empty")
-            bring_up(connection, path, STATE)
-            found = connection.pragma("quick_check")
-            if found != "ok":
-                raise BrokenFileError(str(found))
+            admit(connection, path, STATE)
             return cls(connection)
         except BaseException:
             connection.close(True)
@@ -70,7 +64,7 @@ class StateFile:
         """
         with new_file(path) as connection:
             bring_up(connection, path, STATE)
-            connection.execute("INSERT INTO meta VALUES ('robot', ?)", (robot,))
+            describe(connection, robot=robot)
             _apply(connection, dict(kept), applied)
         return cls(open_to_write(path))
 
