@@ -72,13 +72,14 @@ class EventLog(Watched):
         Raises:
             ValueError: An id does not follow the id of the newest event.
         """
+        ring, capacity = self._ring, self._capacity
         for event in events:
             if event.id != self._newest + 1:
                 raise ValueError(f"event {event.id} does not follow event {self._newest}")
-            if len(self._ring) < self._capacity:
-                self._ring.append(event)
+            if len(ring) < capacity:
+                ring.append(event)
             else:
-                self._ring[self._slot(event.id)] = event
+                ring[(event.id - self.before - 1) % capacity] = event
             self._newest = event.id
         if events:
             self._wake_watchers()

@@ -50,6 +50,9 @@ class FramePublisher:
         self._simulated = simulated
         self._changed_parts: dict[PartName, None] = {}
         """In the order in which they changed."""
+        self._noted_parts: list[frozenset[PartName]] = []
+        """Those that changed since, by input; put in order by the next frame: a request may change
+        ten thousand, and its own turn is long enough."""
         self._changed_signals: set[str] = set()
         self._signals_told_at: dict[str, Instant] = {}
         self._task_changed = False
@@ -76,7 +79,8 @@ class FramePublisher:
 
     def note(self, outputs: Outputs) -> None:
         """Remember what changed; the next frame shows it."""
-        self._changed_parts.update(dict.fromkeys(sorted(outputs.parts)))
+        if outputs.parts:
+            self._noted_parts.append(outputs.parts)
         self._changed_signals |= outputs.signals
         self._task_changed |= outputs.task_changed
         self._vehicle_changed |= outputs.vehicle_changed
@@ -119,6 +123,9 @@ class FramePublisher:
 
     def _take_parts(self, *, full: bool) -> Mapping[PartName, PartView]:
         """Return all parts for a full frame, or else those that changed first."""
+        for parts in self._noted_parts:
+            self._changed_parts.update(dict.fromkeys(sorted(parts)))
+        self._noted_parts.clear()
         if full:
             self._changed_parts.clear()
             return self._core.parts()

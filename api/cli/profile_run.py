@@ -2,7 +2,6 @@
 
 import asyncio
 import json
-import os
 import signal
 import sys
 import time
@@ -18,7 +17,7 @@ from api.cli.terminal_line import TerminalLine
 from api.client.outcomes import Json
 from api.distribution import installed_version
 from api.profiling.live_robot import NotSimulatedError, live_robot
-from api.profiling.machine import machine_facts
+from api.profiling.machine import load_facts, machine_facts
 from api.profiling.own_service import NotServingError, own_service
 from api.profiling.plot import NoMatplotlibError, check_plot, draw
 from api.profiling.profile import Progress, measure_runs
@@ -32,6 +31,10 @@ SUCCEEDED, FAILED, MISUSED = 0, 1, 2
 
 _MOCK_OFF = "# Readings come from the profile.\nmock: false\n"
 _RUNS, _SETUP = "runs.csv", "setup.json"
+_DECISIVE = frozenset({"version", "machine", "changed_settings"})
+"""Where profiles differ in these, they have no setup together."""
+_SHOWN = _DECISIVE | {"started_at", "load"}
+"""What a report shows of a setup."""
 _LINE_EVERY_S = 30.0
 """Between two lines of progress, where there is no terminal."""
 
@@ -205,8 +208,7 @@ def _setup(options: ProfileOptions, robot: Robot) -> Json:
         "version": installed_version(),
         "started_at": datetime.now(UTC).isoformat(timespec="seconds").replace("+00:00", "Z"),
         "machine": machine_facts(),
-        # Of the minute before; there is none on Windows.
-        "load_average": round(os.getloadavg()[0], 2) if hasattr(os, "getloadavg") else None,
+        "load": load_facts(),
         "model": str(options.model) if options.model else None,
         "robot": str(options.robot) if options.robot else None,
         "changed_settings": list(changed_settings(robot.settings)),
@@ -215,16 +217,23 @@ def _setup(options: ProfileOptions, robot: Robot) -> Json:
 
 
 def _setup_of(files: Sequence[Path]) -> Json:
-    """Return the setup beside raw data; empty if it is not known, or files differ in it."""
+    """Return the setup beside raw data; empty if it is not known, or files differ in it.
+
+    The load is left out where there are several: it is another one each time.
+    """
     found: list[dict[str, Any]] = []
     for file in files:
         try:
-            found.append(json.loads((file.parent / _SETUP).read_text(encoding="utf-8")))
+            setup = json.loads((file.parent / _SETUP).read_text(encoding="utf-8"))
         except (FileNotFoundError, ValueError):
             return {}
-    decisive = ("version", "machine", "changed_settings")
-    is_same = all(other.get(key) == found[0].get(key) for other in found for key in decisive)
-    return found[0] if is_same else {}
+        if not isinstance(setup, dict) or not _SHOWN.issubset(setup):
+            return {}
+        found.append(setup)
+    is_same = all(other[key] == found[0][key] for other in found for key in _DECISIVE)
+    if not is_same:
+        return {}
+    return found[0] if len(found) == 1 else {**found[0], "load": {}}
 
 
 def _report(

@@ -24,3 +24,21 @@ def _processor() -> str:
             if name.strip() == "model name":
                 return value.strip()
     return platform.processor() or platform.machine()
+
+
+def load_facts() -> dict[str, str]:
+    """Return what a latency depends on besides: other work, and the priority over it."""
+    facts = {}
+    if hasattr(os, "getloadavg"):
+        facts["average before"] = f"{os.getloadavg()[0]:.2f}"
+    if hasattr(os, "sched_getscheduler"):
+        facts["scheduling"] = _scheduling()
+    return facts
+
+
+def _scheduling() -> str:
+    real_time = {os.SCHED_FIFO: "SCHED_FIFO", os.SCHED_RR: "SCHED_RR"}
+    name = real_time.get(os.sched_getscheduler(0))
+    if name is None:
+        return f"normal, nice {os.getpriority(os.PRIO_PROCESS, 0)}"
+    return f"{name}, priority {os.sched_getparam(0).sched_priority}"

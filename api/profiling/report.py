@@ -58,11 +58,10 @@ def report_lines(runs: Sequence[Run], setup: Mapping[str, Any]) -> Iterator[str]
 def _setup_lines(setup: Mapping[str, Any]) -> Iterator[str]:
     if not setup:
         return
-    machine = ", ".join(f"{name} {value}" for name, value in setup["machine"].items())
     yield f"Pilothouse {setup['version']}, measured at {setup['started_at']}"
-    yield f"Machine: {machine}"
-    if setup["load_average"] is not None:
-        yield f"Load average before: {setup['load_average']:g}"
+    for name in ("machine", "load"):
+        if facts := ", ".join(f"{key} {value}" for key, value in setup[name].items()):
+            yield f"{name.capitalize()}: {facts}"
     for changed in setup["changed_settings"]:
         yield f"Setting: {changed}"
 

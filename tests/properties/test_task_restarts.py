@@ -1,6 +1,6 @@
 """Whenever the service dies: nothing is forgotten, nothing moves by itself, and the task goes on.
 
-`make soak` tells 3,000 stories, `make test` 60.
+`make soak` tells 3,000 stories, `make test` 40.
 """
 
 import os
@@ -13,7 +13,6 @@ import numpy as np
 from hypothesis import HealthCheck, given, settings
 
 from domain.commands import Drive
-from domain.findings import Blocker
 from domain.health.signals import Recovery, SignalSettings
 from domain.inputs import TaskRequest
 from domain.parts.system_model import SmhModel
@@ -187,23 +186,21 @@ def finish(robot: RestartingRobot) -> None:
     for owner in (*OWNERS, RESTART_HOLD):
         robot.release(owner)
     current = robot.core.driving.current_task
-    robot.advance(120.0)
-    assert reasons(robot) == []
+    for _ in range(120):
+        if robot.core.driving.current_task is None:
+            break
+        robot.advance(1.0)
+    assert list(robot.core.system_state().reasons) == []
     if current is not None:
         task = robot.core.driving.task(current.id)
         assert (task.status, task.reason, task.progress) == (TaskPhase.SUCCEEDED, None, 1.0)
-
-
-def reasons(robot: RestartingRobot) -> list[Blocker]:
-    """Return why the robot is in ERROR."""
-    return list(robot.core.system_state().reasons)
 
 
 SOAK = bool(os.environ.get("PILOTHOUSE_SOAK"))
 
 
 @settings(
-    max_examples=3_000 if SOAK else 60, suppress_health_check=list(HealthCheck), deadline=None
+    max_examples=3_000 if SOAK else 40, suppress_health_check=[HealthCheck.too_slow], deadline=None
 )
 @given(st.lists(steps(), min_size=1, max_size=12))
 def test_a_restart_forgets_nothing_and_moves_nothing(story: list[Step]) -> None:

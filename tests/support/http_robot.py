@@ -151,6 +151,8 @@ async def http_robot(text: str = ACTUATION, **options: Any) -> AsyncIterator[Htt
     async with running(robot.supervisor), robot.http:
         yield robot
     await close_workers(robot.app)
+    if robot.supervisor.trends is not None:
+        await robot.supervisor.trends.close()
 
 
 def http_scope(method: str, path: str, query: str = "", **headers: str) -> dict[str, Any]:

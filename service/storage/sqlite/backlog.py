@@ -1,10 +1,11 @@
 """What is noted and not yet on disk: bounded in bytes, in batches of which none is written twice.
 
-When it is full, steps are lost and counted until a hole in the log is written that says so; kept
-values are never lost, since a later one replaces an earlier one.
+When it is full, steps are lost; a hole in the log says so, and where. Kept values are never lost,
+since a later one replaces an earlier one.
 """
 
 from collections.abc import Sequence
+from dataclasses import replace
 
 from domain.timebase import Instant
 from service.storage.event_rows import EventRow
@@ -27,58 +28,61 @@ class Backlog:
         self._limit = limit_bytes
         self._next_batch = next_batch
         self._next_step = next_step
+        self._size = 0
         self._open = Batch()
-        self._bytes = 0
-        self._open_bytes = 0
+        self._sealed: list[Batch] = []
+        """Batches before the open one that were in no flight yet."""
         self._flight: tuple[Batch, ...] = ()
-        self._hole: Hole | None = None
         self.lost_steps = 0
         self.lost_events = 0
 
     @property
     def is_empty(self) -> bool:
         """Tell whether nothing was noted since the last flight."""
-        return self._open.is_empty and self._hole is None
+        return self._open.is_empty and not self._sealed
 
     @property
     def size(self) -> int:
         """Size of what waits, in bytes."""
-        return self._bytes + self._open_bytes
+        return self._size
 
     @property
     def last_step(self) -> int:
-        """Number of the last step."""
+        """Number of the step that was added last."""
         return self._next_step - 1
 
     def add_step(
         self, text: bytes, at: Instant, wall_ns: int, rows: Sequence[EventRow] = ()
     ) -> None:
         """Add a step, or lose it if there is no room."""
-        number = self._next_step
-        self._next_step += 1
         added = len(text)
         for row in rows:
             added += _BYTES_PER_EVENT + len(row.data) + len(row.words)
-        if self._hole is not None or self.size + added > self._limit:
+        if self._size + added > self._limit:
             self.lose(at, len(rows), "the queue is full")
             return
-        batch = self._open
+        batch = self._open_after_hole()
         if not batch.steps:
-            batch.first_step, batch.first_at = number, at
+            batch.first_step, batch.first_at = self._next_step, at
+        self._next_step += 1
         batch.steps.append(text)
         batch.last_at, batch.wall_ns = at, wall_ns
         batch.events.extend(rows)
-        self._open_bytes += added
+        self._grow(added)
 
     def lose(self, at: Instant, events: int, reason: str) -> None:
-        """Count a step that is not written down."""
+        """Count a step that is not written down.
+
+        Args:
+            at: When it was.
+            events: How many events it had.
+            reason: Why it is lost; of a hole the first one is told.
+        """
+        after = self._next_step - 1
+        self._next_step += 1
         self.lost_steps += 1
         self.lost_events += events
-        hole = self._hole
-        if hole is None:
-            self._hole = Hole(1, events, at, at, reason)
-        else:
-            self._hole = Hole(hole.steps + 1, hole.events + events, hole.from_at, at, hole.reason)
+        self._open.hole = joined(self._open.hole, Hole(after, 1, events, at, at, reason))
 
     def change(self, key: Key, value: bytes | None) -> None:
         """Keep a value, or keep it no longer (None)."""
@@ -86,51 +90,73 @@ class Backlog:
 
     def add_checkpoint(self, step: int, at: Instant, state: bytes) -> bool:
         """Add the state after a step; return whether there was room."""
-        if self._hole is not None or self.size + len(state) > self._limit:
+        if self._size + len(state) > self._limit:
             return False
-        self._open.checkpoints.append(Checkpoint(step, at, state))
-        self._open_bytes += len(state)
+        batch = self._open_after_hole()
+        batch.checkpoints.append(Checkpoint(step, at, state))
+        self._grow(len(state))
         return True
 
     def end_run(self) -> None:
         """Note that the run ends after what was added."""
-        self._open.ends_run = True
+        self._open_after_hole().ends_run = True
 
     def take(self, must_last: bool) -> Flight:
         """Return all that waits, for one transaction; it stays here until `written`."""
+        waiting = [*self._flight, *self._sealed]
         batch = self._open
-        if self._flight and not batch.steps and not batch.checkpoints and not batch.ends_run:
-            # While storage fails nothing but values may come: they need no batch of their own, as
-            # all values are written anew when it works again.
-            self._flight[-1].changes.update(batch.changes)
+        if waiting and not (batch.steps or batch.checkpoints or batch.ends_run):
+            # While storage fails nothing but values and losses may come, for hours. They need no
+            # batch of their own.
+            waiting[-1].changes.update(batch.changes)
+            waiting[-1].hole = joined(waiting[-1].hole, batch.hole)
         else:
-            batch.number = self._next_batch
             batch.first_step = batch.first_step or self._next_step
-            self._next_batch += 1
-            self._flight = (*self._flight, batch)
-        self._bytes += self._open_bytes
-        self._open, self._open_bytes = Batch(), 0
-        return Flight(self._flight, self._hole, must_last)
+            waiting.append(batch)
+        for batch in waiting:
+            if not batch.number:
+                batch.number = self._next_batch
+                self._next_batch += 1
+        self._open, self._sealed = Batch(), []
+        self._flight = tuple(waiting)
+        return Flight(self._flight, must_last)
 
-    def written(self, flight: Flight) -> None:
-        """Forget what was written."""
-        self._flight, self._bytes = (), 0
-        # Steps that were lost during the flight follow the hole: it goes on.
-        if flight.hole is not None and self._hole is not None:
-            lost = self._hole.steps - flight.hole.steps
-            events = self._hole.events - flight.hole.events
-            self._hole = (
-                Hole(lost, events, flight.hole.to_at, self._hole.to_at, self._hole.reason)
-                if lost
-                else None
-            )
+    def written(self) -> None:
+        """Forget what was in the last flight."""
+        self._size -= sum(batch.size for batch in self._flight)
+        self._flight = ()
 
-    def discard(self, flight: Flight, reason: str) -> None:
-        """Lose the steps of a flight that nothing is wrong with but itself; its values stay."""
-        changes = {key: v for batch in flight.batches for key, v in batch.changes.items()}
-        self._open.changes = changes | self._open.changes
-        self.written(flight)
-        for batch in flight.batches:
-            for _ in batch.steps:
-                self.lose(batch.last_at, 0, reason)
-            self.lost_events += len(batch.events)
+    def discard(self, reason: str) -> None:
+        """Lose the steps of the last flight, which are what is wrong; the values in it stay."""
+        if not self._flight:
+            return
+        gap = Batch(first_step=self._flight[0].first_step)
+        for batch in self._flight:
+            steps, events = len(batch.steps), len(batch.events)
+            self.lost_steps += steps
+            self.lost_events += events
+            lost = Hole(batch.first_step - 1, steps, events, batch.first_at, batch.last_at, reason)
+            gap.hole = joined(joined(gap.hole, lost), batch.hole)
+            gap.changes.update(batch.changes)
+        self.written()
+        self._sealed.insert(0, gap)
+
+    def _open_after_hole(self) -> Batch:
+        """Return the batch that the next step belongs to: a hole is the end of one."""
+        if self._open.hole is not None:
+            self._open.first_step = self._open.first_step or self._open.hole.after_step + 1
+            self._sealed.append(self._open)
+            self._open = Batch()
+        return self._open
+
+    def _grow(self, size: int) -> None:
+        self._open.size += size
+        self._size += size
+
+
+def joined(hole: Hole | None, more: Hole | None) -> Hole | None:
+    """Return one hole for two that follow each other."""
+    if hole is None or more is None:
+        return hole or more
+    steps, events = hole.steps + more.steps, hole.events + more.events
+    return replace(hole, steps=steps, events=events, to_at=more.to_at)

@@ -24,6 +24,19 @@ class Checkpoint:
     state: bytes
 
 
+@dataclass(frozen=True, slots=True)
+class Hole:
+    """Steps that were lost, since they could not be written."""
+
+    after_step: int
+    """Number of the last step before them."""
+    steps: int
+    events: int
+    from_at: Instant
+    to_at: Instant
+    reason: str
+
+
 @dataclass(slots=True)
 class Batch:
     """Steps that followed each other, and what they changed."""
@@ -40,22 +53,15 @@ class Batch:
     changes: Changes = field(default_factory=dict)
     checkpoints: list[Checkpoint] = field(default_factory=list)
     ends_run: bool = False
+    hole: Hole | None = None
+    """Lost after its last step."""
+    size: int = 0
+    """How much of the backlog it takes, in bytes."""
 
     @property
     def is_empty(self) -> bool:
         """Tell whether there is nothing to write."""
-        return not (self.steps or self.changes or self.checkpoints)
-
-
-@dataclass(frozen=True, slots=True)
-class Hole:
-    """Steps that were lost, since they could not be written."""
-
-    steps: int
-    events: int
-    from_at: Instant
-    to_at: Instant
-    reason: str
+        return not (self.steps or self.changes or self.checkpoints or self.hole)
 
 
 @dataclass(frozen=True, slots=True)
@@ -63,7 +69,5 @@ class Flight:
     """What is handed to the writer at once, and is one transaction."""
 
     batches: tuple[Batch, ...]
-    hole: Hole | None
-    """Lost after the last of these batches."""
     must_last: bool
     """Whether it must survive the loss of power when the writer reports success."""

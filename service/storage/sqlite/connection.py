@@ -7,8 +7,8 @@ from pathlib import Path
 
 import apsw
 
-PRIVATE_FILE, PRIVATE_FOLDER = 0o600, 0o700
-"""Who runs the service may read its folder, and nobody else."""
+PRIVATE_FILE = 0o600
+"""Whoever runs the service may read its files, and nobody else."""
 _PATIENCE_MS = 1_000
 """How long another process may hold a file; only the writer's thread and readers' threads wait."""
 SETTINGS = (

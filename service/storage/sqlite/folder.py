@@ -3,6 +3,7 @@
 All of this runs in the writer's thread. The log's commit is the commit point; the state follows.
 """
 
+import errno
 import shutil
 from collections.abc import Mapping
 from contextlib import suppress
@@ -119,6 +120,9 @@ class Folder:
             OSError: Likewise.
         """
         log = self._require_log()
+        if not log.path.exists():
+            # Writing to a file that somebody deleted succeeds.
+            raise FileNotFoundError(errno.ENOENT, "the log was deleted")
         changes = _changes_of(flight)
         log.write(flight, self._run, changes)
         self._count(log)
@@ -233,6 +237,8 @@ class Folder:
 
     def _reopened(self) -> LogFile:
         path = self._places.log(self._last_number)
+        # Somebody may have deleted the folder.
+        self._places.make()
         try:
             log = LogFile.open(path, self._last_number)
         except Exception as error:

@@ -263,15 +263,15 @@ class SqliteJournal:
         write = folder.write if self._fault is None else folder.recover
         try:
             await self._writer.run(lambda: write(flight))
-            self._backlog.written(flight)
-            self._wants_checkpoint |= flight.hole is not None
+            self._backlog.written()
+            self._wants_checkpoint |= any(batch.hole for batch in flight.batches)
             self._settle(waiters, None)
             self._take_report(await self._writer.run(lambda: folder.follow(flight)))
         except FAILURES as error:
             self._fail(words(error), waiters)
         except Exception as error:
             _log.exception("steps cannot be written down")
-            self._backlog.discard(flight, words(error))
+            self._backlog.discard(words(error))
             self._fail(words(error), waiters)
         self._flying = None
         self._go_on()

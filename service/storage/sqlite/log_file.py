@@ -16,7 +16,7 @@ from service.storage.journal import Boot
 from service.storage.sqlite.batch import Batch, Changes, Flight, Key
 from service.storage.sqlite.connection import finish, new_file, open_to_write
 from service.storage.sqlite.log_summary import LogSummary, summary_of
-from service.storage.sqlite.schema import LOG, admit, bring_up, describe
+from service.storage.sqlite.schema import LOG, bring_up, describe, examine
 
 _COMPRESSION = 1
 _CHECKPOINT_AT_PAGES = 1_000
@@ -56,9 +56,10 @@ class LogFile:
             NewerFileError: A later version wrote it.
             apsw.Error: It cannot be read or written.
         """
+        examine(path, LOG)
         connection = open_to_write(path)
         try:
-            admit(connection, path, LOG)
+            bring_up(connection, path, LOG)
             return cls(path, number, connection)
         except BaseException:
             connection.close(True)
@@ -107,9 +108,8 @@ class LogFile:
             for batch in flight.batches:
                 if batch.number > self.summary.last_batch:
                     summary = self._insert(batch, run, summary)
+                _insert_hole(self._connection, batch, run)
             _insert_changes(self._connection, changes.items())
-            if flight.hole is not None:
-                _insert_hole(self._connection, flight, run)
         self.summary = summary
         self._count_changes(changes)
         if is_synced:
@@ -252,17 +252,17 @@ def _insert_changes(
     )
 
 
-def _insert_hole(connection: apsw.Connection, flight: Flight, run: Run) -> None:
-    hole = flight.hole
-    assert hole is not None
-    connection.execute(
-        "INSERT INTO holes (batch, boot, steps, events, from_at, to_at, reason)"
-        " VALUES (?,?,?,?,?,?,?)",
-        (
-            *(flight.batches[-1].number, run.number, hole.steps, hole.events),
-            *(hole.from_at, hole.to_at, hole.reason),
-        ),
-    )
+def _insert_hole(connection: apsw.Connection, batch: Batch, run: Run) -> None:
+    """Write down what was lost after a batch; that may have grown since an attempt that failed."""
+    hole = batch.hole
+    if hole is not None:
+        connection.execute(
+            "INSERT OR REPLACE INTO holes VALUES (?,?,?,?,?,?,?,?)",
+            (
+                *(batch.number, run.number, hole.after_step, hole.steps, hole.events),
+                *(hole.from_at, hole.to_at, hole.reason),
+            ),
+        )
 
 
 def _number(connection: apsw.Connection, sql: str) -> int:

@@ -13,11 +13,11 @@ import apsw
 from service.storage.errors import ForeignFolderError
 from service.storage.id_blocks import BLOCKS, BOOT, EVENT, UNKNOWN_TAIL, IdKind
 from service.storage.sqlite.batch import IDS, Key
-from service.storage.sqlite.connection import finish, open_to_write, reading, words
+from service.storage.sqlite.connection import reading, words
 from service.storage.sqlite.log_file import LogFile, Next
 from service.storage.sqlite.log_summary import LogSummary, summary_of
 from service.storage.sqlite.places import Places
-from service.storage.sqlite.schema import LOG, BrokenFileError, NewerFileError, admit, version_of
+from service.storage.sqlite.schema import LOG, BrokenFileError, NewerFileError, version_of
 from service.storage.sqlite.state_file import StateFile
 
 _BROKEN = (
@@ -189,7 +189,7 @@ def _summary(left: Left, path: Path, number: int) -> LogSummary | None:
         with reading(path) as connection:
             is_older = version_of(connection) != len(LOG)
         if is_older or path.with_name(f"{path.name}-wal").exists():
-            _finish(path)
+            LogFile.open(path, number).finish()
         with reading(path) as connection:
             summary = summary_of(connection, path, number)
             return replace(summary, file_bytes=path.stat().st_size)
@@ -198,16 +198,6 @@ def _summary(left: Left, path: Path, number: int) -> LogSummary | None:
             raise
         left.broken[path] = words(error)
         return None
-
-
-def _finish(path: Path) -> None:
-    connection = open_to_write(path)
-    try:
-        admit(connection, path, LOG)
-    except BaseException:
-        connection.close(True)
-        raise
-    finish(connection)
 
 
 def _gather(left: Left) -> None:

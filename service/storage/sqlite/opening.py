@@ -16,7 +16,7 @@ from service.storage.errors import UnusableFolderError
 from service.storage.id_blocks import BOOT, CHANGE, EVENT, TASK, IdBlocks, IdKind, unreserved
 from service.storage.journal import Boot, Found, Plain
 from service.storage.sqlite.batch import IDS, OWN, Changes
-from service.storage.sqlite.connection import FAILURES, PRIVATE_FOLDER, words
+from service.storage.sqlite.connection import FAILURES, words
 from service.storage.sqlite.folder import DEFAULT_RETENTION, Folder, Report, Retention, Start
 from service.storage.sqlite.folder_lock import FolderLock
 from service.storage.sqlite.log_file import Next, Run
@@ -65,8 +65,7 @@ def open_folder(settings: StoreSettings, boot: Boot) -> Opened:
     """
     places = Places(settings.folder)
     try:
-        for folder in (places.folder, places.logs):
-            folder.mkdir(mode=PRIVATE_FOLDER, parents=True, exist_ok=True)
+        places.make()
         lock = FolderLock(places.lock)
     except OSError as error:
         raise UnusableFolderError(f"{places.folder} cannot be used: {words(error)}") from error

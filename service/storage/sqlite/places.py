@@ -4,6 +4,8 @@ import re
 from dataclasses import dataclass
 from pathlib import Path
 
+PRIVATE_FOLDER = 0o700
+"""Whoever runs the service may look into its folder, and nobody else."""
 _LOG_NAME = re.compile(r"(\d{6,})\.db")
 
 
@@ -27,6 +29,15 @@ class Places:
     def logs(self) -> Path:
         """Return the folder of the log."""
         return self.folder / "log"
+
+    def make(self) -> None:
+        """Make the folders that are missing.
+
+        Raises:
+            OSError: They cannot be made.
+        """
+        for folder in (self.folder, self.logs):
+            folder.mkdir(mode=PRIVATE_FOLDER, parents=True, exist_ok=True)
 
     def log(self, number: int) -> Path:
         """Return a file of the log."""

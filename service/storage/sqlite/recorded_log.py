@@ -163,11 +163,7 @@ _STEPS = (
     " AND first_step + count > ?2 + 1 ORDER BY number"
 )
 _CHECKPOINTS = "SELECT boot, step, at, version FROM checkpoints ORDER BY step"
-_HOLES = (
-    "SELECT holes.boot, first_step + count - 1, steps_lost, events, from_at, to_at, reason"
-    " FROM (SELECT batch, boot, steps AS steps_lost, events, from_at, to_at, reason, number AS n"
-    " FROM holes) AS holes JOIN batches ON batches.number = holes.batch ORDER BY n"
-)
+_HOLES = "SELECT boot, after_step, steps, events, from_at, to_at, reason FROM holes ORDER BY batch"
 
 
 def _run(row: tuple[Any, ...]) -> RecordedRun:

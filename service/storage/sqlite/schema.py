@@ -14,6 +14,7 @@ from typing import TypeAlias
 import apsw
 
 from service.codec.codec import VERSION
+from service.storage.sqlite.connection import reading
 
 Steps: TypeAlias = Sequence[str]
 """SQL of each step, from an empty file on."""
@@ -66,9 +67,9 @@ LOG: Steps = (
         step INTEGER PRIMARY KEY, batch INTEGER NOT NULL, boot INTEGER NOT NULL,
         at INTEGER NOT NULL, version TEXT NOT NULL, state BLOB NOT NULL
     );
-    -- Steps that were lost after a batch.
+    -- Steps that were lost at the end of a batch.
     CREATE TABLE holes (
-        number INTEGER PRIMARY KEY, batch INTEGER NOT NULL, boot INTEGER NOT NULL,
+        batch INTEGER PRIMARY KEY, boot INTEGER NOT NULL, after_step INTEGER NOT NULL,
         steps INTEGER NOT NULL, events INTEGER NOT NULL,
         from_at INTEGER NOT NULL, to_at INTEGER NOT NULL, reason TEXT NOT NULL
     );
@@ -107,14 +108,11 @@ def bring_up(connection: apsw.Connection, path: Path, steps: Steps) -> None:
     """Take a file through the steps that it lacks: all of them, or none.
 
     Raises:
-        NewerFileError: It is of a later version.
         NoSpaceError: There is not enough free space.
         apsw.Error: It cannot be written.
     """
     version = version_of(connection)
-    if version > len(steps):
-        raise NewerFileError(f"version {version} of the file; this release knows {len(steps)}")
-    if version == len(steps):
+    if version >= len(steps):
         return
     if version:
         _require_space(path)
@@ -125,24 +123,26 @@ def bring_up(connection: apsw.Connection, path: Path, steps: Steps) -> None:
         connection.pragma("user_version", len(steps))
 
 
-def admit(connection: apsw.Connection, path: Path, steps: Steps) -> None:
-    """Check that a file is whole, and bring it up to this release.
+def examine(path: Path, steps: Steps) -> None:
+    """Check that a file is whole, and that this release can read it; change nothing.
 
     Raises:
         BrokenFileError: It is damaged, or it is empty.
         NewerFileError: It is of a later version, or holds records of one.
-        NoSpaceError: There is not enough free space to bring it up.
-        apsw.Error: It cannot be read or written.
+        apsw.Error: It cannot be read, or it is no database.
     """
-    if not version_of(connection):
-        raise BrokenFileError("it is empty")
-    found = connection.pragma("quick_check")
-    if found != "ok":
-        raise BrokenFileError(str(found))
-    bring_up(connection, path, steps)
-    records = connection.execute("SELECT value FROM meta WHERE name = 'records'").get
-    if not isinstance(records, int) or records > VERSION:
-        raise NewerFileError(f"records of version {records}; this release knows {VERSION}")
+    with reading(path) as connection:
+        version = version_of(connection)
+        if not version:
+            raise BrokenFileError("it is empty")
+        if version > len(steps):
+            raise NewerFileError(f"version {version} of the file; this release knows {len(steps)}")
+        found = connection.pragma("quick_check")
+        if found != "ok":
+            raise BrokenFileError(str(found))
+        records = connection.execute("SELECT value FROM meta WHERE name = 'records'").get
+        if not isinstance(records, int) or records > VERSION:
+            raise NewerFileError(f"records of version {records}; this release knows {VERSION}")
 
 
 def _require_space(path: Path) -> None:

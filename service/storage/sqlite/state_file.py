@@ -12,7 +12,7 @@ import apsw
 
 from service.storage.sqlite.batch import Changes, Key
 from service.storage.sqlite.connection import finish, new_file, open_to_write
-from service.storage.sqlite.schema import STATE, admit, bring_up, describe
+from service.storage.sqlite.schema import STATE, bring_up, describe, examine
 
 _CHECKPOINT_AT_PAGES = 100
 
@@ -45,9 +45,10 @@ class StateFile:
             NewerFileError: A later version wrote it.
             apsw.Error: It cannot be read or written.
         """
+        examine(path, STATE)
         connection = open_to_write(path)
         try:
-            admit(connection, path, STATE)
+            bring_up(connection, path, STATE)
             return cls(connection)
         except BaseException:
             connection.close(True)

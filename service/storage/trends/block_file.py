@@ -6,12 +6,13 @@ power, the last of them may be missing, but the file is not damaged.
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
-from itertools import count
+from datetime import UTC, datetime
 from pathlib import Path
 
 import apsw
 
 from domain.timebase import Duration, Instant
+from service.storage.sqlite.connection import SUFFIXES, open_to_write
 from service.storage.trends.tiers import Tier
 
 MEMORY = ":memory:"
@@ -62,9 +63,11 @@ class BlockFile:
         Raises:
             ForeignVersionError: It is of a newer version.
             apsw.Error: It cannot be opened, or is no such file.
+            OSError: It cannot be created.
         """
         self._tiers = tuple(tiers)
-        self._connection = apsw.Connection(path)
+        in_memory = path == MEMORY
+        self._connection = apsw.Connection(path) if in_memory else open_to_write(Path(path))
         try:
             self._prepare(path)
             self._bytes = {tier.name: self._measured(tier) for tier in tiers}
@@ -107,6 +110,7 @@ class BlockFile:
         """
         name = self._tiers[tier].name
         upto = self._newest(self._tiers[tier - 1]) if tier else 0
+        size, freed = self._bytes[name] + sum(map(_size, blocks)), 0
         with self._connection as connection:
             connection.executemany(
                 f"INSERT INTO {name}(signal, from_at, to_at, bytes, rows, ran, upto, errors, data)"
@@ -116,7 +120,6 @@ class BlockFile:
                     for b in blocks
                 ],
             )
-            size = self._bytes[name] + sum(map(_size, blocks))
             freed = self._free(self._tiers[tier], size, ran)
         self._bytes[name] = size - freed
 
@@ -157,9 +160,8 @@ class BlockFile:
         version = self._value("PRAGMA user_version") or 0
         if version > VERSION:
             raise ForeignVersionError(path, version)
-        run("PRAGMA journal_mode = WAL")
         run("PRAGMA synchronous = NORMAL")
-        run("PRAGMA mmap_size = 0")
+        run("PRAGMA wal_autocheckpoint = 1000")
         with self._connection:
             run(
                 "CREATE TABLE IF NOT EXISTS signals"
@@ -211,10 +213,10 @@ def set_aside(path: str) -> Path:
     Raises:
         OSError: It cannot be renamed.
     """
-    names = (Path(f"{path}.aside-{number}") for number in count(1))
-    aside = next(name for name in names if not name.exists())
-    for suffix in ("-wal", "-shm", ""):
-        part = Path(path + suffix)
+    stamp = datetime.now(UTC).strftime("%Y%m%dT%H%M%S.%fZ")
+    aside = Path(f"{path}.broken-{stamp}")
+    for suffix in SUFFIXES:
+        part = Path(f"{path}{suffix}")
         if part.exists():
             part.rename(f"{aside}{suffix}")
     return aside

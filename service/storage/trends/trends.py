@@ -2,23 +2,22 @@
 
 import asyncio
 import logging
-from collections.abc import Callable, Iterable, Sequence
-from concurrent.futures import Future, ThreadPoolExecutor
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass
-from typing import ParamSpec
+from functools import partial
+from threading import BoundedSemaphore
 
 from domain.errors import StorageDegradedError, UnknownSignalError
 from domain.health.signals import SignalSettings
 from domain.inputs import SignalValue
 from domain.timebase import Instant, seconds
+from service.storage.sqlite.disk_thread import DiskThread
 from service.storage.trends.block_file import MEMORY
 from service.storage.trends.history import Trend
 from service.storage.trends.intake import Intake
 from service.storage.trends.known_signals import KnownSignals
 from service.storage.trends.recorder import Recorder
-from service.storage.trends.tiers import MEMORY_TIERS, TIERS, Tier
-
-P = ParamSpec("P")
+from service.storage.trends.tiers import MEMORY_TIERS, TIERS
 
 log = logging.getLogger(__name__)
 
@@ -28,8 +27,8 @@ HAND_OVER = seconds(5.0)
 _CLOSING_S = 2.0
 """How long the end of the service waits for a disk."""
 
-_MOST_ASKED = 32
-"""Charts that may be waited for at once: while a disk hangs, more would only pile up."""
+_MOST_CHARTS = 32
+"""Charts that wait for the thread at once: while a disk hangs, more would only pile up."""
 
 _INT64 = 2**63 - 1
 
@@ -49,28 +48,22 @@ class TrendsStatus:
 class Trends:
     """Every method is called on the event loop, and returns at once unless it is awaited."""
 
-    def __init__(
-        self,
-        signals: Iterable[SignalSettings],
-        path: str = MEMORY,
-        tiers: Sequence[Tier] | None = None,
-    ) -> None:
+    def __init__(self, signals: Iterable[SignalSettings], path: str = MEMORY) -> None:
         """Prepare; a thread starts with the first readings.
 
         Args:
             signals: All signals that are declared.
             path: Of the file; `MEMORY`: the history ends with the service.
-            tiers: From fine to coarse; None: the usual ones.
         """
-        tiers = tiers or (MEMORY_TIERS if path == MEMORY else TIERS)
         self._signals = KnownSignals(signals)
         self._known = self._signals.by_name
-        self._recorder = Recorder(self._signals, path, tiers)
+        self._recorder = Recorder(self._signals, path, MEMORY_TIERS if path == MEMORY else TIERS)
         self._intake = Intake()
-        self._thread = ThreadPoolExecutor(1, "trends")
-        self._recording: Future[None] | None = None
-        self._asked = 0
-        """Charts that are waited for."""
+        self._thread: DiskThread | None = None
+        """None: there was nothing to do yet."""
+        self._is_closed = False
+        self._settling: asyncio.Future[None] | None = None
+        self._charts = BoundedSemaphore(_MOST_CHARTS)
         self._started: Instant | None = None
         self._now: Instant = 0
         self._due: Instant = 0
@@ -85,22 +78,23 @@ class Trends:
         """Take a reading.
 
         Args:
-            signal: Name of a signal that is declared.
+            signal: Its name; one that is not declared is left out.
             at: When it arrived; not before the previous one.
             value: As the signal holds it.
             error: The error of the value in force then, if any.
         """
-        known = self._known[signal]
-        self._intake.add(known.number, at, known.number_of(value), known.rank_of(error))
+        known = self._known.get(signal)
+        if known is not None:
+            self._intake.add(known.number, at, known.number_of(value), known.rank_of(error))
 
     def pass_time(self, now: Instant) -> None:
         """Hand the readings over to the thread, every five seconds and unless it is busy."""
         self._set_time(now)
-        is_busy = self._recording is not None and not self._recording.done()
-        if now >= self._due and not is_busy:
+        is_busy = self._settling is not None and not self._settling.done()
+        if now >= self._due and not is_busy and not self._is_closed:
             self._due = now + HAND_OVER
             self._hand_over()
-            self._recording = self._do(self._recorder.settle, self._elapsed())
+            self._settling = self._do(partial(self._recorder.settle, self._elapsed()))
 
     async def history(self, signal: str, from_at: Instant, to_at: Instant, points: int) -> Trend:
         """Return the history of a signal, including all that was noted before.
@@ -113,28 +107,34 @@ class Trends:
 
         Raises:
             UnknownSignalError: It is not declared.
-            StorageDegradedError: The file cannot be read, or a disk hangs.
+            StorageDegradedError: The file cannot be read, a disk hangs, or the service ends.
         """
         known = self._known.get(signal)
         if known is None:
             raise UnknownSignalError("signal", signal, [*self._known])
-        if self._asked >= _MOST_ASKED:
+        if self._is_closed or not self._charts.acquire(blocking=False):
             raise StorageDegradedError("the history of signals takes too long to read")
         self._hand_over()
         from_at, to_at = max(from_at, -_INT64 // 2), min(to_at, _INT64 // 2)
-        asked = self._thread.submit(self._recorder.trend, known, from_at, to_at, points)
-        self._asked += 1
-        try:
-            return await asyncio.wrap_future(asked)
-        finally:
-            self._asked -= 1
+
+        def trend() -> Trend:
+            try:
+                return self._recorder.trend(known, from_at, to_at, points)
+            finally:
+                # Here, since whoever asked may have gone meanwhile.
+                self._charts.release()
+
+        return await self._started_thread().run(trend)
 
     async def close(self) -> None:
         """Write down what was noted; a disk that hangs is not waited for."""
+        if self._is_closed:
+            return
         self._hand_over()
-        closed = self._thread.submit(self._recorder.close, self._elapsed())
-        await asyncio.wait([asyncio.wrap_future(closed)], timeout=_CLOSING_S)
-        self._thread.shutdown(wait=False)
+        closing = self._do(partial(self._recorder.close, self._elapsed()))
+        self._is_closed = True
+        await asyncio.wait([closing], timeout=_CLOSING_S)
+        self._started_thread().end()
 
     def _set_time(self, now: Instant) -> None:
         if self._started is None:
@@ -146,14 +146,19 @@ class Trends:
 
     def _hand_over(self) -> None:
         if (rows := self._intake.take()) is not None:
-            self._do(self._recorder.add, rows, self._elapsed())
+            self._do(partial(self._recorder.add, rows, self._elapsed()))
 
-    def _do(self, work: Callable[P, None], *args: P.args, **named: P.kwargs) -> Future[None]:
-        doing = self._thread.submit(work, *args, **named)
+    def _do(self, work: Callable[[], None]) -> asyncio.Future[None]:
+        doing = self._started_thread().run(work)
         doing.add_done_callback(_log_failure)
         return doing
 
+    def _started_thread(self) -> DiskThread:
+        if self._thread is None:
+            self._thread = DiskThread("trends")
+        return self._thread
 
-def _log_failure(done: Future[None]) -> None:
+
+def _log_failure(done: asyncio.Future[None]) -> None:
     if not done.cancelled() and (error := done.exception()) is not None:
         log.error("readings are missing in the history of signals", exc_info=error)

@@ -36,6 +36,14 @@ def test_concerns_settle_once_none_of_them_moves() -> None:
     assert (first.moves, second.moves) == (-4, -1)
 
 
+def test_no_concern_settles_again_that_has_settled_since_the_last_change() -> None:
+    first, second = Restless(1), Shy(0)
+
+    settle([first, second], 0, max_rounds=6)
+
+    assert (first.moves, second.moves) == (-1, -1)
+
+
 def test_concerns_that_never_settle_are_an_error_that_names_them() -> None:
     with pytest.raises(NotSettledError) as caught:
         settle([Concern(), Restless(10_000), Shy(10_000)], 0, max_rounds=50)

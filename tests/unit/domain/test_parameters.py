@@ -5,7 +5,13 @@ from typing import NamedTuple, cast
 import pytest
 
 from domain.errors import InvalidValueError
-from domain.parameters import ParameterValue, fits_type, same_value, value_type
+from domain.parameters import (
+    ParameterValue,
+    check_values,
+    fits_type,
+    same_value,
+    value_type,
+)
 from tests.support.tables import table
 
 
@@ -45,6 +51,12 @@ def test_what_no_parameter_can_hold_is_refused(value: object) -> None:
         value_type(cast("ParameterValue", value))
 
     assert refused.value.message == f"{value!r} is not a parameter value"
+    with pytest.raises(InvalidValueError):
+        check_values((1, cast("ParameterValue", value)))
+
+
+def test_what_a_parameter_can_hold_is_taken() -> None:
+    check_values((True, 1, 1.0, "a", (True,), (1,), (1.0,), ("a",), ()))
 
 
 class Change(NamedTuple):

@@ -247,6 +247,8 @@ def test_several_profiles_are_analysed_together(
     assert "ESTOP, 4 runs" in printed
     assert "4 runs, 2 failed" in printed
     assert printed.startswith("Pilothouse")
+    assert "Machine: " in printed
+    assert "Load: " not in printed
 
 
 def test_the_setup_of_profiles_that_differ_is_left_out(
@@ -260,6 +262,20 @@ def test_the_setup_of_profiles_that_differ_is_left_out(
 
     files = [tmp_path / "a" / "runs.csv", tmp_path / "b" / "runs.csv"]
     assert analyse(files, None, "text", plot=False) == 0
+
+    assert capsys.readouterr().out.startswith("Latencies in ms")
+
+
+@pytest.mark.parametrize("text", [None, "[1]", "{}", "no JSON"])
+def test_raw_data_without_its_setup_is_analysed_all_the_same(
+    bench: Bench, tmp_path: Path, capsys: pytest.CaptureFixture[str], text: str | None
+) -> None:
+    measure(options(tmp_path))
+    setup = tmp_path / "setup.json"
+    setup.unlink() if text is None else setup.write_text(text)
+    capsys.readouterr()
+
+    assert analyse([tmp_path / "runs.csv"], None, "text", plot=False) == 0
 
     assert capsys.readouterr().out.startswith("Latencies in ms")
 

@@ -5,7 +5,7 @@ SETUP = {
     "version": "1.2.3",
     "started_at": "2026-01-01T00:00:00Z",
     "machine": {"CPU": "Z80", "cores": "1"},
-    "load_average": 0.25,
+    "load": {"average before": "0.25", "scheduling": "normal, nice 0"},
     "changed_settings": ["gps_accuracy.for_s is 0.5 (default 15)"],
 }
 
@@ -25,7 +25,7 @@ def test_machine_load_and_changed_times_are_named_first() -> None:
     assert lines[:4] == [
         "Pilothouse 1.2.3, measured at 2026-01-01T00:00:00Z",
         "Machine: CPU Z80, cores 1",
-        "Load average before: 0.25",
+        "Load: average before 0.25, scheduling normal, nice 0",
         "Setting: gps_accuracy.for_s is 0.5 (default 15)",
     ]
 

@@ -1,5 +1,6 @@
-"""What a full garbage collection has looked at once is not looked at again."""
+"""Garbage collections come between turns, and look at nothing again that they have looked at."""
 
+import asyncio
 import gc
 import weakref
 from collections.abc import Iterator
@@ -19,13 +20,17 @@ class Clock:
     now_s = 0.0
 
 
+@pytest.fixture
+def clock() -> Clock:
+    return Clock()
+
+
 @pytest.fixture(autouse=True)
-def clock() -> Iterator[Clock]:
+def heap(clock: Clock) -> Iterator[Heap]:
     thresholds = gc.get_threshold()
-    clock = Clock()
     heap = Heap(lambda: clock.now_s)
     heap.settle()
-    yield clock
+    yield heap
     gc.callbacks.remove(heap.follow)
     gc.set_threshold(*thresholds)
     gc.unfreeze()
@@ -88,3 +93,65 @@ def test_garbage_that_is_little_makes_no_collection_long(clock: Clock) -> None:
     gc.collect()
 
     assert garbage[0]() is not None
+
+
+@pytest.fixture
+def begun() -> Iterator[list[int]]:
+    """The generations of the collections that began."""
+    generations: list[int] = []
+
+    def note(phase: str, info: dict[str, int]) -> None:
+        if phase == "start":
+            generations.append(info["generation"])
+
+    gc.callbacks.append(note)
+    yield generations
+    gc.callbacks.remove(note)
+
+
+async def a_tick(heap: Heap) -> None:
+    """Let a tick pass, and what it leaves to the next turn."""
+    heap.note_tick(0.05)
+    await asyncio.sleep(0)
+
+
+async def test_a_long_turn_is_not_made_longer_by_collections(heap: Heap, begun: list[int]) -> None:
+    things = [Thing() for _ in range(10_000)]
+    assert not begun
+
+    heap.note_tick(0.05)
+    assert not begun, "the tick goes on first"
+    await asyncio.sleep(0)
+
+    assert len(begun) == 1
+    assert len(things) == 10_000
+
+
+async def test_no_tick_collects_what_is_little(heap: Heap, begun: list[int]) -> None:
+    gc.collect()
+    begun.clear()
+
+    things = [Thing() for _ in range(100)]
+    await a_tick(heap)
+
+    assert not begun
+    assert len(things) == 100
+
+
+async def test_older_objects_are_looked_at_less_often(heap: Heap, begun: list[int]) -> None:
+    gc.collect()
+    begun.clear()
+
+    things: list[Thing] = []
+    for _ in range(25):
+        things += [Thing() for _ in range(1_000)]
+        await a_tick(heap)
+
+    assert begun.count(0) > begun.count(1) > begun.count(2) == 1
+
+
+def test_python_collects_itself_where_no_tick_comes(begun: list[int]) -> None:
+    things = [Thing() for _ in range(120_000)]
+
+    assert begun
+    assert len(things) == 120_000

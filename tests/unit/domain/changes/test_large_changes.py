@@ -7,9 +7,18 @@ from domain.changes.changes import MAX_IN_FLIGHT, STARTS_AT_ONCE
 from domain.commands import AskParameters, AskTransition
 from domain.events.changes import StepStarted
 from domain.identifiers import ChangeId
-from domain.inputs import CancelRequest, ModeRequest, Reading, Readings, TimePassed
+from domain.inputs import (
+    CancelRequest,
+    ModeRequest,
+    NodeReport,
+    Reading,
+    Readings,
+    TimePassed,
+)
+from domain.lifecycle import LifecycleState
 from domain.outbox import Outputs
 from domain.snapshot import ChangeStatus, StepStatus
+from domain.state_and_mode import PartName
 from tests.support.big_model import FAST, SLOW, big_model
 from tests.support.core_robot import CoreRobot
 from tests.support.good import GOOD
@@ -78,6 +87,35 @@ def test_a_node_that_was_not_started_yet_is_left_alone_once_the_change_is_cancel
     robot.give(CancelRequest(ChangeId("c1")))
     while robot.core.wake_at() == robot.now:
         assert asked(robot.give(TimePassed())) == 0
+
+
+def test_a_request_makes_nothing_for_nodes_whose_turn_has_not_come(robot: CoreRobot) -> None:
+    request(robot, FAST)
+    assert len(robot.change(ChangeId("c1")).steps) == 3 * STARTS_AT_ONCE
+
+
+def test_a_node_that_reports_before_its_turn_begins_then(robot: CoreRobot) -> None:
+    request(robot, FAST)
+    last = PartName(f"node_{NODES - 1}")
+    outputs = robot.give(NodeReport(last, reachable=True, state=LifecycleState.UNCONFIGURED))
+    assert [c.node for c in outputs.commands if isinstance(c, AskTransition)] == [last]
+    robot.advance(5)
+    assert robot.change(ChangeId("c1")).status is ChangeStatus.SUCCEEDED
+    assert [s.node for s in robot.change(ChangeId("c1")).steps].count(last) == 3
+
+
+def test_a_part_may_be_asked_for_something_else_before_the_turn_of_its_nodes(
+    robot: CoreRobot,
+) -> None:
+    request(robot, FAST)
+    last = PartName(f"node_{NODES - 1}")
+    robot.give(ModeRequest(last, SLOW))
+    robot.advance(5)
+    assert robot.change(ChangeId("c1")).status is ChangeStatus.SUPERSEDED
+    assert robot.change(ChangeId("c2")).status is ChangeStatus.SUCCEEDED
+    assert robot.actual(last) == f"active.{SLOW}"
+    assert robot.actual("node_0") == f"active.{FAST}"
+    assert all(part.change is None for part in robot.core.parts().values())
 
 
 def test_a_newer_change_begins_while_nodes_of_the_older_one_wait(robot: CoreRobot) -> None:

@@ -93,9 +93,9 @@ def _change() -> Change:
 
 def test_a_change_is_shown_with_the_steps_of_all_nodes_in_their_order() -> None:
     change = _change()
+    change.set_out({BASE: GOAL, ARM: GOAL})
     for node in (BASE, ARM):
-        change.pursuits[node] = pursuit = Pursuit(C1, node, GOAL)
-        pursuit.plan((CONFIGURE, ACTIVATE))
+        change.pursue(node).plan((CONFIGURE, ACTIVATE))
     view = change.view()
     assert [(step.node, step.action) for step in view.steps] == [
         (BASE, CONFIGURE),
@@ -114,6 +114,16 @@ def test_a_table_of_steps_is_read_as_any_sequence() -> None:
     assert table != tuple(table)[:3]
     with pytest.raises(IndexError):
         table[4]
+
+
+def test_a_node_is_shown_in_its_place_whenever_its_turn_comes() -> None:
+    change = _change()
+    change.set_out({BASE: GOAL, ARM: GOAL})
+    change.pursue(ARM).plan((CONFIGURE,))
+    assert [step.node for step in change.view().steps] == [ARM]
+    change.pursue(BASE).plan((CONFIGURE,))
+    assert [step.node for step in change.view().steps] == [BASE, ARM]
+    assert (change.open, change.node_count) == ({BASE, ARM}, 2)
 
 
 def test_a_packed_change_is_shown_as_before() -> None:

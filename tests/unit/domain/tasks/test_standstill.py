@@ -4,9 +4,10 @@ from collections.abc import Callable
 
 import pytest
 
-from domain.inputs import Reading, Readings
+from domain.inputs import Reading, Readings, Restored
 from domain.parts.system_model import SmhModel
 from domain.simulation.vehicle_settings import Noise, Plant, VehicleSettings
+from domain.snapshot import TaskPhase
 from domain.supervision import SupervisionSettings
 from domain.tasks.settings import TaskSettings
 from domain.timebase import seconds
@@ -442,3 +443,19 @@ def test_it_is_published_at_once() -> None:
     assert outputs.system_state
     assert outputs.vehicle_changed
     assert [event.kind for event in outputs.events] == ["vehicle.still_moving"]
+
+
+# --- after a restart of the service --------------------------------------------------------------
+
+
+def test_a_vehicle_that_rolls_on_while_the_service_restarts_is_told() -> None:
+    before = driving()
+    after = ScriptedRobot(pose=False, good=False, start=before.now)
+    after.give(Restored(before.all_kept(), boot=2))
+    after.advance(2.0, speed_mps=1.0)
+    assert told(after) == []
+    assert after.task.status is TaskPhase.PAUSED
+
+    after.advance(1.0, speed_mps=1.0)
+    assert told(after) == ["vehicle.still_moving"]
+    assert reason(after) == "STILL_MOVING"

@@ -48,6 +48,22 @@ async def test_a_signal_that_there_is_not_has_no_history(trends: Trends) -> None
     assert "did you mean load?" in str(raised.value.hint)
 
 
+async def test_a_reading_of_a_signal_that_there_is_not_is_left_out(trends: Trends) -> None:
+    trends.note("laod", START, 1.0, None)
+
+    assert (await trends.history("load", START - MINUTE, START, 100)).points == []
+
+
+async def test_once_it_is_closed_nothing_waits_for_it(trends: Trends) -> None:
+    await trends.close()
+    trends.note("load", START, 1.0, None)
+    trends.pass_time(START)
+    trends.pass_time(START + HAND_OVER)
+
+    with pytest.raises(StorageDegradedError):
+        await trends.history("load", START - MINUTE, START, 100)
+
+
 async def test_times_that_no_clock_shows_are_answered_too(trends: Trends) -> None:
     trends.note("load", START, 1.0, None)
 
@@ -92,7 +108,7 @@ async def test_a_disk_that_hangs_stops_nothing(
 ) -> None:
     released = Event()
     monkeypatch.setattr(Recorder, "settle", lambda *_: released.wait(30))
-    monkeypatch.setattr(module, "_MOST_ASKED", 1)
+    monkeypatch.setattr(module, "_MOST_CHARTS", 1)
     trends = Trends([load()], str(tmp_path / "trends.db"))
     trends.pass_time(START)
     trends.pass_time(START + HAND_OVER)
