@@ -51,7 +51,6 @@ from service.exported_record import InvalidExportError
 from service.files.csv_table import InvalidWaypointsError
 from service.files.robot_file import InvalidRobotFileError
 from service.files.text_file import UnreadableFileError
-from service.history.event_history import UnreadableLogError
 from service.recorded_pieces import NothingRecordedError
 from service.start_task import StartTaskError
 from service.worker import OutOfMemoryError, TooComplexError, WorkerBusyError, WorkerClosedError
@@ -95,7 +94,6 @@ STATUS_OF: Mapping[type[PilothouseError], HTTPStatus] = {
     WorkerClosedError: HTTPStatus.SERVICE_UNAVAILABLE,
     BackendUnavailableError: HTTPStatus.SERVICE_UNAVAILABLE,
     StorageDegradedError: HTTPStatus.SERVICE_UNAVAILABLE,
-    UnreadableLogError: HTTPStatus.SERVICE_UNAVAILABLE,
     # Files are read before the service accepts requests.
     InvalidRobotFileError: HTTPStatus.INTERNAL_SERVER_ERROR,
     UnreadableFileError: HTTPStatus.INTERNAL_SERVER_ERROR,
