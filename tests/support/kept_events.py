@@ -9,8 +9,8 @@ from domain.events.event import RecordedEvent
 from domain.inputs import Restored
 from service.clock import Clock
 from service.event_log import EventLog
-from service.history.event_filter import KindPattern, named_parts
 from service.history.event_history import EventHistory
+from service.storage.event_rows import named_parts
 from service.storage.journal import (
     Boot,
     EventQuery,
@@ -20,9 +20,10 @@ from service.storage.journal import (
     StorageStatus,
     StoredEvent,
 )
+from service.storage.kind_pattern import KindPattern
 from service.supervisor import Supervisor
-from tests.support import frames
 from tests.support.frames import Happened
+from tests.support.frames import event as made
 from tests.support.manual_clock import ManualClock
 
 _RESERVED = 20
@@ -65,7 +66,7 @@ class Run:
         """Let events happen that nobody has written down yet; return their ids."""
         first = self.log.newest + 1
         for number in range(first, first + count):
-            told = frames.event(number, happened)
+            told = made(number, happened)
             self.log.append(told)
             self.journal.note_events(told)
         return list(range(first, first + count))
