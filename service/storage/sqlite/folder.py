@@ -251,10 +251,17 @@ class Folder:
         log.begin_run(self._run, {}, self._next)
         return log
 
-    def _new_log(self) -> LogFile:
+    def _new_log(self, dictionary: bytes = b"") -> LogFile:
         number = self._last_number + 1
-        path = self._places.log(number)
-        log = LogFile.begin(path, number, self._robot, self._run, self._kept, self._next)
+        log = LogFile.begin(
+            self._places.log(number),
+            number,
+            self._robot,
+            self._run,
+            self._kept,
+            self._next,
+            dictionary,
+        )
         self._last_number, self._began_file = number, True
         return log
 
@@ -262,7 +269,7 @@ class Folder:
         keep = self._retention
         if log.size() < keep.file_bytes and log.summary.running_ns < keep.file_running:
             return
-        self._log = self._new_log()
+        self._log = self._new_log(log.dictionary)
         log.finish()
         self._closed.append(replace(log.summary, file_bytes=log.path.stat().st_size))
         self._follow({})
