@@ -21,6 +21,7 @@ from tests.support.folder_robot import (
     spoil,
     started,
 )
+from tests.support.waiting import until
 
 PROJECT = Path(__file__).resolve().parents[5]
 
@@ -312,6 +313,7 @@ async def test_nobody_else_can_read_the_folder(folder: Path) -> None:
     await robot.journal.commit(ENOUGH_S)
     await robot.journal.commit(ENOUGH_S)
 
+    await until(lambda: "state.db-wal" in modes(folder))
     found = modes(folder)
     await robot.journal.close()
 
