@@ -267,7 +267,9 @@ class Folder:
 
     def _rotate(self, log: LogFile) -> None:
         keep = self._retention
-        if log.size() < keep.file_bytes and log.summary.running_ns < keep.file_running:
+        # What is kept may be large by itself; it is in each file.
+        grown = log.size() - log.first_size
+        if grown < keep.file_bytes and log.summary.running_ns < keep.file_running:
             return
         self._log = self._new_log(log.dictionary)
         log.finish()

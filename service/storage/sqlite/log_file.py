@@ -48,6 +48,8 @@ class LogFile:
         self.summary = summary_of(connection, path, number)
         self.dictionary: bytes = _dictionary(connection)
         """Of its steps; empty as long as there were too few."""
+        self.first_size = 0
+        """Of what it began with, in bytes; 0 if it was begun by an earlier run."""
         self._maker = DictionaryMaker()
         self.last_change: int = _number(connection, "SELECT max(number) FROM changes")
 
@@ -105,7 +107,9 @@ class LogFile:
             )
             _insert_run(connection, run, next_)
             _insert_changes(connection, kept.items())
-        return cls(path, number, open_to_write(path))
+        file = cls(path, number, open_to_write(path))
+        file.first_size = file.size()
+        return file
 
     def begin_run(self, run: Run, changes: Changes, next_: "Next") -> None:
         """Write down that a run begins, and what it keeps from the start on."""
