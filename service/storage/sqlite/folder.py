@@ -109,7 +109,7 @@ class Folder:
             self._update(changes)
         for path in left.broken:
             _move_aside(path)
-        self._follow(changes)
+        self._follow({**left.lag, **changes})
         self._has_started = True
 
     def write(self, flight: Flight) -> None:
