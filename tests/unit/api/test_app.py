@@ -55,6 +55,7 @@ CONTRACT = {
     "/examples/tracks/{name}": {"get"},
     "/simulations": {"post"},
     "/events": {"get"},
+    "/events/{event}/causes": {"get"},
     "/livez": {"get"},
     "/readyz": {"get"},
     "/healthz": {"get"},
