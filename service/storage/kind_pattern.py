@@ -1,4 +1,4 @@
-"""What the kinds of events are that a query asks for."""
+"""Which kinds of events a text means."""
 
 
 class KindPattern:

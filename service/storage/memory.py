@@ -170,5 +170,5 @@ class _Matches:
             and (query.to_at is None or row.wall_ns <= since_epoch(query.to_at))
             and (self._kind is None or self._kind.matches(row.kind))
             and (query.part is None or query.part in row.parts)
-            and (query.actor is None or (row.actor != "" and row.actor == query.actor))
+            and (query.actor is None or row.actor == query.actor)
         )

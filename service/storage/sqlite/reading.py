@@ -42,7 +42,7 @@ def read_events(files: Sequence[LogSummary], query: EventQuery) -> list[StoredEv
     """
     is_forward = query.after is not None
     found: list[StoredEvent] = []
-    current = files[-1]
+    current = files[-1] if files else None
     for file in files if is_forward else reversed(files):
         if len(found) < query.limit and (file is current or _may_hold(file, query)):
             found += _read_file(file.path, query, query.limit - len(found))
@@ -92,7 +92,7 @@ def _conditions(connection: apsw.Connection, query: EventQuery) -> tuple[list[st
         kinds = _kinds(connection, query.kind)
         require(f"events.kind IN ({','.join('?' * len(kinds))})", *kinds)
     if query.actor is not None:
-        require("events.actor = ? AND events.actor != ''", query.actor)
+        require("events.actor = ?", query.actor)
     if query.part is not None:
         require("events.id IN (SELECT event FROM event_parts WHERE part = ?)", query.part)
     return conditions, values
