@@ -13,7 +13,6 @@ from domain.events.kinds import EVENTS
 from domain.state_and_mode import PartName
 from service.clock import since_epoch
 from service.storage.event_rows import event_row, named_parts, stored_event
-from tests.support.frames import Happened
 from tests.support.manual_clock import START
 from tests.support.record_samples.events import EVENTS as SAMPLES
 
@@ -55,11 +54,6 @@ def test_a_number_that_json_does_not_have_is_null_as_in_the_stream(value: float)
     row = event_row(RecordedEvent(1, 0, None, Actor(), read), WALL_NS)
 
     assert '"battery_level":null' in row.data
-
-
-def test_an_event_names_the_part_or_the_node_that_it_is_about() -> None:
-    assert named_parts(ChangeRequested(PartName("arm"), mode="FAST")) == ("arm",)
-    assert named_parts(Happened(1)) == ()
 
 
 def test_a_read_only_mapping_is_read_back_as_a_mapping() -> None:
