@@ -78,7 +78,7 @@ export function mayMove(state) {
 /** What was lost in a restart of the service; empty without one. */
 export function restartWords({ restartedAt, boot }) {
   if (restartedAt === null) return "";
-  const kept = boot > 1 ? "nothing moves until you ask for it" : "earlier tasks and holds are gone";
+  const kept = boot > 1 ? "nothing moves before somebody asks" : "earlier tasks and holds are gone";
   return `Service restarted at ${timeOfDay(restartedAt)}: ${kept}.`;
 }
 

@@ -97,7 +97,7 @@ def restart_sentence(view: View) -> Sentence | None:
         return None
     when = words.time_of_day(seconds_of(at))
     is_kept = view.robot.boot > 1
-    kept = "nothing moves until you ask for it" if is_kept else "earlier tasks and holds are gone"
+    kept = "nothing moves before somebody asks" if is_kept else "earlier tasks and holds are gone"
     return Sentence("RESTARTED", f"at {when}; {kept}")
 
 

@@ -145,7 +145,7 @@ def test_a_restart_is_told_for_ten_minutes() -> None:
     assert told.text.endswith("earlier tasks and holds are gone")
     kept = robot(hello("two", after(3), boot=2), frame(after(4)))
     assert restart_sentence(view(kept, later_s=60.0)) == Sentence(
-        "RESTARTED", f"{told.text.partition(';')[0]}; nothing moves until you ask for it"
+        "RESTARTED", f"{told.text.partition(';')[0]}; nothing moves before somebody asks"
     )
     assert restart_sentence(view(restarted, later_s=700.0)) is None
     assert restart_sentence(view(robot())) is None
