@@ -121,19 +121,21 @@ class SqliteJournal:
         if self._is_closed:
             return
         outputs = step.outputs
-        wall_ns = since_epoch(self._clock.wall_time(step.at))
         try:
             line = STEPS.encode(recorded_step(step.at, step.given, step.is_late, outputs))
-            rows = [event_row(event, wall_ns) for event in outputs.events]
+            rows = [event_row(event, self._wall_ns(event.at)) for event in outputs.events]
         except PilothouseError as error:
             self._backlog.lose(step.at, len(outputs.events), error.message)
         else:
-            self._backlog.add_step(line, step.at, wall_ns, rows)
+            self._backlog.add_step(line, step.at, self._wall_ns(step.at), rows)
         if outputs is not NOTHING:
             self._note_kept(outputs)
         if step.at - self._checkpoint_at >= CHECKPOINT_EVERY:
             self._wants_checkpoint = True
         self._schedule()
+
+    def _wall_ns(self, at: Instant) -> int:
+        return since_epoch(self._clock.wall_time(at))
 
     def keep(self, name: str, value: Plain) -> None:
         """Keep a value of the service itself."""
