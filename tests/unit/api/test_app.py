@@ -56,6 +56,7 @@ CONTRACT = {
     "/simulations": {"post"},
     "/events": {"get"},
     "/events/{event}/causes": {"get"},
+    "/storage": {"get"},
     "/livez": {"get"},
     "/readyz": {"get"},
     "/healthz": {"get"},
