@@ -12,7 +12,7 @@ from typing import Final
 
 from pydantic_core import to_json
 
-from domain.errors import PilothouseError, StorageDegradedError
+from domain.errors import StorageDegradedError
 from domain.outbox import NOTHING, Outputs
 from domain.timebase import Duration, Instant, seconds
 from service.clock import Clock, since_epoch
@@ -124,8 +124,10 @@ class SqliteJournal:
         try:
             line = STEPS.encode(recorded_step(step.at, step.given, step.is_late, outputs))
             rows = [event_row(event, self._wall_ns(event.at)) for event in outputs.events]
-        except PilothouseError as error:
-            self._backlog.lose(step.at, len(outputs.events), error.message)
+        except Exception as error:
+            # Whatever is wrong with a step, the robot is supervised on.
+            _log.exception("a step cannot be written down")
+            self._backlog.lose(step.at, len(outputs.events), words(error))
         else:
             self._backlog.add_step(line, step.at, self._wall_ns(step.at), rows)
         if outputs is not NOTHING:
@@ -332,8 +334,8 @@ class SqliteJournal:
         for change in outputs.kept:
             try:
                 text = None if change.value is None else KEPT.encode(change.value)
-            except PilothouseError as error:
-                _log.error("%s cannot be kept: %s", change.name, error.message)
+            except Exception:
+                _log.exception("%s cannot be kept", change.name)
                 continue
             self._backlog.change((NAMES[change.kind], change.name), text)
         if self._opened.ids.see(outputs):
