@@ -47,7 +47,7 @@ SLOW_S: Final = 1.0
 CLOSE_PATIENCE_S: Final = 5.0
 OPEN_PATIENCE_S: Final = 60.0
 CHECKPOINT_EVERY: Final[Duration] = seconds(600.0)
-_READ_PATIENCE_S: Final = 0.5
+_READ_PATIENCE_S: Final = 2.0
 _READ_LIMIT_S: Final = 5.0
 
 _log = logging.getLogger(__name__)
