@@ -140,6 +140,9 @@ class EventJournal:
     def keep(self, name: str, value: Plain) -> None:
         """Keep nothing."""
 
+    is_durable = False
+    fault = None
+
     @property
     def wants_checkpoint(self) -> bool:
         """Return False: steps are not kept."""

@@ -112,6 +112,16 @@ class SqliteJournal:
         return self._boot
 
     @property
+    def is_durable(self) -> bool:
+        """Return True."""
+        return True
+
+    @property
+    def fault(self) -> str | None:
+        """Return why storage is degraded; None: it is not."""
+        return self._fault or self._slowness() or self._report.state_fault
+
+    @property
     def wants_checkpoint(self) -> bool:
         """Tell whether a replay could not go on from what was written down lately."""
         return self._wants_checkpoint
@@ -171,7 +181,7 @@ class SqliteJournal:
             self._settings.folder,
             self._opened.found.restored.boot,
             self._report,
-            self._fault or self._slowness() or self._report.state_fault,
+            self.fault,
             (self._backlog.lost_steps, self._backlog.lost_events),
         )
 
