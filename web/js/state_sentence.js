@@ -75,6 +75,14 @@ export function mayMove(state) {
   return movingAt(state) !== null || Boolean(ALARMS[state.systemState?.reasons[0]?.code]);
 }
 
+/** That what happens is not stored: `{word, text}`; null while it is. */
+export function storageSentence({ systemState }, contact) {
+  const fault = systemState?.storage_fault;
+  if (!fault) return null;
+  if (contact.level === "lost") return { word: "STORAGE FAILED", text: fault };
+  return { word: "STORAGE FAILS", text: `${fault}; a restart may forget what you ask now` };
+}
+
 /** What was lost in a restart of the service; empty without one. */
 export function restartWords({ restartedAt, boot }) {
   if (restartedAt === null) return "";

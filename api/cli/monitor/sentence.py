@@ -1,4 +1,4 @@
-"""The sentences at the top: state of the robot, emergency stop, connection, restart.
+"""The sentences at the top: state of the robot, emergency stop, connection, storage, restart.
 
 `web/js/state_sentence.js` has the same rules; one test runs both over the same cases.
 """
@@ -88,6 +88,17 @@ def standstill_words(robot: Robot) -> str:
     stop = robot.emergency_stop
     stands = stop is not None and stop["standstill_at"]
     return "the vehicle is at a standstill" if stands else "no standstill yet"
+
+
+def storage_sentence(view: View) -> Sentence | None:
+    """Return that what happens is not stored; None while it is."""
+    fault = (view.robot.system_state or {}).get("storage_fault")
+    if fault is None:
+        return None
+    if view.contact.level is not Level.LIVE:
+        return Sentence("STORAGE FAILED", fault, level="attention")
+    text = f"{fault}; a restart may forget what you ask now"
+    return Sentence("STORAGE FAILS", text, level="attention")
 
 
 def restart_sentence(view: View) -> Sentence | None:

@@ -45,14 +45,15 @@ class StopButton extends HTMLElement {
     // On pointerdown and not on click: a finger that slides off must still stop the robot.
     this.button.addEventListener("pointerdown", ({ button }) => button === 0 && this.#engage());
     this.button.addEventListener("click", () => this.#engage());
-    this.release.addEventListener("ph-held", () => this.#release());
+    this.release.addEventListener("ph-held", ({ detail }) => this.#release(detail.volatile));
   }
 
-  update({ state, contact }) {
+  update({ state, contact, volatile }) {
     this.#latch = state.emergencyStop;
     this.#moves = mayMove(state);
     this.#stands = contact.level === "lost" ? "" : standstillWords(state);
     this.release.disabled = contact.level === "lost";
+    this.release.volatile = volatile;
     this.#render();
   }
 
@@ -61,7 +62,7 @@ class StopButton extends HTMLElement {
     this.#sending = true;
     this.#problem = null;
     this.#render();
-    while (!(await this.#put(true, "STOP on the monitor page"))) {
+    while (!(await this.#put({ engaged: true, reason: "STOP on the monitor page" }))) {
       this.#undelivered = true;
       this.#render();
       await new Promise((resolve) => setTimeout(resolve, RETRY_MS));
@@ -70,15 +71,17 @@ class StopButton extends HTMLElement {
     this.#render();
   }
 
-  async #release() {
-    await whileSending(this.release.button, () => this.#put(false, "released on the monitor page"));
+  async #release(volatile) {
+    const body = { engaged: false, reason: "released on the monitor page" };
+    if (volatile) body.volatile = true;
+    await whileSending(this.release.button, () => this.#put(body));
     this.#render();
   }
 
-  async #put(engaged, reason) {
+  async #put(body) {
     try {
       const options = { keepalive: true, timeoutMs: ANSWER_MS };
-      this.#latch = await request("PUT", "/emergency_stop", { engaged, reason }, options);
+      this.#latch = await request("PUT", "/emergency_stop", body, options);
       this.#problem = null;
     } catch (error) {
       this.#problem = error.problem;
