@@ -303,6 +303,15 @@ CASES = (
     ),
 )
 
+FULL: Json = {**told.system_state(), "storage_fault": "the disk is full"}
+STORAGE: tuple[tuple[Json, Literal["live", "lost"], tuple[str, str] | None], ...] = (
+    (told.system_state(), "live", None),
+    (told.system_state(), "lost", None),
+    (FULL, "live", ("STORAGE FAILS", "the disk is full; a restart may forget what you ask now")),
+    (FULL, "lost", ("STORAGE FAILED", "the disk is full")),
+)
+"""System state, contact, and what is said of storage: a word and a text."""
+
 
 def combinations() -> Iterator[dict[str, Any]]:
     """Yield the members of a frame for each combination of what a robot can be in."""
