@@ -97,6 +97,17 @@ CASES = (
         ),
     ),
     Case(
+        "a task over a restart",
+        "PAUSED",
+        "calm",
+        "task t1 at 42 %, held by restart and gate (the gate is shut)",
+        members=members(
+            paused(),
+            told.task("PAUSED"),
+            (told.hold("restart", "the task goes on when the hold restart is released"), GATE),
+        ),
+    ),
+    Case(
         "five holds",
         "PAUSED",
         "calm",

@@ -170,16 +170,19 @@ def _activity(robot: Robot) -> tuple[str, str]:
 
 def _held_by(holds: Sequence[Json]) -> str:
     """Return "held by gate (the gate is shut), operator and loading"; nothing without holds."""
-    named = [
-        hold["owner"] + (f" ({hold['reason']})" if hold["reason"] else "")
-        for hold in holds[:_NAMED]
-    ]
+    named = [_hold_words(hold) for hold in holds[:_NAMED]]
     if len(holds) > _NAMED:
         named.append(f"{len(holds) - _NAMED} more")
     if not named:
         return ""
     *others, last = named
     return f"held by {', '.join(others)} and {last}" if others else f"held by {last}"
+
+
+def _hold_words(hold: Json) -> str:
+    owner, reason = hold["owner"], hold["reason"]
+    # The name of the hold of a restart says why; its reason says how it ends, in the list of holds.
+    return f"{owner} ({reason})" if reason and owner != "restart" else owner
 
 
 def _aborted(robot: Robot) -> Iterator[str]:
