@@ -164,6 +164,8 @@ def refuse_first(page: Page, path: str) -> list[Any]:
         if "volatile=true" in route.request.url or "volatile" in body:
             route.continue_()
         else:
+            # As long as the service waits for the disk.
+            page.wait_for_timeout(2100)
             route.fulfill(status=503, json=REFUSED)
 
     page.route(path, answer)

@@ -10,6 +10,8 @@ import { mayMove, standstillWords } from "/web/js/state_sentence.js";
 import { timeOfDay } from "/web/js/words.js";
 
 const ANSWER_MS = 2000;
+/** A release waits up to 2 s for the disk before it is carried out, and as long for its outcome. */
+const RELEASED_MS = 8000;
 const RETRY_MS = 500;
 
 class StopButton extends HTMLElement {
@@ -62,7 +64,7 @@ class StopButton extends HTMLElement {
     this.#sending = true;
     this.#problem = null;
     this.#render();
-    while (!(await this.#put({ engaged: true, reason: "STOP on the monitor page" }))) {
+    while (!(await this.#put({ engaged: true, reason: "STOP on the monitor page" }, ANSWER_MS))) {
       this.#undelivered = true;
       this.#render();
       await new Promise((resolve) => setTimeout(resolve, RETRY_MS));
@@ -74,13 +76,13 @@ class StopButton extends HTMLElement {
   async #release(volatile) {
     const body = { engaged: false, reason: "released on the monitor page" };
     if (volatile) body.volatile = true;
-    await whileSending(this.release.button, () => this.#put(body));
+    await whileSending(this.release.button, () => this.#put(body, RELEASED_MS));
     this.#render();
   }
 
-  async #put(body) {
+  async #put(body, timeoutMs) {
     try {
-      const options = { keepalive: true, timeoutMs: ANSWER_MS };
+      const options = { keepalive: true, timeoutMs };
       this.#latch = await request("PUT", "/emergency_stop", body, options);
       this.#problem = null;
     } catch (error) {
