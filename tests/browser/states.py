@@ -87,7 +87,7 @@ def restarted(page: Page, service: Service) -> None:
     drive(service)
     service.kill()
     service.start()
-    page.locator(".notice").last.wait_for()
+    page.locator(".notice").wait_for()
 
 
 def storage(page: Page, service: Service) -> None:

@@ -64,7 +64,7 @@ def test_a_task_over_a_restart_waits_for_a_long_press_and_goes_on(
     expect(sentence(page)).to_contain_text("RUNNING: task t1")
     restart(page, kept)
     expect(sentence(page)).to_contain_text("PAUSED: task t1")
-    notice = page.locator("ph-state-bar .notice").last
+    notice = page.locator("ph-state-bar .notice")
     expect(notice).to_contain_text(
         re.compile(r"^Service restarted at [\d:]+: nothing moves until you ask for it\.")
     )

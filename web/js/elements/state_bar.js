@@ -23,7 +23,7 @@ class StateBar extends HTMLElement {
     this.storageWord = el("strong");
     this.storageText = el("span");
     const storageSaid = el("span", {}, this.storageWord, this.storageText);
-    this.storage = el("p", { class: "notice storage", hidden: true }, storageSaid);
+    this.storage = el("p", { class: "storage", hidden: true }, storageSaid);
     this.unstored = el("span", { role: "status" });
     document.addEventListener("ph-unstored", () => (this.#unstoredAt = performance.now()));
     this.restart = el("span");
@@ -62,7 +62,7 @@ class StateBar extends HTMLElement {
     this.acknowledge.show({ signals: state.signals, enabled, volatile });
     const storage = storageSentence(state, contact);
     setAttribute(this.storage, "hidden", storage === null);
-    setText(this.storageWord, `${storage?.word}: `);
+    setText(this.storageWord, storage ? `${storage.word}: ` : "");
     setText(this.storageText, storage?.text ?? "");
     const restart = restartWords(state);
     setAttribute(this.notice, "hidden", restart === "");
