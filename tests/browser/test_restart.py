@@ -66,7 +66,7 @@ def test_a_task_over_a_restart_waits_for_a_long_press_and_goes_on(
     expect(sentence(page)).to_contain_text("PAUSED: task t1")
     notice = page.locator("ph-state-bar .notice")
     expect(notice).to_contain_text(
-        re.compile(r"^Service restarted at [\d:]+: nothing moves until you ask for it\.")
+        re.compile(r"^Service restarted at [\d:]+: nothing moves before somebody asks\.")
     )
     hold = page.get_by_role("list", name="Holds").get_by_role("listitem")
     expect(hold).to_contain_text("restart: the service was restarted")
