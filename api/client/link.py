@@ -139,8 +139,12 @@ class Link:
     def _remember(self, frame: Json) -> None:
         """Remember the last event received; after a reconnect, the stream resumes after it."""
         match frame["type"]:
+            case "hello" if self._epoch is None:
+                self._epoch, self._last_event_id = frame["epoch"], frame["newest"]
             case "hello" if frame["epoch"] != self._epoch:
-                self._epoch, self._last_event_id = frame["epoch"], 0
+                # Ids go on if the service kept its earlier runs.
+                self._epoch = frame["epoch"]
+                self._last_event_id = self._last_event_id if frame["boot"] > 1 else 0
             case "event":
                 self._last_event_id = max(self._last_event_id, frame["id"])
             case "gap":

@@ -50,22 +50,29 @@ def draw(runs: Sequence[Run], file: Path) -> None:
 
     # Without a display, and without opening a window.
     mpl.use("Agg")
-    figure, axes = pyplot.subplots(1, 2, figsize=(10, 4.5), sharey=True, layout="constrained")
+    figure, axes = pyplot.subplots(
+        1, 2, figsize=(10, 4.5), sharex=True, sharey=True, layout="constrained"
+    )
     for side, latency in zip(axes, (_STOP, _START), strict=True):
         _draw(side, runs, latency)
     axes[0].set_ylabel("share of the runs, %")
-    axes[1].legend(loc="lower right")
+    figure.legend(*axes[1].get_legend_handles_labels(), loc="outside right center")
     figure.savefig(file, dpi=100)
     pyplot.close(figure)
 
 
 def _draw(axes: "Axes", runs: Sequence[Run], latency: Latency) -> None:
+    from matplotlib.ticker import LogLocator, NullFormatter, StrMethodFormatter
+
     for trigger in dict.fromkeys(run.trigger for run in runs):
         own = [latency_ms(run, latency) for run in runs if run.trigger == trigger]
         _draw_shares(axes, own, trigger, "-")
     echoes = [echo for run in runs for echo in echoes_ms(run)]
     _draw_shares(axes, echoes, "echo", ":")
     axes.set(title=f"From {latency.words}", xlabel="ms", xscale="log", ylim=(0, 101))
+    axes.xaxis.set_major_locator(LogLocator(subs=(1, 2, 5)))
+    axes.xaxis.set_major_formatter(StrMethodFormatter("{x:g}"))
+    axes.xaxis.set_minor_formatter(NullFormatter())
     axes.grid(visible=True, which="both", alpha=0.3)
 
 

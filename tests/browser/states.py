@@ -17,6 +17,7 @@ from typing import Any, Literal
 
 from playwright.sync_api import Browser, Page, WebSocketRoute, sync_playwright
 
+from tests.browser.earlier_runs import tell_earlier_runs
 from tests.browser.robots import large_robot, troubled_robot
 from tests.browser.station import CHROMIUM, CHROMIUM_ARGUMENTS, Service, free_port
 
@@ -144,6 +145,18 @@ def still_moving(frame: dict[str, Any]) -> None:
         frame["vehicle"]["speed_mps"] = 1.1
 
 
+def earlier_events(page: Page, service: Service) -> None:
+    """The end of the list after two restarts, the earlier of them after a kill."""
+    del service
+    tell_earlier_runs(page)
+    button = page.get_by_role("button", name="Earlier")
+    for _ in range(2):
+        button.click()
+        page.wait_for_timeout(500)
+    button.scroll_into_view_if_needed()
+    page.locator("li.restart").last.scroll_into_view_if_needed()
+
+
 def in_utm(frame: dict[str, Any]) -> None:
     if "vehicle" in frame and frame["vehicle"]["pose"]:
         frame["vehicle"]["pose"] |= {"x_m": UTM[0], "y_m": UTM[1], "yaw_rad": 0.6}
@@ -162,6 +175,7 @@ STATES: dict[str, tuple[Robot, Act]] = {
     "rejected": ("example", rejected),
     "sending": ("example", sending),
     "far_down": ("large", far_down),
+    "earlier_events": ("example", earlier_events),
     "utm": ("example", patched(in_utm)),
     "forced_colors": ("example", stopped),
     "no_contact": ("example", no_contact),

@@ -294,7 +294,7 @@ def test_a_killed_service_leaves_no_contact_and_a_stop_that_is_delivered_when_it
     expect(sentence(desktop)).to_contain_text("ERROR")
     expect(desktop.get_by_role("list", name="Recent events")).to_contain_text("restarted")
     notice = desktop.locator("ph-state-bar .notice")
-    expect(notice).to_contain_text(re.compile(r"restarted at \d\d:\d\d:\d\d: nothing moves"))
+    expect(notice).to_contain_text(re.compile(r"restarted at \d\d:\d\d:\d\d: earlier tasks"))
     notice.get_by_role("button", name="Dismiss").click()
     expect(notice).to_be_hidden()
     assert service.request("GET", "/emergency_stop")["engaged"] is True

@@ -63,6 +63,11 @@ def event(number: int) -> dict[str, Any]:
     return {"type": "event", "epoch": "a", "id": number, "at": AT, "kind": "x", "data": {}}
 
 
+def hello(epoch: str, started_at: str = AT, boot: int = 1, newest: int = 0) -> dict[str, Any]:
+    told = {"epoch": epoch, "boot": boot, "started_at": started_at, "newest": newest}
+    return {"type": "hello", **told}
+
+
 def test_parts_that_a_frame_leaves_out_stay_as_they_were(page: Page) -> None:
     state = fold(page, frame(parts={"a": ACTIVE, "b": ACTIVE}), frame(parts={"b": DEVIATING}))
     assert state["parts"]["a"]["converged"] is True
@@ -118,15 +123,38 @@ def test_the_stop_is_that_of_the_last_frame_or_of_the_press_that_was_answered(pa
 
 
 def test_when_the_service_was_restarted_is_told_until_it_is_read(page: Page) -> None:
-    first = {"type": "hello", "epoch": "a", "started_at": AT}
-    second = {"type": "hello", "epoch": "b", "started_at": LATER}
+    first, second = hello("a"), hello("b", LATER)
     assert fold(page, first, first)["restartedAt"] is None
     assert fold(page, first, second)["restartedAt"] == LATER
     assert fold(page, first, second, {"type": "restart_read"})["restartedAt"] is None
 
 
 def test_after_a_restart_nothing_old_is_shown_but_the_events(page: Page) -> None:
-    first, second = ({"type": "hello", "epoch": epoch, "started_at": AT} for epoch in "ab")
-    state = fold(page, first, frame(parts={"a": ACTIVE}), event(9), second, event(1))
+    state = fold(page, hello("a"), frame(parts={"a": ACTIVE}), event(9), hello("b"), event(1))
     assert state["parts"] == {}
     assert [kept["id"] for kept in state["events"]] == [9, "restart-b", 1]
+
+
+def test_where_runs_are_kept_events_go_on_over_a_restart(page: Page) -> None:
+    begun = (hello("a"), event(9), hello("b", boot=2, newest=12))
+    state = fold(page, *begun, event(9), event(10), event(11))
+    assert [kept["id"] for kept in state["events"]] == [9, 10, 11]
+    assert fold(page, *begun)["lastEventId"] == 9
+
+
+def test_events_before_the_greeting_are_not_asked_for_again(page: Page) -> None:
+    assert fold(page, hello("a", newest=7))["lastEventId"] == 7
+
+
+def test_earlier_events_are_put_before_with_what_is_missing(page: Page) -> None:
+    gaps = [{"from": 3, "to": 7}]
+    earlier = {"type": "earlier", "items": [event(2), event(8)], "gaps": gaps, "oldest": 2}
+    state = fold(page, event(9), earlier)
+    assert [kept["id"] for kept in state["events"]] == [2, "gap-3", 8, 9]
+    assert (state["oldestEventId"], state["eventsKept"]) == (2, 203)
+
+
+def test_a_gap_without_an_end_is_of_a_run_that_the_service_does_not_know(page: Page) -> None:
+    gap = {"type": "gap", "from": 10, "to": None, "epoch": "a"}
+    state = fold(page, event(9), gap, event(1))
+    assert [kept["id"] for kept in state["events"]] == [9, "gap-10", 1]

@@ -37,7 +37,7 @@ def test_a_replay_does_what_was_done(robot: RecordedRobot) -> None:
     replayed = replay(core, robot.recorded())
 
     assert replayed.difference is None
-    assert replayed.steps == len(robot.record)
+    assert replayed.steps == len(robot.taken)
     assert views_of(core) == views_of(robot.onboard)
 
 

@@ -17,7 +17,7 @@ from service.storage.trends.history import trend_of
 from service.storage.trends.known_signals import KnownSignals
 from service.storage.trends.recorder import Recorder
 from service.storage.trends.rows import NO_ERROR, Rows
-from service.storage.trends.tiers import Tier
+from service.storage.trends.tiers import MILLISECOND, Tier
 from tests.support.trend_readings import SMALL_TIERS, START, load
 
 SOAK = os.environ.get("PILOTHOUSE_SOAK") == "1"
@@ -108,7 +108,7 @@ class _Story:
         return self.recorder.rows(tier, self.known.by_name[signal], -(2**62), 2**62)
 
 
-@settings(max_examples=2_000 if SOAK else 60)
+@settings(max_examples=500 if SOAK else 60)
 @given(_stories, st.integers(2, 50))
 def test_no_tier_loses_a_reading(story: list[_Reading | _Pause], points: int) -> None:
     with tempfile.TemporaryDirectory() as folder:
@@ -138,7 +138,7 @@ def _agrees(rows: Rows, noted: list[_Noted], tier: Tier) -> None:
         low, high = min(values), max(values)
         assert (merged.low[place], merged.high[place]) == (low, high)
         assert merged.count[place] == len(values)
-        assert merged.final[place] == values[-1]
+        assert merged.final[place] in _latest(expected[bucket])
         assert max(merged.error[place], -1) == max(rank for _, _, rank in expected[bucket]) - 1
         assert (merged.error[place] == NO_ERROR) is (merged.error[place] < 0)
         mean = fsum(value / len(values) for value in values)
@@ -161,6 +161,12 @@ def _chart_agrees(told: _Story, rows: Rows, signal: str, tier: Tier, points: int
         assert max(float(point.high) for point in chart) == max(value for _, value, _ in noted)
         assert any(point.error for point in chart) is any(rank for _, _, rank in noted)
         assert [point.at for point in chart] == sorted(point.at for point in chart)
+
+
+def _latest(noted: list[_Noted]) -> set[float]:
+    """Return the values of the last millisecond; runs whose clocks differ may overlap there."""
+    end = max(at for at, _, _ in noted) // MILLISECOND
+    return {value for at, value, _ in noted if at // MILLISECOND == end}
 
 
 def _buckets(noted: list[_Noted], width: Duration) -> Iterable[tuple[int, list[_Noted]]]:

@@ -21,8 +21,8 @@ from service.storage.journal import (
     StoredEvent,
 )
 from service.supervisor import Supervisor
-from tests.support import frames
 from tests.support.frames import Happened
+from tests.support.frames import event as made
 from tests.support.manual_clock import ManualClock
 
 _RESERVED = 20
@@ -65,7 +65,7 @@ class Run:
         """Let events happen that nobody has written down yet; return their ids."""
         first = self.log.newest + 1
         for number in range(first, first + count):
-            told = frames.event(number, happened)
+            told = made(number, happened)
             self.log.append(told)
             self.journal.note_events(told)
         return list(range(first, first + count))

@@ -126,9 +126,15 @@ def named(key: str, *items: Json) -> dict[str, Json]:
     return {item[key]: item for item in items}
 
 
-def hello(epoch: str = "one", started_at: str = AT) -> Json:
+def hello(epoch: str = "one", started_at: str = AT, *, boot: int = 1, newest: int = 0) -> Json:
     """Return the first frame of a connection."""
-    return {"type": "hello", "epoch": epoch, "started_at": started_at}
+    return {
+        "type": "hello",
+        "epoch": epoch,
+        "boot": boot,
+        "started_at": started_at,
+        "newest": newest,
+    }
 
 
 def event(number: int, words: str = "something happened", *, notable: bool = True) -> Json:

@@ -40,7 +40,7 @@ from service.codec.codec import STEPS
 from service.codec.recorded_step import RecordedStep, recorded_step
 from service.files.model_file import read_model
 from service.files.robot_file import read_robot_file
-from service.storage.journal import Boot
+from service.storage.journal import Boot, Step
 from tests.support.core_robot import CoreRobot
 from tests.support.good import GOOD
 from tests.support.models import nested_model
@@ -61,11 +61,11 @@ class RecordedRobot(CoreRobot):
     """A robot whose core is recorded from its first input on."""
 
     def __init__(self, boot: Boot = BOOT, restored: tuple[Kept, ...] = ()) -> None:
-        self.record: list[bytes] = []
-        """One step each, as it is stored."""
+        self.taken: list[Step] = []
         self.is_late = False
         """Whether the loop is late, so that inputs come before what was due."""
-        self._first: Input | None = Restored(restored, boot=2 if restored else 1)
+        first = Restored(restored, boot=2, next_event=10_001) if restored else Restored()
+        self._first: Input | None = first
         model = read_model(boot.model).model
         robot = read_robot_file(boot.robot, model)
         settings = SupervisionSettings(
@@ -90,14 +90,20 @@ class RecordedRobot(CoreRobot):
             raise
 
     def _took(self, given: Input, outputs: Outputs) -> Outputs:
-        step = recorded_step(self.now, given, self.is_late, outputs)
-        self.record.append(STEPS.encode(step))
+        self.taken.append(Step(self.now, given, self.is_late, outputs))
         self.events += outputs.events
         for command in outputs.commands:
             self.commands.append(command)
             assert not isinstance(command, SendGoal | PreemptGoal), "goals stay on board"
             self.robot.handle(command, self.now)
         return outputs
+
+    @property
+    def record(self) -> list[bytes]:
+        """Return the steps as they are stored."""
+        return [
+            STEPS.encode(recorded_step(s.at, s.given, s.is_late, s.outputs)) for s in self.taken
+        ]
 
     def recorded(self) -> list[RecordedStep]:
         """Return what was recorded, as it is read."""

@@ -115,11 +115,12 @@ function loadTracks() {
   load(["/tasks"], ([{ controllers }]) => (taskPanel.controllers = controllers));
 }
 
-function greet({ epoch }) {
+/** After a restart that kept the events, the stream goes on where it was cut off. */
+function greet({ epoch, boot }) {
   loadTracks();
   loadMock();
-  if (epoch !== state.epoch)
-    load(["/events?limit=50"], ([{ items }]) => take({ type: "log", items }));
+  const goesOn = epoch === state.epoch || (state.epoch !== null && boot > 1);
+  if (!goesOn) load(["/events?limit=50"], ([log]) => take({ ...log, type: "log" }));
   panel.refresh();
 }
 
@@ -163,6 +164,7 @@ document.addEventListener("ph-try-now", () => {
   askToDraw();
 });
 document.addEventListener("ph-restart-read", () => take({ type: "restart_read" }));
+document.addEventListener("ph-earlier", ({ detail }) => take({ ...detail, type: "earlier" }));
 document.addEventListener("ph-latch", ({ detail }) => take({ type: "latch", latch: detail }));
 setInterval(askToDraw, REDRAW_MS);
 setInterval(title, REDRAW_MS);

@@ -75,10 +75,11 @@ export function mayMove(state) {
   return movingAt(state) !== null || Boolean(ALARMS[state.systemState?.reasons[0]?.code]);
 }
 
-/** That the service was restarted; empty without a restart. */
-export function restartWords({ restartedAt }) {
+/** What was lost in a restart of the service; empty without one. */
+export function restartWords({ restartedAt, boot }) {
   if (restartedAt === null) return "";
-  return `Service restarted at ${timeOfDay(restartedAt)}: nothing moves before somebody asks.`;
+  const kept = boot > 1 ? "nothing moves until you ask for it" : "earlier tasks and holds are gone";
+  return `Service restarted at ${timeOfDay(restartedAt)}: ${kept}.`;
 }
 
 function sentence([level, sign], word, text, more = []) {

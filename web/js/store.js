@@ -1,16 +1,19 @@
 /** The known state of the robot, as a pure fold of the frames of the stream.
  *
  * `fold(state, message)` returns the next state and does not change the given one. Besides the
- * frames of the server it takes messages of the page: `log` (`items` of /events), `path` (waypoints
- * of a task), `latch` (the answer to a press of STOP) and `restart_read` (the notice was dismissed).
+ * frames of the server it takes messages of the page: `log` (the newest of /events), `earlier` (those
+ * before the oldest that is known), `path` (waypoints of a task), `latch` (the answer to a press of
+ * STOP) and `restart_read` (the notice was dismissed).
  */
 
 const EVENTS_KEPT = 200;
+const MAX_EVENTS_KEPT = 5000;
 
 /** The state before the first frame: nothing is known. */
 export function emptyState() {
   return {
     epoch: null,
+    boot: null,
     restartedAt: null,
     at: null,
     systemState: null,
@@ -22,6 +25,8 @@ export function emptyState() {
     holds: {},
     emergencyStop: null,
     events: [],
+    eventsKept: EVENTS_KEPT,
+    oldestEventId: 1,
     lastEventId: 0,
   };
 }
@@ -37,17 +42,29 @@ export function currentTask({ task }) {
   return task && !task.ended_at ? task : null;
 }
 
+/** Id of the oldest known event, or null: there is none, or its run is not kept. */
+export function firstEventId({ events }) {
+  if (events.some((event) => event.isRestart)) return null;
+  return events.find((event) => !event.note)?.id ?? null;
+}
+
 const FOLDERS = {
-  /** After a restart of the service the earlier state is void. */
-  hello(state, { epoch, started_at }) {
+  /** After a restart of the service the earlier state is void, and told anew.
+   *
+   * The first run of a folder has boot 1: then nothing was kept, and ids begin again.
+   */
+  hello(state, { epoch, boot, started_at, newest }) {
     if (epoch === state.epoch) return state;
-    if (state.epoch === null) return { ...state, epoch };
+    if (state.epoch === null) return { ...state, epoch, boot, lastEventId: newest };
+    const { events, eventsKept, oldestEventId, lastEventId } = state;
+    const fresh = { ...emptyState(), epoch, boot, restartedAt: started_at };
+    if (boot > 1) return { ...fresh, events, eventsKept, oldestEventId, lastEventId };
     const note = {
       note: "The service was restarted: nothing moves before somebody asks.",
       id: `restart-${epoch}`,
+      isRestart: true,
     };
-    const events = keep([...state.events, note]);
-    return { ...emptyState(), epoch, restartedAt: started_at, events };
+    return { ...fresh, events: [...events, note].slice(-eventsKept), eventsKept };
   },
 
   restart_read(state) {
@@ -71,26 +88,33 @@ const FOLDERS = {
 
   event(state, event) {
     if (event.id <= state.lastEventId) return state;
-    return { ...state, lastEventId: event.id, events: keep([...state.events, event]) };
+    return { ...append(state, event), lastEventId: event.id };
   },
 
   /** The log is requested once; events of the stream may arrive before the answer. */
-  log(state, { items }) {
-    const begin = state.events.findLastIndex((event) => event.note) + 1;
+  log(state, { items, gaps = [], oldest = 1 }) {
+    const begin = state.events.findLastIndex((event) => event.isRestart) + 1;
     const streamed = state.events.slice(begin);
     const known = new Set(streamed.map((event) => event.id));
-    const older = items.filter((event) => !known.has(event.id)).sort((a, b) => a.id - b.id);
+    const older = inOrder(items, gaps).filter((event) => !known.has(event.id));
     const lastEventId = Math.max(state.lastEventId, ...items.map((event) => event.id));
-    const events = keep([...state.events.slice(0, begin), ...older, ...streamed]);
-    return { ...state, lastEventId, events };
+    const events = [...state.events.slice(0, begin), ...older, ...streamed].slice(-state.eventsKept);
+    return { ...state, lastEventId, events, oldestEventId: oldest };
   },
 
-  /** Without `to` the number is unknown: the server was restarted, and ids start again. */
-  gap(state, { from, to }) {
-    const which = to ? `Events ${from} to ${to}` : `Events after ${from - 1}`;
-    const note = { note: `${which} are missing here.`, id: `gap-${from}` };
-    const lastEventId = to ? Math.max(to, state.lastEventId) : state.lastEventId;
-    return { ...state, lastEventId, events: keep([...state.events, note]) };
+  /** What is loaded is kept in addition, so that new events do not push it out at once. */
+  earlier(state, { items, gaps, oldest }) {
+    const first = firstEventId(state);
+    const older = inOrder(items, gaps).filter((event) => !(event.id >= first));
+    const eventsKept = Math.min(state.eventsKept + older.length, MAX_EVENTS_KEPT);
+    const events = [...older, ...state.events].slice(-eventsKept);
+    return { ...state, events, eventsKept, oldestEventId: oldest };
+  },
+
+  /** Without `to` the ids belong to a run that the service does not know; others follow. */
+  gap(state, gap) {
+    const lastEventId = gap.to ? Math.max(gap.to, state.lastEventId) : 0;
+    return { ...append(state, noteOf(gap)), lastEventId };
   },
 
   latch(state, { latch }) {
@@ -108,6 +132,17 @@ function newerStop(known, { at, emergency_stop }) {
   return !emergency_stop || isOld ? known : emergency_stop;
 }
 
-function keep(events) {
-  return events.slice(-EVENTS_KEPT);
+function append(state, item) {
+  return { ...state, events: [...state.events, item].slice(-state.eventsKept) };
+}
+
+function noteOf({ from, to }) {
+  const which = to ? `Events ${from} to ${to}` : `Events after ${from - 1}`;
+  return { note: `${which} are missing here.`, id: `gap-${from}`, from };
+}
+
+/** Events and notes for what is missing between them. */
+function inOrder(items, gaps) {
+  const place = (item) => item.from ?? item.id;
+  return [...items, ...gaps.map(noteOf)].sort((a, b) => place(a) - place(b));
 }

@@ -96,7 +96,9 @@ def restart_sentence(view: View) -> Sentence | None:
     if at is None or view.age_s(at) > _RESTART_TOLD_S:
         return None
     when = words.time_of_day(seconds_of(at))
-    return Sentence("RESTARTED", f"at {when}; nothing moves before somebody asks")
+    is_kept = view.robot.boot > 1
+    kept = "nothing moves until you ask for it" if is_kept else "earlier tasks and holds are gone"
+    return Sentence("RESTARTED", f"at {when}; {kept}")
 
 
 def _is_error(robot: Robot) -> bool:

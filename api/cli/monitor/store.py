@@ -23,6 +23,8 @@ class Robot:
     """The known state of the robot; before the first frame, nothing is known."""
 
     epoch: str | None = None
+    boot: int = 1
+    """Number of the run of the service; 1: it kept nothing of earlier ones."""
     restarted_at: str | None = None
     """Time of a restart of the service since the monitor runs; None: there was none."""
     at: str | None = None
@@ -80,10 +82,13 @@ def fold(robot: Robot, frame: Json) -> Robot:
 def _hello(robot: Robot, frame: Json) -> Robot:
     """Continue, or start again: after a restart of the service the earlier state is void."""
     if robot.epoch in (None, frame["epoch"]):
-        return replace(robot, epoch=frame["epoch"])
-    at = frame["started_at"]
-    note = Note(at, "the service was restarted: nothing moves before somebody asks")
-    return Robot(epoch=frame["epoch"], restarted_at=at, notes=_kept((*robot.notes, note)))
+        return replace(robot, epoch=frame["epoch"], boot=frame["boot"])
+    begun = Robot(epoch=frame["epoch"], boot=frame["boot"], restarted_at=frame["started_at"])
+    if begun.boot > 1:
+        # Events go on, and one of them tells what was restored.
+        return replace(begun, last_event_id=robot.last_event_id, notes=robot.notes)
+    note = Note(frame["started_at"], "the service was restarted: earlier tasks and holds are gone")
+    return replace(begun, notes=_kept((*robot.notes, note)))
 
 
 def _state(robot: Robot, frame: Json) -> Robot:
@@ -117,8 +122,12 @@ def _event(robot: Robot, event: Json) -> Robot:
 
 
 def _gap(robot: Robot, gap: Json) -> Robot:
-    """Skip missing events: the next frame shows their effects."""
-    return replace(robot, last_event_id=max(robot.last_event_id, gap["to"] or 0))
+    """Skip missing events: the next frame shows their effects.
+
+    Without an end they are of a run that the service does not know, and others follow.
+    """
+    to = gap["to"]
+    return replace(robot, last_event_id=0 if to is None else max(robot.last_event_id, to))
 
 
 def _kept(notes: tuple[Note, ...]) -> tuple[Note, ...]:

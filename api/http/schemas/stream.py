@@ -31,6 +31,7 @@ class HelloJson(Json):
     started_at: Timestamp = Field(
         description="Start of this run of the service; the next frame is complete"
     )
+    newest: int = Field(description="Id of the newest event: resume after it if none came since")
     topics: list[str] = Field(description="Topics that this client is subscribed to")
     period_s: float = Field(description="Time between two `state` frames")
     version: str = Field(description="Version of Pilothouse")

@@ -6,13 +6,13 @@ power, the last of them may be missing, but the file is not damaged.
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
-from itertools import count
+from datetime import UTC, datetime
 from pathlib import Path
 
 import apsw
 
 from domain.timebase import Duration, Instant
-from service.storage.sqlite.connection import open_to_write
+from service.storage.sqlite.connection import SUFFIXES, open_to_write
 from service.storage.trends.tiers import Tier
 
 MEMORY = ":memory:"
@@ -110,6 +110,7 @@ class BlockFile:
         """
         name = self._tiers[tier].name
         upto = self._newest(self._tiers[tier - 1]) if tier else 0
+        size, freed = self._bytes[name] + sum(map(_size, blocks)), 0
         with self._connection as connection:
             connection.executemany(
                 f"INSERT INTO {name}(signal, from_at, to_at, bytes, rows, ran, upto, errors, data)"
@@ -119,7 +120,6 @@ class BlockFile:
                     for b in blocks
                 ],
             )
-            size = self._bytes[name] + sum(map(_size, blocks))
             freed = self._free(self._tiers[tier], size, ran)
         self._bytes[name] = size - freed
 
@@ -213,10 +213,10 @@ def set_aside(path: str) -> Path:
     Raises:
         OSError: It cannot be renamed.
     """
-    names = (Path(f"{path}.aside-{number}") for number in count(1))
-    aside = next(name for name in names if not name.exists())
-    for suffix in ("-wal", "-shm", ""):
-        part = Path(path + suffix)
+    stamp = datetime.now(UTC).strftime("%Y%m%dT%H%M%S.%fZ")
+    aside = Path(f"{path}.broken-{stamp}")
+    for suffix in SUFFIXES:
+        part = Path(f"{path}{suffix}")
         if part.exists():
             part.rename(f"{aside}{suffix}")
     return aside

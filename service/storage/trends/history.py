@@ -63,7 +63,7 @@ def trend_of(
 
 def _merged(rows: Rows, width: Duration, from_at: Instant) -> Rows:
     bucket = np.maximum(rows.first, from_at) // width
-    order = np.argsort(bucket, kind="stable")
+    order = np.lexsort((rows.last, bucket))
     return rows.taken(order).merged(bucket[order])
 
 

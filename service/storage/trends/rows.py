@@ -34,7 +34,7 @@ class Rows:
     high: Floats
     mean: Floats
     final: Floats
-    """The last reading."""
+    """The last reading, by its time."""
     count: Integers
     """How many readings there were."""
     error: Integers
@@ -85,20 +85,21 @@ class Rows:
         """Return the rows by signal and time, merged to one per signal and bucket.
 
         Args:
-            width: Of the buckets, which begin at multiples of it; 0: the rows are only sorted by
-                their signal.
+            width: Of the buckets, which begin at multiples of it; 0: the rows are only sorted.
         """
         if not width:
-            return self.taken(np.argsort(self.signal, kind="stable"))
+            return self.taken(np.lexsort((self.first, self.signal)))
         bucket = self.first // width
-        order = np.lexsort((bucket, self.signal))
+        # By time also within a bucket: after the clock was set back, the last ones to arrive are
+        # not the last ones.
+        order = np.lexsort((self.last, bucket, self.signal))
         return self.taken(order).merged(self.signal[order], bucket[order])
 
     def merged(self, *keys: Integers) -> "Rows":
         """Return one row for each run of equal keys.
 
         Args:
-            keys: Columns by which the rows are sorted.
+            keys: Columns by which the rows are sorted, and by time where these are equal.
         """
         if not len(self):
             return self

@@ -2,9 +2,10 @@
 
 import asyncio
 import logging
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from functools import partial
+from threading import BoundedSemaphore
 
 from domain.errors import StorageDegradedError, UnknownSignalError
 from domain.health.signals import SignalSettings
@@ -16,7 +17,7 @@ from service.storage.trends.history import Trend
 from service.storage.trends.intake import Intake
 from service.storage.trends.known_signals import KnownSignals
 from service.storage.trends.recorder import Recorder
-from service.storage.trends.tiers import MEMORY_TIERS, TIERS, Tier
+from service.storage.trends.tiers import MEMORY_TIERS, TIERS
 
 log = logging.getLogger(__name__)
 
@@ -26,8 +27,8 @@ HAND_OVER = seconds(5.0)
 _CLOSING_S = 2.0
 """How long the end of the service waits for a disk."""
 
-_MOST_ASKED = 32
-"""Charts that may be waited for at once: while a disk hangs, more would only pile up."""
+_MOST_CHARTS = 32
+"""Charts that wait for the thread at once: while a disk hangs, more would only pile up."""
 
 _INT64 = 2**63 - 1
 
@@ -47,30 +48,22 @@ class TrendsStatus:
 class Trends:
     """Every method is called on the event loop, and returns at once unless it is awaited."""
 
-    def __init__(
-        self,
-        signals: Iterable[SignalSettings],
-        path: str = MEMORY,
-        tiers: Sequence[Tier] | None = None,
-    ) -> None:
+    def __init__(self, signals: Iterable[SignalSettings], path: str = MEMORY) -> None:
         """Prepare; a thread starts with the first readings.
 
         Args:
             signals: All signals that are declared.
             path: Of the file; `MEMORY`: the history ends with the service.
-            tiers: From fine to coarse; None: the usual ones.
         """
-        tiers = tiers or (MEMORY_TIERS if path == MEMORY else TIERS)
         self._signals = KnownSignals(signals)
         self._known = self._signals.by_name
-        self._recorder = Recorder(self._signals, path, tiers)
+        self._recorder = Recorder(self._signals, path, MEMORY_TIERS if path == MEMORY else TIERS)
         self._intake = Intake()
         self._thread: DiskThread | None = None
         """None: there was nothing to do yet."""
         self._is_closed = False
         self._settling: asyncio.Future[None] | None = None
-        self._asked = 0
-        """Charts that are waited for."""
+        self._charts = BoundedSemaphore(_MOST_CHARTS)
         self._started: Instant | None = None
         self._now: Instant = 0
         self._due: Instant = 0
@@ -119,16 +112,19 @@ class Trends:
         known = self._known.get(signal)
         if known is None:
             raise UnknownSignalError("signal", signal, [*self._known])
-        if self._is_closed or self._asked >= _MOST_ASKED:
+        if self._is_closed or not self._charts.acquire(blocking=False):
             raise StorageDegradedError("the history of signals takes too long to read")
         self._hand_over()
         from_at, to_at = max(from_at, -_INT64 // 2), min(to_at, _INT64 // 2)
-        self._asked += 1
-        try:
-            trend = partial(self._recorder.trend, known, from_at, to_at, points)
-            return await self._started_thread().run(trend)
-        finally:
-            self._asked -= 1
+
+        def trend() -> Trend:
+            try:
+                return self._recorder.trend(known, from_at, to_at, points)
+            finally:
+                # Here, since whoever asked may have gone meanwhile.
+                self._charts.release()
+
+        return await self._started_thread().run(trend)
 
     async def close(self) -> None:
         """Write down what was noted; a disk that hangs is not waited for."""

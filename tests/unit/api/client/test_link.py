@@ -183,6 +183,23 @@ async def test_another_service_at_the_same_place_is_gone_on_with() -> None:
     ]
 
 
+async def test_a_service_that_kept_its_events_is_asked_for_those_after_the_last_one() -> None:
+    service = Service()
+    service.begin = [hello("one", newest=40), FIRST]
+    async with linked(service) as watch:
+        await until(lambda: watch.robot.is_whole)
+        service.begin = [hello("two", boot=2, newest=90), FIRST]
+
+        for streams in (2, 3):
+            await service.streams[-1].close()
+            await until(lambda count=streams: len(service.streams) == count)
+
+    assert [path for path in service.asked if path.startswith("/ws")][1:] == [
+        "/ws?after=40&epoch=one",
+        "/ws?after=40&epoch=two",
+    ]
+
+
 @pytest.mark.parametrize(
     ("code", "reason", "words"),
     [

@@ -142,6 +142,10 @@ def test_a_restart_is_told_for_ten_minutes() -> None:
 
     assert told is not None
     assert told.word == "RESTARTED"
-    assert told.text.endswith("nothing moves before somebody asks")
+    assert told.text.endswith("earlier tasks and holds are gone")
+    kept = robot(hello("two", after(3), boot=2), frame(after(4)))
+    assert restart_sentence(view(kept, later_s=60.0)) == Sentence(
+        "RESTARTED", f"{told.text.partition(';')[0]}; nothing moves until you ask for it"
+    )
     assert restart_sentence(view(restarted, later_s=700.0)) is None
     assert restart_sentence(view(robot())) is None

@@ -1,3 +1,5 @@
+from dataclasses import replace
+
 from api.cli.monitor.store import Note, Robot, fold
 from tests.support.monitor import (
     AT,
@@ -59,8 +61,18 @@ def test_holds_and_the_stop_are_those_of_the_last_frame_that_told_them() -> None
 def test_after_a_restart_nothing_of_before_is_known_but_that_it_happened_and_when() -> None:
     known = fold(robot(parts=(part("arm"),)), hello("two", after(3)))
 
-    note = Note(after(3), "the service was restarted: nothing moves before somebody asks")
+    note = Note(after(3), "the service was restarted: earlier tasks and holds are gone")
     assert known == Robot(epoch="two", restarted_at=after(3), notes=(note,))
+
+
+def test_a_restart_that_kept_everything_is_told_by_its_own_events() -> None:
+    known = fold(robot(parts=(part("arm"),)), event(7, "a hold was set"))
+
+    restarted = fold(known, hello("two", after(3), boot=2))
+
+    assert restarted == Robot(
+        epoch="two", boot=2, restarted_at=after(3), last_event_id=7, notes=known.notes
+    )
 
 
 def test_the_same_service_goes_on_where_it_was() -> None:
@@ -98,7 +110,8 @@ def test_a_gap_is_not_asked_for_again() -> None:
     known = fold(robot(), {"type": "gap", "from": 1, "to": 5, "epoch": "one"})
 
     assert known.last_event_id == 5
-    assert fold(known, {"type": "gap", "from": 1, "to": None, "epoch": "old"}) == known
+    unknown = fold(known, {"type": "gap", "from": 1, "to": None, "epoch": "old"})
+    assert unknown == replace(known, last_event_id=0)
 
 
 def test_it_is_whole_when_there_is_something_of_everything() -> None:

@@ -234,7 +234,7 @@ def test_a_broken_file_is_put_aside(content: bytes, folder: Path) -> None:
     run = _Run(folder)
     run.record(readings([1.0]))
 
-    assert (folder / "trends.db.aside-1").read_bytes() == content
+    assert _broken(folder).read_bytes() == content
     assert run.recorder.reason is None
     assert run.readings() == 1
     run.end()
@@ -248,7 +248,7 @@ def test_a_file_of_a_newer_version_is_put_aside(folder: Path) -> None:
     run = _Run(folder)
     run.record(readings([1.0]))
 
-    with apsw.Connection(str(folder / "trends.db.aside-1")) as kept:
+    with apsw.Connection(str(_broken(folder))) as kept:
         assert [*kept.execute("PRAGMA user_version")] == [(2,)]
     kept.close()
     run.end()
@@ -267,7 +267,7 @@ def test_a_file_that_breaks_while_it_is_used_is_put_aside(
 
     run.record(readings([2.0], START + MINUTE))
 
-    assert (folder / "trends.db.aside-1").exists()
+    assert _broken(folder).exists()
     assert run.recorder.reason is None
     assert run.readings() == 2
     run.end()
@@ -300,3 +300,9 @@ def test_a_file_that_the_first_version_wrote_can_be_read(folder: Path) -> None:
         rows = run.recorder.rows(tier, load, 0, 2**62)
         assert (rows.high.max(), load.errors_of([rows.error.max()])) == (1600.0, ["LOAD_OVERLOAD"])
     run.end()
+
+
+def _broken(folder: Path) -> Path:
+    """Return the file that was put aside."""
+    (found,) = (path for path in folder.glob("trends.db.broken-*Z"))
+    return found

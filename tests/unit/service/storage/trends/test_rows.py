@@ -41,7 +41,13 @@ def test_signals_are_not_mixed() -> None:
     assert mixed.of_signal(3).low.tolist() == [8.0, 9.0]
 
 
-def test_in_buckets_of_no_width_readings_are_only_sorted_by_signal() -> None:
+def test_the_last_reading_is_the_last_by_time_not_by_arrival() -> None:
+    late, early = readings([5.0], START + seconds(0.9)), readings([1.0, 2.0])
+
+    assert Rows.joined([late, early]).in_buckets(seconds(1.0)).final.tolist() == [5.0]
+
+
+def test_in_buckets_of_no_width_readings_are_only_sorted() -> None:
     mixed = Rows.joined(
         [readings([8.0], signal=3), readings([1.0, 2.0]), readings([9.0], signal=3)]
     )

@@ -108,7 +108,7 @@ async def test_a_disk_that_hangs_stops_nothing(
 ) -> None:
     released = Event()
     monkeypatch.setattr(Recorder, "settle", lambda *_: released.wait(30))
-    monkeypatch.setattr(module, "_MOST_ASKED", 1)
+    monkeypatch.setattr(module, "_MOST_CHARTS", 1)
     trends = Trends([load()], str(tmp_path / "trends.db"))
     trends.pass_time(START)
     trends.pass_time(START + HAND_OVER)
