@@ -27,6 +27,8 @@ class RecordedRun:
     boot: Boot
     first_step: int
     """Number of its first step that is in the log."""
+    last_at: Instant
+    """When its last step was that is in the log; 0: none is."""
     ended_at: datetime | None
     """When it ended; None: it was killed, or it goes on."""
 
@@ -82,8 +84,10 @@ class RecordedLog:
             for row in self._rows(path, _RUNS):
                 run = _run(row)
                 earlier = found.get(run.number)
-                first_step = run.first_step if earlier is None else earlier.first_step
-                found[run.number] = replace(run, first_step=first_step)
+                if earlier is not None:
+                    last_at = max(earlier.last_at, run.last_at)
+                    run = replace(run, first_step=earlier.first_step, last_at=last_at)
+                found[run.number] = run
         return [found[number] for number in sorted(found)]
 
     def lines(self, run: int, after_step: int = 0) -> Iterator[tuple[int, bytes]]:
@@ -155,7 +159,11 @@ class RecordedLog:
 _RUNS = (
     "SELECT number, epoch, version, started_at, wall_ns, model, robot, ended_wall_ns,"
     " coalesce((SELECT first_step FROM batches WHERE number >= first_batch AND count > 0"
-    " ORDER BY number LIMIT 1), 0) FROM boots ORDER BY number"
+    " ORDER BY number LIMIT 1), 0),"
+    " coalesce((SELECT last_at FROM batches WHERE boot = boots.number AND count > 0 AND number <"
+    " coalesce((SELECT min(later.first_batch) FROM boots AS later"
+    " WHERE later.number > boots.number), 1 << 62)"
+    " ORDER BY number DESC LIMIT 1), 0) FROM boots ORDER BY number"
 )
 _STEPS = (
     "SELECT first_step, steps FROM batches WHERE number >="
@@ -167,9 +175,9 @@ _HOLES = "SELECT boot, after_step, steps, events, from_at, to_at, reason FROM ho
 
 
 def _run(row: tuple[Any, ...]) -> RecordedRun:
-    number, epoch, version, started_at, wall_ns, model, robot, ended, first_step = row
+    number, epoch, version, started_at, wall_ns, model, robot, ended, first, last = row
     boot = Boot(epoch, version, started_at, to_datetime(wall_ns), _text(model), _text(robot))
-    return RecordedRun(number, boot, first_step, None if ended is None else to_datetime(ended))
+    return RecordedRun(number, boot, first, last, None if ended is None else to_datetime(ended))
 
 
 def _text(compressed: bytes) -> str:

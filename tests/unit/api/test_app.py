@@ -55,6 +55,7 @@ CONTRACT = {
     "/examples/tracks/{name}": {"get"},
     "/simulations": {"post"},
     "/events": {"get"},
+    "/frames": {"get"},
     "/livez": {"get"},
     "/readyz": {"get"},
     "/healthz": {"get"},
