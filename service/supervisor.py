@@ -32,7 +32,7 @@ from service.ports import RobotBackend
 from service.readings import DirectReadings, ReadingInput, Submit
 from service.refused_readings import RefusedReadings
 from service.running import run_forever
-from service.storage.journal import Journal, Step
+from service.storage.journal import NOTHING_KEPT, Journal, Step, StorageStatus
 from service.storage.trends.sampling import Sampling
 from service.submitter import Submitter
 from service.watchdog import hanging
@@ -77,10 +77,8 @@ class Supervisor:
         self.started_at = clock.now()
         """Start of this run of the service, and of its epoch."""
         self.simulated = tuple(simulated)
-        self.journal = stores.journal
-        """Keeps what must survive a restart; None: nothing is kept."""
-        self.trends = stores.trends
-        """The history of the signals; None: there is none."""
+        self.journal, self.trends = stores.journal, stores.trends
+        """What keeps what must survive a restart, and the history of signals; None: nothing."""
         self._sampling = _sampling(stores, onboard.core)
         self.events = events or _event_log(self.journal)
         self.publisher = FramePublisher(onboard.core, clock, self.simulated)
@@ -91,7 +89,6 @@ class Supervisor:
         self._onboard = onboard
         self._backend = backend
         self.refused_readings = RefusedReadings()
-        """Rejected readings, on all ways in."""
         self._submitter = Submitter(
             onboard, clock, self.carry_out, self._catch_up, self.refused_readings
         )
@@ -207,6 +204,11 @@ class Supervisor:
         if self._keeper is None:
             return Taken(self.submit(given), is_durable=False)
         return await self._keeper.request(given, volatile=volatile)
+
+    @property
+    def storage(self) -> StorageStatus:
+        """Return how storage is doing."""
+        return NOTHING_KEPT if self.journal is None else self.journal.status()
 
     def hanging(self) -> str | None:
         """Return what of the supervision hangs, in words; None: all goes on."""

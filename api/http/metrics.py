@@ -133,10 +133,7 @@ class _ServiceCollector(Collector):
         yield from self._storage()
 
     def _storage(self) -> Iterator[Metric]:
-        journal = self._supervisor.journal
-        if journal is None:
-            return
-        status = journal.status()
+        status = self._supervisor.storage
         yield GaugeMetricFamily(
             "pilothouse_storage_degraded",
             "1 while what happens cannot be written down",

@@ -16,6 +16,7 @@ _ONLY_HTTP = {
     "MALFORMED_REQUEST": (400, "Not a valid HTTP/1.1 request; the connection is closed."),
     "METHOD_NOT_ALLOWED": (405, "`Allow` lists the allowed methods."),
     "NOT_READY": (503, "`/readyz`: no model, or the core does not tick."),
+    "NO_HISTORY": (404, "The history of signals is not kept, as in a simulation."),
     "NO_MOCK": (404, "Signals are not mocked."),
     "TOO_MANY_REQUESTS": (429, "More requests per second than one address may send."),
     "REPEATED_HEADER": (400, "A header that may occur once is there more than once."),

@@ -92,6 +92,10 @@ class StorageStatus:
     """What this run could not write down."""
 
 
+NOTHING_KEPT = StorageStatus(":memory:", 0, None, None, "", 1, {})
+"""Status where nothing is kept, as in a simulation."""
+
+
 @dataclass(frozen=True, slots=True)
 class EventQuery:
     """Which events of the log are wanted; None: any."""

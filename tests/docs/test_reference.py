@@ -20,7 +20,15 @@ from domain.actor import Actor
 from domain.changes.admission import ADVISORY
 from domain.events.event import RecordedEvent
 from domain.events.kinds import EVENTS
-from domain.inputs import BackendStatus, DriveStatus, Input, Restored, ServiceStall, WriteRecord
+from domain.inputs import (
+    BackendStatus,
+    DriveStatus,
+    Input,
+    Restored,
+    ServiceStall,
+    StorageStatus,
+    WriteRecord,
+)
 from domain.kept import KeptHold, KeptTarget
 from domain.lifecycle import LifecycleState
 from domain.state_and_mode import PartName, StateAndMode
@@ -201,6 +209,11 @@ def a_stall() -> list[RecordedEvent]:
     return told(ServiceStall(1_500_000_000))
 
 
+def a_full_disk() -> list[RecordedEvent]:
+    full = StorageStatus(available=False, reason="the disk is full")
+    return told(full, StorageStatus(available=True))
+
+
 def a_restart() -> list[RecordedEvent]:
     kept = (
         KeptTarget(PartName("gripper"), StateAndMode(LifecycleState.ACTIVE), 1),
@@ -244,6 +257,7 @@ def test_events_that_happen_are_listed_with_what_they_carry() -> None:
         a_write,
         a_stall,
         a_restart,
+        a_full_disk,
         the_examples,
     )
     for event in (event for story in stories for event in story()):

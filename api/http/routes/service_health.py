@@ -134,7 +134,7 @@ def _warnings(supervisor: Supervisor, *, exposed: bool) -> Iterator[WarningJson]
     if late := supervisor.publisher.late_ticks:
         message = f"{late} ticks skipped since the start: the machine is too slow"
         yield WarningJson(code="LATE_TICKS", message=message)
-    degraded = None if supervisor.journal is None else supervisor.journal.status().reason
+    degraded = supervisor.storage.reason
     if degraded is not None:
         message = f"{degraded}; a restart may forget what is asked now"
         yield WarningJson(code=StorageDegradedError.code, message=message)

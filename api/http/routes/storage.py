@@ -61,16 +61,11 @@ class StorageJson(Json):
         )
 
 
-_NOTHING_KEPT = StorageStatus(":memory:", 0, None, None, "", 1, {})
-"""Status of a simulation."""
-
-
 @router.get("/storage")
 @policy(Permission.OBSERVE)
 async def get_storage(supervisor: SupervisorDep) -> StorageJson:
     """Show where state and logs are kept, how much there is, and whether storage works."""
-    journal = supervisor.journal
-    return StorageJson.of(_NOTHING_KEPT if journal is None else journal.status())
+    return StorageJson.of(supervisor.storage)
 
 
 def _shown(moment: datetime | None) -> str | None:

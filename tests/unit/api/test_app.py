@@ -56,6 +56,7 @@ CONTRACT = {
     "/simulations": {"post"},
     "/events": {"get"},
     "/frames": {"get"},
+    "/events/{event}/causes": {"get"},
     "/livez": {"get"},
     "/readyz": {"get"},
     "/healthz": {"get"},

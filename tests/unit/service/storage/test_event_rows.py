@@ -11,7 +11,8 @@ from domain.events.health import SignalRead
 from domain.events.kinds import EVENTS
 from domain.state_and_mode import PartName
 from service.clock import since_epoch
-from service.storage.event_rows import event_row, kind_pattern, stored_event
+from service.storage.event_rows import event_row, named_parts, stored_event
+from tests.support.frames import Happened
 from tests.support.manual_clock import START
 from tests.support.record_samples.events import EVENTS as SAMPLES
 
@@ -55,21 +56,18 @@ def test_a_number_that_json_does_not_have_is_null_as_in_the_stream(value: float)
     assert '"battery_level":null' in row.data
 
 
-@pytest.mark.parametrize(
-    ("asked", "kind", "is_meant"),
-    [
-        ("change", "change.requested", True),
-        ("change", "change", True),
-        ("change", "changes.requested", False),
-        ("change.requested", "change.requested", True),
-        ("change.*", "change.requested", True),
-        ("*.requested", "change.requested", True),
-        ("*", "anything", True),
-        ("c*d", "change.requested", True),
-        ("c*d", "change.request", False),
-        ("chang.", "change", False),
-        ("[a-z]*", "change", False),
-    ],
-)
-def test_a_query_means_kinds(asked: str, kind: str, is_meant: bool) -> None:
-    assert (kind_pattern(asked).fullmatch(kind) is not None) is is_meant
+def test_an_event_names_the_part_or_the_node_that_it_is_about() -> None:
+    assert named_parts(ChangeRequested(PartName("arm"), mode="FAST")) == ("arm",)
+    assert named_parts(Happened(1)) == ()
+
+
+@pytest.mark.parametrize("kind", EVENTS.values())
+def test_every_field_that_names_a_part_is_found(kind: type[Event]) -> None:
+    """Such a field is called `part` or `node`."""
+    names = {"part", "node"} & set(kind.data_keys())
+    values = {name: PartName(name) if name in names else None for name in kind.data_keys()}
+    event = object.__new__(kind)
+    for name, value in values.items():
+        object.__setattr__(event, name, value)
+
+    assert set(named_parts(event)) == names
