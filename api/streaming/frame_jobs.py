@@ -10,8 +10,8 @@ from pathlib import Path
 from api.distribution import installed_version
 from api.streaming.client_input import STATE_TOPICS
 from api.streaming.encoder import StreamEncoder
+from domain.errors import StorageDegradedError
 from domain.timebase import Duration
-from service.history.event_history import UnreadableLogError
 from service.recorded_pieces import MomentNotRecordedError, piece_at
 from service.replayed_robot import ReplayedRobot
 from service.storage.errors import UnusableFolderError
@@ -42,7 +42,7 @@ def frame_of(wanted: WantedFrame) -> bytes:
 
     Raises:
         MomentNotRecordedError: The record does not have it.
-        UnreadableLogError: The record cannot be read.
+        StorageDegradedError: The record cannot be read.
         PilothouseError: It cannot be replayed.
     """
     moment = wanted.moment.replace(microsecond=wanted.moment.microsecond // 1000 * 1000)
@@ -52,9 +52,9 @@ def frame_of(wanted: WantedFrame) -> bytes:
         robot = ReplayedRobot(piece, installed_version(), wanted.simulated)
         robot.advance_to(at + _MILLISECOND - 1)
     except UnusableFolderError as error:
-        raise UnreadableLogError(str(error)) from error
+        raise StorageDegradedError.while_reading("the record", str(error)) from error
     except FAILURES as error:
-        raise UnreadableLogError(words(error)) from error
+        raise StorageDegradedError.while_reading("the record", words(error)) from error
     robot.publish()
     frame = robot.supervisor.frames.complete()
     if frame is None:

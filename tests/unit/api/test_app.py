@@ -57,6 +57,7 @@ CONTRACT = {
     "/events": {"get"},
     "/frames": {"get"},
     "/events/{event}/causes": {"get"},
+    "/storage": {"get"},
     "/livez": {"get"},
     "/readyz": {"get"},
     "/healthz": {"get"},
