@@ -231,7 +231,8 @@ def _starts_in(
     if line and isinstance(STEPS.decode(line).given, Restored):
         starts.insert(0, start(number - 1, run.boot.started_at, None))
     if before is not None:
-        earlier = sum(one.at < before for one in starts)
+        # The start of a run is before all of it, also before what happened at that instant.
+        earlier = sum(one.checkpoint is None or one.at < before for one in starts)
         starts = starts[earlier - 1 :] if earlier else []
     # From the first start before a hole, all is replayed up to the hole.
     return list({one.until_step: one for one in reversed(starts)}.values())[::-1]

@@ -112,3 +112,14 @@ def test_a_log_whose_start_is_gone_and_without_a_checkpoint_is_told(
 
     with pytest.raises(NothingRecordedError, match="neither the start of the run nor a checkpoint"):
         list(pieces_of(RecordedLog(folder), VERSION, None, 3))
+
+
+def test_what_happened_as_a_run_began_is_replayed_from_its_start(
+    folder: Path, robot: RecordedRobot
+) -> None:
+    first = robot.events[0]
+    assert first.at == boot_of(1).started_at
+
+    (piece,) = pieces_of(RecordedLog(folder), VERSION, first.id, first.id)
+
+    assert (piece.run, piece.first, piece.state) == (1, 1, None)
