@@ -1,6 +1,6 @@
 """Events as the log keeps them: readable without the classes that they were made from."""
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import fields
 from typing import NamedTuple, get_type_hints
 
@@ -33,7 +33,7 @@ class EventRow(NamedTuple):
 
 
 def event_row(recorded: RecordedEvent, wall_ns: int) -> EventRow:
-    """Return an event as a row; `wall_ns` is the wall time of its step."""
+    """Return an event as a row; `wall_ns` is its wall time."""
     event = recorded.event
     return EventRow(
         recorded.id,
@@ -43,10 +43,15 @@ def event_row(recorded: RecordedEvent, wall_ns: int) -> EventRow:
         recorded.cause,
         recorded.actor.label,
         named_parts(event),
-        to_json(event.data(), inf_nan_mode="null").decode(),
+        to_json(event.data(), inf_nan_mode="null", fallback=plain).decode(),
         event.words,
         event.notable,
     )
+
+
+def plain(value: object) -> object:
+    """Convert a value in the data of an event that JSON has not, such as a read-only mapping."""
+    return dict(value) if isinstance(value, Mapping) else str(value)
 
 
 def stored_event(row: EventRow, boot: int, epoch: str) -> StoredEvent:

@@ -1,4 +1,4 @@
-"""Which kinds of events a text means."""
+"""What the kinds of events are that a query asks for."""
 
 
 class KindPattern:

@@ -86,8 +86,9 @@ class MemoryJournal:
             return
         store, outputs = self._store, step.outputs
         store.last_at = self._clock.wall_time(step.at)
-        wall_ns = since_epoch(store.last_at)
-        store.events.extend((self._number, event_row(event, wall_ns)) for event in outputs.events)
+        for event in outputs.events:
+            wall_ns = since_epoch(self._clock.wall_time(event.at))
+            store.events.append((self._number, event_row(event, wall_ns)))
         for change in outputs.kept:
             if change.value is None:
                 store.kept.pop((change.kind, change.name), None)

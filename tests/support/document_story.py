@@ -220,6 +220,7 @@ _BESIDE = (
     Asked("GET /livez", "Alive"),
     Asked("GET /readyz", "Ready"),
     Asked("GET /healthz", "Well"),
+    Asked("GET /storage", "Of a robot that keeps nothing"),
     Asked("GET /metrics", "Some of them"),
 )
 

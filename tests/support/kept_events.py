@@ -169,7 +169,7 @@ class EventJournal:
             query.to_at is None or event.wall_at <= query.to_at,
             query.kind is None or KindPattern(query.kind).matches(event.kind),
             query.part is None or query.part in self.disk.parts[event.id],
-            query.actor is None or event.actor == query.actor,
+            query.actor is None or event.actor == query.actor != "",
         )
         return all(checks)
 

@@ -19,6 +19,7 @@ from service.clock import Clock, since_epoch
 from service.codec.codec import KEPT, STEPS
 from service.codec.names import NAMES
 from service.codec.recorded_step import recorded_step
+from service.storage.errors import UnusableFolderError
 from service.storage.event_rows import event_row
 from service.storage.journal import (
     Boot,
@@ -44,6 +45,7 @@ RETRY_S: Final = 1.0
 SLOW_S: Final = 1.0
 """Storage that takes longer for one flight is degraded."""
 CLOSE_PATIENCE_S: Final = 5.0
+OPEN_PATIENCE_S: Final = 60.0
 CHECKPOINT_EVERY: Final[Duration] = seconds(600.0)
 _READ_PATIENCE_S: Final = 0.5
 _READ_LIMIT_S: Final = 5.0
@@ -88,7 +90,12 @@ class SqliteJournal:
         """
         writer = DiskThread("journal-writer")
         try:
-            opened = await writer.run(lambda: open_folder(settings, boot))
+            async with asyncio.timeout(OPEN_PATIENCE_S):
+                opened = await writer.run(lambda: open_folder(settings, boot))
+        except TimeoutError as error:
+            writer.end()
+            reason = f"{settings.folder} cannot be used: no answer for {OPEN_PATIENCE_S:g} s"
+            raise UnusableFolderError(reason) from error
         except BaseException:
             writer.end()
             raise
@@ -114,19 +121,21 @@ class SqliteJournal:
         if self._is_closed:
             return
         outputs = step.outputs
-        wall_ns = since_epoch(self._clock.wall_time(step.at))
         try:
             line = STEPS.encode(recorded_step(step.at, step.given, step.is_late, outputs))
-            rows = [event_row(event, wall_ns) for event in outputs.events]
+            rows = [event_row(event, self._wall_ns(event.at)) for event in outputs.events]
         except PilothouseError as error:
             self._backlog.lose(step.at, len(outputs.events), error.message)
         else:
-            self._backlog.add_step(line, step.at, wall_ns, rows)
+            self._backlog.add_step(line, step.at, self._wall_ns(step.at), rows)
         if outputs is not NOTHING:
             self._note_kept(outputs)
         if step.at - self._checkpoint_at >= CHECKPOINT_EVERY:
             self._wants_checkpoint = True
         self._schedule()
+
+    def _wall_ns(self, at: Instant) -> int:
+        return since_epoch(self._clock.wall_time(at))
 
     def keep(self, name: str, value: Plain) -> None:
         """Keep a value of the service itself."""
@@ -170,6 +179,8 @@ class SqliteJournal:
             with suppress(StorageDegradedError):
                 await self._landed(_READ_PATIENCE_S)
         files = self._report.files
+        if not files:
+            raise StorageDegradedError(self._fault or "the log is not open yet")
         reading = self._reader.run(lambda: read_events(files, query))
         try:
             async with asyncio.timeout(_READ_LIMIT_S):

@@ -1,5 +1,6 @@
 import math
 from itertools import chain
+from types import MappingProxyType
 
 import pytest
 
@@ -12,7 +13,6 @@ from domain.events.kinds import EVENTS
 from domain.state_and_mode import PartName
 from service.clock import since_epoch
 from service.storage.event_rows import event_row, named_parts, stored_event
-from tests.support.frames import Happened
 from tests.support.manual_clock import START
 from tests.support.record_samples.events import EVENTS as SAMPLES
 
@@ -56,18 +56,21 @@ def test_a_number_that_json_does_not_have_is_null_as_in_the_stream(value: float)
     assert '"battery_level":null' in row.data
 
 
-def test_an_event_names_the_part_or_the_node_that_it_is_about() -> None:
-    assert named_parts(ChangeRequested(PartName("arm"), mode="FAST")) == ("arm",)
-    assert named_parts(Happened(1)) == ()
+def test_a_read_only_mapping_is_read_back_as_a_mapping() -> None:
+    parameters = MappingProxyType({"gain": 2.0})
+    requested = ChangeRequested(PartName("arm"), parameters=parameters)
+
+    row = event_row(RecordedEvent(1, 0, None, Actor(), requested), WALL_NS)
+
+    assert stored_event(row, 1, "epoch").data["parameters"] == {"gain": 2.0}
 
 
 @pytest.mark.parametrize("kind", EVENTS.values())
 def test_every_field_that_names_a_part_is_found(kind: type[Event]) -> None:
     """Such a field is called `part` or `node`."""
     names = {"part", "node"} & set(kind.data_keys())
-    values = {name: PartName(name) if name in names else None for name in kind.data_keys()}
     event = object.__new__(kind)
-    for name, value in values.items():
-        object.__setattr__(event, name, value)
+    for name in kind.data_keys():
+        object.__setattr__(event, name, PartName(name) if name in names else None)
 
     assert set(named_parts(event)) == names

@@ -24,6 +24,17 @@ from service.storage.kind_pattern import KindPattern
         ("*.*.*", "change.failed", False),
         ("", "change.failed", False),
         ("**", "change.failed", True),
+        ("change", "change.requested", True),
+        ("change", "change", True),
+        ("change", "changes.requested", False),
+        ("change.requested", "change.requested", True),
+        ("change.*", "change.requested", True),
+        ("*.requested", "change.requested", True),
+        ("*", "anything", True),
+        ("c*d", "change.requested", True),
+        ("c*d", "change.request", False),
+        ("chang.", "change", False),
+        ("[a-z]*", "change", False),
     ],
 )
 def test_a_pattern_means_these_kinds(text: str, kind: str, *, expected: bool) -> None:

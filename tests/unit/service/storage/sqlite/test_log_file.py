@@ -155,3 +155,22 @@ def test_the_write_ahead_log_is_taken_in_when_it_is_large(path: Path) -> None:
     file.tidy()
     assert file.size() >= path.stat().st_size >= before
     file.close()
+
+
+def test_steps_are_packed_with_earlier_ones_once_there_are_enough(path: Path) -> None:
+    file = log_file(path)
+    long = b'{"is":"recorded_step","at":%d}' * 40
+    sizes = []
+    for number in range(1, 21):
+        file.write(flight(batch(number, number, long % ((number,) * 40))), run(), NO_CHANGES)
+        sizes.append(file.summary.step_bytes)
+    assert file.dictionary
+    file.close()
+
+    packed = [bool(row[0]) for row in rows(path, "SELECT packed FROM batches ORDER BY number")]
+    assert packed == sorted(packed)
+    assert (packed[0], packed[-1]) == (False, True)
+    assert sizes[-1] - sizes[-2] < sizes[0]
+    again = LogFile.open(path, 1)
+    assert again.dictionary == file.dictionary
+    again.close()
