@@ -113,6 +113,28 @@ def piece_at(
     raise MomentNotRecordedError("the service did not run then, or it is no longer kept", extents)
 
 
+def moment_of(log: RecordedLog, event: int) -> Instant:
+    """Return the time of day of an event, in ns since 1970 UTC.
+
+    Raises:
+        NothingRecordedError: The log does not have it.
+    """
+    number, at = _place_of(log, event)
+    return next(at + offset_of(run.boot) for run in log.runs() if run.number == number)
+
+
+def end_of(log: RecordedLog) -> Instant:
+    """Return the time of day at which a log ends, in ns since 1970 UTC.
+
+    Raises:
+        NothingRecordedError: There is nothing in it.
+    """
+    extents = _extents_of(log, None)
+    if not extents:
+        raise NothingRecordedError("nothing is recorded")
+    return extents[-1].end + offset_of(extents[-1].run.boot)
+
+
 def offset_of(boot: Boot) -> Duration:
     """Return what was added to a time of a run for the time of day, in ns since 1970."""
     return since_epoch(boot.wall_at) - boot.started_at
