@@ -19,7 +19,10 @@ class ReplayBody(Body):
 
     speed: float | None = Field(default=None, ge=MIN_SPEED, le=MAX_SPEED)
     paused: bool | None = None
-    at: AwareDatetime | None = Field(default=None, description="The moment to go on from")
+    # A text, in JSON.
+    at: AwareDatetime | None = Field(
+        default=None, strict=False, description="The moment to go on from"
+    )
 
 
 async def _player(request: Request) -> Player:

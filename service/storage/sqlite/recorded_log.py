@@ -99,7 +99,7 @@ class RecordedLog:
             after_step: Number of the last step that is not wanted.
         """
         for path in self._paths():
-            for first, packed, dictionary in self._rows(path, _STEPS, run, after_step):
+            for first, packed, dictionary in self._batches(path, run, after_step):
                 for offset, line in enumerate(unpack(packed, dictionary)):
                     if first + offset > after_step:
                         yield first + offset, line
@@ -147,6 +147,18 @@ class RecordedLog:
                 " a service that is started on the folder brings older files up to date"
             )
 
+    def _batches(self, path: Path, run: int, after_step: int) -> Iterator[tuple[Any, ...]]:
+        """Yield the first step of each batch, the text of all and what unpacks it.
+
+        The file is let go in between: as long as it is read, its write-ahead log only grows, and
+        whoever shows a recording takes hours.
+        """
+        last = 0
+        while rows := list(self._rows(path, _STEPS, run, after_step, last, _BATCHES_AT_ONCE)):
+            for _, *batch in rows:
+                yield tuple(batch)
+            last = rows[-1][0]
+
     def _rows(self, path: Path, sql: str, *values: object) -> Iterator[tuple[Any, ...]]:
         # It may have been dropped a moment ago.
         with suppress(FileNotFoundError), reading(path) as connection:
@@ -167,12 +179,14 @@ _RUNS = (
     " ORDER BY number DESC LIMIT 1), 0) FROM boots ORDER BY number"
 )
 _STEPS = (
-    "SELECT first_step, steps,"
+    "SELECT number, first_step, steps,"
     " CASE WHEN packed THEN (SELECT value FROM meta WHERE name = 'dictionary') ELSE x'' END"
     " FROM batches WHERE number >="
     " (SELECT first_batch FROM boots WHERE boots.number = ?1) AND boot = ?1 AND count > 0"
-    " AND first_step + count > ?2 + 1 ORDER BY number"
+    " AND first_step + count > ?2 + 1 AND number > ?3 ORDER BY number LIMIT ?4"
 )
+_BATCHES_AT_ONCE = 100
+"""Usually of 5 s, some 100 kB."""
 _CHECKPOINTS = "SELECT boot, step, at, version FROM checkpoints ORDER BY step"
 _HOLES = "SELECT boot, after_step, steps, events, from_at, to_at, reason FROM holes ORDER BY batch"
 

@@ -22,7 +22,7 @@ def robot() -> RecordedRobot:
 def folder(robot: RecordedRobot, tmp_path_factory: pytest.TempPathFactory) -> Path:
     """Return the data of a robot whose service ran twice, with checkpoints in the first run."""
     folder = tmp_path_factory.mktemp("data") / "robot"
-    again = RecordedRobot(restored=robot.kept())
+    again = RecordedRobot(boot_of(2), robot.kept())
     again.advance(1)
     store(folder, robot, again, checkpoints=CHECKPOINTS)
     return folder
