@@ -158,7 +158,7 @@ class Keeper:
     def look(self) -> None:
         """Keep memories that changed, and tell the core if storage fails or works again."""
         self.keep_memories(self._clock.now())
-        fault = self._journal.status().reason
+        fault = self._journal.fault
         if (fault is None) is not (self._fault is None):
             self._fault = fault
             self._submit(StorageStatus(available=fault is None, reason=fault or ""))
@@ -210,6 +210,6 @@ class Keeper:
 
     async def _is_stored(self, patience_s: float) -> bool:
         try:
-            return await self._journal.commit(patience_s)
+            return await self._journal.commit(patience_s) and self._journal.is_durable
         except StorageDegradedError:
             return False

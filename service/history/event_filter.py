@@ -35,6 +35,6 @@ class EventFilter:
             and (self._from is None or recorded.at >= self._from)
             and (self._to is None or recorded.at <= self._to)
             and (self._kind is None or self._kind.matches(recorded.kind))
-            and (query.actor is None or recorded.actor.label == query.actor != "")
+            and (query.actor is None or recorded.actor.label == query.actor)
             and (query.part is None or query.part in named_parts(recorded.event))
         )

@@ -80,6 +80,16 @@ class MemoryJournal:
         """Return False: nothing is replayed from here."""
         return False
 
+    @property
+    def is_durable(self) -> bool:
+        """Return False."""
+        return False
+
+    @property
+    def fault(self) -> str | None:
+        """Return None: memory does not fail."""
+        return None
+
     def note(self, step: Step) -> None:
         """Keep the events of a step, and what changed of what is kept."""
         if self._is_closed:

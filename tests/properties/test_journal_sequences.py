@@ -101,6 +101,7 @@ class Story:
         await self.start()
 
     async def end(self) -> None:
+        assert await self.robot.journal.commit(ENOUGH_S)
         found = await self.robot.journal.events(EventQuery(after=0, limit=10_000))
         await self.robot.journal.close()
         assert [event.id for event in found] == self.expected.events

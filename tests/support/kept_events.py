@@ -140,6 +140,9 @@ class EventJournal:
     def keep(self, name: str, value: Plain) -> None:
         """Keep nothing."""
 
+    is_durable = False
+    fault = None
+
     @property
     def wants_checkpoint(self) -> bool:
         """Return False: steps are not kept."""
@@ -169,7 +172,7 @@ class EventJournal:
             query.to_at is None or event.wall_at <= query.to_at,
             query.kind is None or KindPattern(query.kind).matches(event.kind),
             query.part is None or query.part in self.disk.parts[event.id],
-            query.actor is None or event.actor == query.actor != "",
+            query.actor is None or event.actor == query.actor,
         )
         return all(checks)
 

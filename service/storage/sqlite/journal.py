@@ -12,7 +12,7 @@ from typing import Final
 
 from pydantic_core import to_json
 
-from domain.errors import PilothouseError, StorageDegradedError
+from domain.errors import StorageDegradedError
 from domain.outbox import NOTHING, Outputs
 from domain.timebase import Duration, Instant, seconds
 from service.clock import Clock, since_epoch
@@ -47,7 +47,7 @@ SLOW_S: Final = 1.0
 CLOSE_PATIENCE_S: Final = 5.0
 OPEN_PATIENCE_S: Final = 60.0
 CHECKPOINT_EVERY: Final[Duration] = seconds(600.0)
-_READ_PATIENCE_S: Final = 0.5
+_READ_PATIENCE_S: Final = 2.0
 _READ_LIMIT_S: Final = 5.0
 
 _log = logging.getLogger(__name__)
@@ -112,6 +112,16 @@ class SqliteJournal:
         return self._boot
 
     @property
+    def is_durable(self) -> bool:
+        """Return True."""
+        return True
+
+    @property
+    def fault(self) -> str | None:
+        """Return why storage is degraded; None: it is not."""
+        return self._fault or self._slowness() or self._report.state_fault
+
+    @property
     def wants_checkpoint(self) -> bool:
         """Tell whether a replay could not go on from what was written down lately."""
         return self._wants_checkpoint
@@ -124,8 +134,10 @@ class SqliteJournal:
         try:
             line = STEPS.encode(recorded_step(step.at, step.given, step.is_late, outputs))
             rows = [event_row(event, self._wall_ns(event.at)) for event in outputs.events]
-        except PilothouseError as error:
-            self._backlog.lose(step.at, len(outputs.events), error.message)
+        except Exception as error:
+            # Whatever is wrong with a step, the robot is supervised on.
+            _log.exception("a step cannot be written down")
+            self._backlog.lose(step.at, len(outputs.events), words(error))
         else:
             self._backlog.add_step(line, step.at, self._wall_ns(step.at), rows)
         if outputs is not NOTHING:
@@ -169,7 +181,7 @@ class SqliteJournal:
             self._settings.folder,
             self._opened.found.restored.boot,
             self._report,
-            self._fault or self._slowness() or self._report.state_fault,
+            self.fault,
             (self._backlog.lost_steps, self._backlog.lost_events),
         )
 
@@ -332,8 +344,8 @@ class SqliteJournal:
         for change in outputs.kept:
             try:
                 text = None if change.value is None else KEPT.encode(change.value)
-            except PilothouseError as error:
-                _log.error("%s cannot be kept: %s", change.name, error.message)
+            except Exception:
+                _log.exception("%s cannot be kept", change.name)
                 continue
             self._backlog.change((NAMES[change.kind], change.name), text)
         if self._opened.ids.see(outputs):

@@ -133,7 +133,7 @@ class LogFile:
         now = time.monotonic_ns()
         is_synced = flight.must_last or now - self._synced_at >= _SYNC_EVERY
         self._set_sync(is_synced)
-        summary = self.summary
+        summary, dictionary = self.summary, self.dictionary
         with self._connection:
             for batch in flight.batches:
                 if batch.number > self.summary.last_batch:
