@@ -11,10 +11,14 @@ from service.clock import Clock
 from service.frame_publisher import PERIOD
 from service.recorded_pieces import NothingRecordedError, Piece, offset_of
 from service.replayed_robot import ReplayedRobot
+from service.storage.errors import UnusableFolderError
+from service.storage.sqlite.connection import FAILURES, words
 
 log = logging.getLogger(__name__)
 
 MIN_SPEED, MAX_SPEED = 0.1, 100.0
+_FAILURES = (PilothouseError, UnusableFolderError, *FAILURES)
+"""What a record may come to while it is read: broken, dropped by its service, unreadable."""
 _PORTION: Duration = seconds(0.5)
 """Time of the record that is taken in before other tasks run: some 30 steps, 3 ms."""
 _MOST_OWED: Duration = seconds(0.5)
@@ -90,7 +94,7 @@ class Player:
         try:
             self.robot, self._offset = self._opened(wall)
             await self._play_to(wall)
-        except PilothouseError as error:
+        except _FAILURES as error:
             self._stop_at(error)
         self.on_robot(self.robot)
         if not done.done():
@@ -113,7 +117,7 @@ class Player:
                     await asyncio.sleep(0)
             self.robot.advance_to(wall - self._offset)
             self.wall = wall
-        except PilothouseError as error:
+        except _FAILURES as error:
             self._stop_at(error)
 
     def _goes_on(self) -> bool:
@@ -144,7 +148,7 @@ class Player:
     def _made(self, piece: Piece) -> tuple[ReplayedRobot, Duration]:
         return ReplayedRobot(piece, self._version), offset_of(piece.boot)
 
-    def _stop_at(self, error: PilothouseError) -> None:
-        log.error("the replay stops: %s", error)
-        self.fault = error.message
+    def _stop_at(self, error: Exception) -> None:
+        self.fault = error.message if isinstance(error, PilothouseError) else words(error)
+        log.error("the replay stops: %s", self.fault)
         self.wall = self.robot.clock.now() + self._offset

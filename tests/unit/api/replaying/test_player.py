@@ -12,13 +12,20 @@ from api.replaying.recording import Recording, recording_of
 from domain.errors import PilothouseError
 from domain.timebase import seconds
 from service.recorded_pieces import offset_of
-from service.replayed_robot import ReplayDiffersError, ReplayedRobot
+from service.replayed_robot import ReplayedRobot
+from service.storage.errors import UnusableFolderError
 from tests.support.manual_clock import ManualClock
 from tests.support.recorded_robot import RecordedRobot
 from tests.support.stored_robot import boot_of, held_on_its_way, store
 
 VERSION = boot_of(1).version
 BEGIN = boot_of(1).started_at + offset_of(boot_of(1))
+
+
+class BrokenError(PilothouseError):
+    """A record that is broken."""
+
+    code = "INTERNAL"
 
 
 @pytest.fixture(scope="module")
@@ -170,8 +177,16 @@ def test_events_are_its_begin_and_its_end(robot: RecordedRobot, tmp_path: Path) 
     assert found.end == released.at + offset
 
 
+@pytest.mark.parametrize(
+    ("failure", "words"),
+    [
+        (BrokenError("something else came"), "something else came"),
+        (OSError(5, "Input/output error"), "Input/output error"),
+        (UnusableFolderError("the folder no longer holds that"), "the folder no longer holds that"),
+    ],
+)
 async def test_where_the_record_does_not_lead_on_it_stands_and_says_why(
-    recording: Recording, monkeypatch: pytest.MonkeyPatch
+    recording: Recording, monkeypatch: pytest.MonkeyPatch, failure: Exception, words: str
 ) -> None:
     clock = ManualClock()
     player = Player(recording, VERSION, clock)
@@ -179,22 +194,15 @@ async def test_where_the_record_does_not_lead_on_it_stands_and_says_why(
         await clock.advance(1)
 
         def fail(robot: ReplayedRobot, end: int) -> None:
-            raise BrokenError("something else came")
+            raise failure
 
         monkeypatch.setattr(ReplayedRobot, "advance_to", fail)
         await clock.advance(1)
 
-        assert player.fault == "something else came"
+        assert player.fault == words
         monkeypatch.undo()
         asked = asyncio.create_task(player.seek(BEGIN))
         await clock.advance(0.1)
         await asked
 
     assert player.fault is None
-    assert issubclass(ReplayDiffersError, PilothouseError)
-
-
-class BrokenError(PilothouseError):
-    """A record that is broken."""
-
-    code = "INTERNAL"
