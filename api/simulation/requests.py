@@ -4,8 +4,6 @@ import asyncio
 import json
 from http import HTTPStatus
 
-import httpx
-
 from api.http.problems import MEDIA_TYPE, make_problem
 from api.http.schemas.problem import Problem
 from api.http.schemas.simulation import AskedRequest
@@ -20,6 +18,9 @@ class Requests:
     """The HTTP interface of one robot; no request waits for the end of what it starts."""
 
     def __init__(self, supervisor: Supervisor, runner: asyncio.Runner) -> None:
+        # Imported here: it takes 5 MB, and the live service loads this module and sends nothing.
+        import httpx
+
         self._runner = runner
         app = create_robot_app(supervisor, InlineJobs())
         self._client = httpx.AsyncClient(transport=httpx.ASGITransport(app))
@@ -29,6 +30,8 @@ class Requests:
         return self._runner.run(self._send(asked))
 
     async def _send(self, asked: AskedRequest) -> Problem | None:
+        import httpx
+
         if asked.path.startswith("/simulations"):
             detail = "a simulation cannot start another one"
             return make_problem(HTTPStatus.CONFLICT, "REFUSED", detail, asked.path)

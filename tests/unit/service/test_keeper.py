@@ -24,7 +24,15 @@ from domain.inputs import (
 from domain.lifecycle import Transition
 from domain.outbox import NOTHING, Outputs
 from domain.timebase import Instant, to_seconds
-from service.keeper import LOOK_EVERY, SAFER_S, Checkpoint, Keeper, Memory, starts_or_loosens
+from service.keeper import (
+    LOOK_EVERY,
+    SAFER_S,
+    WORKS_FOR,
+    Checkpoint,
+    Keeper,
+    Memory,
+    starts_or_loosens,
+)
 from service.storage.journal import Plain
 from tests.support.manual_clock import ManualClock
 from tests.support.models import BASE
@@ -172,20 +180,35 @@ def test_what_is_no_request_is_neither() -> None:
         starts_or_loosens(TimePassed())
 
 
-def test_a_disk_that_fails_is_told_to_the_core_once_and_its_recovery_too(
-    disk: Disk, keeper: Keeper
+FULL = StorageStatus(available=False, reason="the disk is full")
+
+
+async def test_a_disk_that_fails_is_told_to_the_core_once_and_its_recovery_too(
+    disk: Disk, keeper: Keeper, clock: ManualClock
 ) -> None:
     keeper.look()
     disk.fault = "the disk is full"
     keeper.look()
     keeper.look()
     disk.fault = None
+    await clock.advance(to_seconds(WORKS_FOR))
+    keeper.look()
     keeper.look()
 
-    assert disk.given == [
-        StorageStatus(available=False, reason="the disk is full"),
-        StorageStatus(available=True),
-    ]
+    assert disk.given == [FULL, StorageStatus(available=True)]
+
+
+async def test_a_full_disk_that_takes_a_write_now_and_then_is_told_once(
+    disk: Disk, keeper: Keeper, clock: ManualClock
+) -> None:
+    for _ in range(5):
+        disk.fault = "the disk is full"
+        keeper.look()
+        disk.fault = None
+        await clock.advance(to_seconds(WORKS_FOR) - 0.1)
+        keeper.look()
+
+    assert disk.given == [FULL]
 
 
 async def test_a_memory_is_kept_when_it_changed_and_not_too_often(
