@@ -23,7 +23,7 @@ Export what a service recorded. The service may be running.
 jsonl: a folder of plain files, such as for the report of a bug. `pilothouse
        replay` decides it again on any computer; `events.jsonl` is for people
 mcap:  a file for Foxglove or Lichtblick: system state, parts, signals, task,
-       vehicle, pose, path and events. Needs: pip install 'pilothouse[recording]'
+       vehicle, pose, path, events. Needs: pip install 'pilothouse[recording]'
 
 exit code: 0 done; 2 nothing can be exported, or it cannot be written;
            130 ended by Ctrl-C; then there is no file of mcap
