@@ -28,8 +28,8 @@ class WantedFrame:
     folder: str
     """Its folder of data."""
     moment: datetime
-    now: datetime
-    """How far the run has come that goes on."""
+    now: datetime | None
+    """How far the run has come that goes on; None: as far as is on disk."""
     simulated: tuple[str, ...]
     """The simulated pieces of the robot."""
 

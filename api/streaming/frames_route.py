@@ -1,6 +1,5 @@
 """`GET /frames`: how the robot was at a moment."""
 
-from datetime import datetime
 from http import HTTPStatus
 from typing import Annotated
 
@@ -48,11 +47,18 @@ async def get_frame(
     404: the robot did not run then, or it is not kept (any longer); the answer says what is.
     """
     folder = _folder_of(supervisor)
-    now = supervisor.clock.wall_time(supervisor.clock.now())
     replayer.require_room()
-    await _write_down(supervisor, at, now)
-    wanted = WantedFrame(folder, at, now, supervisor.simulated)
-    return Response(await replayer.call(frame_of, wanted), media_type="application/json")
+    now = supervisor.clock.wall_time(supervisor.clock.now())
+    fault = await _unwritten(supervisor)
+    wanted = WantedFrame(folder, at, None if fault else now, supervisor.simulated)
+    try:
+        content = await replayer.call(frame_of, wanted)
+    except MomentNotRecordedError:
+        started_at = supervisor.clock.wall_time(supervisor.started_at)
+        if fault is not None and started_at <= at <= now:
+            raise fault from None
+        raise
+    return Response(content, media_type="application/json")
 
 
 def _folder_of(supervisor: Supervisor) -> str:
@@ -72,14 +78,13 @@ def _folder_of(supervisor: Supervisor) -> str:
 _MEMORY = ":memory:"
 
 
-async def _write_down(supervisor: Supervisor, at: datetime, now: datetime) -> None:
-    """Wait until what is asked for is on disk, if it may not be there yet.
-
-    Raises:
-        StorageDegradedError: Storage fails, or takes too long.
-    """
-    journal = supervisor.journal
-    if journal is None or (now - at).total_seconds() > _WRITTEN_WITHIN_S:
-        return
-    if not await journal.commit(_WRITTEN_WITHIN_S):
-        raise StorageDegradedError(f"the disk takes more than {_WRITTEN_WITHIN_S:g} s")
+async def _unwritten(supervisor: Supervisor) -> StorageDegradedError | None:
+    """Wait until all that happened is on disk; return why it is not."""
+    try:
+        if supervisor.journal is None or await supervisor.journal.commit(_WRITTEN_WITHIN_S):
+            return None
+    except StorageDegradedError as error:
+        reason = error.reason
+    else:
+        reason = f"the disk takes more than {_WRITTEN_WITHIN_S:g} s"
+    return StorageDegradedError.while_reading("the record of that moment", reason)

@@ -6,8 +6,12 @@ from typing import Any
 import pytest
 
 from api.streaming import frame_jobs
+from domain.actor import Actor
 from domain.errors import StorageDegradedError
-from service.storage.sqlite.recorded_log import RecordedHole, RecordedLog
+from domain.inputs import HoldRequest
+from domain.outbox import NOTHING
+from service.storage.journal import Step
+from service.storage.sqlite.recorded_log import RecordedLog
 from service.worker import WorkerBusyError
 from tests.support.http_robot import HttpRobot
 from tests.support.manual_clock import ManualClock
@@ -101,25 +105,31 @@ async def test_a_moment_between_two_runs_is_not_there_and_the_extent_is_told(
             assert f"the record goes from {begin} to {robot.now}" in answer.json()["detail"]
 
 
-async def test_what_was_lost_is_said_to_be_lost(
-    folder: Path, monkeypatch: pytest.MonkeyPatch
+async def test_what_was_lost_is_said_to_be_lost_and_what_follows_is_known_again(
+    folder: Path,
 ) -> None:
     async with stored_service(folder, ManualClock()) as robot:
+        journal = robot.supervisor.journal
+        assert journal is not None
+        await robot.clock.advance(1.01)
+        before, seen_before = robot.now, robot.frame()
+        await robot.clock.advance(0.1)
+        # What cannot be encoded cannot be written down.
+        broken = HoldRequest("operator", "half of a letter: \ud83d", Actor("ada"))
+        journal.note(Step(robot.clock.now(), broken, False, NOTHING))
+        lost = robot.now
+        await committed(robot)
         await robot.clock.advance(1)
-        before = robot.now
-        await robot.clock.advance(2)
-        lines = list(RecordedLog(folder).lines(1)) if await committed(robot) else []
-        last = [number for number, _ in lines][len(lines) // 3]
-        at = robot.clock.from_wall(robot.clock.wall_time(robot.clock.now()))
-        hole = RecordedHole(1, last, 5, 0, at - 10**9, at, "the disk was full")
-        monkeypatch.setattr(RecordedLog, "holes", lambda _: [hole])
-        monkeypatch.setattr(RecordedLog, "checkpoints", lambda _: [])
+        await committed(robot)
+        await robot.clock.advance(1)
+        after, seen_after = robot.now, robot.frame()
 
-        assert (await robot.frame_at(before)).status_code == 200
-        answer = await robot.frame_at(robot.now)
-
-    assert answer.status_code == 404
-    assert "that was lost: the disk was full" in answer.json()["detail"]
+        assert len(RecordedLog(folder).holes()) == 1
+        assert robot_in((await robot.frame_at(before)).json()) == robot_in(seen_before)
+        answer = await robot.frame_at(lost)
+        assert (answer.status_code, answer.json()["code"]) == (404, "MOMENT_NOT_RECORDED")
+        assert "that was lost: " in answer.json()["detail"]
+        assert robot_in((await robot.frame_at(after)).json()) == robot_in(seen_after)
 
 
 async def committed(robot: StoredService) -> bool:
@@ -169,19 +179,26 @@ async def test_a_log_that_cannot_be_read_is_a_degraded_storage(
     assert "Input/output error" in answer.json()["detail"]
 
 
-async def test_what_cannot_be_written_down_cannot_be_replayed(
+async def test_while_storage_fails_what_is_on_disk_can_be_replayed_and_the_rest_cannot(
     folder: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     async with stored_service(folder, ManualClock()) as robot:
         await robot.clock.advance(1)
+        written, seen = robot.now, robot.frame()
+        assert await committed(robot)
 
         async def fail(patience_s: float) -> bool:
             raise StorageDegradedError("the disk is full")
 
         monkeypatch.setattr(robot.supervisor.journal, "commit", fail)
+        monkeypatch.setattr(robot.supervisor.journal, "note", lambda _: None)
+        await robot.clock.advance(1)
         answer = await robot.frame_at(robot.now)
 
-    assert (answer.status_code, answer.json()["code"]) == (503, "STORAGE_DEGRADED")
+        assert (answer.status_code, answer.json()["code"]) == (503, "STORAGE_DEGRADED")
+        assert "the record of that moment cannot be read: the disk is full" in answer.text
+        assert robot_in((await robot.frame_at(written)).json()) == robot_in(seen)
+        assert (await robot.frame_at(later(robot.now, 60))).status_code == 404
 
 
 async def test_whoever_asks_for_too_many_at_once_is_told_to_wait(
