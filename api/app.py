@@ -27,10 +27,13 @@ from api.rosbridge import route as rosbridge
 from api.rosbridge.clients import make_rosbridge_clients
 from api.simulation import route as simulations
 from api.simulation.simulation_job import SimulatedParts
+from api.streaming import frame_jobs, frames_route
 from service.supervisor import Supervisor
 from service.worker import Worker
 
 SIMULATION_DEADLINE_S = 120.0
+REPLAY_DEADLINE_S = 30.0
+"""For a moment of the record; the last checkpoint before it is some minutes earlier at most."""
 
 
 def create_app(
@@ -46,8 +49,9 @@ def create_app(
 
     Whoever serves it calls `prepare` before, and `close_workers` after; its lifespan does the
     second. What takes long is done by a worker process; simulations have a further one, since they
-    may take a minute, and a task that is posted meanwhile must not wait. Each is started with the
-    first work for it, which so takes half a second longer; a robot that is only watched has none.
+    may take a minute, and a task that is posted meanwhile must not wait; so have replays of moments
+    of the record. Each is started with the first work for it, which so takes half a second longer;
+    a robot that is only watched has none.
 
     Args:
         supervisor: What is served.
@@ -60,12 +64,14 @@ def create_app(
     worker = Worker([model_jobs.__name__, task_jobs.__name__])
     app = create_robot_app(supervisor, worker, access=access, limits=limits, lifespan=_lifespan)
     app.state.simulator = Worker(deadline_s=SIMULATION_DEADLINE_S)
+    app.state.replayer = Worker([frame_jobs.__name__], deadline_s=REPLAY_DEADLINE_S)
     app.state.rosbridge_clients = make_rosbridge_clients(
         supervisor, limits.requests_per_s, app.state.stream_server
     )
     app.state.simulated = simulated
     app.state.copying = asyncio.Lock()
     app.include_router(simulations.router)
+    app.include_router(frames_route.router)
     app.include_router(documents.router)
     app.include_router(rosbridge.router)
     _guard(app, supervisor, allowed_hosts, allowed_origins or AllowedOrigins())
@@ -121,3 +127,4 @@ async def close_workers(app: FastAPI) -> None:
     """End the processes that work for `app`; what they are at fails."""
     await app.state.worker.close()
     await app.state.simulator.close()
+    await app.state.replayer.close()

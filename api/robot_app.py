@@ -41,6 +41,7 @@ from api.streaming import events_route as events
 from api.streaming import route as stream
 from api.streaming.stream_metrics import StreamCollector
 from api.streaming.stream_server import StreamServer
+from service.clock import Clock
 from service.supervisor import Supervisor
 from service.worker import Jobs
 
@@ -94,6 +95,7 @@ def create_robot_app(
     access: Access | None = None,
     limits: ServiceLimits = USUAL_LIMITS,
     lifespan: Lifespan | None = None,
+    clock: Clock | None = None,
 ) -> FastAPI:
     """Return the interface, without what guards it against the network; it starts no task.
 
@@ -103,6 +105,7 @@ def create_robot_app(
         access: Whom it lets in; None: everybody.
         limits: How much may be asked of it.
         lifespan: What is to be done before the first and after the last request.
+        clock: Of the connections; None: that of the supervisor.
     """
     app = FastAPI(
         title="Pilothouse",
@@ -118,24 +121,31 @@ def create_robot_app(
         routes=_resources(),
         middleware=[Middleware(DurableHeader), Middleware(UnexpectedErrors)],
     )
-    _share(app, supervisor, worker, access or Access.open(), limits)
+    state = app.state
+    state.worker = worker
+    state.access = access or Access.open()
+    state.limits = limits
+    state.refusals = Refusals(clock or supervisor.clock)
+    state.metrics = Metrics(supervisor, state.refusals)
+    show(app, supervisor, clock)
+    state.metrics.registry.register(StreamCollector(state.stream_server))
     add_problem_handlers(app, supervisor.clock)
     app.include_router(page_routes())
     app.openapi = partial(describe, app)  # type: ignore[method-assign]
     return app
 
 
-def _share(
-    app: FastAPI, supervisor: Supervisor, worker: Jobs, access: Access, limits: ServiceLimits
-) -> None:
-    """Put what routes and gates have in common where they find it."""
+def show(app: FastAPI, supervisor: Supervisor, clock: Clock | None = None) -> None:
+    """Let routes and gates find the robot.
+
+    Args:
+        app: Of `create_robot_app`.
+        supervisor: What is served from now on.
+        clock: Of the connections; None: that of the supervisor.
+    """
     state = app.state
     state.supervisor = supervisor
-    state.worker = worker
-    state.access = access
-    state.limits = limits
-    state.refusals = Refusals(supervisor.clock)
     state.model_json = model.encode_model(supervisor)
-    state.stream_server = StreamServer(supervisor, limits.stream_clients, access, state.refusals)
-    state.metrics = Metrics(supervisor, state.refusals)
-    state.metrics.registry.register(StreamCollector(state.stream_server))
+    state.stream_server = StreamServer(
+        supervisor, state.limits.stream_clients, state.access, state.refusals, clock
+    )

@@ -83,6 +83,11 @@ class Outbox:
         self._next_event = first
 
     @property
+    def next_event(self) -> int:
+        """Return the id that the next event gets."""
+        return self._next_event
+
+    @property
     def actor(self) -> Actor:
         """Return who sent the current input."""
         return self._actor

@@ -109,6 +109,11 @@ class Supervision:
         self._wake_at = self._next_wake()
         """Cached: it is read several times per input, and only inputs and time change it."""
 
+    @property
+    def next_event(self) -> int:
+        """Return the id that the next event gets."""
+        return self._outbox.next_event
+
     # --- time and inputs -------------------------------------------------------------------------
 
     def wake_at(self) -> Instant | None:

@@ -88,9 +88,9 @@ class FramePublisher:
     def publish_change(self) -> None:
         """Publish now instead of at the next tick, unless nothing was published yet."""
         if self.seq:
-            self._publish()
+            self.publish()
 
-    def _publish(self) -> None:
+    def publish(self) -> None:
         """Publish one frame: everything at first, then the changes since the previous frame."""
         full = self.frames.wants_full
         self.seq += 1
@@ -154,7 +154,7 @@ class FramePublisher:
             for observe in self.on_tick:
                 observe(to_seconds(now - self.last_tick_at))
         self.last_tick_at = now
-        self._publish()
+        self.publish()
 
 
 def _only_repeats(view: SignalView, told: SignalView) -> bool:

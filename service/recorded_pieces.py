@@ -6,10 +6,12 @@ ends; the next begins with the first checkpoint after that.
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
+from datetime import datetime
 
 from domain.errors import PilothouseError
 from domain.inputs import Restored
-from domain.timebase import Instant
+from domain.timebase import Duration, Instant, seconds
+from service.clock import since_epoch, to_datetime
 from service.codec.codec import STEPS
 from service.codec.recorded_step import RecordedStep
 from service.storage.journal import Boot, EventQuery
@@ -20,6 +22,22 @@ class NothingRecordedError(PilothouseError):
     """A record in which there is nothing that can be replayed."""
 
     code = "NOTHING_RECORDED"
+
+
+class MomentNotRecordedError(NothingRecordedError):
+    """A moment that the record does not have."""
+
+    code = "MOMENT_NOT_RECORDED"
+
+    def __init__(self, why: str, extents: Sequence["_Extent"]) -> None:
+        kept = "nothing is recorded"
+        if extents:
+            kept = f"the record goes from {extents[0].words[0]} to {extents[-1].words[1]}"
+        super().__init__(f"{why}; {kept}")
+
+
+def _shown(wall: Instant) -> str:
+    return to_datetime(wall).isoformat(timespec="milliseconds").replace("+00:00", "Z")
 
 
 @dataclass(frozen=True, slots=True)
@@ -65,11 +83,122 @@ def pieces_of(
         )
     for start in starts:
         steps = _Steps(log, start, last_event)
-        checkpoint = start.checkpoint
-        state = None if checkpoint is None else log.state(checkpoint)
-        yield Piece(start.run.number, start.run.boot, state, start.after_step + 1, iter(steps))
+        yield _piece(log, start, steps)
         if steps.is_last:
             return
+
+
+def piece_at(
+    log: RecordedLog, version: str, moment: datetime, now: datetime | None = None
+) -> tuple[Piece, Instant]:
+    """Return the piece that a moment is in, from the last place before it that a replay can start.
+
+    Args:
+        log: Of a folder.
+        version: This release of Pilothouse; of other releases, no checkpoint can be used.
+        moment: Time of day, as the system clock was set when that run began.
+        now: How far the last run has come, if it goes on; None: as far as its last step.
+
+    Returns:
+        The piece, and the moment in its time.
+
+    Raises:
+        MomentNotRecordedError: The log does not have it.
+    """
+    extents = _extents_of(log, now)
+    for extent in reversed(extents):
+        at = since_epoch(moment) - offset_of(extent.run.boot)
+        if extent.begin - _SHOWN < at <= extent.end + _PERIOD:
+            return _piece_in(log, extents, extent.run, version, at), at
+    raise MomentNotRecordedError("the service did not run then, or it is no longer kept", extents)
+
+
+def moment_of(log: RecordedLog, event: int) -> Instant:
+    """Return the time of day of an event, in ns since 1970 UTC.
+
+    Raises:
+        NothingRecordedError: The log does not have it.
+    """
+    number, at = _place_of(log, event)
+    return next(at + offset_of(run.boot) for run in log.runs() if run.number == number)
+
+
+def end_of(log: RecordedLog) -> Instant:
+    """Return the time of day at which a log ends, in ns since 1970 UTC.
+
+    Raises:
+        NothingRecordedError: There is nothing in it.
+    """
+    extents = _extents_of(log, None)
+    if not extents:
+        raise NothingRecordedError("nothing is recorded")
+    return extents[-1].end + offset_of(extents[-1].run.boot)
+
+
+def offset_of(boot: Boot) -> Duration:
+    """Return what was added to a time of a run for the time of day, in ns since 1970."""
+    return since_epoch(boot.wall_at) - boot.started_at
+
+
+@dataclass(frozen=True, slots=True)
+class _Extent:
+    """From when to when a run is in the log."""
+
+    run: RecordedRun
+    begin: Instant
+    end: Instant
+
+    @property
+    def words(self) -> tuple[str, str]:
+        """Return both as time of day."""
+        offset = offset_of(self.run.boot)
+        return _shown(self.begin + offset), _shown(self.end + offset)
+
+
+def _extents_of(log: RecordedLog, now: datetime | None) -> Sequence[_Extent]:
+    runs = [run for run in log.runs() if run.first_step]
+    extents = []
+    for run in runs:
+        ended, end = run.ended_at, run.last_at
+        if ended is None and run is runs[-1]:
+            ended = now
+        if ended is not None:
+            end = max(end, since_epoch(ended) - offset_of(run.boot))
+        extents.append(_Extent(run, run.boot.started_at, end))
+    return extents
+
+
+def _piece_in(
+    log: RecordedLog, extents: Sequence[_Extent], run: RecordedRun, version: str, at: Instant
+) -> Piece:
+    """Return the piece of a run that a moment is in.
+
+    Raises:
+        MomentNotRecordedError: It was lost, or what was before it.
+    """
+    starts = _starts_in(log, run, version, before=max(at, run.boot.started_at) + 1)
+    if not starts:
+        why = "what was before that is no longer kept, or was lost"
+        if run.boot.version != version:
+            why = f"release {run.boot.version} recorded that run, and its start is no longer kept"
+        raise MomentNotRecordedError(why, extents)
+    start = starts[0]
+    for hole in log.holes():
+        if hole.after_step == start.until_step and at >= hole.from_at:
+            raise MomentNotRecordedError(f"that was lost: {hole.reason}", extents)
+    return _piece(log, start, _Steps(log, start, None))
+
+
+_SHOWN: Duration = seconds(0.001)
+"""Clients see and name milliseconds."""
+_PERIOD: Duration = seconds(0.05)
+"""Frames were that far apart: after the last step, the last one was still seen."""
+
+
+def _piece(log: RecordedLog, start: "_Start", steps: "_Steps") -> Piece:
+    checkpoint = start.checkpoint
+    state = None if checkpoint is None else log.state(checkpoint)
+    return Piece(start.run.number, start.run.boot, state, start.after_step + 1, iter(steps))
 
 
 @dataclass(frozen=True, slots=True)
@@ -124,7 +253,8 @@ def _starts_in(
     if line and isinstance(STEPS.decode(line).given, Restored):
         starts.insert(0, start(number - 1, run.boot.started_at, None))
     if before is not None:
-        earlier = sum(one.at < before for one in starts)
+        # The start of a run is before all of it, also before what happened at that instant.
+        earlier = sum(one.checkpoint is None or one.at < before for one in starts)
         starts = starts[earlier - 1 :] if earlier else []
     # From the first start before a hole, all is replayed up to the hole.
     return list({one.until_step: one for one in reversed(starts)}.values())[::-1]

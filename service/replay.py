@@ -22,6 +22,7 @@ from domain.errors import PilothouseError
 from domain.events.event import RecordedEvent
 from domain.kept import Keeping
 from domain.onboard import Onboard
+from domain.outbox import Outputs
 from domain.timebase import Instant
 from service.checkpoint import core_of_checkpoint
 from service.codec.codec import COMMANDS, EVENTS, KEEPINGS, Codec, Record
@@ -109,11 +110,22 @@ def replay_piece(piece: Piece, version: str) -> Replayed:
     Raises:
         PilothouseError: The core cannot be made again, or the record is broken.
     """
+    return replay(core_of_piece(piece, version), piece.steps, piece.first)
+
+
+def core_of_piece(piece: Piece, version: str) -> Onboard:
+    """Return the core as it was before the first step of a piece.
+
+    Args:
+        piece: Of a record.
+        version: This release of Pilothouse.
+
+    Raises:
+        PilothouseError: The core cannot be made again.
+    """
     if piece.state is None:
-        onboard = core_of_boot(piece.boot)
-    else:
-        onboard = core_of_checkpoint(piece.state, version)
-    return replay(onboard, piece.steps, piece.first)
+        return core_of_boot(piece.boot)
+    return core_of_checkpoint(piece.state, version)
 
 
 def replay_step(onboard: Onboard, step: RecordedStep, number: int) -> Difference | None:
@@ -124,14 +136,49 @@ def replay_step(onboard: Onboard, step: RecordedStep, number: int) -> Difference
         step: What was recorded.
         number: Of the step.
     """
+    taken = _take_step(onboard, step, number)
+    if isinstance(taken, Difference):
+        return taken
+    return _difference(step, number, taken)
+
+
+def show_step(onboard: Onboard, step: RecordedStep, number: int) -> Outputs | Difference:
+    """Give a core one recorded input; return what followed, or what of it differs.
+
+    Other than `replay_step` it compares no checksum of views, and is faster for that.
+
+    Args:
+        onboard: In the state in which the recorded core was; it is driven on.
+        step: What was recorded.
+        number: Of the step.
+    """
+    taken = _take_step(onboard, step, number)
+    if isinstance(taken, Difference):
+        return taken
+    if taken.events == step.events and taken.commands == step.commands:
+        return taken
+    # A NaN does not equal itself.
+    return _difference(step, number, taken) or taken
+
+
+def _take_step(onboard: Onboard, step: RecordedStep, number: int) -> Outputs | Difference:
+    """Give a core one recorded input; return what followed, or that it is rejected.
+
+    Args:
+        onboard: In the state in which the recorded core was; it is driven on.
+        step: What was recorded.
+        number: Of the step.
+    """
     handle = onboard.take_in if step.is_late else onboard.handle
-    found: _Found | None
     try:
-        outputs = handle(step.given, step.at)
+        return handle(step.given, step.at)
     except PilothouseError as error:
         found = (None, "that it is accepted", f"a rejection: {error.message}")
-    else:
-        found = _compared(step, recorded_step(step.at, step.given, step.is_late, outputs))
+        return Difference(number, step.at, NAMES[type(step.given)], *found)
+
+
+def _difference(step: RecordedStep, number: int, outputs: Outputs) -> Difference | None:
+    found = _compared(step, recorded_step(step.at, step.given, step.is_late, outputs))
     return None if found is None else Difference(number, step.at, NAMES[type(step.given)], *found)
 
 

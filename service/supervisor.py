@@ -90,7 +90,7 @@ class Supervisor:
         self._backend = backend
         self.refused_readings = RefusedReadings()
         self._submitter = Submitter(
-            onboard, clock, self._carry_out, self._catch_up, self.refused_readings
+            onboard, clock, self.carry_out, self._catch_up, self.refused_readings
         )
         self.publisher.on_tick.append(self._note_tick)
         self.readings = readings(self.submit)
@@ -172,6 +172,29 @@ class Supervisor:
         """Process the deadlines that have expired by now."""
         self._submitter.let_pass()
 
+    def carry_out(self, step: Step) -> None:
+        """Send commands to the robot first, then note what happened, then publish.
+
+        Args:
+            step: What the core took; of a recorded robot, whoever replays it passes it here.
+        """
+        outputs = step.outputs
+        for command in outputs.commands:
+            # Goals are for the navigation on board; the rest is for nodes and the vehicle.
+            if not isinstance(command, SendGoal | PreemptGoal):
+                self._backend.send(command)
+        if self._keeper is not None:
+            self._keeper.keep_memories(step.at)
+        if self.journal is not None:
+            self.journal.note(step)
+        if self._sampling is not None and outputs.signals:
+            self._sampling.note(outputs.signals, step.at)
+        self.publisher.note(outputs)
+        self.events.append(*outputs.events)
+        self.change_ends.note(outputs.events)
+        if outputs.system_state:
+            self.publisher.publish_change()
+
     async def request(self, given: Input, *, volatile: bool = False) -> Taken:
         """Submit a request whose outcome is kept, as `Keeper.request` does.
 
@@ -215,25 +238,6 @@ class Supervisor:
         late = seconds(since_s) - PERIOD
         if late > STALL:
             self.submit(ServiceStall(late))
-
-    def _carry_out(self, step: Step) -> None:
-        """Send commands to the robot first, then note what happened, then publish."""
-        outputs = step.outputs
-        for command in outputs.commands:
-            # Goals are for the navigation on board; the rest is for nodes and the vehicle.
-            if not isinstance(command, SendGoal | PreemptGoal):
-                self._backend.send(command)
-        if self._keeper is not None:
-            self._keeper.keep_memories(step.at)
-        if self.journal is not None:
-            self.journal.note(step)
-        if self._sampling is not None and outputs.signals:
-            self._sampling.note(outputs.signals, step.at)
-        self.publisher.note(outputs)
-        self.events.append(*outputs.events)
-        self.change_ends.note(outputs.events)
-        if outputs.system_state:
-            self.publisher.publish_change()
 
 
 def _event_log(journal: Journal | None) -> EventLog:

@@ -51,7 +51,8 @@ from service.exported_record import InvalidExportError
 from service.files.csv_table import InvalidWaypointsError
 from service.files.robot_file import InvalidRobotFileError
 from service.files.text_file import UnreadableFileError
-from service.recorded_pieces import NothingRecordedError
+from service.recorded_pieces import MomentNotRecordedError, NothingRecordedError
+from service.replayed_robot import RecordingError, ReplayDiffersError
 from service.start_task import StartTaskError
 from service.worker import OutOfMemoryError, TooComplexError, WorkerBusyError, WorkerClosedError
 
@@ -81,6 +82,9 @@ STATUS_OF: Mapping[type[PilothouseError], HTTPStatus] = {
     CheckpointError: HTTPStatus.UNPROCESSABLE_ENTITY,
     InvalidExportError: HTTPStatus.UNPROCESSABLE_ENTITY,
     NothingRecordedError: HTTPStatus.NOT_FOUND,
+    MomentNotRecordedError: HTTPStatus.NOT_FOUND,
+    RecordingError: HTTPStatus.CONFLICT,
+    ReplayDiffersError: HTTPStatus.CONFLICT,
     InvalidModelError: HTTPStatus.UNPROCESSABLE_ENTITY,
     TooComplexError: HTTPStatus.UNPROCESSABLE_ENTITY,
     OutOfMemoryError: HTTPStatus.UNPROCESSABLE_ENTITY,

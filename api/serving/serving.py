@@ -86,7 +86,7 @@ def _serve(options: ServeOptions, output: Output, errors: Output) -> int:
         with ExitStack() as stack:
             for item in sockets:
                 stack.callback(item.close)
-            runner = stack.enter_context(asyncio.Runner(loop_factory=_new_event_loop))
+            runner = stack.enter_context(asyncio.Runner(loop_factory=new_event_loop))
             return runner.run(_run(options, files, network, manager, output))
     except _MISUSES as error:
         return _end(str(error), MISUSED)
@@ -325,7 +325,8 @@ def _leaves(group: BaseExceptionGroup[BaseException]) -> Iterator[BaseException]
             yield failure
 
 
-def _new_event_loop() -> asyncio.AbstractEventLoop:
+def new_event_loop() -> asyncio.AbstractEventLoop:
+    """Return the loop that a server runs in: uvloop, where there is one."""
     try:
         import uvloop
     except ImportError:  # There is none for Windows.

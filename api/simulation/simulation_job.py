@@ -21,7 +21,8 @@ from service.files.model_file import LoadedModel, read_model
 from service.files.robot_file import RobotSettings, robot_settings_of
 from service.onboard_parts import make_onboard
 from service.simulation.from_settings import make_simulated_robot
-from service.simulation.virtual_time import VirtualClock, VirtualService
+from service.simulation.virtual_time import VirtualService
+from service.virtual_clock import VirtualClock
 
 EPOCH = "simulation"
 BEGIN = datetime(2000, 1, 1, tzinfo=UTC)

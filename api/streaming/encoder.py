@@ -8,7 +8,7 @@ from typing import TypeAlias, TypeVar
 from api.distribution import installed_version
 from api.http.problems import problem_of
 from api.http.schemas.base import timestamp
-from api.http.schemas.stream import GapJson, HelloJson
+from api.http.schemas.stream import GapJson, HelloJson, ReplayJson
 from api.streaming.client_input import STATE_TOPICS, TOPICS
 from api.streaming.robot_encoder import RobotEncoder
 from domain.errors import PilothouseError
@@ -47,6 +47,8 @@ class StreamEncoder:
         self._events: OrderedDict[int, str] = OrderedDict()
         """Ordered, since the first entry of a plain one is found behind all that were removed."""
         self._earlier: OrderedDict[int, str] = OrderedDict()
+        self.replay: Callable[[], ReplayJson | None] = lambda: None
+        """Tells how a recording is shown; None: it is a robot."""
         self._prepared = 0
         """Number of the frame up to which parts are encoded."""
 
@@ -60,6 +62,7 @@ class StreamEncoder:
             topics=[topic for topic in TOPICS if topic in topics],
             period_s=to_seconds(PERIOD),
             version=installed_version(),
+            replay=self.replay(),
         ).model_dump_json()
 
     async def prepare(self, topics: frozenset[str]) -> None:

@@ -19,6 +19,7 @@ from api.streaming.encoder import StreamEncoder
 from api.streaming.stream_client import Group, StreamClient
 from api.streaming.websocket_frames import PING, Connection
 from domain.timebase import Instant, seconds
+from service.clock import Clock
 from service.history.event_history import EventHistory
 from service.history.event_pages import EventPages
 from service.supervisor import Supervisor
@@ -41,8 +42,16 @@ class FanOut:
     """The clients, and the task that writes to them, which runs while there are any."""
 
     def __init__(
-        self, supervisor: Supervisor, encoder: StreamEncoder, history: EventHistory
+        self, supervisor: Supervisor, encoder: StreamEncoder, history: EventHistory, clock: Clock
     ) -> None:
+        """Begin without clients.
+
+        Args:
+            supervisor: Whose frames are written.
+            encoder: Makes their text.
+            history: Has its events.
+            clock: For what clients are due; not that of the robot, if this was recorded.
+        """
         self.skipped = 0
         """Frames skipped so far, of all clients."""
         self.dropped = 0
@@ -50,9 +59,10 @@ class FanOut:
         self._supervisor = supervisor
         self._encoder = encoder
         self._pages = EventPages(history)
-        self._catching_up = CatchingUp(supervisor.clock, self._wake)
+        self._catching_up = CatchingUp(clock, self._wake)
         self._groups: dict[frozenset[str], Group] = {}
-        self._ping_at = supervisor.clock.now() + PING_EVERY
+        self._clock = clock
+        self._ping_at = clock.now() + PING_EVERY
         self._aged: deque[StreamClient] = deque()
         """Clients that are due for a complete frame; those that left meanwhile stay for a while."""
         self._woken = asyncio.Event()
@@ -82,7 +92,7 @@ class FanOut:
             group = Group(self._cursor_from_now_on(query.topics))
             self._groups[query.topics] = group
         cursor = Cursor(self._supervisor, self._pages, query)
-        client = StreamClient(group, connection.transport, cursor, address, self._supervisor.clock)
+        client = StreamClient(group, connection.transport, cursor, address, self._clock)
         group.add(client)
         connection.listen(client)
         self._wake()
@@ -150,16 +160,16 @@ class FanOut:
     def _wake(self) -> None:
         self._woken.set()
         if self._owing_since is None:
-            self._owing_since = self._supervisor.clock.now()
+            self._owing_since = self._clock.now()
 
     async def _let_others_run(self) -> None:
         """Let other tasks run, after some clients were written to."""
         await asyncio.sleep(0)
-        self._owing_since = self._supervisor.clock.now()
+        self._owing_since = self._clock.now()
 
     def _ping(self) -> bytes:
         """Return a ping if one is due, after dropping the clients that missed the last one."""
-        now = self._supervisor.clock.now()
+        now = self._clock.now()
         if now < self._ping_at:
             return b""
         self._ping_at = now + PING_EVERY
@@ -200,7 +210,7 @@ class FanOut:
 
     async def _write_apart(self, group: Group, encoded: FrameBytes, ping: bytes) -> None:
         """Write to each of the other clients what it lacks; then it may rejoin the group."""
-        now = self._supervisor.clock.now()
+        now = self._clock.now()
         written = 0
         for number, client in enumerate(tuple(group.apart.values()), 1):
             if client.is_ready(now):
@@ -232,6 +242,10 @@ class FanOut:
             return
         log.critical("the fan-out failed", exc_info=task.exception())
         self._task = None
+        self.disconnect_all()
+
+    def disconnect_all(self) -> None:
+        """Disconnect all clients; they may come again at once."""
         for group in self._groups.values():
             for client in group.clients:
                 client.transport.abort()

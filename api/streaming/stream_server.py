@@ -14,6 +14,7 @@ from api.http.access import Access
 from api.http.gate.refusals import Refusals
 from api.streaming.encoder import StreamEncoder
 from api.streaming.fan_out import FanOut
+from service.clock import Clock
 from service.history.event_history import EventHistory
 from service.supervisor import Supervisor
 
@@ -26,14 +27,28 @@ class StreamServer:
     """Serves the stream of one supervisor to all of its clients."""
 
     def __init__(
-        self, supervisor: Supervisor, max_clients: int, access: Access, refusals: Refusals
+        self,
+        supervisor: Supervisor,
+        max_clients: int,
+        access: Access,
+        refusals: Refusals,
+        clock: Clock | None = None,
     ) -> None:
+        """Begin without clients.
+
+        Args:
+            supervisor: Whose frames and events they get.
+            max_clients: How many there may be.
+            access: Whom it lets in.
+            refusals: Counts those that it does not.
+            clock: Of the connections; None: that of the supervisor.
+        """
         self.supervisor = supervisor
         self.access = access
         self.refusals = refusals
         self.encoder = StreamEncoder(supervisor)
         self.history = EventHistory(supervisor.events, supervisor.journal, supervisor.clock)
-        self.fan_out = FanOut(supervisor, self.encoder, self.history)
+        self.fan_out = FanOut(supervisor, self.encoder, self.history, clock or supervisor.clock)
         supervisor.publisher.owing_since = self.fan_out.owing_since
         self.clients = 0
         self._strangers: OrderedDict[asyncio.WriteTransport, None] = OrderedDict()

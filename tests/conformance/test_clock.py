@@ -12,7 +12,7 @@ import pytest
 from domain.errors import InvalidValueError
 from domain.timebase import seconds
 from service.clock import Clock, MonotonicClock
-from service.simulation.virtual_time import VirtualClock
+from service.virtual_clock import VirtualClock
 from tests.support.manual_clock import START, ManualClock
 
 MILLISECOND = seconds(0.001)

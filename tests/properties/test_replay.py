@@ -13,7 +13,9 @@ from random import Random
 import pytest
 
 from service.checkpoint import checkpoint_of, core_of_checkpoint
+from service.recorded_pieces import Piece
 from service.replay import core_of_boot, replay
+from service.replayed_robot import RecordingError, ReplayedRobot
 from tests.support.recorded_robot import BOOT, RecordedRobot, live, views_of
 
 SOAK = os.environ.get("PILOTHOUSE_SOAK") == "1"
@@ -83,3 +85,27 @@ def test_a_replay_elsewhere_does_not_depend_on_the_order_of_sets(
     result = subprocess.run(command, env=env, capture_output=True, text=True, check=False)
 
     assert (result.returncode, result.stdout, result.stderr) == (0, "", "")
+
+
+def test_a_recorded_robot_that_is_looked_at_shows_what_was_seen(
+    seed: int, robot: RecordedRobot
+) -> None:
+    steps, rng = robot.recorded(), Random(seed)
+    shown = ReplayedRobot(Piece(1, BOOT, None, 1, iter(steps)), BOOT.version)
+    core = shown.supervisor.core
+    for step in sorted(rng.sample(steps, min(20, len(steps))), key=lambda step: step.at):
+        shown.advance_to(step.at)
+        shown.publish()
+    shown.advance_to(robot.now)
+    for _ in range(2):
+        # What changed in too many parts at once comes with the next frame.
+        shown.publish()
+
+    frames = shown.supervisor.frames
+    assert frames.parts == core.parts()
+    assert list(shown.supervisor.events.oldest_first()) == robot.events
+    assert views_of(shown._onboard) == views_of(robot.onboard)  # noqa: SLF001
+    before = views_of(shown._onboard)  # noqa: SLF001
+    with pytest.raises(RecordingError):
+        shown.supervisor.submit(rng.choice(steps).given)
+    assert views_of(shown._onboard) == before  # noqa: SLF001

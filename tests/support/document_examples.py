@@ -8,6 +8,8 @@ writes `api/documents/examples.json`.
 import asyncio
 import json
 from collections.abc import Coroutine
+from pathlib import Path
+from tempfile import TemporaryDirectory
 from typing import Any
 
 import httpx
@@ -17,7 +19,9 @@ from api.http.problems import MEDIA_TYPE
 from tests.support.document_story import CSV, JSON, STORY, Asked
 from tests.support.good import GOOD
 from tests.support.http_robot import HttpRobot, http_robot
+from tests.support.manual_clock import ManualClock
 from tests.support.shared import PROJECT
+from tests.support.stored_service import stored_service
 from tests.support.websocket import WebSocketClient
 
 FILE = PROJECT / "api" / "documents" / "examples.json"
@@ -33,14 +37,18 @@ async def record() -> Examples:
     """Let the story happen, and return what was asked, answered and streamed."""
     async with http_robot() as robot:
         await robot.pass_time(1)
-        requests = [await _exchange(robot, asked) for asked in STORY]
+        requests = [
+            _exchange(asked, await _answer_of_a_record(asked))
+            if asked.is_recorded
+            else _exchange(asked, await _answer(robot, asked))
+            for asked in STORY
+        ]
         text = Examples(requests=requests, stream=await _messages(robot)).model_dump_json()
         return Examples.model_validate_json(text.replace(robot.supervisor.epoch, EPOCH))
 
 
-async def _exchange(robot: HttpRobot, asked: Asked) -> Exchange:
-    """Ask, and keep the answer as the document shows it."""
-    answer = await _answer(robot, asked)
+def _exchange(asked: Asked, answer: httpx.Response) -> Exchange:
+    """Keep an answer as the document shows it."""
     media_type = answer.headers.get("content-type", "").partition(";")[0] or None
     body_type = None if asked.body is None else asked.body_type
     return Exchange(
@@ -75,6 +83,15 @@ async def _answer(robot: HttpRobot, asked: Asked) -> httpx.Response:
     answer = await request
     await robot.pass_time(asked.then_s)
     return answer
+
+
+async def _answer_of_a_record(asked: Asked) -> httpx.Response:
+    """Ask a robot whose service has run for two seconds, and wrote down what happened."""
+    with TemporaryDirectory() as folder:
+        async with stored_service(Path(folder) / "robot", ManualClock()) as robot:
+            await robot.clock.advance(2)
+            method, _, path = asked.operation.partition(" ")
+            return await robot.http.request(method, path, params=asked.query)
 
 
 def _shown(answer: httpx.Response, media_type: str | None) -> object:

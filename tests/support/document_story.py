@@ -23,6 +23,7 @@ class Asked:
         body_type: Media type of the body.
         accept: Media type that is asked for.
         then_s: Time that passes afterwards; with `wait`, meanwhile.
+        is_recorded: Whether it is asked of a robot that was just started with a folder of data.
     """
 
     operation: str
@@ -33,6 +34,7 @@ class Asked:
     body_type: str = JSON
     accept: str = "*/*"
     then_s: float = 0.0
+    is_recorded: bool = False
 
 
 def _waypoints(count: int) -> list[dict[str, float]]:
@@ -217,6 +219,12 @@ _BESIDE = (
     Asked("POST /simulations", "A flat battery", body=SCENARIO),
     Asked("GET /events", "The newest two", query={"limit": "2"}),
     Asked("GET /events/{event}/causes", "Why it is IDLE again", {"event": "206"}),
+    Asked(
+        "GET /frames",
+        "One second after the start",
+        query={"at": "2026-01-01T00:00:01Z"},
+        is_recorded=True,
+    ),
     Asked("GET /livez", "Alive"),
     Asked("GET /readyz", "Ready"),
     Asked("GET /healthz", "Well"),

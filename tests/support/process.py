@@ -94,12 +94,30 @@ def service(*arguments: str, command: tuple[str, ...] = COMMAND) -> Iterator[Ser
         arguments: More options.
         command: What to run instead of `pilothouse`.
     """
+    with _serving(*command, "serve", "--port", "0", *arguments) as process:
+        yield process
+
+
+@contextmanager
+def replay_page(folder: Path, *arguments: str) -> Iterator[ServiceProcess]:
+    """Run `pilothouse replay --page` on a free port as long as the context lasts.
+
+    Args:
+        folder: What was recorded.
+        arguments: More options.
+    """
+    with _serving(*COMMAND, "replay", str(folder), "--page", "--port", "0", *arguments) as process:
+        yield process
+
+
+@contextmanager
+def _serving(*command: str) -> Iterator[ServiceProcess]:
     # A pipe that nobody reads would stop the service once it is full.
     with (
         tempfile.TemporaryDirectory(prefix="pilothouse-state-") as state,
         tempfile.TemporaryFile("w+") as complaints,
         subprocess.Popen(
-            [*command, "serve", "--port", "0", *arguments],
+            command,
             stdout=subprocess.PIPE,
             stderr=complaints,
             text=True,

@@ -3,6 +3,7 @@
 import asyncio
 from collections.abc import Sequence
 from dataclasses import replace
+from datetime import timedelta
 from pathlib import Path
 
 from api.distribution import installed_version
@@ -17,8 +18,15 @@ from tests.support.recorded_robot import BOOT, RecordedRobot
 
 
 def boot_of(number: int) -> Boot:
-    """Return a run of this release."""
-    return replace(BOOT, epoch=f"run-{number}", version=installed_version())
+    """Return a run of this release; the second one begins an hour after the first."""
+    later = timedelta(hours=number - 1)
+    return replace(
+        BOOT,
+        epoch=f"run-{number}",
+        version=installed_version(),
+        started_at=BOOT.started_at + later // timedelta(microseconds=1) * 1_000,
+        wall_at=BOOT.wall_at + later,
+    )
 
 
 def held_on_its_way() -> RecordedRobot:

@@ -8,6 +8,7 @@ import { robotSentence } from "/web/js/state_sentence.js";
 import { emptyState, fold } from "/web/js/store.js";
 import "/web/js/elements/token_form.js";
 import "/web/js/elements/pills.js";
+import "/web/js/elements/replay_bar.js";
 import "/web/js/elements/hold_button.js";
 import "/web/js/elements/acknowledge.js";
 import "/web/js/elements/state_bar.js";
@@ -39,7 +40,7 @@ const map = document.querySelector("ph-map");
 const taskPanel = document.querySelector("ph-task-panel");
 const tokenForm = document.querySelector("ph-token-form");
 const elements = document.querySelectorAll(
-  "ph-state-bar, ph-stop-button, ph-task-panel, ph-part-tree, ph-map, ph-part-panel, " +
+  "ph-replay-bar, ph-state-bar, ph-stop-button, ph-task-panel, ph-part-tree, ph-map, ph-part-panel, " +
     "ph-signal-list, ph-event-list",
 );
 let state = emptyState();
@@ -71,7 +72,8 @@ function draw() {
   };
   document.body.dataset.contact = contact.level;
   selected ??= Object.values(state.parts).find((part) => part.kind === "system")?.name ?? null;
-  const serverNow = clock.now();
+  // A recording goes at a speed of its own.
+  const serverNow = state.replay && state.at ? Date.parse(state.at) : clock.now();
   // Without contact nobody knows whether what began before still lasts.
   const isLost = contact.level === "lost" && state.at !== null;
   const knownAt = isLost ? Date.parse(state.at) : serverNow;
@@ -86,6 +88,10 @@ function draw() {
 function title() {
   const level = connection.level();
   const known = level === "lost" ? "No contact" : (robotSentence(state)?.word ?? "Connecting");
+  if (state.replay) {
+    document.title = "REPLAY · Pilothouse";
+    return;
+  }
   const text = `${tokenForm.isOpen ? "Token needed" : known} · Pilothouse`;
   if (document.title !== text) document.title = text;
 }
@@ -175,6 +181,7 @@ document.addEventListener("ph-storage-refused", () => {
 });
 document.addEventListener("ph-restart-read", () => take({ type: "restart_read" }));
 document.addEventListener("ph-earlier", ({ detail }) => take({ ...detail, type: "earlier" }));
+document.addEventListener("ph-replay", ({ detail }) => take({ type: "replay", replay: detail }));
 document.addEventListener("ph-latch", ({ detail }) => take({ type: "latch", latch: detail }));
 setInterval(askToDraw, REDRAW_MS);
 setInterval(title, REDRAW_MS);

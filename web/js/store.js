@@ -3,7 +3,7 @@
  * `fold(state, message)` returns the next state and does not change the given one. Besides the
  * frames of the server it takes messages of the page: `log` (the newest of /events), `earlier` (those
  * before the oldest that is known), `path` (waypoints of a task), `latch` (the answer to a press of
- * STOP) and `restart_read` (the notice was dismissed).
+ * STOP), `replay` (how a recording is to go on) and `restart_read` (the notice was dismissed).
  */
 
 const EVENTS_KEPT = 200;
@@ -28,6 +28,7 @@ export function emptyState() {
     eventsKept: EVENTS_KEPT,
     oldestEventId: 1,
     lastEventId: 0,
+    replay: null,
   };
 }
 
@@ -53,11 +54,11 @@ const FOLDERS = {
    *
    * The first run of a folder has boot 1: then nothing was kept, and ids begin again.
    */
-  hello(state, { epoch, boot, started_at, newest }) {
-    if (epoch === state.epoch) return state;
-    if (state.epoch === null) return { ...state, epoch, boot, lastEventId: newest };
+  hello(state, { epoch, boot, started_at, newest, replay = null }) {
+    if (epoch === state.epoch) return { ...state, replay };
+    if (state.epoch === null) return { ...state, epoch, boot, lastEventId: newest, replay };
     const { events, eventsKept, oldestEventId, lastEventId } = state;
-    const fresh = { ...emptyState(), epoch, boot, restartedAt: started_at };
+    const fresh = { ...emptyState(), epoch, boot, restartedAt: started_at, replay };
     if (boot > 1) return { ...fresh, events, eventsKept, oldestEventId, lastEventId };
     const note = {
       note: "The service was restarted: earlier tasks and holds are gone.",
@@ -65,6 +66,10 @@ const FOLDERS = {
       isRestart: true,
     };
     return { ...fresh, events: [...events, note].slice(-eventsKept), eventsKept };
+  },
+
+  replay(state, { replay }) {
+    return { ...state, replay };
   },
 
   restart_read(state) {

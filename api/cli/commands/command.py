@@ -31,6 +31,18 @@ class Command:
     """Runs the command and returns the exit code."""
 
 
+def port(text: str) -> int:
+    """Read a port.
+
+    Raises:
+        ArgumentTypeError: It is none.
+    """
+    number = int(text)
+    if not 0 <= number <= 65_535:
+        raise argparse.ArgumentTypeError(f"invalid port {number}; expected 0 to 65535")
+    return number
+
+
 def default_url() -> str:
     """Return the default URL of the service."""
     return os.environ.get("PILOTHOUSE_URL") or DEFAULT_URL

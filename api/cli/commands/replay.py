@@ -4,7 +4,7 @@ import argparse
 from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
-from api.cli.commands.command import Command
+from api.cli.commands.command import Command, port
 from api.cli.commands.record_options import add_record, pieces_in
 from api.terminal_text import complain, counted
 
@@ -21,10 +21,30 @@ that follows with what followed then. The service may be running.
 DIR is its folder of data (see `serve --data`), or what `pilothouse export`
 wrote.
 
+With --page, show it in the monitor page instead, at any speed: the page has
+pause, speed and time. It listens on this machine only, and nothing of it
+reaches a robot.
+
 exit code: 0 everything follows again;
            1 something else does, and the first difference is named;
-           2 nothing can be replayed
+           2 nothing can be replayed; with --page: the port is not available
 """
+
+
+def _add_options(parser: argparse.ArgumentParser) -> None:
+    add_record(parser)
+    parser.add_argument("--page", action="store_true", help="show it in the monitor page")
+    parser.add_argument("--port", type=port, default=8000, help="of the page; default: %(default)s")
+    parser.add_argument(
+        "--speed", type=_speed, default=1.0, help="of the page, 0.1 to 100; default: %(default)s"
+    )
+
+
+def _speed(text: str) -> float:
+    speed = float(text)
+    if not 0.1 <= speed <= 100:
+        raise argparse.ArgumentTypeError(f"invalid speed {text}; expected 0.1 to 100")
+    return speed
 
 
 def _run(options: argparse.Namespace) -> int:
@@ -33,10 +53,26 @@ def _run(options: argparse.Namespace) -> int:
     from service.storage.sqlite.connection import FAILURES
 
     try:
-        return replay(pieces_in(options))
+        return _show(options) if options.page else replay(pieces_in(options))
     except (PilothouseError, UnusableFolderError, *FAILURES) as error:
         complain(str(error))
         return UNUSABLE
+
+
+def _show(options: argparse.Namespace) -> int:
+    from api.distribution import installed_version
+    from api.replaying.recording import recording_of
+    from api.replaying.replaying import serve_replay
+    from api.serving.web_server import ListenError
+
+    events = options.first_event, options.last_event
+    recording = recording_of(options.folder, installed_version(), *events)
+    try:
+        serve_replay(recording, options.port, options.speed)
+    except ListenError as error:
+        complain(str(error))
+        return UNUSABLE
+    return SAME
 
 
 def replay(pieces: Iterator["Piece"]) -> int:
@@ -70,4 +106,4 @@ def _verdict(replayed: "Replayed") -> str:
     return same if replayed.difference is None else f"{same}; {replayed.difference.words}"
 
 
-COMMAND = Command("replay", "decide once more what was recorded", _TEXT, add_record, _run)
+COMMAND = Command("replay", "decide once more what was recorded", _TEXT, _add_options, _run)

@@ -3,7 +3,7 @@
 import argparse
 from pathlib import Path
 
-from api.cli.commands.command import Command
+from api.cli.commands.command import Command, port
 from api.serving.data_folder import USUAL
 
 _TEXT = """\
@@ -51,7 +51,7 @@ def _add_options(parser: argparse.ArgumentParser) -> None:
         "--host", default="127.0.0.1", help="address to listen on; default: %(default)s"
     )
     parser.add_argument(
-        "--port", default=8000, type=_port, help="default: %(default)s; 0: any free port, printed"
+        "--port", default=8000, type=port, help="default: %(default)s; 0: any free port, printed"
     )
     parser.add_argument(
         "--anonymous", action="store_true", help="allow everybody who can reach --host"
@@ -77,13 +77,6 @@ def _add_options(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--log-level", default="info", choices=("debug", "info", "warning", "error")
     )
-
-
-def _port(text: str) -> int:
-    number = int(text)
-    if not 0 <= number <= 65_535:
-        raise argparse.ArgumentTypeError(f"invalid port {number}; expected 0 to 65535")
-    return number
 
 
 def _run(options: argparse.Namespace) -> int:

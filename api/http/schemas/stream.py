@@ -20,6 +20,18 @@ from api.http.schemas.tasks import HoldJson, TaskJson, VehicleJson
 _WHOLE = ConfigDict(json_schema_serialization_defaults_required=True)
 
 
+class ReplayJson(Json):
+    """A recorded robot that is shown again."""
+
+    robot: str = Field(description="Its name")
+    from_at: Timestamp = Field(description="Begin of what can be shown")
+    to_at: Timestamp = Field(description="Its end")
+    at: Timestamp = Field(description="The moment that is shown")
+    speed: float = Field(description="How much faster than then")
+    paused: bool
+    fault: str | None = Field(description="Why it cannot go on; null: it can")
+
+
 class HelloJson(Json):
     """The first message to a client."""
 
@@ -35,6 +47,9 @@ class HelloJson(Json):
     topics: list[str] = Field(description="Topics that this client is subscribed to")
     period_s: float = Field(description="Time between two `state` frames")
     version: str = Field(description="Version of Pilothouse")
+    replay: ReplayJson | None = Field(
+        default=None, description="How a recording of a robot is shown; null: it is a robot"
+    )
 
 
 class StateFrame(Json):

@@ -28,6 +28,8 @@ class RecordedRun:
     boot: Boot
     first_step: int
     """Number of its first step that is in the log."""
+    last_at: Instant
+    """When its last step was that is in the log; 0: none is."""
     ended_at: datetime | None
     """When it ended; None: it was killed, or it goes on."""
 
@@ -83,8 +85,10 @@ class RecordedLog:
             for row in self._rows(path, _RUNS):
                 run = _run(row)
                 earlier = found.get(run.number)
-                first_step = run.first_step if earlier is None else earlier.first_step
-                found[run.number] = replace(run, first_step=first_step)
+                if earlier is not None:
+                    last_at = max(earlier.last_at, run.last_at)
+                    run = replace(run, first_step=earlier.first_step, last_at=last_at)
+                found[run.number] = run
         return [found[number] for number in sorted(found)]
 
     def lines(self, run: int, after_step: int = 0) -> Iterator[tuple[int, bytes]]:
@@ -95,7 +99,7 @@ class RecordedLog:
             after_step: Number of the last step that is not wanted.
         """
         for path in self._paths():
-            for first, packed, dictionary in self._rows(path, _STEPS, run, after_step):
+            for first, packed, dictionary in self._batches(path, run, after_step):
                 for offset, line in enumerate(unpack(packed, dictionary)):
                     if first + offset > after_step:
                         yield first + offset, line
@@ -143,6 +147,18 @@ class RecordedLog:
                 " a service that is started on the folder brings older files up to date"
             )
 
+    def _batches(self, path: Path, run: int, after_step: int) -> Iterator[tuple[Any, ...]]:
+        """Yield the first step of each batch, the text of all and what unpacks it.
+
+        The file is let go in between: as long as it is read, its write-ahead log only grows, and
+        whoever shows a recording takes hours.
+        """
+        last = 0
+        while rows := list(self._rows(path, _STEPS, run, after_step, last, _BATCHES_AT_ONCE)):
+            for _, *batch in rows:
+                yield tuple(batch)
+            last = rows[-1][0]
+
     def _rows(self, path: Path, sql: str, *values: object) -> Iterator[tuple[Any, ...]]:
         # It may have been dropped a moment ago.
         with suppress(FileNotFoundError), reading(path) as connection:
@@ -156,23 +172,29 @@ class RecordedLog:
 _RUNS = (
     "SELECT number, epoch, version, started_at, wall_ns, model, robot, ended_wall_ns,"
     " coalesce((SELECT first_step FROM batches WHERE number >= first_batch AND count > 0"
-    " ORDER BY number LIMIT 1), 0) FROM boots ORDER BY number"
+    " ORDER BY number LIMIT 1), 0),"
+    " coalesce((SELECT last_at FROM batches WHERE boot = boots.number AND count > 0 AND number <"
+    " coalesce((SELECT min(later.first_batch) FROM boots AS later"
+    " WHERE later.number > boots.number), 1 << 62)"
+    " ORDER BY number DESC LIMIT 1), 0) FROM boots ORDER BY number"
 )
 _STEPS = (
-    "SELECT first_step, steps,"
+    "SELECT number, first_step, steps,"
     " CASE WHEN packed THEN (SELECT value FROM meta WHERE name = 'dictionary') ELSE x'' END"
     " FROM batches WHERE number >="
     " (SELECT first_batch FROM boots WHERE boots.number = ?1) AND boot = ?1 AND count > 0"
-    " AND first_step + count > ?2 + 1 ORDER BY number"
+    " AND first_step + count > ?2 + 1 AND number > ?3 ORDER BY number LIMIT ?4"
 )
+_BATCHES_AT_ONCE = 100
+"""Usually of 5 s, some 100 kB."""
 _CHECKPOINTS = "SELECT boot, step, at, version FROM checkpoints ORDER BY step"
 _HOLES = "SELECT boot, after_step, steps, events, from_at, to_at, reason FROM holes ORDER BY batch"
 
 
 def _run(row: tuple[Any, ...]) -> RecordedRun:
-    number, epoch, version, started_at, wall_ns, model, robot, ended, first_step = row
+    number, epoch, version, started_at, wall_ns, model, robot, ended, first, last = row
     boot = Boot(epoch, version, started_at, to_datetime(wall_ns), _text(model), _text(robot))
-    return RecordedRun(number, boot, first_step, None if ended is None else to_datetime(ended))
+    return RecordedRun(number, boot, first, last, None if ended is None else to_datetime(ended))
 
 
 def _text(compressed: bytes) -> str:

@@ -55,6 +55,7 @@ CONTRACT = {
     "/examples/tracks/{name}": {"get"},
     "/simulations": {"post"},
     "/events": {"get"},
+    "/frames": {"get"},
     "/events/{event}/causes": {"get"},
     "/storage": {"get"},
     "/livez": {"get"},

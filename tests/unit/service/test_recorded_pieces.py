@@ -3,8 +3,10 @@ from pathlib import Path
 import pytest
 
 from domain.inputs import HoldRequest, ReleaseRequest
+from domain.timebase import seconds
 from service.recorded_pieces import NothingRecordedError, Piece, pieces_of
 from service.replay import replay_piece
+from service.storage.sqlite import recorded_log
 from service.storage.sqlite.recorded_log import RecordedHole, RecordedLog
 from tests.support.recorded_robot import RecordedRobot
 from tests.support.stored_robot import boot_of, held_on_its_way, store
@@ -22,7 +24,7 @@ def robot() -> RecordedRobot:
 def folder(robot: RecordedRobot, tmp_path_factory: pytest.TempPathFactory) -> Path:
     """Return the data of a robot whose service ran twice, with checkpoints in the first run."""
     folder = tmp_path_factory.mktemp("data") / "robot"
-    again = RecordedRobot(restored=robot.kept())
+    again = RecordedRobot(boot_of(2), robot.kept())
     again.advance(1)
     store(folder, robot, again, checkpoints=CHECKPOINTS)
     return folder
@@ -112,3 +114,32 @@ def test_a_log_whose_start_is_gone_and_without_a_checkpoint_is_told(
 
     with pytest.raises(NothingRecordedError, match="neither the start of the run nor a checkpoint"):
         list(pieces_of(RecordedLog(folder), VERSION, None, 3))
+
+
+def test_what_happened_as_a_run_began_is_replayed_from_its_start(
+    folder: Path, robot: RecordedRobot
+) -> None:
+    first = robot.events[0]
+    assert first.at == boot_of(1).started_at
+
+    (piece,) = pieces_of(RecordedLog(folder), VERSION, first.id, first.id)
+
+    assert (piece.run, piece.first, piece.state) == (1, 1, None)
+
+
+def test_the_log_is_let_go_in_between_and_nothing_is_left_out_or_told_twice(
+    folder: Path, robot: RecordedRobot, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    whole = list(RecordedLog(folder).lines(1))
+    monkeypatch.setattr(recorded_log, "_BATCHES_AT_ONCE", 1)
+
+    assert list(RecordedLog(folder).lines(1)) == whole
+    assert [number for number, _ in whole] == list(range(1, len(robot.taken) + 1))
+    assert list(RecordedLog(folder).lines(1, 30)) == whole[30:]
+
+
+def test_a_run_tells_when_its_last_step_was(folder: Path, robot: RecordedRobot) -> None:
+    first, second = RecordedLog(folder).runs()
+
+    assert first.last_at == robot.taken[-1].at
+    assert second.last_at == boot_of(2).started_at + seconds(1)

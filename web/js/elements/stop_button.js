@@ -13,6 +13,8 @@ const ANSWER_MS = 2000;
 /** A release waits up to 2 s for the disk before it is carried out, and as long for its outcome. */
 const RELEASED_MS = 8000;
 const RETRY_MS = 500;
+const NOTE = "Software stop, not safety-rated";
+const NO_ROBOT = "This is a recording: no robot hears STOP here";
 
 class StopButton extends HTMLElement {
   #sending = false;
@@ -30,7 +32,7 @@ class StopButton extends HTMLElement {
       this.word,
     );
     this.status = el("p", { class: "stop-status", "aria-live": "assertive" });
-    this.note = el("p", { id: "stop-note", class: "quiet" }, "Software stop, not safety-rated");
+    this.note = el("p", { id: "stop-note", class: "quiet" }, NOTE);
     this.release = el("ph-hold-button", { label: "Release the stop (hold)", hidden: true });
     this.by = el("p", { class: "quiet" });
     this.standstill = el("p", { class: "standstill" });
@@ -54,13 +56,15 @@ class StopButton extends HTMLElement {
     this.#latch = state.emergencyStop;
     this.#moves = mayMove(state);
     this.#stands = contact.level === "lost" ? "" : standstillWords(state);
-    this.release.disabled = contact.level === "lost";
+    this.release.disabled = contact.level === "lost" || Boolean(state.replay);
     this.release.volatile = volatile;
+    this.button.disabled = Boolean(state.replay);
+    setText(this.note, state.replay ? NO_ROBOT : NOTE);
     this.#render();
   }
 
   async #engage() {
-    if (this.#sending) return;
+    if (this.#sending || this.button.disabled) return;
     this.#sending = true;
     this.#problem = null;
     this.#render();

@@ -116,7 +116,7 @@ async def test_publishing_that_hangs_feeds_no_watchdog(
     async with running(supervisor):
         await clock.advance(3)
         manager_socket.heard()
-        monkeypatch.setattr(supervisor.publisher, "_publish", lambda **_: None)
+        monkeypatch.setattr(supervisor.publisher, "publish", lambda **_: None)
 
         await clock.advance(10)
 

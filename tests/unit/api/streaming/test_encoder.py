@@ -56,6 +56,7 @@ def test_the_first_frame_says_what_to_expect(
         "newest": 0,
         "topics": ["parts", "signals"],
         "period_s": 0.05,
+        "replay": None,
     }
 
 

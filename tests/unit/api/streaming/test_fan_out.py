@@ -38,7 +38,7 @@ async def supervisor(clock: ManualClock) -> AsyncIterator[Supervisor]:
 
 @pytest.fixture
 def fan_out(supervisor: Supervisor) -> FanOut:
-    return FanOut(supervisor, StreamEncoder(supervisor), history_of(supervisor))
+    return FanOut(supervisor, StreamEncoder(supervisor), history_of(supervisor), supervisor.clock)
 
 
 def press_and_release_the_stop(supervisor: Supervisor) -> None:

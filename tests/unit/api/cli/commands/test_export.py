@@ -1,9 +1,11 @@
 import json
+import sys
 from pathlib import Path
 
 import pytest
 
 from api.cli.command_line import main
+from api.cli.commands import export as command
 from tests.support.recorded_robot import RecordedRobot
 from tests.support.stored_robot import held_on_its_way, store
 
@@ -73,3 +75,61 @@ def test_a_place_that_cannot_be_written_is_told(
     assert export(data, file / "bug") == 2
 
     assert "Not a directory" in capsys.readouterr().err
+
+
+def export_mcap(data: Path, out: Path, *options: str) -> int:
+    return main(["export", str(data), "--to", "mcap", "--out", str(out), *options])
+
+
+def test_a_file_for_viewers_is_written_and_counted(
+    data: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    out = tmp_path / "run.mcap"
+
+    assert export_mcap(data, out) == 0
+
+    assert out.read_bytes().startswith(b"\x89MCAP0\r\n")
+    printed = capsys.readouterr()
+    assert printed.out.startswith(f"{out}: ")
+    assert printed.out.endswith(" messages\n")
+    assert printed.err == ""
+    assert [path.name for path in tmp_path.iterdir()] == ["run.mcap"]
+
+
+def test_a_long_export_tells_how_far_it_is(
+    data: Path,
+    tmp_path: Path,
+    capsys: pytest.CaptureFixture[str],
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    monkeypatch.setattr(command, "_PROGRESS_EVERY_S", 0.0)
+
+    assert export_mcap(data, tmp_path / "run.mcap") == 0
+
+    assert "pilothouse: at 2026-01-01 00:00:0" in capsys.readouterr().err
+
+
+def test_without_mcap_it_is_said_how_to_get_it(
+    data: Path,
+    tmp_path: Path,
+    capsys: pytest.CaptureFixture[str],
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    monkeypatch.setitem(sys.modules, "mcap", None)
+
+    assert export_mcap(data, tmp_path / "run.mcap") == 2
+
+    assert "install pilothouse[recording]" in capsys.readouterr().err
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_a_file_that_is_there_is_not_overwritten(
+    data: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    out = tmp_path / "run.mcap"
+    out.write_text("mine")
+
+    assert export_mcap(data, out) == 2
+
+    assert out.read_text() == "mine"
+    assert "exists already" in capsys.readouterr().err

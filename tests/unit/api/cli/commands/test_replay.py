@@ -1,9 +1,13 @@
 import json
+import signal
+import socket
 from pathlib import Path
 
+import httpx
 import pytest
 
 from api.cli.command_line import main
+from tests.support.process import replay_page
 from tests.support.recorded_robot import RecordedRobot
 from tests.support.stored_robot import held_on_its_way, store
 
@@ -99,3 +103,48 @@ def test_an_event_that_is_not_there_is_told(data: Path, capsys: pytest.CaptureFi
     assert main(["replay", str(data), "--from", "99999"]) == 2
 
     assert "event 99999 is not in the record" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize("speed", ["0.01", "1000", "fast"])
+def test_a_page_is_shown_at_a_speed_that_can_be_followed(
+    data: Path, speed: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    with pytest.raises(SystemExit) as ended:
+        main(["replay", str(data), "--page", "--speed", speed])
+
+    assert ended.value.code == 2
+    assert "--speed" in capsys.readouterr().err
+
+
+def test_a_page_of_a_folder_without_a_log_is_refused(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert main(["replay", str(tmp_path), "--page"]) == 2
+
+    assert "holds no log" in capsys.readouterr().err
+
+
+def test_a_page_is_served_until_a_signal_ends_it(data: Path) -> None:
+    with replay_page(data, "--speed", "100") as process:
+        assert process.greeting.startswith("REPLAY of robot, from 2026-01-01 00:00:00 to ")
+        answer = httpx.get(f"{process.url}/system_state")
+        assert answer.status_code == 200
+        process.send_signal(signal.SIGTERM)
+        assert process.ended()[0] == 0
+
+
+def test_a_port_that_is_taken_is_said_to_be(data: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    with socket.create_server(("127.0.0.1", 0)) as taken:
+        port = str(taken.getsockname()[1])
+
+        assert main(["replay", str(data), "--page", "--port", port]) == 2
+
+    assert f"port {port} of 127.0.0.1 is in use" in capsys.readouterr().err
+
+
+def test_what_was_exported_has_a_page_too(data: Path, tmp_path: Path) -> None:
+    out = tmp_path / "bug"
+    assert main(["export", str(data), "--to", "jsonl", "--out", str(out)]) == 0
+
+    with replay_page(out) as process:
+        assert httpx.get(f"{process.url}/replay").json()["robot"] == "bug"

@@ -1,0 +1,1 @@
+"""A recorded robot in the monitor page: read-only, at any speed."""
