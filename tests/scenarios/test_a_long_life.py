@@ -53,6 +53,8 @@ def test_a_week_breaks_nothing_and_nothing_grows(*, restarts: bool) -> None:
 
     grown = growth(days[0], days[-1])
     worst = [f"{share:+.1%} {place}" for place, share in grown.items()][:PLACES_SHOWN]
-    print(f"\n{robot.inputs} inputs, {robot.last_event} events, {robot.boot} boots", *worst, sep="\n")
+    print(
+        f"\n{robot.inputs} inputs, {robot.last_event} events, {robot.boot} boots", *worst, sep="\n"
+    )
     # In an hour not everything is as full as it may become.
     assert not SOAK or max(grown.values()) <= GROWTH, worst

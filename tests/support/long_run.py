@@ -132,9 +132,7 @@ class LongRun(CoreRobot):
     def _has_estop(self) -> bool:
         return "ESTOP" in self.core.system_state().errors
 
-    def _look_at(
-        self, given: Input, outputs: Outputs, was_stopped: bool, had_estop: bool
-    ) -> None:
+    def _look_at(self, given: Input, outputs: Outputs, was_stopped: bool, had_estop: bool) -> None:
         """Check commands and events of one input; what it ends or begins may go either way."""
         for command in outputs.commands:
             if isinstance(command, Drive) and was_stopped and self._stopped:
