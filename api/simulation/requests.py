@@ -4,8 +4,6 @@ import asyncio
 import json
 from http import HTTPStatus
 
-import httpx
-
 from api.http.problems import MEDIA_TYPE, make_problem
 from api.http.schemas.problem import Problem
 from api.http.schemas.simulation import AskedRequest
@@ -20,9 +18,13 @@ class Requests:
     """The HTTP interface of one robot; no request waits for the end of what it starts."""
 
     def __init__(self, supervisor: Supervisor, runner: asyncio.Runner) -> None:
+        # Imported here, in the worker: the service itself would take 5 MB more for nothing.
+        import httpx
+
         self._runner = runner
+        self._invalid_url = httpx.InvalidURL
         app = create_robot_app(supervisor, InlineJobs())
-        self._client = httpx.AsyncClient(transport=httpx.ASGITransport(app))
+        self._client: httpx.AsyncClient = httpx.AsyncClient(transport=httpx.ASGITransport(app))
 
     def send(self, asked: AskedRequest) -> Problem | None:
         """Send a request; return why it was rejected, or None."""
@@ -39,7 +41,7 @@ class Requests:
             answer = await self._client.request(
                 asked.method, f"http://{_HOST}{asked.path}", content=body, headers=headers
             )
-        except httpx.InvalidURL as error:
+        except self._invalid_url as error:
             status, detail = HTTPStatus.BAD_REQUEST, f"invalid path: {error}"
             return make_problem(status, "MALFORMED", detail, asked.path)
         if not answer.is_error:

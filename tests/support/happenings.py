@@ -60,6 +60,9 @@ def calm_down(robot: CoreRobot) -> None:
     for status in (BackendStatus(True), DriveStatus(True), StorageStatus(True)):
         robot.give(status)
     robot.give(ReportBacklog("ros", None))
+    robot.advance(1.0)
+    # Always the same, so that what is known of the last one is as large.
+    _drive(robot, Random(1))
     robot.cancel_task()
     robot.release_stop()
     for owner in (*OWNERS, RESTART_HOLD):

@@ -2,7 +2,7 @@
 
 from random import Random
 
-from domain.commands import AskParameters, AskTransition, Drive
+from domain.commands import AskParameters, AskTransition, Drive, PreemptGoal, SendGoal
 from domain.inputs import Input, Restored
 from domain.kept import (
     Kept,
@@ -70,10 +70,10 @@ class LongRun(CoreRobot):
             return outputs
         self._look_at(given, outputs, *before)
         for command in outputs.commands:
-            if not isinstance(command, Drive) or command.command.speed_mps:
-                assert not self._is_silent or not isinstance(
-                    command, Drive | AskTransition | AskParameters
-                ), command
+            assert not isinstance(command, SendGoal | PreemptGoal), "goals stay on board"
+            if self._is_silent:
+                assert not isinstance(command, AskTransition | AskParameters), command
+                assert not isinstance(command, Drive) or not command.command.speed_mps, command
             self.robot.handle(command, self.now)
         self._ids.see(outputs)
         for item in outputs.kept:

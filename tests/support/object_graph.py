@@ -1,4 +1,4 @@
-"""Counts what an object holds, by where it is, so that two moments can be compared."""
+"""Counts what an object holds, by structure, so that two moments can be compared."""
 
 from collections import Counter, deque
 from collections.abc import Iterator, Mapping, Set
@@ -10,14 +10,15 @@ import numpy as np
 
 _PLAIN = (type(None), bool, int, float, complex, str, bytes, type, range)
 _FEW = 20
-"""Sizes below it differ by what happens to be going on."""
+"""So many objects more are no growth."""
+_INSIDE = ("[]", "{}", "()")
 
 
 def sizes_of(root: object) -> Mapping[str, int]:
-    """Return how much there is at each place below an object.
+    """Return how many objects are in each structure below an object, at any depth.
 
-    A place is a path of attributes; `[]` are all items of a container, `{}` all keys. Each
-    object counts once, where it is found first, an array by its elements.
+    A structure is named by the attributes that lead to it, up to the first container. Each object
+    counts once, where it is found first; an array counts its elements.
     """
     sizes: Counter[str] = Counter()
     seen = {id(root)}
@@ -26,7 +27,7 @@ def sizes_of(root: object) -> Mapping[str, int]:
     while waiting:
         place, value = waiting.popleft()
         for name, part in _parts(value):
-            where = place + name
+            where = place if place.endswith(_INSIDE) else place + name
             sizes[where] += part.size if isinstance(part, np.ndarray) else 1
             if isinstance(part, (*_PLAIN, np.ndarray, np.generic)) or id(part) in seen:
                 continue
@@ -37,11 +38,11 @@ def sizes_of(root: object) -> Mapping[str, int]:
 
 
 def growth(before: Mapping[str, int], after: Mapping[str, int]) -> dict[str, float]:
-    """Return by which share each place grew that is not small, the worst first."""
+    """Return by which share each structure grew, the worst first."""
     shares = {
-        place: size / max(before.get(place, 0), _FEW) - 1.0
+        place: (size - before.get(place, 0)) / max(before.get(place, 0), 1)
         for place, size in after.items()
-        if size > _FEW
+        if size - before.get(place, 0) > _FEW
     }
     return dict(sorted(shares.items(), key=lambda item: -item[1]))
 
