@@ -8,6 +8,7 @@ from fastapi import FastAPI
 
 from api.documents import route as documents
 from api.documents.asyncapi import stream_document
+from api.documents.route import openapi_file
 from api.http import model_jobs, task_jobs
 from api.http.access import Access
 from api.http.gate.audit import Audit
@@ -104,7 +105,7 @@ def prepare(app: FastAPI) -> None:
     It takes some 0.2 s, in which nothing else is done: before the robot is supervised these do no
     harm.
     """
-    app.openapi()
+    openapi_file(app)
     stream_document()
 
 

@@ -21,7 +21,7 @@
     |   +-- ReservedHoldError
     |   +-- TooManyHoldsError
     +-- BackendUnavailableError       the backend is down: no node can be reached
-    +-- StorageDegradedError          what must be on disk first cannot be written there
+    +-- StorageDegradedError          storage cannot be written, or not be read
 
 `service` and `api` add errors below the same root: files that cannot be read (`service/files/`), a
 worker that is busy (`service/worker.py`), malformed bodies (`api/http/body_parsing.py`). A rejected
@@ -289,10 +289,18 @@ class BackendUnavailableError(PilothouseError):
 
 
 class StorageDegradedError(PilothouseError):
-    """What must be on disk first cannot be written there; nothing was changed."""
+    """Storage fails; what must be on disk first cannot be written, or a log cannot be read."""
 
     code = "STORAGE_DEGRADED"
 
     def __init__(self, reason: str) -> None:
         super().__init__(f"nothing was done, since it cannot be stored: {reason}")
         self.reason = reason
+
+    @classmethod
+    def while_reading(cls, what: str, reason: str) -> "StorageDegradedError":
+        """Return the error for what is on disk, such as `earlier events`, and cannot be read."""
+        error = cls(reason)
+        error.message = f"{what} cannot be read: {reason}"
+        error.args = (error.message,)
+        return error

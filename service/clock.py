@@ -116,18 +116,14 @@ class MonotonicClock:
         return offset, at
 
 
-def continuous_clock(after: Instant = 0) -> MonotonicClock:
+def continuous_clock() -> MonotonicClock:
     """Return a clock of this machine whose instants go on over restarts.
 
     They begin at the wall time of now, in nanoseconds since 1970, and are monotonic from there: a
     system clock that is stepped later does not move them. So what was written down before a restart
-    and after it can be compared and ordered.
-
-    Args:
-        after: The last instant of earlier runs; the clock begins later, even if the system clock
-            was set back meanwhile.
+    and after it can be compared, as far as the system clock was right at both starts.
     """
-    ahead = max(time.time_ns(), after + 1) - time.monotonic_ns()
+    ahead = time.time_ns() - time.monotonic_ns()
     return MonotonicClock(lambda: time.monotonic_ns() + ahead)
 
 

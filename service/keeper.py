@@ -42,6 +42,8 @@ SAFER_S = 0.1
 """The answer to what makes the robot safer waits no longer."""
 
 LOOK_EVERY = seconds(0.25)
+WORKS_FOR = seconds(3.0)
+"""Storage that failed works again if it has worked for so long."""
 RETRY_CHECKPOINT = seconds(60.0)
 _RAISING = frozenset({Transition.CONFIGURE, Transition.ACTIVATE})
 LAST_REQUEST = "last_request"
@@ -145,6 +147,8 @@ class Keeper:
         self._remembered: dict[str, tuple[Instant, object]] = {}
         """By memory, when it was kept last, and its revision then."""
         self._fault: str | None = None
+        """As the core was told."""
+        self._failed_at: Instant = 0
         self._requests = 0
 
     async def run(self) -> None:
@@ -158,7 +162,12 @@ class Keeper:
     def look(self) -> None:
         """Keep memories that changed, and tell the core if storage fails or works again."""
         self.keep_memories(self._clock.now())
-        fault = self._journal.status().reason
+        now, fault = self._clock.now(), self._journal.fault
+        if fault is not None:
+            self._failed_at = now
+        # A disk that has just become full takes some writes and not others.
+        elif self._fault is None or now - self._failed_at < WORKS_FOR:
+            return
         if (fault is None) is not (self._fault is None):
             self._fault = fault
             self._submit(StorageStatus(available=fault is None, reason=fault or ""))
@@ -210,6 +219,6 @@ class Keeper:
 
     async def _is_stored(self, patience_s: float) -> bool:
         try:
-            return await self._journal.commit(patience_s)
+            return await self._journal.commit(patience_s) and self._journal.is_durable
         except StorageDegradedError:
             return False

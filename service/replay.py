@@ -23,12 +23,14 @@ from domain.events.event import RecordedEvent
 from domain.kept import Keeping
 from domain.onboard import Onboard
 from domain.timebase import Instant
+from service.checkpoint import core_of_checkpoint
 from service.codec.codec import COMMANDS, EVENTS, KEEPINGS, Codec, Record
 from service.codec.names import NAMES
 from service.codec.recorded_step import RecordedStep, recorded_step
 from service.files.model_file import read_model
 from service.files.robot_file import read_robot_file
 from service.onboard_parts import make_onboard
+from service.recorded_pieces import Piece
 from service.storage.journal import Boot
 
 
@@ -95,6 +97,23 @@ def replay(onboard: Onboard, steps: Iterable[RecordedStep], first: int = 1) -> R
         if step.events:
             last_event = step.events[-1].id
     return Replayed(done, last_event, None)
+
+
+def replay_piece(piece: Piece, version: str) -> Replayed:
+    """Replay a piece of a record in a core of its own.
+
+    Args:
+        piece: Its steps are read as the replay goes on.
+        version: This release of Pilothouse.
+
+    Raises:
+        PilothouseError: The core cannot be made again, or the record is broken.
+    """
+    if piece.state is None:
+        onboard = core_of_boot(piece.boot)
+    else:
+        onboard = core_of_checkpoint(piece.state, version)
+    return replay(onboard, piece.steps, piece.first)
 
 
 def replay_step(onboard: Onboard, step: RecordedStep, number: int) -> Difference | None:

@@ -77,10 +77,8 @@ class Supervisor:
         self.started_at = clock.now()
         """Start of this run of the service, and of its epoch."""
         self.simulated = tuple(simulated)
-        self.journal = stores.journal
-        """Keeps what must survive a restart; None: nothing is kept."""
-        self.trends = stores.trends
-        """The history of the signals; None: there is none."""
+        self.journal, self.trends = stores.journal, stores.trends
+        """What keeps what must survive a restart, and the history of signals; None: nothing."""
         self._sampling = _sampling(stores, onboard.core)
         self.events = events or _event_log(self.journal)
         self.publisher = FramePublisher(onboard.core, clock, self.simulated)
@@ -91,7 +89,6 @@ class Supervisor:
         self._onboard = onboard
         self._backend = backend
         self.refused_readings = RefusedReadings()
-        """Rejected readings, on all ways in."""
         self._submitter = Submitter(
             onboard, clock, self._carry_out, self._catch_up, self.refused_readings
         )

@@ -12,7 +12,7 @@ import sys
 from collections.abc import Sequence
 from typing import NoReturn
 
-from api.cli.commands import change, check, monitor, profile, serve, simulate, task
+from api.cli.commands import change, check, export, monitor, profile, replay, serve, simulate, task
 from api.cli.standard_files import give_up_output, open_missing
 from api.distribution import ForeignPackageError, check_packages, installed_version
 from api.terminal_text import complain
@@ -31,6 +31,8 @@ _COMMANDS = (
     task.COMMAND,
     simulate.COMMAND,
     profile.COMMAND,
+    replay.COMMAND,
+    export.COMMAND,
 )
 
 _EXAMPLES = """\
@@ -45,6 +47,8 @@ examples:
   pilothouse task track.csv               submit a task, and follow its progress
   pilothouse simulate scenario.yaml       run a scenario, and compare results
   pilothouse profile --plot               measure how fast the robot is stopped
+  pilothouse replay DIR                   decide again what was recorded
+  pilothouse export DIR --to jsonl        write it as files, for a bug report
 """
 
 

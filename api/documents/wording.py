@@ -88,7 +88,10 @@ STREAM_QUERY: Mapping[str, Mapping[str, Any]] = MappingProxyType(
             "minimum": 0,
             "description": "Id of the last event known; left out: only new events are sent",
         },
-        "epoch": {"type": "string", "description": "Epoch of that id, as in `hello`"},
+        "epoch": {
+            "type": "string",
+            "description": "Epoch of that id, as in the event; it may be of an earlier run",
+        },
     }
 )
 """What a client may ask for in the address of the stream."""

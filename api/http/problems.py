@@ -47,10 +47,11 @@ from domain.errors import (
 from service.checkpoint import CheckpointError
 from service.clock import Clock
 from service.codec.errors import CodecError
+from service.exported_record import InvalidExportError
 from service.files.csv_table import InvalidWaypointsError
 from service.files.robot_file import InvalidRobotFileError
 from service.files.text_file import UnreadableFileError
-from service.history.event_history import UnreadableLogError
+from service.recorded_pieces import NothingRecordedError
 from service.start_task import StartTaskError
 from service.worker import OutOfMemoryError, TooComplexError, WorkerBusyError, WorkerClosedError
 
@@ -78,6 +79,8 @@ STATUS_OF: Mapping[type[PilothouseError], HTTPStatus] = {
     StopTakenError: HTTPStatus.UNPROCESSABLE_ENTITY,
     CodecError: HTTPStatus.UNPROCESSABLE_ENTITY,
     CheckpointError: HTTPStatus.UNPROCESSABLE_ENTITY,
+    InvalidExportError: HTTPStatus.UNPROCESSABLE_ENTITY,
+    NothingRecordedError: HTTPStatus.NOT_FOUND,
     InvalidModelError: HTTPStatus.UNPROCESSABLE_ENTITY,
     TooComplexError: HTTPStatus.UNPROCESSABLE_ENTITY,
     OutOfMemoryError: HTTPStatus.UNPROCESSABLE_ENTITY,
@@ -91,7 +94,6 @@ STATUS_OF: Mapping[type[PilothouseError], HTTPStatus] = {
     WorkerClosedError: HTTPStatus.SERVICE_UNAVAILABLE,
     BackendUnavailableError: HTTPStatus.SERVICE_UNAVAILABLE,
     StorageDegradedError: HTTPStatus.SERVICE_UNAVAILABLE,
-    UnreadableLogError: HTTPStatus.SERVICE_UNAVAILABLE,
     # Files are read before the service accepts requests.
     InvalidRobotFileError: HTTPStatus.INTERNAL_SERVER_ERROR,
     UnreadableFileError: HTTPStatus.INTERNAL_SERVER_ERROR,

@@ -32,7 +32,9 @@ class Turns:
     Between two turns the loop runs everything else. Whoever was not served for a while comes before
     those that were, so that a single request does not wait behind many connections that send
     without end, whether or not these wait for their answers; of both the urgent come first. Each
-    turn begins with one piece of another of these four queues, so that none waits forever.
+    turn begins with one piece of another of these four queues, if somebody who is served before
+    its first one began to wait later: so that none waits forever, and nobody is served twice
+    before all who came earlier.
     """
 
     def __init__(self, call_soon: Callable[[Callable[[], None]], object]) -> None:
@@ -42,8 +44,10 @@ class Turns:
             call_soon: Calls a function in the next turn of the loop.
         """
         self._call_soon = call_soon
-        self._queues: tuple[deque[Work], ...] = (deque(), deque(), deque(), deque())
-        """Urgent, others; then the same of those that were served recently."""
+        self._queues: tuple[deque[tuple[int, Work]], ...] = (deque(), deque(), deque(), deque())
+        """Urgent, others; then the same of those that were served recently. Each with a number that
+        rises with when it began to wait."""
+        self._waits = 0
         self.number = 0
         """Of the current turn."""
         self._spent = 0
@@ -67,7 +71,8 @@ class Turns:
     def wait(self, work: Work) -> None:
         """Let a connection wait that did not wait before."""
         had_share = self.number - work.served_in < RECENT_TURNS
-        self._queues[2 * had_share + (not work.is_urgent)].append(work)
+        self._waits += 1
+        self._queues[2 * had_share + (not work.is_urgent)].append((self._waits, work))
         self._call()
 
     def _call(self) -> None:
@@ -79,7 +84,9 @@ class Turns:
         self._is_called = False
         self._spent = 0
         self.number += 1
-        self._serve(self._queues[self.number % len(self._queues)])
+        rank = self.number % len(self._queues)
+        if self._is_overtaken(rank):
+            self._serve(self._queues[rank])
         while self._spent < BUDGET:
             queue = next(filter(None, self._queues), None)
             if queue is None:
@@ -87,10 +94,17 @@ class Turns:
             self._serve(queue)
         self._call()
 
-    def _serve(self, queue: deque[Work]) -> None:
+    def _is_overtaken(self, rank: int) -> bool:
+        """Tell whether somebody who is served before a queue began to wait after its first."""
+        queue = self._queues[rank]
+        return bool(queue) and any(
+            before[-1][0] > queue[0][0] for before in self._queues[:rank] if before
+        )
+
+    def _serve(self, queue: deque[tuple[int, Work]]) -> None:
         """Serve the first who has a complete piece; the others wait for more bytes to arrive."""
         while queue and self._spent < BUDGET:
-            work = queue.popleft()
+            _, work = queue.popleft()
             cost = work.serve()
             self._spent += cost or READ_COST
             if cost:

@@ -4,9 +4,9 @@ import asyncio
 import logging
 from collections.abc import Callable
 
+from domain.errors import StorageDegradedError
 from domain.timebase import seconds
 from service.clock import Clock
-from service.history.event_history import UnreadableLogError
 from service.history.event_pages import HistoryReader
 
 log = logging.getLogger(__name__)
@@ -52,7 +52,7 @@ class CatchingUp:
             reader = next(iter(self._waiting))
             try:
                 await reader.load()
-            except UnreadableLogError as error:
+            except StorageDegradedError as error:
                 failures += 1
                 if failures < _TRIES:
                     await self._clock.sleep_until(self._clock.now() + _PAUSE)

@@ -47,7 +47,8 @@ async def _events_query(
         str | None, Query(max_length=256, description="Only events whose `data` name this part")
     ] = None,
     actor: Annotated[
-        str | None, Query(max_length=512, description="Only events of this `actor`")
+        str | None,
+        Query(max_length=512, description="Only events of this `actor`; empty: of nobody"),
     ] = None,
     limit: Annotated[
         int, Query(ge=1, le=MAX_EVENTS, description="Most events to return")

@@ -21,6 +21,7 @@ from domain.snapshot import (
     VehicleView,
 )
 from domain.timebase import Instant
+from service.storage.event_rows import plain
 from service.storage.journal import StoredEvent
 from service.supervisor import Supervisor
 
@@ -178,9 +179,4 @@ def _event_text(
     )
     rest = {"data": event.data, "words": words, "notable": notable}
     # A node may report a parameter that is NaN, which JSON cannot hold.
-    return head + to_json(rest, inf_nan_mode="null", fallback=_plain).decode()[1:]
-
-
-def _plain(value: object) -> object:
-    """Convert a value that pydantic cannot encode, such as a read-only mapping."""
-    return dict(value) if isinstance(value, Mapping) else str(value)
+    return head + to_json(rest, inf_nan_mode="null", fallback=plain).decode()[1:]

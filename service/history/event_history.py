@@ -33,15 +33,6 @@ _FILTERED_AT_ONCE = 1_000
 """Events looked at before other tasks of the event loop run: 2 ms."""
 
 
-class UnreadableLogError(StorageDegradedError):
-    """The event log on disk cannot be read."""
-
-    def __init__(self, reason: str) -> None:
-        super().__init__(reason)
-        self.message = f"earlier events cannot be read: {reason}"
-        self.args = (self.message,)
-
-
 @dataclass(frozen=True, slots=True)
 class FoundEvents:
     """The answer to a query."""
@@ -89,7 +80,7 @@ class EventHistory:
             epoch: Run that the id `after` belongs to; None: this one.
 
         Raises:
-            UnreadableLogError: The journal is needed, and cannot be read.
+            StorageDegradedError: The journal is needed, and cannot be read.
         """
         lost = []
         if query.after is not None and self.log.is_foreign(query.after, epoch):
@@ -116,7 +107,7 @@ class EventHistory:
 
         Raises:
             UnknownEventError: There is no such event.
-            UnreadableLogError: The journal is needed, and cannot be read.
+            StorageDegradedError: The journal is needed, and cannot be read.
         """
         chain: list[ToldEvent] = []
         wanted: int | None = number
@@ -135,7 +126,7 @@ class EventHistory:
         """Return events from the journal.
 
         Raises:
-            UnreadableLogError: It cannot be read, or not soon.
+            StorageDegradedError: It cannot be read, or not soon.
         """
         if self._journal is None:
             return ()
@@ -143,15 +134,15 @@ class EventHistory:
             async with asyncio.timeout(READ_PATIENCE_S):
                 return await self._journal.events(query)
         except StorageDegradedError as error:
-            raise UnreadableLogError(error.reason) from error
+            raise _unreadable(error.reason) from error
         except TimeoutError as error:
-            raise UnreadableLogError(_SLOW) from error
+            raise _unreadable(_SLOW) from error
 
     async def stored_before(self, query: EventQuery, end: int) -> Sequence[StoredEvent]:
         """Return events with ids below `end` from the journal, once it has them.
 
         Raises:
-            UnreadableLogError: It cannot be read, or not soon.
+            StorageDegradedError: It cannot be read, or not soon.
         """
         await self._wait_until_written(end - 1)
         before = end if query.before is None else min(query.before, end)
@@ -192,7 +183,7 @@ class EventHistory:
         """Return the id of the oldest event; what was read before may do, if not `fresh`."""
         if not self.reaches_back:
             return self.log.oldest
-        with suppress(UnreadableLogError, TimeoutError):
+        with suppress(StorageDegradedError, TimeoutError):
             async with asyncio.timeout(_GLANCE_S):
                 return await self._gaps.oldest(fresh=fresh)
         return self.log.oldest
@@ -201,7 +192,7 @@ class EventHistory:
         """Wait until the journal has an event that memory has no longer.
 
         Raises:
-            UnreadableLogError: It takes long.
+            StorageDegradedError: It takes long.
         """
         if self._journal is None or number <= max(self.log.before, self._written_to):
             return
@@ -212,8 +203,12 @@ class EventHistory:
             # What a broken disk could not take is not there, and is told as a gap.
             return
         if not is_written:
-            raise UnreadableLogError(_SLOW)
+            raise _unreadable(_SLOW)
         self._written_to = newest
+
+
+def _unreadable(reason: str) -> StorageDegradedError:
+    return StorageDegradedError.while_reading("earlier events", reason)
 
 
 async def _accepted(

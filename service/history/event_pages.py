@@ -43,7 +43,7 @@ class EventPages:
             epoch: Run that the id belongs to.
 
         Raises:
-            UnreadableLogError: The journal cannot be read.
+            StorageDegradedError: The journal cannot be read.
         """
         key = number, epoch
         known = self._kept.get(key)
@@ -121,7 +121,7 @@ class HistoryReader:
         """Load the page that is needed.
 
         Raises:
-            UnreadableLogError: The journal cannot be read.
+            StorageDegradedError: The journal cannot be read.
         """
         self._use(await self._pages.after(self._recent.at, self._epoch))
 

@@ -1,7 +1,6 @@
 """Events as the log keeps them: readable without the classes that they were made from."""
 
-import re
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import fields
 from typing import NamedTuple, get_type_hints
 
@@ -34,7 +33,7 @@ class EventRow(NamedTuple):
 
 
 def event_row(recorded: RecordedEvent, wall_ns: int) -> EventRow:
-    """Return an event as a row; `wall_ns` is the wall time of its step."""
+    """Return an event as a row; `wall_ns` is its wall time."""
     event = recorded.event
     return EventRow(
         recorded.id,
@@ -43,11 +42,16 @@ def event_row(recorded: RecordedEvent, wall_ns: int) -> EventRow:
         event.kind,
         recorded.cause,
         recorded.actor.label,
-        _parts_of(event),
-        to_json(event.data(), inf_nan_mode="null").decode(),
+        named_parts(event),
+        to_json(event.data(), inf_nan_mode="null", fallback=plain).decode(),
         event.words,
         event.notable,
     )
+
+
+def plain(value: object) -> object:
+    """Convert a value in the data of an event that JSON has not, such as a read-only mapping."""
+    return dict(value) if isinstance(value, Mapping) else str(value)
 
 
 def stored_event(row: EventRow, boot: int, epoch: str) -> StoredEvent:
@@ -67,14 +71,8 @@ def stored_event(row: EventRow, boot: int, epoch: str) -> StoredEvent:
     )
 
 
-def kind_pattern(kind: str) -> re.Pattern[str]:
-    """Return what the kinds match that a query asks for: a kind, a prefix, or a `*` pattern."""
-    if "*" in kind:
-        return re.compile(".*".join(re.escape(piece) for piece in kind.split("*")))
-    return re.compile(re.escape(kind) + r"(\..*)?")
-
-
-def _parts_of(event: Event) -> tuple[PartName, ...]:
+def named_parts(event: Event) -> tuple[PartName, ...]:
+    """Return the parts that the data of an event name, each once."""
     names = (getattr(event, name) for name in _part_fields(type(event)))
     return tuple(dict.fromkeys(name for name in names if name))
 

@@ -150,6 +150,16 @@ class Journal(Protocol):
         """Return this run."""
         ...
 
+    @property
+    def is_durable(self) -> bool:
+        """Tell whether what is committed survives this process."""
+        ...
+
+    @property
+    def fault(self) -> str | None:
+        """Return why storage is degraded; None: it is not. Cheap, unlike `status`."""
+        ...
+
     def note(self, step: Step) -> None:
         """Write a step down soon, all of it or nothing; return at once, and never raise."""
         ...

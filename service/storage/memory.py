@@ -11,7 +11,7 @@ from domain.inputs import Restored
 from domain.kept import Kept
 from domain.timebase import Instant
 from service.clock import Clock, since_epoch, to_datetime
-from service.storage.event_rows import EventRow, event_row, kind_pattern, stored_event
+from service.storage.event_rows import EventRow, event_row, stored_event
 from service.storage.id_blocks import BOOT, CHANGE, EVENT, TASK, IdBlocks, IdKind
 from service.storage.journal import (
     Boot,
@@ -23,6 +23,7 @@ from service.storage.journal import (
     StorageStatus,
     StoredEvent,
 )
+from service.storage.kind_pattern import KindPattern
 
 PATH: Final = ":memory:"
 DEFAULT_CAPACITY: Final = 10_000
@@ -79,14 +80,25 @@ class MemoryJournal:
         """Return False: nothing is replayed from here."""
         return False
 
+    @property
+    def is_durable(self) -> bool:
+        """Return False."""
+        return False
+
+    @property
+    def fault(self) -> str | None:
+        """Return None: memory does not fail."""
+        return None
+
     def note(self, step: Step) -> None:
         """Keep the events of a step, and what changed of what is kept."""
         if self._is_closed:
             return
         store, outputs = self._store, step.outputs
         store.last_at = self._clock.wall_time(step.at)
-        wall_ns = since_epoch(store.last_at)
-        store.events.extend((self._number, event_row(event, wall_ns)) for event in outputs.events)
+        for event in outputs.events:
+            wall_ns = since_epoch(self._clock.wall_time(event.at))
+            store.events.append((self._number, event_row(event, wall_ns)))
         for change in outputs.kept:
             if change.value is None:
                 store.kept.pop((change.kind, change.name), None)
@@ -157,7 +169,7 @@ class _Matches:
 
     def __init__(self, query: EventQuery) -> None:
         self._query = query
-        self._kind = None if query.kind is None else kind_pattern(query.kind)
+        self._kind = None if query.kind is None else KindPattern(query.kind)
 
     def holds(self, row: EventRow) -> bool:
         query = self._query
@@ -166,7 +178,7 @@ class _Matches:
             and (query.before is None or row.id < query.before)
             and (query.from_at is None or row.wall_ns >= since_epoch(query.from_at))
             and (query.to_at is None or row.wall_ns <= since_epoch(query.to_at))
-            and (self._kind is None or self._kind.fullmatch(row.kind) is not None)
+            and (self._kind is None or self._kind.matches(row.kind))
             and (query.part is None or query.part in row.parts)
-            and (query.actor is None or (row.actor != "" and row.actor == query.actor))
+            and (query.actor is None or row.actor == query.actor)
         )

@@ -83,6 +83,29 @@ def no_contact(page: Page, service: Service) -> None:
     page.wait_for_timeout(LOST_MS)
 
 
+def restarted(page: Page, service: Service) -> None:
+    drive(service)
+    service.kill()
+    service.start()
+    page.locator(".notice").wait_for()
+
+
+def storage(page: Page, service: Service) -> None:
+    """What a person may do while storage fails, with as much around it as there can be."""
+    drive(service)
+    acknowledge(page, service)
+    service.request("PUT", "/holds/gate", {"reason": "the gate is shut"})
+    service.request("PUT", "/emergency_stop", {"engaged": True, "reason": "smoke in hall 3"})
+    service.break_storage()
+    page.locator(".storage").wait_for()
+
+
+def storage_alone(page: Page, service: Service) -> None:
+    drive(service)
+    service.break_storage()
+    page.locator(".storage").wait_for()
+
+
 def rejected(page: Page, _: Service) -> None:
     table = b"x;y;yaw\n0;0;0\n1;2;zwei\n"
     file: Any = {"name": "field.csv", "mimeType": "text/csv", "buffer": table}
@@ -179,6 +202,9 @@ STATES: dict[str, tuple[Robot, Act]] = {
     "utm": ("example", patched(in_utm)),
     "forced_colors": ("example", stopped),
     "no_contact": ("example", no_contact),
+    "restarted": ("example", restarted),
+    "storage": ("troubled", storage),
+    "storage_alone": ("example", storage_alone),
 }
 
 
@@ -192,7 +218,7 @@ def running_robot(kind: Robot) -> Iterator[Service]:
             "large": large_robot(folder),
         }
         with (folder / "output").open("w+b") as output:
-            service = Service(free_port(), output, files[kind])
+            service = Service(free_port(), output, files[kind], str(folder / "data"))
             try:
                 service.start()
                 yield service

@@ -3,6 +3,7 @@
 import json
 import math
 import os
+import resource
 import socket
 import subprocess
 import sys
@@ -48,6 +49,8 @@ class Service:
     output: IO[bytes]
     arguments: tuple[str, ...] = ()
     """Further ones of `pilothouse serve`: a model, a robot file."""
+    data: str = ":memory:"
+    """Where it keeps what survives it."""
     _process: subprocess.Popen[bytes] | None = field(default=None, init=False)
 
     @property
@@ -56,7 +59,7 @@ class Service:
 
     def start(self) -> None:
         command = Path(sys.executable).with_name("pilothouse")
-        arguments = [str(command), "serve", "--port", str(self.port), "--data", ":memory:"]
+        arguments = [str(command), "serve", "--port", str(self.port), "--data", self.data]
         arguments += self.arguments
         self._process = subprocess.Popen(arguments, stdout=self.output, stderr=self.output)
         end = time.monotonic() + START_WITHIN_S
@@ -72,6 +75,19 @@ class Service:
             self._process.kill()
             self._process.wait()
             self._process = None
+
+    def break_storage(self) -> None:
+        """Let each write to a file fail, as a broken disk does."""
+        self._limit_files(0)
+
+    def mend_storage(self) -> None:
+        """Let files be written again."""
+        self._limit_files(resource.RLIM_INFINITY)
+
+    def _limit_files(self, size: int) -> None:
+        assert self._process is not None
+        limits = (size, resource.RLIM_INFINITY)
+        resource.prlimit(self._process.pid, resource.RLIMIT_FSIZE, limits)
 
     def request(self, method: str, path: str, body: object = None) -> dict[str, Any]:
         data = None if body is None else json.dumps(body).encode()

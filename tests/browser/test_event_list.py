@@ -55,9 +55,11 @@ def test_a_line_tells_of_each_restart_and_of_what_may_be_missing(desktop: Page) 
         expect(events(desktop).locator("li")).not_to_have_count(count)
 
     restarts = events(desktop).locator(".restart")
-    expect(restarts.nth(0)).to_have_text(re.compile(r"^Restarted at \d\d:\d\d:01$"))
+    expect(restarts.nth(0)).to_have_text(re.compile(r"^Restarted at \d\d:\d\d:01 on 2026-03-03$"))
     expect(restarts.nth(1)).to_have_text(
-        re.compile(r"^Restarted at \d\d:\d\d:21; the last events before may be missing$")
+        re.compile(
+            r"^Restarted at \d\d:\d\d:21 on 2026-03-02; the last events before may be missing$"
+        )
     )
     # Newest first: the line is below the first event of the new run.
     above = restarts.nth(0).locator("xpath=preceding-sibling::li[1]")
@@ -70,7 +72,7 @@ def test_who_scrolls_to_the_end_gets_more_and_keeps_the_place(phone: Page) -> No
     last = events(phone).locator("li").last
     before = last.inner_text()
 
-    last.scroll_into_view_if_needed()
+    phone.locator("ph-event-list").scroll_into_view_if_needed()
     events(phone).evaluate("list => list.scrollTo(0, list.scrollHeight)")
 
     expect(events(phone).locator("li").last).not_to_have_text(before, use_inner_text=True)

@@ -13,7 +13,7 @@ from playwright.sync_api import Browser, Page
 from api.cli.monitor import sentence, words
 from tests.browser.station import Service
 from tests.support.monitor import AT, frame, robot, view
-from tests.support.sentence_cases import CASES, Case, combinations
+from tests.support.sentence_cases import CASES, STORAGE, Case, combinations
 
 pytestmark = pytest.mark.browser
 
@@ -54,6 +54,20 @@ def test_page_and_terminal_say_the_same_in_every_combination(page: Page) -> None
         assert told is not None
         stands = sentence.standstill_words(known)
         assert on_page == [told.word, told.level, told.text, [*told.more], stands], message
+
+
+def test_the_page_says_of_storage_what_the_terminal_says(page: Page) -> None:
+    script = """async (cases) => {
+        const { emptyState, fold } = await import("/web/js/store.js");
+        const { storageSentence } = await import("/web/js/state_sentence.js");
+        return cases.map(([frame, level]) => {
+            const said = storageSentence(fold(emptyState(), frame), { level });
+            return said && [said.word, said.text];
+        });
+    }"""
+    frames = [(frame(system_state=state), contact) for state, contact, _ in STORAGE]
+    said = page.evaluate(script, frames)
+    assert said == [None if told is None else [*told] for _, _, told in STORAGE]
 
 
 def test_without_contact_the_page_tells_of_when_it_is_and_what_the_robot_was_in(

@@ -216,9 +216,11 @@ _BESIDE = (
     Asked("POST /inference", "A mode that is not reached", body=FACTS),
     Asked("POST /simulations", "A flat battery", body=SCENARIO),
     Asked("GET /events", "The newest two", query={"limit": "2"}),
+    Asked("GET /events/{event}/causes", "Why it is IDLE again", {"event": "206"}),
     Asked("GET /livez", "Alive"),
     Asked("GET /readyz", "Ready"),
     Asked("GET /healthz", "Well"),
+    Asked("GET /storage", "Of a robot that keeps nothing"),
     Asked("GET /metrics", "Some of them"),
 )
 

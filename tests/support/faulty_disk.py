@@ -30,6 +30,7 @@ class FaultyDisk:
     """How many operations in a row."""
     slow_s: float = 0.2
     count: int = 0
+    syncs: int = 0
     left: Path | None = None
     """The folder as whoever starts next finds it, after the process died."""
     _synced: dict[int, bytes] = field(default_factory=dict)
@@ -62,6 +63,7 @@ class FaultyDisk:
 
     def synced(self, path: Path) -> None:
         """Note that a file is on the disk itself as it is now."""
+        self.syncs += 1
         if self.fault == "loses power" and path.exists():
             self._synced[path.stat().st_ino] = path.read_bytes()
 

@@ -1,6 +1,7 @@
 """A robot with a folder, whose service is started, ended, killed and started again."""
 
 import shutil
+from contextlib import suppress
 from pathlib import Path
 
 from domain.kept import KeptHold
@@ -42,9 +43,23 @@ def holds(found: Found) -> dict[str, str]:
 def as_a_kill_leaves(folder: Path) -> Path:
     """Return a copy of a folder that is in use, as whoever starts after a kill finds it."""
     copy = folder.with_name(f"{folder.name}-after-a-kill")
-    shutil.rmtree(copy, ignore_errors=True)
-    shutil.copytree(folder, copy)
+    before = None
+    # A kill stops all at one moment; a copy of files that change meanwhile is of several.
+    while before is None or _stamps(folder) != before:
+        before = _stamps(folder)
+        shutil.rmtree(copy, ignore_errors=True)
+        with suppress(shutil.Error):
+            shutil.copytree(folder, copy)
     return copy
+
+
+def _stamps(folder: Path) -> list[tuple[str, int, int]]:
+    found = []
+    for path in sorted(folder.rglob("*")):
+        with suppress(FileNotFoundError):
+            stat = path.stat()
+            found.append((str(path), stat.st_size, stat.st_mtime_ns))
+    return found
 
 
 def spoil(path: Path, at: int = 100, text: bytes = b"spoilt" * 2_000) -> None:

@@ -9,8 +9,8 @@ from domain.events.event import RecordedEvent
 from domain.inputs import Restored
 from service.clock import Clock
 from service.event_log import EventLog
-from service.history.event_filter import KindPattern, named_parts
 from service.history.event_history import EventHistory
+from service.storage.event_rows import named_parts
 from service.storage.journal import (
     Boot,
     EventQuery,
@@ -20,6 +20,7 @@ from service.storage.journal import (
     StorageStatus,
     StoredEvent,
 )
+from service.storage.kind_pattern import KindPattern
 from service.supervisor import Supervisor
 from tests.support.frames import Happened
 from tests.support.frames import event as made
@@ -138,6 +139,9 @@ class EventJournal:
 
     def keep(self, name: str, value: Plain) -> None:
         """Keep nothing."""
+
+    is_durable = False
+    fault = None
 
     @property
     def wants_checkpoint(self) -> bool:

@@ -113,6 +113,7 @@ def system_state(state: str = "IDLE", *reasons: str, task_status: str = "NO_TASK
         "reasons": [{"message": reason} for reason in reasons],
         "task_status": task_status,
         "simulated": [],
+        "storage_fault": None,
     }
 
 

@@ -78,3 +78,8 @@ class NotedRobot:
 def wall(text: str) -> datetime:
     """Return a time of day on the day that tests happen."""
     return datetime.fromisoformat(f"2026-01-01T{text}").replace(tzinfo=UTC)
+
+
+def hold_set(number: int, at: Instant) -> RecordedEvent:
+    """Return an event of an id."""
+    return RecordedEvent(number, at, None, ADA, HoldSet("operator", "lunch"))

@@ -97,6 +97,17 @@ CASES = (
         ),
     ),
     Case(
+        "a task over a restart",
+        "PAUSED",
+        "calm",
+        "task t1 at 42 %, held by restart and gate (the gate is shut)",
+        members=members(
+            paused(),
+            told.task("PAUSED"),
+            (told.hold("restart", "the task goes on when the hold restart is released"), GATE),
+        ),
+    ),
+    Case(
         "five holds",
         "PAUSED",
         "calm",
@@ -302,6 +313,15 @@ CASES = (
         members=members(paused()),
     ),
 )
+
+FULL: Json = {**told.system_state(), "storage_fault": "the disk is full"}
+STORAGE: tuple[tuple[Json, Literal["live", "lost"], tuple[str, str] | None], ...] = (
+    (told.system_state(), "live", None),
+    (told.system_state(), "lost", None),
+    (FULL, "live", ("STORAGE FAILS", "the disk is full; a restart may forget what you ask now")),
+    (FULL, "lost", ("STORAGE FAILED", "the disk is full")),
+)
+"""System state, contact, and what is said of storage: a word and a text."""
 
 
 def combinations() -> Iterator[dict[str, Any]]:

@@ -25,7 +25,9 @@ const NO_ANSWER = {
  *
  * A body is sent as JSON, or as plain text if its media `type` is given.
  *
- * If the token is missing or wrong, `ph-unauthorized` is dispatched on the document as well.
+ * If the token is missing or wrong, `ph-unauthorized` is dispatched on the document as well. So is
+ * `ph-unstored` if what was asked for is done and not on disk yet, and `ph-storage-refused` if it is
+ * not done because it cannot be stored.
  *
  * @throws {ProblemError} On any status from 400, and if there is no answer within `timeoutMs`.
  */
@@ -59,12 +61,18 @@ async function exchange(
   } catch {
     throw new ProblemError(NO_ANSWER);
   }
+  if (response.headers.get("Pilothouse-Durable") === "false") tell("ph-unstored");
   if (response.ok) return text;
   // An answer to a request with an earlier token is no evidence about the current one.
-  if (response.status === 401 && sent === token())
-    document.dispatchEvent(new CustomEvent("ph-unauthorized"));
+  if (response.status === 401 && sent === token()) tell("ph-unauthorized");
   const unnamed = { title: `HTTP ${response.status}`, detail: response.statusText };
-  throw new ProblemError({ ...unnamed, ...parse(text), status: response.status });
+  const problem = { ...unnamed, ...parse(text), status: response.status };
+  if (problem.code === "STORAGE_DEGRADED" && method !== "GET") tell("ph-storage-refused");
+  throw new ProblemError(problem);
+}
+
+function tell(name) {
+  document.dispatchEvent(new CustomEvent(name));
 }
 
 /** Path of a part; slashes in its name are kept. */

@@ -26,6 +26,8 @@ import "/web/js/elements/event_list.js";
 
 const REDRAW_MS = 250;
 const MOCK_PAUSE_MS = 1000;
+/** So long after storage refused a request, a long press may do without it. */
+const REFUSED_MS = 30_000;
 
 const clock = new ServerClock();
 const connection = new Connection(() =>
@@ -46,6 +48,7 @@ let selected = null;
 let preview = null;
 let drawAsked = false;
 let mockAsked = false;
+let refusedAt = -Infinity;
 
 function take(message) {
   state = fold(state, message);
@@ -72,7 +75,10 @@ function draw() {
   // Without contact nobody knows whether what began before still lasts.
   const isLost = contact.level === "lost" && state.at !== null;
   const knownAt = isLost ? Date.parse(state.at) : serverNow;
-  const view = { state, contact, mock, selected, preview, serverNow, knownAt };
+  // A disk may be too slow for one request without any fault that a frame tells.
+  const isRefused = performance.now() - refusedAt < REFUSED_MS;
+  const volatile = isRefused || Boolean(state.systemState?.storage_fault);
+  const view = { state, contact, mock, selected, preview, serverNow, knownAt, volatile };
   for (const element of elements) element.update(view);
 }
 
@@ -161,6 +167,10 @@ document.addEventListener("ph-preview", ({ detail }) => {
 });
 document.addEventListener("ph-try-now", () => {
   connection.tryNow();
+  askToDraw();
+});
+document.addEventListener("ph-storage-refused", () => {
+  refusedAt = performance.now();
   askToDraw();
 });
 document.addEventListener("ph-restart-read", () => take({ type: "restart_read" }));

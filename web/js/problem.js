@@ -29,8 +29,9 @@ export function problemLines(problem) {
 }
 
 /** Only an answer that refuses says that nothing was done. */
-function outcome({ status }) {
+function outcome({ status, code }) {
   if (status === 0) return "No answer";
+  if (code === "STORAGE_DEGRADED") return "Rejected";
   if (status === 504) return "Outcome unknown";
   return status >= 500 ? "Failed" : "Rejected";
 }

@@ -75,10 +75,18 @@ export function mayMove(state) {
   return movingAt(state) !== null || Boolean(ALARMS[state.systemState?.reasons[0]?.code]);
 }
 
+/** That what happens is not stored: `{word, text}`; null while it is. */
+export function storageSentence({ systemState }, contact) {
+  const fault = systemState?.storage_fault;
+  if (!fault) return null;
+  if (contact.level === "lost") return { word: "STORAGE FAILED", text: fault };
+  return { word: "STORAGE FAILS", text: `${fault}; a restart may forget what you ask now` };
+}
+
 /** What was lost in a restart of the service; empty without one. */
 export function restartWords({ restartedAt, boot }) {
   if (restartedAt === null) return "";
-  const kept = boot > 1 ? "nothing moves until you ask for it" : "earlier tasks and holds are gone";
+  const kept = boot > 1 ? "nothing moves before somebody asks" : "earlier tasks and holds are gone";
   return `Service restarted at ${timeOfDay(restartedAt)}: ${kept}.`;
 }
 
@@ -111,11 +119,16 @@ function activity(state, task) {
 
 /** "held by gate (the gate is shut), operator and loading"; empty without holds. */
 function heldBy(holds) {
-  const named = holds.slice(0, NAMED).map(({ owner, reason }) => owner + (reason ? ` (${reason})` : ""));
+  const named = holds.slice(0, NAMED).map(holdWords);
   if (holds.length > NAMED) named.push(`${holds.length - NAMED} more`);
   const last = named.pop();
   if (last === undefined) return "";
   return `held by ${named.length ? `${named.join(", ")} and ${last}` : last}`;
+}
+
+/** The name of the hold of a restart says why; its reason says how it ends, in the list of holds. */
+function holdWords({ owner, reason }) {
+  return reason && owner !== "restart" ? `${owner} (${reason})` : owner;
 }
 
 /** In ERROR: the holds that stay when the error is gone. */

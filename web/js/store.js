@@ -60,7 +60,7 @@ const FOLDERS = {
     const fresh = { ...emptyState(), epoch, boot, restartedAt: started_at };
     if (boot > 1) return { ...fresh, events, eventsKept, oldestEventId, lastEventId };
     const note = {
-      note: "The service was restarted: nothing moves before somebody asks.",
+      note: "The service was restarted: earlier tasks and holds are gone.",
       id: `restart-${epoch}`,
       isRestart: true,
     };

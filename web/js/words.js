@@ -19,6 +19,12 @@ export function timeOfDay(at) {
   return new Date(at).toLocaleTimeString("en-GB");
 }
 
+/** The time of day, with the date if that is not today's. */
+export function timeAndDay(at, now = Date.now()) {
+  const date = isoDate(at);
+  return date === isoDate(now) ? timeOfDay(at) : `${timeOfDay(at)} on ${date}`;
+}
+
 /** "active.FAST", as in ROS 2; "?" where it is not known. */
 export function label({ state, mode }) {
   if (state === "unknown") return "?";
@@ -40,6 +46,11 @@ export function changeWords(change, now) {
   );
   const words = CHANGE_STATUS[change.status] ?? change.status;
   return `${words} ${change.status === "running" ? "for" : "after"} ${took}`;
+}
+
+/** Local date, "2026-03-01". */
+function isoDate(at) {
+  return new Date(at).toLocaleDateString("sv-SE");
 }
 
 const CHANGE_STATUS = {

@@ -23,6 +23,7 @@ from api.cli.monitor.sentence import (
     restart_sentence,
     state_sentence,
     stop_sentence,
+    storage_sentence,
 )
 from api.cli.monitor.table import Column, printable, table
 from api.cli.monitor.view import Level, View, seconds_of
@@ -68,11 +69,12 @@ def head(view: View, width: int) -> list[Text]:
 
 
 def sentences(view: View, console: Console) -> list[Text]:
-    """Return the state of the robot with its reasons, and connection problems."""
+    """Return the state of the robot with its reasons, and problems of connection and storage."""
     told = (
         contact_sentence(view),
         stop_sentence(view),
         state_sentence(view),
+        storage_sentence(view),
         restart_sentence(view),
     )
     return [line for said in told if said for line in _sentence_lines(said, console)]

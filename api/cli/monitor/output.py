@@ -72,6 +72,7 @@ def what_stands(robot: Robot) -> Hashable:
     return (
         robot.epoch,
         None if state is None else (state["state"], *state["errors"], alarm_of(state)),
+        None if state is None else state.get("storage_fault"),
         tuple(_part(part) for part in (robot.parts or {}).values()),
         None if task is None else (task["id"], task["status"]),
         None if stop is None else (stop["engaged"], stop["standstill_at"]),

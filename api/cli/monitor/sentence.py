@@ -1,4 +1,4 @@
-"""The sentences at the top: state of the robot, emergency stop, connection, restart.
+"""The sentences at the top: state of the robot, emergency stop, connection, storage, restart.
 
 `web/js/state_sentence.js` has the same rules; one test runs both over the same cases.
 """
@@ -90,6 +90,17 @@ def standstill_words(robot: Robot) -> str:
     return "the vehicle is at a standstill" if stands else "no standstill yet"
 
 
+def storage_sentence(view: View) -> Sentence | None:
+    """Return that what happens is not stored; None while it is."""
+    fault = (view.robot.system_state or {}).get("storage_fault")
+    if fault is None:
+        return None
+    if view.contact.level is not Level.LIVE:
+        return Sentence("STORAGE FAILED", fault, level="attention")
+    text = f"{fault}; a restart may forget what you ask now"
+    return Sentence("STORAGE FAILS", text, level="attention")
+
+
 def restart_sentence(view: View) -> Sentence | None:
     """Return that the service was restarted, for 10 min after a restart; else None."""
     at = view.robot.restarted_at
@@ -97,7 +108,7 @@ def restart_sentence(view: View) -> Sentence | None:
         return None
     when = words.time_of_day(seconds_of(at))
     is_kept = view.robot.boot > 1
-    kept = "nothing moves until you ask for it" if is_kept else "earlier tasks and holds are gone"
+    kept = "nothing moves before somebody asks" if is_kept else "earlier tasks and holds are gone"
     return Sentence("RESTARTED", f"at {when}; {kept}")
 
 
@@ -159,16 +170,19 @@ def _activity(robot: Robot) -> tuple[str, str]:
 
 def _held_by(holds: Sequence[Json]) -> str:
     """Return "held by gate (the gate is shut), operator and loading"; nothing without holds."""
-    named = [
-        hold["owner"] + (f" ({hold['reason']})" if hold["reason"] else "")
-        for hold in holds[:_NAMED]
-    ]
+    named = [_hold_words(hold) for hold in holds[:_NAMED]]
     if len(holds) > _NAMED:
         named.append(f"{len(holds) - _NAMED} more")
     if not named:
         return ""
     *others, last = named
     return f"held by {', '.join(others)} and {last}" if others else f"held by {last}"
+
+
+def _hold_words(hold: Json) -> str:
+    owner, reason = hold["owner"], hold["reason"]
+    # The name of the hold of a restart says why; its reason says how it ends, in the list of holds.
+    return f"{owner} ({reason})" if reason and owner != "restart" else owner
 
 
 def _aborted(robot: Robot) -> Iterator[str]:

@@ -98,7 +98,7 @@ class EventJson(Json):
 
 
 class GapJson(Json, serialize_by_alias=True):
-    """Events that the client requested and that are no longer kept."""
+    """Events that the client requested and that are not there: too old to be kept, or lost."""
 
     model_config = _WHOLE
 
@@ -117,7 +117,7 @@ class EventsJson(Json):
     epoch: str = Field(description="Of this run of the service")
     oldest: int = Field(description="Id of the oldest event that is kept")
     newest: int = Field(description="Id of the newest event; 0 before the first")
-    gaps: list[GapJson] = Field(description="Requested events that are no longer kept")
+    gaps: list[GapJson] = Field(description="Requested events that are not there")
     items: list[EventJson]
 
 

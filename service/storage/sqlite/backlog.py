@@ -48,7 +48,7 @@ class Backlog:
 
     @property
     def last_step(self) -> int:
-        """Number of the step that was added last."""
+        """Number of the last step."""
         return self._next_step - 1
 
     def add_step(

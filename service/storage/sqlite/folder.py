@@ -109,7 +109,7 @@ class Folder:
             self._update(changes)
         for path in left.broken:
             _move_aside(path)
-        self._follow(changes)
+        self._follow({**left.lag, **changes})
         self._has_started = True
 
     def write(self, flight: Flight) -> None:
@@ -251,18 +251,27 @@ class Folder:
         log.begin_run(self._run, {}, self._next)
         return log
 
-    def _new_log(self) -> LogFile:
+    def _new_log(self, dictionary: bytes = b"") -> LogFile:
         number = self._last_number + 1
-        path = self._places.log(number)
-        log = LogFile.begin(path, number, self._robot, self._run, self._kept, self._next)
+        log = LogFile.begin(
+            self._places.log(number),
+            number,
+            self._robot,
+            self._run,
+            self._kept,
+            self._next,
+            dictionary,
+        )
         self._last_number, self._began_file = number, True
         return log
 
     def _rotate(self, log: LogFile) -> None:
         keep = self._retention
-        if log.size() < keep.file_bytes and log.summary.running_ns < keep.file_running:
+        # What is kept may be large by itself; it is in each file.
+        grown = log.size() - log.first_size
+        if grown < keep.file_bytes and log.summary.running_ns < keep.file_running:
             return
-        self._log = self._new_log()
+        self._log = self._new_log(log.dictionary)
         log.finish()
         self._closed.append(replace(log.summary, file_bytes=log.path.stat().st_size))
         self._follow({})

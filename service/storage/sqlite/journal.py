@@ -12,13 +12,14 @@ from typing import Final
 
 from pydantic_core import to_json
 
-from domain.errors import PilothouseError, StorageDegradedError
+from domain.errors import StorageDegradedError
 from domain.outbox import NOTHING, Outputs
 from domain.timebase import Duration, Instant, seconds
 from service.clock import Clock, since_epoch
 from service.codec.codec import KEPT, STEPS
 from service.codec.names import NAMES
 from service.codec.recorded_step import recorded_step
+from service.storage.errors import UnusableFolderError
 from service.storage.event_rows import event_row
 from service.storage.journal import (
     Boot,
@@ -44,8 +45,9 @@ RETRY_S: Final = 1.0
 SLOW_S: Final = 1.0
 """Storage that takes longer for one flight is degraded."""
 CLOSE_PATIENCE_S: Final = 5.0
+OPEN_PATIENCE_S: Final = 60.0
 CHECKPOINT_EVERY: Final[Duration] = seconds(600.0)
-_READ_PATIENCE_S: Final = 0.5
+_READ_PATIENCE_S: Final = 2.0
 _READ_LIMIT_S: Final = 5.0
 
 _log = logging.getLogger(__name__)
@@ -88,7 +90,12 @@ class SqliteJournal:
         """
         writer = DiskThread("journal-writer")
         try:
-            opened = await writer.run(lambda: open_folder(settings, boot))
+            async with asyncio.timeout(OPEN_PATIENCE_S):
+                opened = await writer.run(lambda: open_folder(settings, boot))
+        except TimeoutError as error:
+            writer.end()
+            reason = f"{settings.folder} cannot be used: no answer for {OPEN_PATIENCE_S:g} s"
+            raise UnusableFolderError(reason) from error
         except BaseException:
             writer.end()
             raise
@@ -105,6 +112,16 @@ class SqliteJournal:
         return self._boot
 
     @property
+    def is_durable(self) -> bool:
+        """Return True."""
+        return True
+
+    @property
+    def fault(self) -> str | None:
+        """Return why storage is degraded; None: it is not."""
+        return self._fault or self._slowness() or self._report.state_fault
+
+    @property
     def wants_checkpoint(self) -> bool:
         """Tell whether a replay could not go on from what was written down lately."""
         return self._wants_checkpoint
@@ -114,19 +131,23 @@ class SqliteJournal:
         if self._is_closed:
             return
         outputs = step.outputs
-        wall_ns = since_epoch(self._clock.wall_time(step.at))
         try:
             line = STEPS.encode(recorded_step(step.at, step.given, step.is_late, outputs))
-            rows = [event_row(event, wall_ns) for event in outputs.events]
-        except PilothouseError as error:
-            self._backlog.lose(step.at, len(outputs.events), error.message)
+            rows = [event_row(event, self._wall_ns(event.at)) for event in outputs.events]
+        except Exception as error:
+            # Whatever is wrong with a step, the robot is supervised on.
+            _log.exception("a step cannot be written down")
+            self._backlog.lose(step.at, len(outputs.events), words(error))
         else:
-            self._backlog.add_step(line, step.at, wall_ns, rows)
+            self._backlog.add_step(line, step.at, self._wall_ns(step.at), rows)
         if outputs is not NOTHING:
             self._note_kept(outputs)
         if step.at - self._checkpoint_at >= CHECKPOINT_EVERY:
             self._wants_checkpoint = True
         self._schedule()
+
+    def _wall_ns(self, at: Instant) -> int:
+        return since_epoch(self._clock.wall_time(at))
 
     def keep(self, name: str, value: Plain) -> None:
         """Keep a value of the service itself."""
@@ -160,7 +181,7 @@ class SqliteJournal:
             self._settings.folder,
             self._opened.found.restored.boot,
             self._report,
-            self._fault or self._slowness() or self._report.state_fault,
+            self.fault,
             (self._backlog.lost_steps, self._backlog.lost_events),
         )
 
@@ -170,6 +191,8 @@ class SqliteJournal:
             with suppress(StorageDegradedError):
                 await self._landed(_READ_PATIENCE_S)
         files = self._report.files
+        if not files:
+            raise StorageDegradedError(self._fault or "the log is not open yet")
         reading = self._reader.run(lambda: read_events(files, query))
         try:
             async with asyncio.timeout(_READ_LIMIT_S):
@@ -321,8 +344,8 @@ class SqliteJournal:
         for change in outputs.kept:
             try:
                 text = None if change.value is None else KEPT.encode(change.value)
-            except PilothouseError as error:
-                _log.error("%s cannot be kept: %s", change.name, error.message)
+            except Exception:
+                _log.exception("%s cannot be kept", change.name)
                 continue
             self._backlog.change((NAMES[change.kind], change.name), text)
         if self._opened.ids.see(outputs):

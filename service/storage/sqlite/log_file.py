@@ -16,6 +16,7 @@ from service.storage.journal import Boot
 from service.storage.sqlite.batch import Batch, Changes, Flight, Key
 from service.storage.sqlite.connection import finish, new_file, open_to_write
 from service.storage.sqlite.log_summary import LogSummary, summary_of
+from service.storage.sqlite.packing import DictionaryMaker, pack
 from service.storage.sqlite.schema import LOG, bring_up, describe, examine
 
 _COMPRESSION = 1
@@ -45,6 +46,11 @@ class LogFile:
         self._synced_at = 0
         connection.set_wal_hook(self._on_commit)
         self.summary = summary_of(connection, path, number)
+        self.dictionary: bytes = _dictionary(connection)
+        """Of its steps; empty as long as there were too few."""
+        self.first_size = 0
+        """Of what it began with, in bytes; 0 if it was begun by an earlier run."""
+        self._maker = DictionaryMaker()
         self.last_change: int = _number(connection, "SELECT max(number) FROM changes")
 
     @classmethod
@@ -67,19 +73,43 @@ class LogFile:
 
     @classmethod
     def begin(
-        cls, path: Path, number: int, robot: str, run: Run, kept: Mapping[Key, bytes], next_: "Next"
+        cls,
+        path: Path,
+        number: int,
+        robot: str,
+        run: Run,
+        kept: Mapping[Key, bytes],
+        next_: "Next",
+        dictionary: bytes = b"",
     ) -> "LogFile":
         """Make a new file, complete or not at all.
+
+        Args:
+            path: Where it will be.
+            number: Of the file.
+            robot: Name of the robot.
+            run: The run that goes on in it.
+            kept: All that is kept.
+            next_: Where the log goes on.
+            dictionary: Of the file before it.
 
         Raises:
             apsw.Error: It cannot be written.
         """
         with new_file(path) as connection:
             bring_up(connection, path, LOG)
-            describe(connection, robot=robot, next_step=next_.step, next_batch=next_.batch)
+            describe(
+                connection,
+                robot=robot,
+                next_step=next_.step,
+                next_batch=next_.batch,
+                dictionary=dictionary,
+            )
             _insert_run(connection, run, next_)
             _insert_changes(connection, kept.items())
-        return cls(path, number, open_to_write(path))
+        file = cls(path, number, open_to_write(path))
+        file.first_size = file.size()
+        return file
 
     def begin_run(self, run: Run, changes: Changes, next_: "Next") -> None:
         """Write down that a run begins, and what it keeps from the start on."""
@@ -103,14 +133,15 @@ class LogFile:
         now = time.monotonic_ns()
         is_synced = flight.must_last or now - self._synced_at >= _SYNC_EVERY
         self._set_sync(is_synced)
-        summary = self.summary
+        summary, dictionary = self.summary, self.dictionary
         with self._connection:
             for batch in flight.batches:
                 if batch.number > self.summary.last_batch:
                     summary = self._insert(batch, run, summary)
                 _insert_hole(self._connection, batch, run)
             _insert_changes(self._connection, changes.items())
-        self.summary = summary
+            dictionary = self._next_dictionary(flight)
+        self.summary, self.dictionary = summary, dictionary
         self._count_changes(changes)
         if is_synced:
             self._synced_at = now
@@ -149,8 +180,18 @@ class LogFile:
     def _count_changes(self, changes: Changes) -> None:
         self.last_change += len(changes)
 
+    def _next_dictionary(self, flight: Flight) -> bytes:
+        """Return the dictionary of later flights; it is written once there is one."""
+        if self.dictionary:
+            return self.dictionary
+        dictionary = self._maker.see([step for batch in flight.batches for step in batch.steps])
+        if dictionary:
+            sql = "INSERT OR REPLACE INTO meta VALUES ('dictionary', ?)"
+            self._connection.execute(sql, (dictionary,))
+        return dictionary
+
     def _insert(self, batch: Batch, run: Run, so_far: LogSummary) -> LogSummary:
-        steps = zlib.compress(b"\n".join(batch.steps), _COMPRESSION) if batch.steps else b""
+        steps = pack(batch.steps, self.dictionary)
         event_bytes = sum(len(row.data) + len(row.words) for row in batch.events)
         now = replace(
             _advanced(so_far, batch, run),
@@ -160,10 +201,10 @@ class LogFile:
             event_bytes=so_far.event_bytes + event_bytes,
         )
         self._connection.execute(
-            "INSERT INTO batches VALUES (?,?,?,?,?,?,?,?,?,?,?)",
+            "INSERT INTO batches VALUES (?,?,?,?,?,?,?,?,?,?,?,?)",
             (
                 *(batch.number, run.number, batch.first_step, len(batch.steps), batch.first_at),
-                *(now.last_at, now.wall_ns, steps),
+                *(now.last_at, now.wall_ns, bool(self.dictionary), steps),
                 *(now.running_ns, now.step_bytes, now.event_bytes),
             ),
         )
@@ -263,6 +304,11 @@ def _insert_hole(connection: apsw.Connection, batch: Batch, run: Run) -> None:
                 *(hole.from_at, hole.to_at, hole.reason),
             ),
         )
+
+
+def _dictionary(connection: apsw.Connection) -> bytes:
+    found = connection.execute("SELECT value FROM meta WHERE name = 'dictionary'").get
+    return found if isinstance(found, bytes) else b""
 
 
 def _number(connection: apsw.Connection, sql: str) -> int:

@@ -12,7 +12,7 @@ import apsw
 
 from service.storage.errors import ForeignFolderError
 from service.storage.id_blocks import BLOCKS, BOOT, EVENT, UNKNOWN_TAIL, IdKind
-from service.storage.sqlite.batch import IDS, Key
+from service.storage.sqlite.batch import IDS, Changes, Key
 from service.storage.sqlite.connection import reading, words
 from service.storage.sqlite.log_file import LogFile, Next
 from service.storage.sqlite.log_summary import LogSummary, summary_of
@@ -38,6 +38,8 @@ class Left:
 
     kept: dict[Key, bytes] = field(default_factory=dict)
     state: StateFile | None = None
+    lag: Changes = field(default_factory=dict)
+    """What the state lacks of `kept`."""
     log: LogFile | None = None
     """The file that the log goes on in; None: a new one."""
     last_number: int = 0
@@ -211,8 +213,13 @@ def _gather(left: Left) -> None:
         applied = state.applied()
         if applied.log == log.number and applied.change <= log.last_change:
             left.kept, after = state.kept(), applied.change
-    for kind, name, value in log.changes_after(after):
-        if value is None:
-            left.kept.pop((kind, name), None)
         else:
-            left.kept[kind, name] = value
+            # It is of another log than this one, and is made anew.
+            state.close()
+            left.state = None
+    left.lag = {(kind, name): value for kind, name, value in log.changes_after(after)}
+    for key, value in left.lag.items():
+        if value is None:
+            left.kept.pop(key, None)
+        else:
+            left.kept[key] = value

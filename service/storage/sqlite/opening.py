@@ -6,6 +6,7 @@ from pathlib import Path
 
 from pydantic_core import from_json
 
+from domain.actor import SERVICE
 from domain.errors import PilothouseError
 from domain.inputs import Restored
 from domain.kept import Kept, KeptEmergencyStop
@@ -136,7 +137,7 @@ def _first_changes(first: Restored, blocks: IdBlocks, boot: Boot) -> Changes:
     """Return what is kept from the start on, before the run does anything."""
     changes: Changes = {}
     if first.stop_because:
-        stop = KeptEmergencyStop(True, "", first.stop_because, boot.started_at)
+        stop = KeptEmergencyStop(True, SERVICE.label, first.stop_because, boot.started_at)
         changes[NAMES[KeptEmergencyStop], stop.name] = KEPT.encode(stop)
     for kind, end in ({BOOT: first.boot + 1} | blocks.reserve()).items():
         changes[IDS, kind] = str(end).encode()

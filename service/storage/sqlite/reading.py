@@ -8,8 +8,9 @@ from typing import Any
 import apsw
 
 from service.clock import since_epoch
-from service.storage.event_rows import EventRow, kind_pattern, stored_event
+from service.storage.event_rows import EventRow, stored_event
 from service.storage.journal import EventQuery, StoredEvent
+from service.storage.kind_pattern import KindPattern
 from service.storage.sqlite.connection import reading
 from service.storage.sqlite.log_summary import LogSummary
 
@@ -41,7 +42,7 @@ def read_events(files: Sequence[LogSummary], query: EventQuery) -> list[StoredEv
     """
     is_forward = query.after is not None
     found: list[StoredEvent] = []
-    current = files[-1]
+    current = files[-1] if files else None
     for file in files if is_forward else reversed(files):
         if len(found) < query.limit and (file is current or _may_hold(file, query)):
             found += _read_file(file.path, query, query.limit - len(found))
@@ -91,7 +92,7 @@ def _conditions(connection: apsw.Connection, query: EventQuery) -> tuple[list[st
         kinds = _kinds(connection, query.kind)
         require(f"events.kind IN ({','.join('?' * len(kinds))})", *kinds)
     if query.actor is not None:
-        require("events.actor = ? AND events.actor != ''", query.actor)
+        require("events.actor = ?", query.actor)
     if query.part is not None:
         require("events.id IN (SELECT event FROM event_parts WHERE part = ?)", query.part)
     return conditions, values
@@ -103,9 +104,9 @@ def _bound(number: int) -> int:
 
 
 def _kinds(connection: apsw.Connection, kind: str) -> Sequence[str]:
-    pattern = kind_pattern(kind)
+    pattern = KindPattern(kind)
     known: Iterable[str] = (row[0] for row in connection.execute(_KINDS))
-    return [name for name in known if pattern.fullmatch(name)]
+    return [name for name in known if pattern.matches(name)]
 
 
 def _event(row: tuple[Any, ...]) -> StoredEvent:

@@ -14,6 +14,7 @@ from service.storage.errors import UnusableFolderError
 from service.storage.journal import Boot, EventQuery, StoredEvent
 from service.storage.sqlite.connection import FAILURES, reading, words
 from service.storage.sqlite.log_summary import LogSummary, summary_of
+from service.storage.sqlite.packing import unpack
 from service.storage.sqlite.places import Places
 from service.storage.sqlite.reading import read_events
 from service.storage.sqlite.schema import LOG, version_of
@@ -94,8 +95,8 @@ class RecordedLog:
             after_step: Number of the last step that is not wanted.
         """
         for path in self._paths():
-            for first, text in self._rows(path, _STEPS, run, after_step):
-                for offset, line in enumerate(zlib.decompress(text).split(b"\n")):
+            for first, packed, dictionary in self._rows(path, _STEPS, run, after_step):
+                for offset, line in enumerate(unpack(packed, dictionary)):
                     if first + offset > after_step:
                         yield first + offset, line
 
@@ -158,7 +159,9 @@ _RUNS = (
     " ORDER BY number LIMIT 1), 0) FROM boots ORDER BY number"
 )
 _STEPS = (
-    "SELECT first_step, steps FROM batches WHERE number >="
+    "SELECT first_step, steps,"
+    " CASE WHEN packed THEN (SELECT value FROM meta WHERE name = 'dictionary') ELSE x'' END"
+    " FROM batches WHERE number >="
     " (SELECT first_batch FROM boots WHERE boots.number = ?1) AND boot = ?1 AND count > 0"
     " AND first_step + count > ?2 + 1 ORDER BY number"
 )

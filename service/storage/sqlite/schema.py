@@ -38,12 +38,12 @@ LOG: Steps = (
         model BLOB NOT NULL, robot BLOB NOT NULL, first_batch INTEGER NOT NULL,
         first_event INTEGER NOT NULL, ended_wall_ns INTEGER
     );
-    -- One row per transaction; `steps` are lines of JSON, compressed by zlib. The last three are
-    -- sums over the file, so that its last row sums it up.
+    -- One row per batch. `steps` are lines of JSON, compressed by zlib; if `packed`, with the
+    -- dictionary in `meta`. The last three are sums over the file, so that its last row sums it up.
     CREATE TABLE batches (
         number INTEGER PRIMARY KEY, boot INTEGER NOT NULL, first_step INTEGER NOT NULL,
         count INTEGER NOT NULL, first_at INTEGER NOT NULL, last_at INTEGER NOT NULL,
-        wall_ns INTEGER NOT NULL, steps BLOB NOT NULL,
+        wall_ns INTEGER NOT NULL, packed INTEGER NOT NULL, steps BLOB NOT NULL,
         running_ns INTEGER NOT NULL, step_bytes INTEGER NOT NULL, event_bytes INTEGER NOT NULL
     );
     CREATE TABLE events (

@@ -5,6 +5,7 @@ power, the last of them may be missing, but the file is not damaged.
 """
 
 from collections.abc import Iterator, Sequence
+from contextlib import suppress
 from dataclasses import dataclass
 from datetime import UTC, datetime
 from pathlib import Path
@@ -72,7 +73,7 @@ class BlockFile:
             self._prepare(path)
             self._bytes = {tier.name: self._measured(tier) for tier in tiers}
         except BaseException:
-            self._connection.close()
+            self.close()
             raise
 
     @property
@@ -81,8 +82,9 @@ class BlockFile:
         return sum(self._bytes.values())
 
     def close(self) -> None:
-        """Close the file."""
-        self._connection.close()
+        """Close the file; what a disk makes fail meanwhile is of no consequence."""
+        with suppress(apsw.Error):
+            self._connection.close(True)
 
     def numbers(self, identities: Sequence[str]) -> dict[str, int]:
         """Return the numbers of all signals in the file by identity, after new ones were added.

@@ -29,6 +29,8 @@ class Cascade:
         """Running time when the first of them came."""
         self.dropped = 0
         """Rows that could not be written; the next tier has got them all the same."""
+        self._has_orphans = False
+        """Whether rows wait whose readings are in no block of a finer tier."""
 
     def add(self, rows: Rows, ran: Duration, tier: int = 0) -> None:
         """Add rows to a tier.
@@ -50,15 +52,20 @@ class Cascade:
             write: Writes rows, sorted by signal and merged.
             ran: Running time.
         """
+        is_written = False
         for index, tier in enumerate(self._tiers):
             since = self._since[index]
             if since is not None and ran - since >= tier.block:
-                overdue = ran - since - tier.block
-                self._pack(index, write, is_last_try=overdue >= max(tier.block, _PATIENCE))
+                is_last_try = ran - since - tier.block >= max(tier.block, _PATIENCE)
+                is_written |= self._pack(index, write, is_last_try=is_last_try)
+        if is_written and self._has_orphans:
+            self._write_all(write)
 
-    def write_readings(self, write: Write) -> None:
-        """Make blocks of the single readings; the coarser tiers can be derived from these."""
-        if self._since[0] is not None:
+    def finish(self, write: Write) -> None:
+        """Make blocks of the single readings, and of what cannot be derived from these."""
+        if self._has_orphans:
+            self._write_all(write)
+        elif self._since[0] is not None:
             self._pack(0, write, is_last_try=True)
 
     def rows_of(self, tier: int, number: int) -> list[Rows]:
@@ -72,15 +79,24 @@ class Cascade:
         parts = [rows for rows in self.rows_of(tier, number) if len(rows)]
         return min((int(rows.first.min()) for rows in parts), default=None)
 
-    def _pack(self, index: int, write: Write, *, is_last_try: bool) -> None:
+    def _write_all(self, write: Write) -> None:
+        self._has_orphans = False
+        for index in range(len(self._tiers)):
+            if self._since[index] is not None and not self._pack(index, write, is_last_try=False):
+                self._has_orphans = True
+
+    def _pack(self, index: int, write: Write, *, is_last_try: bool) -> bool:
+        """Make blocks of what waits in a tier; return whether they are written."""
         rows = Rows.joined(self._waiting[index]).in_buckets(self._tiers[index].width)
         self._waiting[index] = [rows]
         is_written = write(index, rows)
         if not is_written and not is_last_try:
-            return
+            return False
         if not is_written:
             self.dropped += len(rows)
+            self._has_orphans = True
         since = self._since[index]
         self._waiting[index], self._since[index] = [], None
         if index + 1 < len(self._tiers) and since is not None:
             self.add(rows.in_buckets(self._tiers[index + 1].width), since, index + 1)
+        return is_written

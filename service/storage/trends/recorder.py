@@ -121,7 +121,7 @@ class Recorder:
     def close(self, elapsed: Duration) -> None:
         """Write all readings, and close the file."""
         ran = self._before + elapsed
-        self._cascade.write_readings(lambda tier, rows: self._write(tier, rows, ran))
+        self._cascade.finish(lambda tier, rows: self._write(tier, rows, ran))
         if self._file is not None:
             self._file.close()
 

@@ -55,6 +55,8 @@ CONTRACT = {
     "/examples/tracks/{name}": {"get"},
     "/simulations": {"post"},
     "/events": {"get"},
+    "/events/{event}/causes": {"get"},
+    "/storage": {"get"},
     "/livez": {"get"},
     "/readyz": {"get"},
     "/healthz": {"get"},

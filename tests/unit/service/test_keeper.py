@@ -24,9 +24,16 @@ from domain.inputs import (
 from domain.lifecycle import Transition
 from domain.outbox import NOTHING, Outputs
 from domain.timebase import Instant, to_seconds
-from service.keeper import LOOK_EVERY, SAFER_S, Checkpoint, Keeper, Memory, starts_or_loosens
+from service.keeper import (
+    LOOK_EVERY,
+    SAFER_S,
+    WORKS_FOR,
+    Checkpoint,
+    Keeper,
+    Memory,
+    starts_or_loosens,
+)
 from service.storage.journal import Plain
-from service.storage.journal import StorageStatus as StorageStatusView
 from tests.support.manual_clock import ManualClock
 from tests.support.models import BASE
 from tests.support.waiting import until
@@ -38,6 +45,8 @@ HOLD = HoldRequest("operator", "lunch")
 class Disk:
     """The part of a journal that a keeper uses; what is done is told in order."""
 
+    is_durable = True
+
     def __init__(self) -> None:
         self.fault: str | None = None
         self.done: list[str] = []
@@ -48,9 +57,6 @@ class Disk:
     def keep(self, name: str, value: Plain) -> None:
         self.done.append("store the request")
         self.kept[name] = value
-
-    def status(self) -> StorageStatusView:
-        return StorageStatusView("/robot", 0, None, self.fault, "3", 1, {})
 
     async def commit(self, patience_s: float) -> bool:
         self.done.append(f"wait {patience_s:g} s for the disk")
@@ -90,6 +96,12 @@ async def test_a_release_is_on_disk_before_the_robot_may_drive(disk: Disk, keepe
         "do ReleaseRequest",
         "wait 2 s for the disk",
     ]
+
+
+async def test_what_only_memory_keeps_is_not_called_durable(disk: Disk, keeper: Keeper) -> None:
+    disk.is_durable = False
+
+    assert not (await keeper.request(RELEASE)).is_durable
 
 
 async def test_a_hold_does_not_wait_for_the_disk(disk: Disk, keeper: Keeper) -> None:
@@ -168,20 +180,35 @@ def test_what_is_no_request_is_neither() -> None:
         starts_or_loosens(TimePassed())
 
 
-def test_a_disk_that_fails_is_told_to_the_core_once_and_its_recovery_too(
-    disk: Disk, keeper: Keeper
+FULL = StorageStatus(available=False, reason="the disk is full")
+
+
+async def test_a_disk_that_fails_is_told_to_the_core_once_and_its_recovery_too(
+    disk: Disk, keeper: Keeper, clock: ManualClock
 ) -> None:
     keeper.look()
     disk.fault = "the disk is full"
     keeper.look()
     keeper.look()
     disk.fault = None
+    await clock.advance(to_seconds(WORKS_FOR))
+    keeper.look()
     keeper.look()
 
-    assert disk.given == [
-        StorageStatus(available=False, reason="the disk is full"),
-        StorageStatus(available=True),
-    ]
+    assert disk.given == [FULL, StorageStatus(available=True)]
+
+
+async def test_a_full_disk_that_takes_a_write_now_and_then_is_told_once(
+    disk: Disk, keeper: Keeper, clock: ManualClock
+) -> None:
+    for _ in range(5):
+        disk.fault = "the disk is full"
+        keeper.look()
+        disk.fault = None
+        await clock.advance(to_seconds(WORKS_FOR) - 0.1)
+        keeper.look()
+
+    assert disk.given == [FULL]
 
 
 async def test_a_memory_is_kept_when_it_changed_and_not_too_often(

@@ -17,7 +17,7 @@ class Acknowledge extends HTMLElement {
     this.append(this.list, this.problem);
   }
 
-  show(signals, enabled) {
+  show({ signals, enabled, volatile }) {
     const waiting = Object.values(signals).filter((signal) => signal.needs_acknowledgement);
     const errors = new Set(waiting.map(({ error }) => error));
     setAttribute(this, "hidden", errors.size === 0);
@@ -28,22 +28,27 @@ class Acknowledge extends HTMLElement {
     }
     for (const error of errors) {
       if (!this.#buttons.has(error)) this.#add(error);
-      this.#buttons.get(error).disabled = !enabled;
+      const button = this.#buttons.get(error);
+      button.disabled = !enabled;
+      button.volatile = volatile;
     }
   }
 
   #add(error) {
     const button = el("ph-hold-button", { label: `Acknowledge ${error} (hold)` });
-    button.addEventListener("ph-held", () => this.#acknowledge(error, button));
+    button.addEventListener("ph-held", ({ detail }) => {
+      this.#acknowledge(error, button, detail.volatile);
+    });
     this.#buttons.set(error, button);
     this.list.append(button);
   }
 
-  #acknowledge(error, { button }) {
+  #acknowledge(error, { button }, volatile) {
     return whileSending(button, async () => {
       let said = "";
       try {
-        await request("POST", `/errors/${encodeURIComponent(error)}/acknowledge`);
+        const path = `/errors/${encodeURIComponent(error)}/acknowledge`;
+        await request("POST", volatile ? `${path}?volatile=true` : path);
       } catch ({ message }) {
         said = `Not acknowledged: ${message}`;
       }

@@ -6,15 +6,15 @@
 import { request } from "/web/js/api.js";
 import { el } from "/web/js/dom.js";
 import { whileSending } from "/web/js/sending.js";
-import { firstEventId } from "/web/js/store.js";
-import { timeOfDay } from "/web/js/words.js";
+import { emptyState, firstEventId } from "/web/js/store.js";
+import { timeAndDay, timeOfDay } from "/web/js/words.js";
 
 const SHOWN = 50;
 const LOADED = 200;
 const END_PX = 40;
 
 class EventList extends HTMLElement {
-  #state = null;
+  #state = emptyState();
   #lines = new Map();
   #shown = SHOWN;
 
@@ -39,7 +39,7 @@ class EventList extends HTMLElement {
   }
 
   update({ state }) {
-    const isKnown = this.#state?.events === state.events;
+    const isKnown = this.#state.events === state.events;
     this.#state = state;
     if (!isKnown) this.#render();
   }
@@ -107,25 +107,26 @@ class EventList extends HTMLElement {
 function withRestarts(events) {
   const lines = [];
   let epoch = null;
-  let gap = null;
+  let notes = [];
   for (const event of events) {
     if (event.note) {
-      gap = event;
+      notes.push(event);
       continue;
     }
-    const isOfNextRun = epoch !== null && event.epoch !== epoch && !gap?.isRestart;
-    if (isOfNextRun) lines.push(restartLine(event, gap));
-    else if (gap !== null) lines.push(gap);
+    const isOfNextRun = epoch !== null && event.epoch !== epoch;
+    const isTold = notes.some((note) => note.isRestart);
+    if (isOfNextRun && !isTold) lines.push(restartLine(event, notes.length > 0));
+    else lines.push(...notes);
     lines.push(event);
     epoch = event.epoch;
-    gap = null;
+    notes = [];
   }
-  return gap === null ? lines : [...lines, gap];
+  return [...lines, ...notes];
 }
 
-function restartLine({ at, epoch }, gap) {
-  const lost = gap === null ? "" : "; the last events before may be missing";
-  return { note: `Restarted at ${timeOfDay(at)}${lost}`, id: `run-${epoch}`, isRestart: true };
+function restartLine({ at }, isCutOff) {
+  const lost = isCutOff ? "; the last events before may be missing" : "";
+  return { note: `Restarted at ${timeAndDay(at)}${lost}`, isRestart: true };
 }
 
 /** Notable events are always shown, and so are lines for missing events. */

@@ -1,6 +1,9 @@
 /** <ph-hold-button label="...">: dispatches `ph-held` after a press of 1 s, by pointer or key.
  *
  * Screen readers and switches can only click: for them a second click within 5 s confirms.
+ *
+ * While it is `volatile`, its label says that a restart may forget what it does. The event has
+ * `{volatile}`: whether it said so when the press began.
  */
 
 import { el, setAttribute, setText } from "/web/js/dom.js";
@@ -11,6 +14,8 @@ const CONFIRM_MS = 5000;
 
 class HoldButton extends HTMLElement {
   #label = "";
+  #volatile = false;
+  #consent = false;
   #timer = null;
   #clearing = null;
   #clickedAt = -Infinity;
@@ -36,7 +41,21 @@ class HoldButton extends HTMLElement {
 
   set label(text) {
     this.#label = text;
-    if (this.#clearing === null) setText(this.text, text);
+    this.#showLabel();
+  }
+
+  set volatile(value) {
+    if (value === this.#volatile) return;
+    this.#volatile = value;
+    this.#showLabel();
+  }
+
+  get #words() {
+    return this.#volatile ? `${this.#label}; a restart may forget it` : this.#label;
+  }
+
+  #showLabel() {
+    if (this.#clearing === null) setText(this.text, this.#words);
   }
 
   set disabled(value) {
@@ -64,13 +83,15 @@ class HoldButton extends HTMLElement {
   #start() {
     this.#end();
     setAttribute(this, "holding", true);
+    this.#consent = this.#volatile;
     this.#timer = setTimeout(() => this.#held(), HOLD_MS);
   }
 
   #held() {
     this.#end();
     this.#say(null);
-    this.dispatchEvent(new CustomEvent("ph-held", { bubbles: true }));
+    const detail = { volatile: this.#consent };
+    this.dispatchEvent(new CustomEvent("ph-held", { bubbles: true, detail }));
   }
 
   #letGo() {
@@ -90,15 +111,19 @@ class HoldButton extends HTMLElement {
     if (detail > 0 || pointerType) return;
     const isSecond = performance.now() - this.#clickedAt < CONFIRM_MS;
     this.#clickedAt = isSecond ? -Infinity : performance.now();
-    if (isSecond) this.#held();
-    else this.#say(`${this.#label}: press again to confirm`, CONFIRM_MS);
+    if (isSecond) {
+      this.#held();
+      return;
+    }
+    this.#consent = this.#volatile;
+    this.#say(`${this.#words}: press again to confirm`, CONFIRM_MS);
   }
 
   /** Say something in place of the label for a while; null: the label. */
   #say(text, forMs) {
     clearTimeout(this.#clearing);
     this.#clearing = text === null ? null : setTimeout(() => this.#say(null), forMs);
-    setText(this.text, text ?? this.#label);
+    setText(this.text, text ?? this.#words);
     setText(this.told, text ?? "");
   }
 }

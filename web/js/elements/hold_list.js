@@ -1,7 +1,7 @@
 /** <ph-hold-list>: the holds that keep the vehicle from driving, with buttons to release them.
  *
  * Without the last one the robot drives, so releasing needs a long press. Dispatches `ph-release`
- * with `{owner, button}`.
+ * with `{owner, button, volatile}`.
  */
 
 import { el, setAttribute, setText } from "/web/js/dom.js";
@@ -16,7 +16,7 @@ class HoldList extends HTMLElement {
     this.append(el("h3", {}, "Held by"), this.list);
   }
 
-  show({ holds, enabled, knownAt }) {
+  show({ holds, enabled, knownAt, volatile }) {
     setAttribute(this, "hidden", holds.length === 0);
     const wanted = new Set(holds.map(keyOf));
     for (const [key, line] of this.#lines) {
@@ -30,7 +30,9 @@ class HoldList extends HTMLElement {
       const { reason, since, release } = this.#lines.get(keyOf(hold));
       setText(reason, hold.reason ? `: ${hold.reason}` : "");
       setText(since, `for ${wholeSeconds(knownAt - Date.parse(hold.since_at))}`);
-      if (release) release.disabled = !enabled;
+      if (!release) continue;
+      release.disabled = !enabled;
+      release.volatile = volatile;
     }
   }
 
@@ -39,11 +41,11 @@ class HoldList extends HTMLElement {
     const [reason, since] = [el("span"), el("span", { class: "quiet" })];
     // Pilothouse clears its own holds when their cause is gone, but for the one of a restart.
     const release = !(owner in UNTIL) ? el("ph-hold-button", { label: `Release ${owner} (hold)` }) : null;
-    release?.addEventListener("ph-held", () => {
-      const detail = { owner, button: release.button };
+    release?.addEventListener("ph-held", ({ detail: { volatile } }) => {
+      const detail = { owner, button: release.button, volatile };
       this.dispatchEvent(new CustomEvent("ph-release", { bubbles: true, detail }));
     });
-    const whose = by ? (by === owner ? "" : `, by ${by}`) : (UNTIL[owner] ?? "");
+    const whose = by ? (by === owner ? "" : `, by ${by}`) : (OWN[owner] ?? "");
     const words = el("div", {}, el("strong", {}, owner), reason, el("p", { class: "quiet" }, since, whose));
     const item = el("li", {}, words, release);
     this.list.append(item);
@@ -57,6 +59,8 @@ const UNTIL = {
   vehicle: ", until there is a pose",
   drive_process: ", until the vehicle can be commanded",
 };
+
+const OWN = { ...UNTIL, restart: ", by Pilothouse" };
 
 function keyOf({ owner, by, since_at }) {
   return JSON.stringify([owner, by, since_at]);

@@ -10,6 +10,8 @@ import { mayMove, standstillWords } from "/web/js/state_sentence.js";
 import { timeOfDay } from "/web/js/words.js";
 
 const ANSWER_MS = 2000;
+/** A release waits up to 2 s for the disk before it is carried out, and as long for its outcome. */
+const RELEASED_MS = 8000;
 const RETRY_MS = 500;
 
 class StopButton extends HTMLElement {
@@ -45,14 +47,15 @@ class StopButton extends HTMLElement {
     // On pointerdown and not on click: a finger that slides off must still stop the robot.
     this.button.addEventListener("pointerdown", ({ button }) => button === 0 && this.#engage());
     this.button.addEventListener("click", () => this.#engage());
-    this.release.addEventListener("ph-held", () => this.#release());
+    this.release.addEventListener("ph-held", ({ detail }) => this.#release(detail.volatile));
   }
 
-  update({ state, contact }) {
+  update({ state, contact, volatile }) {
     this.#latch = state.emergencyStop;
     this.#moves = mayMove(state);
     this.#stands = contact.level === "lost" ? "" : standstillWords(state);
     this.release.disabled = contact.level === "lost";
+    this.release.volatile = volatile;
     this.#render();
   }
 
@@ -61,7 +64,7 @@ class StopButton extends HTMLElement {
     this.#sending = true;
     this.#problem = null;
     this.#render();
-    while (!(await this.#put(true, "STOP on the monitor page"))) {
+    while (!(await this.#put({ engaged: true, reason: "STOP on the monitor page" }, ANSWER_MS))) {
       this.#undelivered = true;
       this.#render();
       await new Promise((resolve) => setTimeout(resolve, RETRY_MS));
@@ -70,15 +73,17 @@ class StopButton extends HTMLElement {
     this.#render();
   }
 
-  async #release() {
-    await whileSending(this.release.button, () => this.#put(false, "released on the monitor page"));
+  async #release(volatile) {
+    const body = { engaged: false, reason: "released on the monitor page" };
+    if (volatile) body.volatile = true;
+    await whileSending(this.release.button, () => this.#put(body, RELEASED_MS));
     this.#render();
   }
 
-  async #put(engaged, reason) {
+  async #put(body, timeoutMs) {
     try {
-      const options = { keepalive: true, timeoutMs: ANSWER_MS };
-      this.#latch = await request("PUT", "/emergency_stop", { engaged, reason }, options);
+      const options = { keepalive: true, timeoutMs };
+      this.#latch = await request("PUT", "/emergency_stop", body, options);
       this.#problem = null;
     } catch (error) {
       this.#problem = error.problem;

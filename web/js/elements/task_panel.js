@@ -12,6 +12,8 @@ import * as words from "/web/js/task_words.js";
 import { timeOfDay } from "/web/js/words.js";
 
 const OPERATOR = "operator";
+/** The holds that a press of Resume releases: its own, and that of a task over a restart. */
+const RESUMED = [OPERATOR, "restart"];
 
 class TaskPanel extends HTMLElement {
   connectedCallback() {
@@ -25,7 +27,8 @@ class TaskPanel extends HTMLElement {
     this.pause = el("button", { type: "button", onclick: () => this.#pause() }, "Pause");
     this.resume = el("ph-hold-button", {
       label: "Resume (hold)",
-      "onph-held": () => this.#release(OPERATOR, this.resume.button),
+      "onph-held": ({ detail: { volatile } }) =>
+        this.#release({ owner: this.resumed, button: this.resume.button, volatile }),
     });
     this.cancel = el("ph-hold-button", {
       label: "Cancel (hold)",
@@ -45,7 +48,7 @@ class TaskPanel extends HTMLElement {
     this.last = el("p", { class: "task-end", role: "status" });
     this.problem = el("div", { class: "problem", role: "alert", hidden: true });
     this.holds = el("ph-hold-list", {
-      "onph-release": ({ detail: { owner, button } }) => this.#release(owner, button),
+      "onph-release": ({ detail }) => this.#release(detail),
     });
     this.form = el("ph-task-form");
     this.fold = el("details", { class: "new-task" }, el("summary", {}, "New task"), this.form);
@@ -63,7 +66,7 @@ class TaskPanel extends HTMLElement {
     this.form.tracks = items;
   }
 
-  update({ state, contact, knownAt }) {
+  update({ state, contact, knownAt, volatile }) {
     const { vehicle } = state;
     const task = currentTask(state);
     const holds = Object.values(state.holds);
@@ -73,7 +76,8 @@ class TaskPanel extends HTMLElement {
     const ended = task ? null : state.task;
     setText(this.last, ended ? words.endWords(ended) : "");
     setAttribute(this.last, "data-status", ended?.status);
-    this.holds.show({ holds, enabled, knownAt });
+    this.resume.volatile = volatile;
+    this.holds.show({ holds, enabled, knownAt, volatile });
     this.#foldForm(task);
     this.form.show({ task, vehicle, enabled });
   }
@@ -90,9 +94,9 @@ class TaskPanel extends HTMLElement {
     setText(this.facts, words.driveWords(task, vehicle));
     // The list of holds says the same at more length.
     setText(this.reason, holds.length === 0 ? (task.reason ?? "") : "");
-    const isHeld = holds.some(({ owner }) => owner === OPERATOR);
-    setAttribute(this.pause, "hidden", isHeld);
-    setAttribute(this.resume, "hidden", !isHeld);
+    this.resumed = RESUMED.find((name) => holds.some(({ owner }) => owner === name));
+    setAttribute(this.pause, "hidden", Boolean(this.resumed));
+    setAttribute(this.resume, "hidden", !this.resumed);
     for (const button of [this.pause, this.resume, this.cancel]) button.disabled = !enabled;
   }
 
@@ -110,8 +114,9 @@ class TaskPanel extends HTMLElement {
     this.#ask(this.pause, "PUT", `/holds/${OPERATOR}`, { reason: "paused on the page" });
   }
 
-  #release(owner, button) {
-    this.#ask(button, "DELETE", `/holds/${encodeURIComponent(owner)}`);
+  #release({ owner, button, volatile }) {
+    const path = `/holds/${encodeURIComponent(owner)}`;
+    this.#ask(button, "DELETE", volatile ? `${path}?volatile=true` : path);
   }
 
   #ask(button, method, path, body) {

@@ -12,7 +12,7 @@ from api.client.outcomes import Outcome
 
 Output = pytest.CaptureFixture[str]
 
-COMMANDS = ("serve", "monitor", "check", "mode", "state", "task", "simulate")
+COMMANDS = ("serve", "monitor", "check", "mode", "state", "task", "simulate", "replay", "export")
 
 
 def exit_code(*arguments: str) -> int:

@@ -179,7 +179,7 @@ async def test_another_service_at_the_same_place_is_gone_on_with() -> None:
         await until(lambda: watch.robot.epoch == "two" and watch.robot.is_whole)
 
     assert [note.words for note in watch.robot.notes] == [
-        "the service was restarted: nothing moves before somebody asks"
+        "the service was restarted: earlier tasks and holds are gone"
     ]
 
 

@@ -42,7 +42,7 @@ def test_every_class_has_samples() -> None:
 def test_a_stored_record_is_read_as_it_was_meant(name: str) -> None:
     file = FOLDER / f"{name}.jsonl"
     values = SAMPLES[name]
-    assert file.exists(), f"store {b'/'.join(map(written, values))!r} line by line in {file}"
+    assert file.exists(), b"\n".join([b"a new file with", *map(written, values)]).decode()
 
     lines = file.read_bytes().splitlines()
 

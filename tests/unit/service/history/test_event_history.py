@@ -9,7 +9,7 @@ from domain.errors import StorageDegradedError, UnknownEventError
 from domain.events.event import RecordedEvent
 from service.event_log import EventLog, Gap
 from service.history import event_history
-from service.history.event_history import MAX_CAUSES, EventHistory, FoundEvents, UnreadableLogError
+from service.history.event_history import MAX_CAUSES, EventHistory, FoundEvents
 from service.storage.journal import EventQuery
 from tests.support.frames import RareHappened, event
 from tests.support.kept_events import Disk, Run
@@ -174,7 +174,7 @@ async def test_a_broken_disk_is_told_where_it_is_needed(
 ) -> None:
     disk.failure = StorageDegradedError("disk I/O error")
 
-    with pytest.raises(UnreadableLogError, match="earlier events cannot be read: disk I/O error"):
+    with pytest.raises(StorageDegradedError, match="earlier events cannot be read: disk I/O error"):
         await run.history.find(query)
     assert ids(await run.history.find(EventQuery(limit=10))) == list(range(71, 81))
 
@@ -189,7 +189,7 @@ async def test_a_disk_that_does_not_answer_counts_as_broken(
     monkeypatch.setattr(event_history, "READ_PATIENCE_S", 0.0)
     monkeypatch.setattr(run.journal, "events", never)
 
-    with pytest.raises(UnreadableLogError, match="the disk takes more than"):
+    with pytest.raises(StorageDegradedError, match="the disk takes more than"):
         await run.history.find(EventQuery(after=0))
 
 

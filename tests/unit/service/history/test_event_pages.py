@@ -7,7 +7,7 @@ import pytest
 
 from domain.errors import StorageDegradedError
 from service.event_log import EventLog, Gap
-from service.history.event_history import EventHistory, UnreadableLogError
+from service.history.event_history import EventHistory
 from service.history.event_pages import EVENTS_PER_PAGE, EventPages, HistoryReader, Told
 from tests.support.frames import event
 from tests.support.kept_events import Disk, Run
@@ -121,7 +121,7 @@ async def test_an_unreadable_journal_is_tried_again_or_skipped_with_a_gap() -> N
     reader = HistoryReader(EventPages(run.history), 3)
     disk.failure = StorageDegradedError("disk I/O error")
 
-    with pytest.raises(UnreadableLogError):
+    with pytest.raises(StorageDegradedError):
         await reader.load()
     reader.skip()
 

@@ -6,6 +6,7 @@ import pytest
 from api.cli.command_line import main
 from api.client.outcomes import NoAnswerError, Outcome, ServiceProblemError
 from api.client.service_client import ServiceClient
+from domain.errors import StorageDegradedError
 
 Output = pytest.CaptureFixture[str]
 
@@ -54,6 +55,21 @@ def test_a_refusal_ends_with_one_and_its_reasons(
 
     assert main(["mode", "actuation", "PERFORMANCE"]) == 1
     assert capsys.readouterr().err == "rejected: e-stop is pressed\n  hint: release it\n"
+
+
+def test_a_change_that_cannot_be_stored_is_rejected_and_nothing_was_done(
+    monkeypatch: pytest.MonkeyPatch, capsys: Output
+) -> None:
+    error = StorageDegradedError("the disk is full")
+
+    def refuse() -> Outcome:
+        raise ServiceProblemError({"detail": error.message, "code": error.code, "status": 503})
+
+    answer_with(monkeypatch, refuse)
+
+    assert main(["mode", "actuation", "PERFORMANCE"]) == 1
+    told = "rejected: nothing was done, since it cannot be stored: the disk is full\n"
+    assert capsys.readouterr().err == told
 
 
 def test_a_lost_answer_ends_with_two(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -245,6 +245,17 @@ def test_the_stop_is_told_before_the_state() -> None:
     ]
 
 
+def test_that_storage_fails_is_told_after_the_state() -> None:
+    full = {**system_state(), "storage_fault": "the disk is full"}
+
+    lines = blocks.sentences(view(robot(frame(system_state=full))), console(80))
+
+    assert plain(lines) == [
+        "IDLE  no task",
+        "STORAGE FAILS  the disk is full; a restart may forget what you ask now",
+    ]
+
+
 def test_a_reason_cannot_move_the_cursor() -> None:
     state = system_state("ERROR", "\x1b[2Jgone")
 

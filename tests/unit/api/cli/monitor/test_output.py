@@ -124,6 +124,7 @@ def test_values_ages_and_ways_are_no_change(message: Json) -> None:
     [
         frame(system_state=system_state("RUNNING")),
         frame(system_state=system_state("IDLE", "battery is low")),
+        frame(system_state={**system_state("RUNNING"), "storage_fault": "the disk is full"}),
         frame(
             system_state={
                 **system_state("RUNNING"),

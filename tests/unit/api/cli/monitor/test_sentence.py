@@ -6,12 +6,13 @@ from api.cli.monitor.sentence import (
     restart_sentence,
     state_sentence,
     stop_sentence,
+    storage_sentence,
 )
-from api.cli.monitor.store import Robot
+from api.cli.monitor.store import Json, Robot
 from api.cli.monitor.view import Contact, Level, seconds_of
 from api.cli.monitor.words import time_of_day
 from tests.support.monitor import AT, after, frame, hello, robot, stop, system_state, view
-from tests.support.sentence_cases import CASES, Case, combinations, moving
+from tests.support.sentence_cases import CASES, STORAGE, Case, combinations, moving
 
 
 @pytest.mark.parametrize("case", CASES, ids=lambda case: case.name)
@@ -67,8 +68,18 @@ def test_an_error_without_a_reason_tells_its_codes() -> None:
     )
 
 
-def test_while_nothing_is_known_nothing_is_said_of_the_state() -> None:
+def test_while_nothing_is_known_nothing_is_said_of_state_and_storage() -> None:
     assert state_sentence(view(Robot())) is None
+    assert storage_sentence(view(Robot())) is None
+
+
+@pytest.mark.parametrize(("state", "contact", "told"), STORAGE)
+def test_that_storage_fails_is_told_with_what_follows(
+    state: Json, contact: str, told: tuple[str, str] | None
+) -> None:
+    said = storage_sentence(view(robot(frame(system_state=state)), Contact(Level(contact), 1.0)))
+
+    assert said == (None if told is None else Sentence(*told, level="attention"))
 
 
 def test_good_contact_is_not_worth_a_word() -> None:
@@ -145,7 +156,7 @@ def test_a_restart_is_told_for_ten_minutes() -> None:
     assert told.text.endswith("earlier tasks and holds are gone")
     kept = robot(hello("two", after(3), boot=2), frame(after(4)))
     assert restart_sentence(view(kept, later_s=60.0)) == Sentence(
-        "RESTARTED", f"{told.text.partition(';')[0]}; nothing moves until you ask for it"
+        "RESTARTED", f"{told.text.partition(';')[0]}; nothing moves before somebody asks"
     )
     assert restart_sentence(view(restarted, later_s=700.0)) is None
     assert restart_sentence(view(robot())) is None

@@ -119,8 +119,8 @@ def test_a_hole_grows_while_storage_fails() -> None:
 def test_a_state_that_does_not_fit_is_asked_for_again() -> None:
     waiting = backlog(limit=10)
 
-    assert waiting.add_checkpoint(waiting.last_step, 100, b"state")
-    assert not waiting.add_checkpoint(waiting.last_step, 200, b"larger state")
+    assert waiting.add_checkpoint(10, 100, b"state")
+    assert not waiting.add_checkpoint(10, 200, b"larger state")
 
     (batch,) = waiting.take(must_last=False).batches
     assert [(taken.step, taken.at, taken.state) for taken in batch.checkpoints] == [

@@ -75,6 +75,15 @@ async def test_each_file_has_all_that_is_kept(folder: Path) -> None:
     assert found.restored.next_event == 7
 
 
+async def test_much_that_is_kept_does_not_make_a_file_of_each_commit(folder: Path) -> None:
+    robot = await started(folder, retention=Retention(file_bytes=2_000_000))
+    robot.journal.keep("map", "x" * 3_000_000)
+    await holds_and_commits(robot, 10)
+    await robot.journal.close()
+
+    assert numbers(folder) == [1, 2]
+
+
 async def test_the_oldest_files_go_when_the_log_is_too_large(folder: Path) -> None:
     keep = Retention(file_bytes=EACH_ITS_OWN_FILE, total_bytes=160_000)
     robot = await started(folder, retention=keep)

@@ -74,7 +74,22 @@ def test_at_the_end_the_readings_are_written_whatever_the_time() -> None:
     cascade, blocks = Cascade(SMALL_TIERS), _Blocks()
     cascade.add(readings([7.0]), 0)
 
-    cascade.write_readings(blocks.write)
-    cascade.write_readings(blocks.write)
+    cascade.finish(blocks.write)
+    cascade.finish(blocks.write)
 
     assert [tier for tier, _ in blocks.written] == [0]
+
+
+def test_what_a_finer_tier_has_lost_is_written_as_soon_as_the_disk_works() -> None:
+    cascade, blocks = Cascade(SMALL_TIERS), _Blocks()
+    blocks.works = False
+    cascade.add(readings([7.0] * 20), 0)
+    for second in range(14):
+        cascade.settle(blocks.write, seconds(second))
+    blocks.works = True
+
+    cascade.add(readings([1.0], seconds(14.0)), seconds(14.0))
+    cascade.settle(blocks.write, seconds(14.0))
+
+    assert [tier for tier, _ in blocks.written] == [0, 1, 2, 3]
+    assert blocks.written[-1][1].high.max() == 7.0

@@ -1,0 +1,101 @@
+import json
+from pathlib import Path
+
+import pytest
+
+from api.cli.command_line import main
+from tests.support.recorded_robot import RecordedRobot
+from tests.support.stored_robot import held_on_its_way, store
+
+
+@pytest.fixture(scope="module")
+def robot() -> RecordedRobot:
+    return held_on_its_way()
+
+
+@pytest.fixture(scope="module")
+def data(robot: RecordedRobot, tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Return the folder of data of a robot."""
+    folder = tmp_path_factory.mktemp("data") / "robot"
+    store(folder, robot, checkpoints=(30,))
+    return folder
+
+
+def test_a_run_that_is_decided_the_same_is_said_to_be(
+    data: Path, robot: RecordedRobot, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert main(["replay", str(data)]) == 0
+
+    last = robot.events[-1].id
+    assert capsys.readouterr().out == (
+        f"run 1, from the start of the run: {len(robot.taken)} steps the same, up to event {last}\n"
+    )
+
+
+def test_a_piece_from_a_checkpoint_is_replayed(
+    data: Path, robot: RecordedRobot, capsys: pytest.CaptureFixture[str]
+) -> None:
+    last = robot.events[-1].id
+
+    assert main(["replay", str(data), "--from", str(last), "--until", str(last)]) == 0
+
+    assert capsys.readouterr().out.startswith("run 1, from step 31: ")
+
+
+def test_an_exported_piece_replays_and_a_changed_decision_in_it_is_named(
+    data: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    out = tmp_path / "bug"
+    assert main(["export", str(data), "--to", "jsonl", "--out", str(out)]) == 0
+    assert main(["replay", str(out)]) == 0
+    capsys.readouterr()
+    steps = out / "run-1-step-1" / "steps.jsonl"
+    steps.write_text(steps.read_text().replace('"reason":"closed"', '"reason":"open"', 1))
+    record = [json.loads(line) for line in steps.read_text().splitlines()]
+
+    assert main(["replay", str(out)]) == 1
+
+    number = next(n for n, step in enumerate(record, 1) if step["given"].get("reason") == "open")
+    told = capsys.readouterr().out
+    assert f"step {number} (hold_request): recorded was event " in told
+    assert "hold gate requested: closed" in told.partition("but now came")[0]
+    assert "hold gate requested: open" in told.partition("but now came")[2]
+
+
+def test_an_exported_piece_is_replayed_as_a_whole(
+    data: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    out = tmp_path / "bug"
+    main(["export", str(data), "--to", "jsonl", "--out", str(out)])
+
+    assert main(["replay", str(out), "--from", "1"]) == 2
+
+    assert "what was exported is replayed as a whole" in capsys.readouterr().err
+
+
+def test_a_record_of_another_release_is_told(
+    data: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    out = tmp_path / "bug"
+    main(["export", str(data), "--to", "jsonl", "--out", str(out)])
+    run = out / "run-1-step-1" / "run.json"
+    run.write_text(json.dumps(json.loads(run.read_text()) | {"version": "0.0.1"}))
+
+    assert main(["replay", str(out)]) == 0
+
+    assert "run 1 was recorded by release 0.0.1" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize("options", [[], ["--from", "5"]])
+def test_a_folder_without_a_log_cannot_be_replayed(
+    options: list[str], tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert main(["replay", str(tmp_path), *options]) == 2
+
+    assert "holds no log" in capsys.readouterr().err
+
+
+def test_an_event_that_is_not_there_is_told(data: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["replay", str(data), "--from", "99999"]) == 2
+
+    assert "event 99999 is not in the record" in capsys.readouterr().err
