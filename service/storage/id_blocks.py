@@ -5,6 +5,7 @@ from datetime import UTC, datetime, timedelta
 from typing import NewType
 
 from domain.identifiers import ChangeId, TaskId
+from domain.kept import KeptChange
 from domain.outbox import Outputs
 
 IdKind = NewType("IdKind", str)
@@ -55,6 +56,10 @@ class IdBlocks:
             is_short |= self._see(CHANGE, _number(outputs.change))
         if outputs.task is not None:
             is_short |= self._see(TASK, _number(outputs.task))
+        for item in outputs.kept:
+            # Changes that restore a node were not requested.
+            if item.kind is KeptChange:
+                is_short |= self._see(CHANGE, _number(ChangeId(item.name)))
         return is_short
 
     def exact(self) -> dict[IdKind, int]:

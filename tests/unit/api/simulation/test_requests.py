@@ -1,4 +1,6 @@
 import asyncio
+import subprocess
+import sys
 from collections.abc import Callable, Iterator
 from typing import Any, NamedTuple
 
@@ -117,3 +119,11 @@ def test_a_simulation_begins_no_other_one(ask: Ask) -> None:
     assert problem is not None
     assert problem.status == 409
     assert "cannot start another one" in problem.detail
+
+
+def test_a_service_does_not_load_what_only_simulations_need() -> None:
+    code = "import sys, api.serving.serving, api.serving.composition; print('httpx' in sys.modules)"
+
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+
+    assert done.stdout == "False\n"

@@ -4,6 +4,7 @@ from domain.actor import NOBODY
 from domain.events.driving import HoldSet
 from domain.events.event import RecordedEvent
 from domain.identifiers import ChangeId, TaskId
+from domain.kept import Keeping, KeptChange
 from domain.outbox import Outputs
 from service.storage.id_blocks import BOOT, CHANGE, EVENT, TASK, IdBlocks, unreserved
 
@@ -37,6 +38,16 @@ def test_changes_and_tasks_have_ids_of_their_own() -> None:
     assert ids.see(Outputs(change=ChangeId("c501")))
 
     assert ids.exact() == {EVENT: 1, CHANGE: 502, TASK: 4}
+
+
+def test_a_change_that_nobody_requested_uses_an_id_as_well() -> None:
+    ids = IdBlocks({})
+    ids.reserve()
+    ids.see(Outputs(change=ChangeId("c12")))
+
+    ids.see(Outputs(kept=(Keeping(KeptChange, "c13", None),)))
+
+    assert ids.exact()[CHANGE] == 14
 
 
 def test_a_run_that_ends_says_exactly_what_it_used() -> None:
