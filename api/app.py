@@ -3,12 +3,13 @@
 import asyncio
 from collections.abc import AsyncIterator, Sequence
 from contextlib import asynccontextmanager
+from functools import partial
 
 from fastapi import FastAPI
 
 from api.documents import route as documents
 from api.documents.asyncapi import stream_document
-from api.documents.route import openapi_file
+from api.documents.route import encode_description, keep_description
 from api.http import model_jobs, task_jobs
 from api.http.access import Access
 from api.http.gate.audit import Audit
@@ -28,6 +29,7 @@ from api.rosbridge.clients import make_rosbridge_clients
 from api.simulation import route as simulations
 from api.simulation.simulation_job import SimulatedParts
 from api.streaming import frame_jobs, frames_route
+from service.forked_call import ForkedCallError, forked_call
 from service.supervisor import Supervisor
 from service.worker import Worker
 
@@ -105,13 +107,17 @@ def _guard(
     app.add_middleware(Ending)
 
 
-def prepare(app: FastAPI) -> None:
+async def prepare(app: FastAPI) -> None:
     """Build what else would be built at the first requests: the documents of the interface.
 
-    It takes some 0.2 s, in which nothing else is done: before the robot is supervised these do no
-    harm.
+    The larger one is made in a forked process: as objects it takes 4 MB for as long as the service
+    runs, and as text a tenth of that.
     """
-    openapi_file(app)
+    try:
+        encoded = await forked_call(partial(encode_description, app))
+    except (OSError, ForkedCallError):
+        encoded = encode_description(app)
+    keep_description(app, encoded)
     stream_document()
 
 

@@ -38,19 +38,21 @@ _HEADERS: Mapping[str, str] = MappingProxyType(
 @policy(Permission.READ_PUBLIC)
 async def get_openapi(request: Request) -> Response:
     """Return the description of requests and answers."""
-    return answer_with(openapi_file(request.app), request)
-
-
-def openapi_file(app: FastAPI) -> PageFile:
-    """Return the description as a file; it takes 0.2 s to make, once."""
-    state = app.state
+    state = request.app.state
+    # Making it takes 0.2 s: once, and not for each request.
     if not hasattr(state, "openapi_file"):
-        content = JSONResponse(app.openapi()).body
-        state.openapi_file = PageFile.of(bytes(content), "application/json")
-        # As objects it takes some megabytes, and nobody needs them again.
-        app.openapi_schema = None
-    file: PageFile = state.openapi_file
-    return file
+        keep_description(request.app, encode_description(request.app))
+    return answer_with(state.openapi_file, request)
+
+
+def encode_description(app: FastAPI) -> bytes:
+    """Return the description of requests and answers as JSON."""
+    return bytes(JSONResponse(app.openapi()).body)
+
+
+def keep_description(app: FastAPI, encoded: bytes) -> None:
+    """Answer with a description that was encoded before."""
+    app.state.openapi_file = PageFile.of(encoded, "application/json")
 
 
 @router.get("/docs")

@@ -119,7 +119,7 @@ async def _run(
     stores = await open_stores(options, files, clock)
     try:
         composition = compose(options, clock, files, stores)
-        server = _make_server(composition, options, network, manager, output)
+        server = await _make_server(composition, options, network, manager, output)
         heap = Heap()
         heap.settle()
         composition.supervisor.publisher.on_tick.append(heap.note_tick)
@@ -128,7 +128,7 @@ async def _run(
         await stores.close()
 
 
-def _make_server(
+async def _make_server(
     composition: Composition,
     options: ServeOptions,
     network: Network,
@@ -146,7 +146,7 @@ def _make_server(
         simulated=composition.simulated,
     )
     app.state.exposed = options.anonymous and not is_loopback(options.host)
-    prepare(app)
+    await prepare(app)
     url = url_of(network.sockets, options.host)
     greeting = "\n".join(greet(composition, options, url, network.access))
     return web_server(app, lambda: _say_serving(output, greeting, manager, supervisor))

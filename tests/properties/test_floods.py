@@ -120,7 +120,7 @@ class Flooded:
             limits=ServiceLimits(requests_per_s=NANOSECONDS_PER_SECOND),
         )
         self.robot: HttpRobot = runner.run(self._around.__aenter__())
-        prepare(self.robot.app)
+        runner.run(prepare(self.robot.app))
         self.robot.app.state.worker = self.robot.app.state.simulator = BusyJobs()
 
     def close(self) -> None:
