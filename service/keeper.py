@@ -193,23 +193,21 @@ class Keeper:
             self._remembered[memory.name] = now, revision
             self._journal.keep(memory.name, memory.value())
 
-    async def request(self, given: Input, *, volatile: bool = False) -> Taken:
+    async def request(self, given: Input, *, first: bool) -> Taken:
         """Pass a request to the core, and return when its outcome is on disk or takes too long.
 
         Args:
             given: A request.
-            volatile: Carry it out though storage fails; a restart may forget it.
+            first: Store it first: it starts or loosens something.
 
         Raises:
-            StorageDegradedError: It starts or loosens something, and cannot be stored first;
-                nothing was done.
+            StorageDegradedError: It cannot be stored first; nothing was done.
             PilothouseError: The core rejects it; nothing was done.
         """
-        is_first_stored = starts_or_loosens(given)
-        if is_first_stored and not volatile:
+        if first:
             await self._store_first(given)
         outputs = self._submit(given)
-        return Taken(outputs, await self._is_stored(OUTCOME_S if is_first_stored else SAFER_S))
+        return Taken(outputs, await self._is_stored(OUTCOME_S if first else SAFER_S))
 
     async def _store_first(self, given: Input) -> None:
         self._requests += 1

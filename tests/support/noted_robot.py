@@ -46,6 +46,11 @@ class NotedRobot:
         changed = (Keeping(KeptHold, owner, kept),)
         self._note(HoldRequest(owner, reason, ADA), Outputs(events=events, kept=changed))
 
+    def steps_into_much(self, count: int) -> None:
+        """Take in what as many events follow from."""
+        events = self._events(*(HoldSet(f"owner {number}", "lunch") for number in range(count)))
+        self._note(HoldRequest("operator", "lunch", ADA), Outputs(events=events))
+
     def releases(self, owner: str) -> None:
         """Release a hold, which is kept no longer."""
         events = self._events(HoldReleased(owner), actor=ADA)

@@ -6,6 +6,7 @@ next is gathered, so that all who wait share one sync.
 
 import asyncio
 import logging
+from collections import deque
 from collections.abc import Sequence
 from contextlib import suppress
 from typing import Final
@@ -39,6 +40,8 @@ from service.storage.sqlite.opening import Opened, StoreSettings, open_folder
 from service.storage.sqlite.reading import read_events
 from service.storage.sqlite.status import status_of
 
+_EVENTS_AT_ONCE: Final = 200
+"""A step with more events is written down in a turn of its own: for 1,000 it takes 20 ms."""
 BATCH_S: Final = 0.05
 """How long what nobody waits for is gathered."""
 RETRY_S: Final = 1.0
@@ -75,6 +78,9 @@ class SqliteJournal:
         self._took_off_at = 0.0
         self._fault: str | None = None
         self._is_closed = False
+        self._deferred = deque[Step]()
+        """Steps that are written down in later turns, the first of which is large."""
+        self._wall: tuple[Instant, int] = (boot.started_at, since_epoch(boot.wall_at))
         self._wants_checkpoint = True
         self._checkpoint_at: Instant = boot.started_at
         if opened.fault is not None:
@@ -130,6 +136,22 @@ class SqliteJournal:
         """Write a step down soon, all of it or nothing."""
         if self._is_closed:
             return
+        if self._deferred or len(step.outputs.events) > _EVENTS_AT_ONCE:
+            self._deferred.append(step)
+            if len(self._deferred) == 1:
+                asyncio.get_running_loop().call_soon(self._take_deferred)
+        else:
+            self._take(step)
+
+    def _take_deferred(self) -> None:
+        """Take steps that were left to a turn of their own, up to the next large one."""
+        while self._deferred:
+            self._take(self._deferred.popleft())
+            if self._deferred and len(self._deferred[0].outputs.events) > _EVENTS_AT_ONCE:
+                asyncio.get_running_loop().call_soon(self._take_deferred)
+                return
+
+    def _take(self, step: Step) -> None:
         outputs = step.outputs
         try:
             line = STEPS.encode(recorded_step(step.at, step.given, step.is_late, outputs))
@@ -147,7 +169,10 @@ class SqliteJournal:
         self._schedule()
 
     def _wall_ns(self, at: Instant) -> int:
-        return since_epoch(self._clock.wall_time(at))
+        """Return the wall time of an instant; most that follow each other are the same."""
+        if at != self._wall[0]:
+            self._wall = at, since_epoch(self._clock.wall_time(at))
+        return self._wall[1]
 
     def keep(self, name: str, value: Plain) -> None:
         """Keep a value of the service itself."""
@@ -158,10 +183,12 @@ class SqliteJournal:
     @property
     def last_step(self) -> int:
         """Return the number of the step that was noted last."""
-        return self._backlog.last_step
+        return self._backlog.last_step + len(self._deferred)
 
     def checkpoint(self, step: int, at: Instant, state: bytes) -> None:
         """Write down the whole state of the core as it was after a step."""
+        while self._deferred:
+            self._take(self._deferred.popleft())
         if not self._is_closed and self._backlog.add_checkpoint(step, at, state):
             self._wants_checkpoint, self._checkpoint_at = False, at
             self._schedule()
@@ -172,6 +199,9 @@ class SqliteJournal:
             raise StorageDegradedError("storage is closed")
         if self._fault is not None:
             raise StorageDegradedError(self._fault)
+        for _ in range(len(self._deferred)):
+            # In each turn at least one of them is taken.
+            await asyncio.sleep(0)
         self._must_last = True
         return await self._landed(patience_s)
 
@@ -218,6 +248,8 @@ class SqliteJournal:
         self._reader.end()
 
     async def _end(self) -> None:
+        while self._deferred:
+            self._take(self._deferred.popleft())
         if self._flying is not None:
             await self._flying
         for kind, first in self._opened.ids.exact().items():
@@ -245,7 +277,7 @@ class SqliteJournal:
 
     @property
     def _is_landed(self) -> bool:
-        return self._backlog.is_empty and self._flying is None
+        return self._backlog.is_empty and self._flying is None and not self._deferred
 
     async def _landed(self, patience_s: float) -> bool:
         """Wait until all that was noted is written; return whether it is, in that time."""

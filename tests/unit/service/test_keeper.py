@@ -87,7 +87,7 @@ def keeper(disk: Disk, clock: ManualClock) -> Keeper:
 
 
 async def test_a_release_is_on_disk_before_the_robot_may_drive(disk: Disk, keeper: Keeper) -> None:
-    taken = await keeper.request(RELEASE)
+    taken = await keeper.request(RELEASE, first=True)
 
     assert taken.is_durable
     assert disk.done == [
@@ -101,11 +101,11 @@ async def test_a_release_is_on_disk_before_the_robot_may_drive(disk: Disk, keepe
 async def test_what_only_memory_keeps_is_not_called_durable(disk: Disk, keeper: Keeper) -> None:
     disk.is_durable = False
 
-    assert not (await keeper.request(RELEASE)).is_durable
+    assert not (await keeper.request(RELEASE, first=True)).is_durable
 
 
 async def test_a_hold_does_not_wait_for_the_disk(disk: Disk, keeper: Keeper) -> None:
-    await keeper.request(HOLD)
+    await keeper.request(HOLD, first=False)
 
     assert disk.done == ["do HoldRequest", f"wait {SAFER_S:g} s for the disk"]
 
@@ -113,13 +113,13 @@ async def test_a_hold_does_not_wait_for_the_disk(disk: Disk, keeper: Keeper) -> 
 async def test_a_hold_is_answered_though_the_disk_is_slow(disk: Disk, keeper: Keeper) -> None:
     disk.answers = [False]
 
-    assert not (await keeper.request(HOLD)).is_durable
+    assert not (await keeper.request(HOLD, first=False)).is_durable
 
 
 async def test_a_hold_is_set_though_the_disk_is_broken(disk: Disk, keeper: Keeper) -> None:
     disk.answers = [StorageDegradedError("it is full")]
 
-    assert not (await keeper.request(HOLD)).is_durable
+    assert not (await keeper.request(HOLD, first=False)).is_durable
     assert "do HoldRequest" in disk.done
 
 
@@ -130,14 +130,14 @@ async def test_nothing_is_released_that_cannot_be_stored(
     disk.answers = [answer]
 
     with pytest.raises(StorageDegradedError):
-        await keeper.request(RELEASE)
+        await keeper.request(RELEASE, first=True)
     assert "do ReleaseRequest" not in disk.done
 
 
 async def test_a_person_may_release_though_the_disk_is_broken(disk: Disk, keeper: Keeper) -> None:
     disk.answers = [StorageDegradedError("it is full")]
 
-    taken = await keeper.request(RELEASE, volatile=True)
+    taken = await keeper.request(RELEASE, first=False)
 
     assert not taken.is_durable
     assert disk.done[0] == "do ReleaseRequest"

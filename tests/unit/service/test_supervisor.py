@@ -13,13 +13,17 @@ from domain.inputs import (
     BackendStatus,
     EmergencyStopRequest,
     HoldRequest,
+    ReleaseRequest,
     TaskRequest,
 )
 from domain.tasks.holds import MAX_HOLDS
 from domain.timebase import seconds
 from service.files.model_file import LoadedModel
+from service.keeper import LAST_REQUEST
 from service.ports import BackendMessage
 from service.running import TaskFailedError
+from service.storage.journal import Boot
+from service.storage.memory import MemoryJournal, MemoryStore
 from service.storage.trends.trends import Trends
 from service.supervisor import Supervisor
 from tests.support.live_robot import make_live_robot, make_onboard, make_supervisor, running
@@ -112,3 +116,25 @@ async def test_the_history_of_signals_is_written_while_the_service_runs(tmp_path
     assert len(found.points) > 10
     await later.close()
     await trends.close()
+
+
+def kept_robot(clock: ManualClock, store: MemoryStore) -> Supervisor:
+    boot = Boot("first", "1", clock.now(), clock.wall_time(clock.now()), "", "")
+    return make_supervisor(clock, journal=MemoryJournal(boot, clock, store))
+
+
+async def test_a_release_of_what_is_released_need_not_wait_for_a_disk() -> None:
+    store = MemoryStore()
+    supervisor = kept_robot(ManualClock(), store)
+
+    await supervisor.request(ReleaseRequest("operator"))
+    await supervisor.request(EmergencyStopRequest(engaged=False, reason=""))
+    assert LAST_REQUEST not in store.own
+
+    await supervisor.request(HoldRequest("operator", "lunch"))
+    await supervisor.request(ReleaseRequest("operator"), volatile=True)
+    assert LAST_REQUEST not in store.own
+
+    await supervisor.request(HoldRequest("operator", "lunch"))
+    await supervisor.request(ReleaseRequest("operator"))
+    assert store.own[LAST_REQUEST] == [1, "ReleaseRequest"]

@@ -250,3 +250,29 @@ async def test_whoever_waits_while_it_closes_is_answered(folder: Path) -> None:
     await robot.journal.close()
 
     assert await waiting
+
+
+async def test_large_steps_have_turns_of_their_own_and_stay_in_order(folder: Path) -> None:
+    robot = await started(folder)
+    first = robot.journal.last_step
+    robot.steps_into_much(300)
+    robot.holds("planner")
+    robot.steps_into_much(300)
+    robot.holds("operator")
+
+    assert robot.journal.last_step == first + 4
+    assert await robot.journal.commit(ENOUGH_S)
+
+    events = await robot.journal.events(EventQuery(after=0, limit=1_000))
+    assert [event.id for event in events] == list(range(1, 603))
+    assert set(holds(await found_in(as_a_kill_leaves(folder)))) == {"planner", "operator"}
+    await robot.journal.close()
+
+
+async def test_what_waits_for_its_turn_is_there_when_the_service_ends(folder: Path) -> None:
+    robot = await started(folder)
+    robot.steps_into_much(300)
+    robot.holds("planner")
+    await robot.journal.close()
+
+    assert set(holds(await found_in(folder))) == {"planner"}
