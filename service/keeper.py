@@ -6,7 +6,7 @@ its outcome is on disk, or when that takes too long.
 """
 
 import logging
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 
 from domain.errors import StorageDegradedError
@@ -161,7 +161,7 @@ class Keeper:
 
     def look(self) -> None:
         """Keep memories that changed, and tell the core if storage fails or works again."""
-        self.keep_memories(self._clock.now())
+        self._keep(self._memories, self._clock.now())
         now, fault = self._clock.now(), self._journal.fault
         if fault is not None:
             self._failed_at = now
@@ -184,9 +184,12 @@ class Keeper:
             log.warning("no checkpoint was written, it is tried again: %s", error)
             await self._clock.sleep_until(at + RETRY_CHECKPOINT)
 
-    def keep_memories(self, now: Instant) -> None:
-        """Keep memories that changed, with the step that tells of it."""
-        for memory in self._memories:
+    def keep_with_step(self, now: Instant) -> None:
+        """Keep those memories that are kept with the step that tells of a change."""
+        self._keep((memory for memory in self._memories if not memory.every), now)
+
+    def _keep(self, memories: Iterable[Memory], now: Instant) -> None:
+        for memory in memories:
             kept_at, kept = self._remembered.get(memory.name, (now - memory.every, None))
             if now - kept_at < memory.every or (revision := memory.revision()) == kept:
                 continue

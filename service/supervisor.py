@@ -197,7 +197,7 @@ class Supervisor:
             if not isinstance(command, SendGoal | PreemptGoal):
                 self._backend.send(command)
         if self._keeper is not None:
-            self._keeper.keep_memories(step.at)
+            self._keeper.keep_with_step(step.at)
         if self.journal is not None:
             self.journal.note(step)
         if self._sampling is not None and outputs.signals:

@@ -274,11 +274,21 @@ def test_a_memory_that_is_kept_with_each_step_never_waits(disk: Disk, clock: Man
     state = ["active"]
     memory = Memory("nodes", lambda: list(state), lambda: state[0], 0)
     keeper = Keeper(disk, disk.submit, clock, [memory])  # type: ignore[arg-type]
-    keeper.keep_memories(clock.now())
+    keeper.keep_with_step(clock.now())
     state[0] = "inactive"
-    keeper.keep_memories(clock.now())
+    keeper.keep_with_step(clock.now())
 
     assert disk.kept == {"nodes": ["inactive"]}
     disk.done.clear()
-    keeper.keep_memories(clock.now())
+    keeper.keep_with_step(clock.now())
     assert disk.done == []
+
+
+def test_what_takes_long_to_gather_is_not_kept_with_a_step(disk: Disk, clock: ManualClock) -> None:
+    memory = Memory("nodes", lambda: ["active"], lambda: 1, LOOK_EVERY)
+    keeper = Keeper(disk, disk.submit, clock, [memory])  # type: ignore[arg-type]
+
+    keeper.keep_with_step(clock.now())
+    assert disk.kept == {}
+    keeper.look()
+    assert disk.kept == {"nodes": ["active"]}
