@@ -60,6 +60,7 @@ _MISUSES = (
     UnreadableFileError,
 )
 _STDOUT, _STDERR = 1, 2
+_SWITCH_S = 0.001
 
 
 def serve(options: ServeOptions) -> int:
@@ -115,6 +116,8 @@ async def _run(
     output: Output,
 ) -> int:
     """Run the service on what earlier runs left, and return the exit code of the process."""
+    # The threads of storage and the loop take the interpreter's lock from each other sooner.
+    sys.setswitchinterval(_SWITCH_S)
     clock = continuous_clock()
     stores = await open_stores(options, files, clock)
     try:

@@ -80,7 +80,7 @@ class SqliteJournal:
         self._is_closed = False
         self._deferred = deque[Step]()
         """Steps that are written down in later turns, the first of which is large."""
-        self._wall: tuple[Instant, int] = (boot.started_at, since_epoch(boot.wall_at))
+        self._wall: tuple[Instant | None, int] = (None, 0)
         self._wants_checkpoint = True
         self._checkpoint_at: Instant = boot.started_at
         if opened.fault is not None:

@@ -59,7 +59,10 @@ def test_the_tree_that_the_module_draws_is_the_tree_that_it_holds() -> None:
 
 
 def test_each_error_has_a_code_of_its_own() -> None:
-    codes = [cls.code for cls in _tree(PilothouseError)]
+    # Not those that other tests define.
+    ours = ("api", "domain", "service")
+    classes = [cls for cls in _tree(PilothouseError) if cls.__module__.partition(".")[0] in ours]
+    codes = [cls.code for cls in classes]
     assert len(set(codes)) == len(codes)
     assert all(re.fullmatch(r"[A-Z][A-Z_]*", code) for code in codes)
 
