@@ -92,12 +92,19 @@ def test_the_health_check_fails_where_no_service_is(box: Container) -> None:
 
 
 def test_sigterm_ends_it_well(box: Container, tmp_path: Path) -> None:
-    with serving(box, tmp_path) as service:
+    # The other one has the folder of the image.
+    with serving(box, tmp_path, "--data", "/data/second") as service:
         os.kill(service.process.pid, signal.SIGTERM)
         code, said = service.process.ended()
 
     assert code == 0, said
     assert "Traceback" not in said
+
+
+def test_what_survives_is_in_the_volume(service: ServiceInContainer) -> None:
+    storage = httpx.get(f"{service.url}/storage", headers=BEARER).json()
+
+    assert (storage["path"], storage["degraded"]) == ("/data", False)
 
 
 def test_nothing_can_be_written_outside_of_data_and_tmp(box: Container) -> None:

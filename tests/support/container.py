@@ -122,12 +122,13 @@ class ServiceInContainer:
 
 
 @contextmanager
-def serving(box: Container, folder: Path) -> Iterator[ServiceInContainer]:
+def serving(box: Container, folder: Path, *more: str) -> Iterator[ServiceInContainer]:
     """Run the image's own command with a token, on a port of its own as others may have 8000.
 
     Args:
         box: Where it runs.
         folder: For the file with the token.
+        more: Arguments beside those of the image.
     """
     secret = folder / "token"
     secret.write_text(f"{TOKEN}\n")
@@ -136,7 +137,7 @@ def serving(box: Container, folder: Path) -> Iterator[ServiceInContainer]:
     port = free_port()
     url = f"http://127.0.0.1:{port}"
     with box.start(
-        own_command("--port", str(port)),
+        own_command("--port", str(port), *more),
         environment={"PILOTHOUSE_TOKEN_FILE": SECRET},
         volumes=[f"{secret}:{SECRET}:ro"],
     ) as process:
