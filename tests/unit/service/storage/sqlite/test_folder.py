@@ -171,7 +171,7 @@ async def test_a_folder_that_somebody_deleted_is_made_again(
     robot.holds("winter")
     await robot.journal.commit(ENOUGH_S)
     # Moved away at once: the journal may write into it while it is emptied.
-    folder.rename(folder.with_name("deleted"))
+    shutil.move(folder, folder.with_name("deleted"))
     shutil.rmtree(folder.with_name("deleted"))
     robot.holds("spring")
     with pytest.raises(StorageDegradedError):
