@@ -13,12 +13,12 @@ from domain.errors import PilothouseError, near_match, shortened
 from domain.events.event import Event
 from domain.events.kinds import EVENTS
 from domain.paths.path import Path
-from service.codec.compiled import compile_writer
 from service.codec.errors import CodecError
 from service.codec.json_text import Json
 from service.codec.names import NAMES
 from service.codec.shape import JSON_TYPES, Read, Shape, Write
 from service.codec.shapes import PATH, PLAIN, of_enum, of_mapping, of_tuple
+from service.codec.writers import writer_of
 
 TAG = "is"
 """Key of the name of a class; as a keyword of Python, it is never the name of a field."""
@@ -64,7 +64,7 @@ class Shapes:
         readers: dict[str, Read] = {}
         for kind in kinds:
             name, shapes = _name_of(kind), self._of_fields(kind)
-            writers[kind] = compile_writer(kind, shapes, {TAG: name})
+            writers[kind] = writer_of(kind, shapes, {TAG: name})
             readers[name] = _reader(kind, shapes)
 
         def write(value: Any) -> Json:  # noqa: ANN401  # one of `kinds`
@@ -89,7 +89,7 @@ class Shapes:
     def _of_class(self, kind: type) -> Shape:
         if kind not in self._classes:
             shapes = self._of_fields(kind)
-            read, write = _reader(kind, shapes), compile_writer(kind, shapes, {})
+            read, write = _reader(kind, shapes), writer_of(kind, shapes, {})
             self._classes[kind] = Shape((dict,), read, write, is_of=(kind,))
         return self._classes[kind]
 

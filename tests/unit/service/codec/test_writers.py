@@ -1,7 +1,7 @@
 from dataclasses import dataclass
 
-from service.codec.compiled import compile_writer
 from service.codec.shape import Shape, as_it_is
+from service.codec.writers import writer_of
 
 
 @dataclass(frozen=True)
@@ -20,7 +20,7 @@ SHAPES = {"name": TEXT, "length_m": NUMBER, "note": TEXT, "speed_mps": NUMBER}
 
 
 def test_a_default_is_left_out_unless_it_is_a_number() -> None:
-    write = compile_writer(Leg, SHAPES, {"is": "leg"})
+    write = writer_of(Leg, SHAPES, {"is": "leg"})
 
     assert write(Leg("a")) == {"is": "leg", "name": "a", "length_m": 0.0}
     assert write(Leg("a", 1.0, "b", 2.0)) == {
@@ -34,6 +34,6 @@ def test_a_default_is_left_out_unless_it_is_a_number() -> None:
 
 def test_fields_are_written_as_their_shape_says() -> None:
     doubled = Shape((float,), as_it_is, lambda value: 2 * value)
-    write = compile_writer(Leg, SHAPES | {"length_m": doubled, "speed_mps": doubled}, {})
+    write = writer_of(Leg, SHAPES | {"length_m": doubled, "speed_mps": doubled}, {})
 
     assert write(Leg("a", 1.0, speed_mps=3.0)) == {"name": "a", "length_m": 2.0, "speed_mps": 6.0}
