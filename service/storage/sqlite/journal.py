@@ -195,13 +195,13 @@ class SqliteJournal:
 
     async def commit(self, patience_s: float) -> bool:
         """Wait until all that was noted before is on disk; return whether it is, in that time."""
+        for _ in range(len(self._deferred)):
+            # In each turn at least one of them is taken.
+            await asyncio.sleep(0)
         if self._is_closed:
             raise StorageDegradedError("storage is closed")
         if self._fault is not None:
             raise StorageDegradedError(self._fault)
-        for _ in range(len(self._deferred)):
-            # In each turn at least one of them is taken.
-            await asyncio.sleep(0)
         self._must_last = True
         return await self._landed(patience_s)
 
@@ -293,7 +293,7 @@ class SqliteJournal:
 
     def _schedule(self) -> None:
         """Let a flight take off soon, unless one is in the air or due."""
-        if self._timer is None and self._flying is None:
+        if self._timer is None and self._flying is None and not self._is_closed:
             self._timer = asyncio.get_running_loop().call_later(BATCH_S, self._take_off)
 
     def _hurry(self) -> None:

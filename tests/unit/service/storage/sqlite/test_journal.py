@@ -276,3 +276,29 @@ async def test_what_waits_for_its_turn_is_there_when_the_service_ends(folder: Pa
     await robot.journal.close()
 
     assert set(holds(await found_in(folder))) == {"planner"}
+
+
+async def test_nothing_takes_off_after_the_end(
+    folder: Path, caplog: pytest.LogCaptureFixture
+) -> None:
+    robot = await started(folder)
+    await robot.journal.commit(ENOUGH_S)
+    await asyncio.sleep(2 * sqlite_journal.BATCH_S)
+    robot.steps_into_much(300)
+    await robot.journal.close()
+
+    await asyncio.sleep(2 * sqlite_journal.BATCH_S)
+
+    assert caplog.records == []
+
+
+async def test_a_promise_that_the_end_overtakes_is_broken_at_once(folder: Path) -> None:
+    robot = await started(folder)
+    for _ in range(2):
+        robot.steps_into_much(300)
+    promised = asyncio.create_task(robot.journal.commit(ENOUGH_S))
+    await asyncio.sleep(0)
+    await robot.journal.close()
+
+    with pytest.raises(StorageDegradedError, match="storage is closed"):
+        await promised
