@@ -20,6 +20,7 @@ from domain.health.health import Health
 from domain.health.signals import SignalSettings, default_signals
 from domain.inputs import ChangeRequest, Input, TimePassed
 from domain.lifecycle import Transition
+from domain.loosening import may_loosen
 from domain.outbox import Outbox, Outputs
 from domain.parts.parts import Parts
 from domain.parts.system_model import SmhModel
@@ -268,6 +269,11 @@ class Supervision:
     def system_state(self) -> SystemStateView:
         """Return the state of the robot."""
         return self._robot_state.view()
+
+    def may_loosen(self, given: Input) -> bool:
+        """Tell whether a request may start or loosen something as things are now."""
+        stopped, holds = self.emergency_stop().engaged, self.driving.holds
+        return may_loosen(given, is_stopped=stopped, holds=holds)
 
     def emergency_stop(self) -> EmergencyStopView:
         """Return the emergency stop; the same object until it changes."""

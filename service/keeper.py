@@ -1,7 +1,7 @@
 """Keeps what must not be forgotten: notes each step of the core, and answers for requests.
 
-What starts or loosens something is carried out only once storage has shown that it works: the
-request is on disk then. What makes the robot safer is carried out at once. Either is answered when
+What starts or loosens something is carried out only once a note of it is on disk, which shows that
+storage works. What makes the robot safer is carried out at once. Either is answered when
 its outcome is on disk, or when that takes too long.
 """
 
@@ -10,21 +10,7 @@ from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 
 from domain.errors import StorageDegradedError
-from domain.inputs import (
-    AcknowledgeRequest,
-    CancelRequest,
-    CancelTaskRequest,
-    EmergencyStopRequest,
-    HoldRequest,
-    Input,
-    ModeRequest,
-    ParametersRequest,
-    ReleaseRequest,
-    StorageStatus,
-    TaskRequest,
-    TransitionRequest,
-)
-from domain.lifecycle import Transition
+from domain.inputs import Input, StorageStatus
 from domain.outbox import Outputs
 from domain.timebase import Duration, Instant, seconds
 from service.clock import Clock
@@ -45,9 +31,8 @@ LOOK_EVERY = seconds(0.25)
 WORKS_FOR = seconds(3.0)
 """Storage that failed works again if it has worked for so long."""
 RETRY_CHECKPOINT = seconds(60.0)
-_RAISING = frozenset({Transition.CONFIGURE, Transition.ACTIVATE})
 LAST_REQUEST = "last_request"
-"""Under this name the journal has the last request that starts or loosens something."""
+"""Under this name the journal has number and kind of the last request that was stored first."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -101,22 +86,6 @@ class Stores:
 
 NO_STORES = Stores()
 """Nothing survives."""
-
-
-def starts_or_loosens(given: Input) -> bool:
-    """Tell whether an input may start or loosen something, and so must be on disk first."""
-    match given:
-        case TaskRequest() | ReleaseRequest() | AcknowledgeRequest():
-            return True
-        case ModeRequest() | ParametersRequest():
-            return True
-        case TransitionRequest(transition=transition):
-            return transition in _RAISING
-        case EmergencyStopRequest(engaged=engaged):
-            return not engaged
-        case HoldRequest() | CancelRequest() | CancelTaskRequest():
-            return False
-    raise TypeError(f"{type(given).__name__} is no request")
 
 
 class Keeper:
@@ -201,10 +170,10 @@ class Keeper:
 
         Args:
             given: A request.
-            first: Store it first: it starts or loosens something.
+            first: Store a note of it first: it may start or loosen something.
 
         Raises:
-            StorageDegradedError: It cannot be stored first; nothing was done.
+            StorageDegradedError: The note cannot be stored; nothing was done.
             PilothouseError: The core rejects it; nothing was done.
         """
         if first:

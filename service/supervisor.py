@@ -12,13 +12,7 @@ from domain.actor import SERVICE
 from domain.commands import PreemptGoal, SendGoal
 from domain.errors import PilothouseError
 from domain.findings import Finding
-from domain.inputs import (
-    EmergencyStopRequest,
-    HoldRequest,
-    Input,
-    ReleaseRequest,
-    ServiceStall,
-)
+from domain.inputs import HoldRequest, Input, ServiceStall
 from domain.onboard import Onboard
 from domain.outbox import Outputs
 from domain.parts.system_model import SmhModel
@@ -32,14 +26,7 @@ from service.clock import Clock
 from service.event_log import EventLog
 from service.files.model_file import LoadedModel
 from service.frame_publisher import PERIOD, FramePublisher
-from service.keeper import (
-    NO_STORES,
-    Checkpoint,
-    Keeper,
-    Stores,
-    Taken,
-    starts_or_loosens,
-)
+from service.keeper import NO_STORES, Checkpoint, Keeper, Stores, Taken
 from service.node_incidents import log_node_incidents
 from service.ports import RobotBackend
 from service.readings import DirectReadings, ReadingInput, Submit
@@ -216,17 +203,8 @@ class Supervisor:
         """
         if self._keeper is None:
             return Taken(self.submit(given), is_durable=False)
-        is_first_stored = starts_or_loosens(given) and not self._is_so(given)
-        return await self._keeper.request(given, first=is_first_stored and not volatile)
-
-    def _is_so(self, given: Input) -> bool:
-        """Tell whether a request asks for what is so already, and so loosens nothing."""
-        match given:
-            case EmergencyStopRequest():
-                return given.engaged is self.core.emergency_stop().engaged
-            case ReleaseRequest():
-                return given.owner not in self.core.driving.holds
-        return False
+        first = self.core.may_loosen(given) and not volatile
+        return await self._keeper.request(given, first=first)
 
     @property
     def storage(self) -> StorageStatus:

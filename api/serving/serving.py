@@ -45,7 +45,7 @@ from service.ros.gateway import RosGateway
 from service.ros.graph.graph import GraphFailedError, UnknownFieldError, UnknownTypeError
 from service.running import TaskFailedError
 from service.start_task import StartTaskError
-from service.storage.errors import UnusableFolderError
+from service.storage.errors import FolderInUseError, UnusableFolderError
 from service.supervisor import Supervisor
 
 log = logging.getLogger(__name__)
@@ -95,6 +95,8 @@ def _serve(options: ServeOptions, output: Output, errors: Output) -> int:
         return _complain_of(options.model or EXAMPLE, error.findings)
     except InvalidRobotFileError as error:
         return _complain_of(options.robot, error.findings)
+    except FolderInUseError as error:
+        return _end(f"{error}; give this one another with --data", FAILED)
     except (ListenError, StartTaskError, UnusableFolderError, *_NOT_IN_ROS) as error:
         return _end(str(error), FAILED)
 

@@ -5,23 +5,12 @@ import asyncio
 import pytest
 
 from domain.errors import StorageDegradedError
-from domain.health.signals import ESTOP
-from domain.identifiers import ChangeId
 from domain.inputs import (
-    AcknowledgeRequest,
-    CancelRequest,
-    CancelTaskRequest,
-    EmergencyStopRequest,
     HoldRequest,
     Input,
-    ModeRequest,
-    ParametersRequest,
     ReleaseRequest,
     StorageStatus,
-    TimePassed,
-    TransitionRequest,
 )
-from domain.lifecycle import Transition
 from domain.outbox import NOTHING, Outputs
 from domain.timebase import Instant, to_seconds
 from service.keeper import (
@@ -31,11 +20,9 @@ from service.keeper import (
     Checkpoint,
     Keeper,
     Memory,
-    starts_or_loosens,
 )
 from service.storage.journal import Plain
 from tests.support.manual_clock import ManualClock
-from tests.support.models import BASE
 from tests.support.waiting import until
 
 RELEASE = ReleaseRequest("operator")
@@ -141,43 +128,6 @@ async def test_a_person_may_release_though_the_disk_is_broken(disk: Disk, keeper
 
     assert not taken.is_durable
     assert disk.done[0] == "do ReleaseRequest"
-
-
-@pytest.mark.parametrize(
-    "given",
-    [
-        ModeRequest(BASE, "FAST"),
-        ParametersRequest(BASE, {"max_speed": 0.1}),
-        TransitionRequest(BASE, Transition.CONFIGURE),
-        TransitionRequest(BASE, Transition.ACTIVATE),
-        RELEASE,
-        AcknowledgeRequest(ESTOP),
-        EmergencyStopRequest(engaged=False, reason=""),
-    ],
-)
-def test_what_starts_or_loosens_is_stored_first(given: Input) -> None:
-    assert starts_or_loosens(given)
-
-
-@pytest.mark.parametrize(
-    "given",
-    [
-        TransitionRequest(BASE, Transition.DEACTIVATE),
-        TransitionRequest(BASE, Transition.CLEANUP),
-        TransitionRequest(BASE, Transition.SHUTDOWN),
-        HOLD,
-        CancelTaskRequest(),
-        CancelRequest(ChangeId("c1")),
-        EmergencyStopRequest(engaged=True, reason="smoke"),
-    ],
-)
-def test_what_makes_safer_is_done_first(given: Input) -> None:
-    assert not starts_or_loosens(given)
-
-
-def test_what_is_no_request_is_neither() -> None:
-    with pytest.raises(TypeError, match="TimePassed"):
-        starts_or_loosens(TimePassed())
 
 
 FULL = StorageStatus(available=False, reason="the disk is full")
