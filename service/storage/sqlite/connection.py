@@ -44,12 +44,45 @@ def open_to_write(path: Path) -> apsw.Connection:
         connection.set_busy_timeout(_PATIENCE_MS)
         for setting in (*SETTINGS, "PRAGMA journal_mode=WAL", "PRAGMA synchronous=FULL"):
             connection.execute(setting)
-        # A checkpoint is due after an answer, not before it: see `LogFile.tidy`.
+        # A checkpoint is due after an answer, not before it: see `WriteAheadLog`.
         connection.execute("PRAGMA wal_autocheckpoint=0")
     except apsw.Error:
         connection.close(True)
         raise
     return connection
+
+
+class WriteAheadLog:
+    """Takes what was committed over a connection into its file, when that is worth it.
+
+    SQLite would do so within a commit, for which somebody may wait.
+    """
+
+    def __init__(self, connection: apsw.Connection, worth_pages: int) -> None:
+        """Begin with an empty one.
+
+        Args:
+            connection: From `open_to_write`.
+            worth_pages: From how many pages on it is tidied.
+        """
+        self._connection = connection
+        self._worth_pages = worth_pages
+        self._pages = 0
+        connection.set_wal_hook(self._on_commit)
+
+    def tidy(self) -> None:
+        """Take what is in it into the file, if that is worth it.
+
+        Raises:
+            apsw.Error: The file cannot be written.
+        """
+        if self._pages >= self._worth_pages:
+            self._pages = 0
+            self._connection.wal_checkpoint(mode=apsw.SQLITE_CHECKPOINT_PASSIVE)
+
+    def _on_commit(self, connection: apsw.Connection, name: str, pages: int) -> int:
+        self._pages = pages
+        return apsw.SQLITE_OK
 
 
 @contextmanager

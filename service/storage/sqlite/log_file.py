@@ -15,7 +15,7 @@ from pydantic_core import to_json
 from domain.timebase import Duration, seconds
 from service.storage.journal import Boot
 from service.storage.sqlite.batch import Batch, Changes, Flight, Key
-from service.storage.sqlite.connection import finish, new_file, open_to_write
+from service.storage.sqlite.connection import WriteAheadLog, finish, new_file, open_to_write
 from service.storage.sqlite.log_summary import LogSummary, summary_of
 from service.storage.sqlite.packing import DictionaryMaker, pack
 from service.storage.sqlite.schema import LOG, bring_up, describe, examine
@@ -61,9 +61,8 @@ class LogFile:
         self.path = path
         self.number = number
         self._connection = connection
-        self._pages = 0
+        self._ahead = WriteAheadLog(connection, _CHECKPOINT_AT_PAGES)
         self._synced_at = 0
-        connection.set_wal_hook(self._on_commit)
         self.summary = summary_of(connection, path, number)
         self.dictionary: bytes = _dictionary(connection)
         """Of its steps; empty as long as there were too few."""
@@ -172,9 +171,7 @@ class LogFile:
 
     def tidy(self) -> None:
         """Take what is in the write-ahead log into the file, if that is worth it."""
-        if self._pages >= _CHECKPOINT_AT_PAGES:
-            self._pages = 0
-            self._connection.wal_checkpoint(mode=apsw.SQLITE_CHECKPOINT_PASSIVE)
+        self._ahead.tidy()
 
     def size(self) -> int:
         """Return its size on disk, in bytes."""
@@ -188,10 +185,6 @@ class LogFile:
     def close(self) -> None:
         """Close it after a failure."""
         self._connection.close(True)
-
-    def _on_commit(self, connection: apsw.Connection, name: str, pages: int) -> int:
-        self._pages = pages
-        return apsw.SQLITE_OK
 
     def _set_sync(self, is_synced: bool) -> None:
         self._connection.execute(f"PRAGMA synchronous={'FULL' if is_synced else 'NORMAL'}")

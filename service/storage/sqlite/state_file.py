@@ -11,7 +11,7 @@ from pathlib import Path
 import apsw
 
 from service.storage.sqlite.batch import Changes, Key
-from service.storage.sqlite.connection import finish, new_file, open_to_write
+from service.storage.sqlite.connection import WriteAheadLog, finish, new_file, open_to_write
 from service.storage.sqlite.schema import STATE, bring_up, describe, examine
 
 _CHECKPOINT_AT_PAGES = 100
@@ -31,10 +31,9 @@ class StateFile:
 
     def __init__(self, connection: apsw.Connection) -> None:
         self._connection = connection
-        self._pages = 0
+        self._ahead = WriteAheadLog(connection, _CHECKPOINT_AT_PAGES)
         # The log's commit is what counts: this file needs no sync of its own.
         connection.execute("PRAGMA synchronous=NORMAL")
-        connection.set_wal_hook(self._on_commit)
 
     @classmethod
     def open(cls, path: Path) -> "StateFile":
@@ -87,9 +86,7 @@ class StateFile:
         """
         with self._connection:
             _apply(self._connection, changes, applied)
-        if self._pages >= _CHECKPOINT_AT_PAGES:
-            self._pages = 0
-            self._connection.wal_checkpoint(mode=apsw.SQLITE_CHECKPOINT_PASSIVE)
+        self._ahead.tidy()
 
     def sync(self) -> None:
         """Write all of it to the disk itself."""
@@ -102,10 +99,6 @@ class StateFile:
     def close(self) -> None:
         """Close it after a failure."""
         self._connection.close(True)
-
-    def _on_commit(self, connection: apsw.Connection, name: str, pages: int) -> int:
-        self._pages = pages
-        return apsw.SQLITE_OK
 
 
 def _apply(connection: apsw.Connection, changes: Changes, applied: Applied) -> None:
