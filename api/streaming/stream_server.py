@@ -60,11 +60,6 @@ class StreamServer:
         """Tell whether the maximum number of clients is reached."""
         return self.clients >= self._max_clients
 
-    @property
-    def strangers(self) -> int:
-        """Return the number of clients that have not sent the token yet."""
-        return len(self._strangers)
-
     @contextmanager
     def count_client(self) -> Iterator[None]:
         """Count one more client while the context is open."""

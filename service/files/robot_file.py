@@ -5,7 +5,6 @@ The keys are documented in docs/reference/robot-file.schema.json.
 
 from collections.abc import Iterator
 from collections.abc import Mapping as AnyMapping
-from pathlib import Path
 from typing import Annotated, Any, Literal
 
 from pydantic import Field, ValidationError, field_validator
@@ -31,7 +30,6 @@ from service.files.robot_settings import (
     bare_names,
 )
 from service.files.ros2_block import Ros2Block
-from service.files.text_file import read_text_file
 from service.files.vehicle_block import VehicleBlock
 from service.files.yaml_tree import Mapping, Node, Scalar, Sequence, finding_at, in_order, read_tree
 
@@ -113,16 +111,6 @@ class RobotSettings(SettingsBlock):
     def to_navigation_settings(self) -> NavigationSettings:
         """Return the settings of navigation."""
         return self.driving.to_navigation_settings()
-
-
-def load_robot_file(path: Path, model: SmhModel) -> RobotSettings:
-    """Read the settings of the robot that `model` describes from a file.
-
-    Raises:
-        UnreadableFileError: There is no such file, or it is not a text file.
-        InvalidRobotFileError: A key or value is wrong, or names a node that is not in the model.
-    """
-    return read_robot_file(read_text_file(path), model)
 
 
 def read_robot_file(text: str, model: SmhModel) -> RobotSettings:

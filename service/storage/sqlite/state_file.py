@@ -88,10 +88,6 @@ class StateFile:
             _apply(self._connection, changes, applied)
         self._ahead.tidy()
 
-    def sync(self) -> None:
-        """Write all of it to the disk itself."""
-        self._connection.wal_checkpoint(mode=apsw.SQLITE_CHECKPOINT_FULL)
-
     def finish(self) -> None:
         """Close it as one plain file."""
         finish(self._connection)

@@ -19,11 +19,10 @@ from service.files.model_file import load_model
 from service.files.robot_file import (
     InvalidRobotFileError,
     RobotSettings,
-    load_robot_file,
     read_robot_file,
     robot_settings_of,
 )
-from service.files.text_file import UnreadableFileError
+from service.files.text_file import read_text_file
 from service.files.vehicle_block import PlantBlock, PoseBlock
 from tests.support.models import actuation_model
 from tests.support.shared import PROJECT
@@ -115,7 +114,8 @@ start_task: {file: tracks/loop.csv, controller: stanley, speed_mps: 2}
     ],
 )
 def test_the_robots_among_the_examples_load(robot: str, model: Path) -> None:
-    settings = load_robot_file(EXAMPLES / f"{robot}.yaml", load_model(model).model)
+    text = read_text_file(EXAMPLES / f"{robot}.yaml")
+    settings = read_robot_file(text, load_model(model).model)
 
     assert settings.to_signal_settings()
     assert settings.nodes
@@ -190,11 +190,6 @@ def test_all_faults_are_told_at_once() -> None:
 def test_the_error_says_what_is_wrong_first() -> None:
     with pytest.raises(InvalidRobotFileError, match=r"there is no node 'tail'.*\(and 1 more\)"):
         read_robot_file("nodes: {tail: {}, horn: {}}", MODEL)
-
-
-def test_a_missing_file_is_said_to_be_missing(tmp_path: Path) -> None:
-    with pytest.raises(UnreadableFileError, match=r"gone\.yaml"):
-        load_robot_file(tmp_path / "gone.yaml", MODEL)
 
 
 @given(
