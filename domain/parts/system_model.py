@@ -16,7 +16,13 @@ from domain.errors import InvalidModelError, UnknownModeError, UnknownPartError
 from domain.findings import Finding
 from domain.lifecycle import LifecycleState
 from domain.parameters import Parameters
+from domain.parts.mode_settings import ModeSettings
 from domain.state_and_mode import DEFAULT_MODE, ModeName, PartName, StateAndMode
+
+EVERY_MODE = ModeName("__ALL__")
+"""Stands for every mode of a part that has no settings of its own."""
+
+_DEFAULTS = ModeSettings()
 
 MAX_LEVELS = 64
 """Largest depth of nested systems; bounds every traversal, and is far above that of any robot."""
@@ -80,6 +86,10 @@ class SmhModel:
 
     nodes: Mapping[PartName, NodeModel]
     systems: Mapping[PartName, SystemModel]
+    mode_settings: Mapping[PartName, Mapping[ModeName, ModeSettings]] = field(default_factory=dict)
+    """Settings of modes, by part; read by `settings_of`. `EVERY_MODE` is a key beside them;
+    what a mode does not say is filled in from it.
+    """
     ancestors: Mapping[PartName, tuple[PartName, ...]] = field(init=False)
     """Every system that a part belongs to, directly or indirectly; children before parents."""
 
@@ -127,6 +137,14 @@ class SmhModel:
             hint = None if modes else f"{part} has no modes, only a lifecycle state"
             raise UnknownModeError(f"mode of {part}", mode, modes, hint)
         return ModeName(mode)
+
+    def settings_of(self, part: PartName, mode: ModeName | None) -> ModeSettings:
+        """Return the settings of a mode of a part; None: of a state in which it has no mode."""
+        settings = self.mode_settings.get(part)
+        if settings is None:
+            return _DEFAULTS
+        own = settings.get(mode) if mode is not None else None
+        return own or settings.get(EVERY_MODE) or _DEFAULTS
 
     def nodes_below(self, part: PartName) -> tuple[PartName, ...]:
         """Return the nodes that a part consists of, each once; a node consists of itself."""

@@ -5,8 +5,17 @@ from hypothesis import strategies as st
 from domain.errors import InvalidModelError, UnknownModeError, UnknownPartError
 from domain.findings import Finding
 from domain.lifecycle import LifecycleState
-from domain.parts.system_model import MAX_LEVELS, NodeModel, Rule, SmhModel, SystemModel
+from domain.parts.mode_settings import ModeSettings
+from domain.parts.system_model import (
+    EVERY_MODE,
+    MAX_LEVELS,
+    NodeModel,
+    Rule,
+    SmhModel,
+    SystemModel,
+)
 from domain.state_and_mode import DEFAULT_MODE, ModeName, PartName, StateAndMode
+from domain.timebase import seconds
 from tests.support.models import (
     ACTUATION,
     ARM,
@@ -288,3 +297,16 @@ def test_what_is_not_there_is_told_by_what_it_would_be() -> None:
 
     assert part.value.message == "there is no part 'tail'"
     assert mode.value.message == "there is no mode of manipulator 'TURBO'"
+
+
+def test_a_mode_has_its_own_settings_else_those_of_every_mode_else_the_defaults() -> None:
+    own, every = ModeSettings(fallback=DEFAULT_MODE), ModeSettings(grace=seconds(1))
+    parts = {PartName("base"): node("base"), PartName("arm"): node("arm")}
+    settings = {PartName("base"): {FAST: own, EVERY_MODE: every}}
+
+    robot = SmhModel(parts, {}, settings)
+
+    assert robot.settings_of(PartName("base"), FAST) is own
+    assert robot.settings_of(PartName("base"), DEFAULT_MODE) is every
+    assert robot.settings_of(PartName("base"), None) is every
+    assert robot.settings_of(PartName("arm"), FAST) == ModeSettings()
