@@ -64,7 +64,7 @@ reason says why the robot is in ERROR, or that the vehicle should stand and does
 | `root_cause` | whether it is a cause itself rather than the effect of another one |
 | `refuses` | whether a request is rejected because of it; false: it is only shown |
 | `causes` | what it follows from, in the same form; empty: it is a cause |
-| `condition` | text of the [condition](../explanation/conditions.md), if it is one |"""
+| `condition` | the [condition](../explanation/conditions.md) that is not true; `null`: none |"""
 
 _VEHICLE = """\
 The vehicle should stand after a task was held or ended and after a hold was set, and as long as a
