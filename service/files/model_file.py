@@ -16,6 +16,7 @@ from domain.errors import InvalidModelError
 from domain.findings import Finding
 from domain.parts.model_lint import lint
 from domain.parts.system_model import SmhModel, find_errors
+from service.files.extension import NAMES_OF_CPP, is_in_extension
 from service.files.parameter_file import PARAMETERS_KEY, NodeParameters, read_parameter_file
 from service.files.smh_reader import SmhParts, read_parts
 from service.files.text_file import read_text_file
@@ -83,26 +84,26 @@ def _collector_paused() -> Iterator[None]:
 
 
 def _read_all(text: str) -> tuple[SmhModel | None, tuple[Finding, ...]]:
-    tree = read_tree(text)
+    tree = read_tree(text, is_in_extension)
     if not tree.is_complete:
         return None, _limited(in_order(text, tree.findings))
-    file = read_parameter_file(tree.documents)
+    file = read_parameter_file(tree.documents, NAMES_OF_CPP)
     parts = read_parts(file.nodes)
-    findings = [*tree.findings, *file.findings, *parts.findings]
+    places = _Places(file.nodes)
+    findings = [*tree.findings, *file.findings, *map(places.placed, parts.findings)]
     model = None
     if any(finding.severity == "error" for finding in findings):
         found = find_errors(parts.nodes, parts.systems)
     else:
         model, found = _build(parts)
-    places = _Places(file.nodes)
-    findings.extend(places.placed(finding) for finding in found)
+    findings.extend(map(places.placed, found))
     return model, _limited(in_order(text, findings))
 
 
 def _build(parts: SmhParts) -> tuple[SmhModel | None, list[Finding]]:
     """Return the model and its warnings, or its errors."""
     try:
-        model = SmhModel(parts.nodes, parts.systems)
+        model = SmhModel(parts.nodes, parts.systems, parts.mode_settings)
     except InvalidModelError as error:
         return None, list(error.findings)
     found = lint(model)
@@ -131,7 +132,7 @@ class _Places:
 
     def placed(self, finding: Finding) -> Finding:
         """Return the finding with line and column of its path, as far as the path exists."""
-        if not finding.path:
+        if not finding.path or finding.line is not None:
             return finding
         source = self._sources[finding.path[0]]
         key = self._find(source.tree, finding.path[1:]) or source.key

@@ -11,10 +11,12 @@ from dataclasses import dataclass, field
 
 from domain.findings import Finding
 from domain.parameters import ParameterValue
+from domain.parts.mode_settings import ModeSettings
 from domain.parts.system_model import NodeModel, SystemModel
 from domain.state_and_mode import DEFAULT_MODE, ModeName, PartName, StateAndMode, part_name
 from service.files.parameter_file import PARAMETERS_KEY, NodeParameters, Parameter
 from service.files.smh_block import SmhBlock
+from service.files.smh_settings import read_mode_settings
 from service.files.smh_values import fitted, read_part_name, read_rule, read_want
 
 MAX_LINES = 2_000_000
@@ -29,12 +31,14 @@ class SmhParts:
 
     nodes: dict[PartName, NodeModel] = field(default_factory=dict)
     systems: dict[PartName, SystemModel] = field(default_factory=dict)
+    mode_settings: dict[PartName, Mapping[ModeName, ModeSettings]] = field(default_factory=dict)
     findings: list[Finding] = field(default_factory=list)
 
 
 def read_parts(sources: Mapping[str, NodeParameters]) -> SmhParts:
     """Read all parts; one with errors is included as far as it can be read."""
     blocks = [SmhBlock(source) for source in sources.values()]
+    known = frozenset(block.name for block in blocks)
     with_modes = frozenset(block.name for block in blocks if block.modes)
     parts = SmhParts()
     lines = 0
@@ -50,6 +54,9 @@ def read_parts(sources: Mapping[str, NodeParameters]) -> SmhParts:
             parts.nodes[block.name] = _read_node(block)
         else:
             parts.systems[block.name] = _read_system(block, with_modes)
+        settings = read_mode_settings(block, known)
+        if settings:
+            parts.mode_settings[block.name] = settings
         parts.findings.extend(block.findings)
     return parts
 

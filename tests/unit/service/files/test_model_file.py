@@ -55,6 +55,24 @@ arm:
           torque: *strong
 """
 
+GUARDED = """\
+base:
+  ros__parameters:
+    type: system
+    modes:
+      __DEFAULT__: {wheels: active, arm: inactive}
+      FAST: {wheels: active, arm: active}
+    mode_settings:
+      __ALL__: {fallback: __DEFAULT__, transition: {order: sequential}}
+      FAST:
+        requires: &guards ["battery_level >= 0.3"]
+        invariants: *guards
+        grace_s: 0.5
+        transition: {after: {arm: [wheels]}, deadline_s: 20, on_failure: rollback}
+wheels: {ros__parameters: {type: node}}
+arm: {ros__parameters: {type: node}}
+"""
+
 
 def brief(finding: Finding) -> tuple[int | None, int | None, str]:
     return finding.line, finding.column, finding.code
@@ -184,7 +202,7 @@ WORDS = st.sampled_from(
     ["*x", "&x", "<<", ": ", "- ", "[", "]", "{", "}", "\n", "\t", " ", "'", '"', "#", "---", "...",
      "|", ">", "? ", "%TAG", "!!int", "\x00", "\ufeff", "\u2028", "\x85", "\r", "é", "\ud800", "on",
      "null", "~", "active", "active.FAST", "ros__parameters", "modes", "type", "rules",
-     "__DEFAULT__"]
+     "__DEFAULT__", "mode_settings", "__ALL__", "after", "sequence", "fallback", "FAST", "arm"]
 )  # fmt: skip
 
 
@@ -213,7 +231,9 @@ def test_any_text_is_a_model_or_is_complained_of(text: str) -> None:
 
 @given(st.data())
 def test_a_model_with_a_slip_in_it_is_a_model_or_is_complained_of(data: st.DataObject) -> None:
-    text = data.draw(st.sampled_from([ROBOT, BROKEN, *(path.read_text() for path in MODELS)]))
+    text = data.draw(
+        st.sampled_from([ROBOT, BROKEN, GUARDED, *(path.read_text() for path in MODELS)])
+    )
     for _ in range(data.draw(st.integers(1, 3))):
         start = data.draw(st.integers(0, len(text)))
         length = data.draw(st.integers(0, 30))
@@ -224,7 +244,7 @@ def test_a_model_with_a_slip_in_it_is_a_model_or_is_complained_of(data: st.DataO
 
 @given(st.data())
 def test_lines_moved_and_doubled_are_a_model_or_are_complained_of(data: st.DataObject) -> None:
-    lines = ROBOT.splitlines(keepends=True)
+    lines = data.draw(st.sampled_from([ROBOT, GUARDED])).splitlines(keepends=True)
     start = data.draw(st.integers(0, len(lines)))
     moved = lines[start : start + data.draw(st.integers(1, 10))]
     place = data.draw(st.integers(0, len(lines)))
@@ -236,6 +256,7 @@ def test_every_code_is_explained_in_the_documentation() -> None:
     modules = [
         *(PROJECT / "service" / "files").glob("*.py"),
         PROJECT / "domain" / "parts" / "model_lint.py",
+        PROJECT / "domain" / "parts" / "settings_check.py",
         PROJECT / "domain" / "parts" / "system_model.py",
     ]
     code = re.compile(r'"(ALIAS|CYCLE|HEADER|[A-Z]+(?:_[A-Z]+)+)"')
