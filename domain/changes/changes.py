@@ -3,7 +3,8 @@
 What a change wants of its nodes is the work of `node_steps.py`.
 """
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections import defaultdict
+from collections.abc import Iterable, Mapping, Sequence, Set
 from itertools import islice
 
 from domain.changes.kept_changes import ended_by_restart, kept_of
@@ -119,8 +120,7 @@ class Changes:
         cause = self._outbox.record_input()
         change = Change(identity, part, request, dict(goal.targets), now, cause)
         if self._running or not self._steps.is_idle:
-            nodes = {*goal.nodes, *self._inference.model.nodes_below(part)}
-            self._supersede(nodes, change, now)
+            self._supersede(goal.targets.keys() | goal.nodes.keys(), change, now)
         self._changes[identity] = self._running[identity] = change
         self._parts.put_under(identity, (part, *goal.targets, *goal.nodes))
         self._parts.ask(goal.targets)
@@ -146,7 +146,7 @@ class Changes:
         found = self.get(change)
         if found.open:
             self._outbox.record_input()
-        self._drop(sorted(found.open), StepStatus.CANCELED, now)
+        self._drop(found.open.copy(), StepStatus.CANCELED, now)
         if found.status is ChangeStatus.RUNNING:
             self._end(found, ChangeStatus.CANCELED, "canceled on request", now)
 
@@ -184,25 +184,26 @@ class Changes:
     def _may_start(self) -> bool:
         return bool(self._steps.waiting) and self._steps.count_in_flight <= _ENOUGH_IN_FLIGHT
 
-    def _supersede(self, nodes: set[PartName], newer: Change, now: Instant) -> None:
-        """Drop pursuits of `nodes`; a change that loses a node ends, but its other nodes go on."""
-        self._drop(sorted(self._steps.on_their_way(nodes)), StepStatus.SUPERSEDED, now)
+    def _supersede(self, parts: Set[PartName], newer: Change, now: Instant) -> None:
+        """Drop pursuits of `parts`; a change that loses a node ends, but its other nodes go on."""
+        self._drop(parts, StepStatus.SUPERSEDED, now)
         reason = f"superseded by change {newer.id} of {newer.part}"
         for change in list(self._running.values()):
-            if nodes & change.pursuits.keys():
+            if not change.pursuits.keys().isdisjoint(parts):
                 self._end(change, ChangeStatus.SUPERSEDED, reason, now)
 
-    def _drop(self, nodes: Iterable[PartName], status: StepStatus, now: Instant) -> None:
+    def _drop(self, parts: Set[PartName], status: StepStatus, now: Instant) -> None:
         """Start no further step of nodes on their way, which may be of several changes."""
-        let_go: dict[ChangeId, list[PartName]] = {}
-        for node in nodes:
+        let_go: dict[ChangeId, list[PartName]] = defaultdict(list)
+        for node, identity in self._steps.drop_waiting(parts).items():
+            let_go[identity].append(node)
+        for node in sorted(self._steps.on_their_way(parts)):
             identity, is_in_flight = self._steps.drop(node, status, now)
-            change = self._changes[identity]
-            change.loose += is_in_flight
-            change.open.discard(node)
-            let_go.setdefault(identity, []).append(node)
+            self._changes[identity].loose += is_in_flight
+            let_go[identity].append(node)
         for identity, nodes in let_go.items():
             change = self._changes[identity]
+            change.open.difference_update(nodes)
             self._let_go(change, nodes)
             self._pack(change)
 

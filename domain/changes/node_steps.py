@@ -72,9 +72,9 @@ class NodeSteps:
         """Return the nodes that wait for `start`, in order, each with its change; read only."""
         return self._waiting
 
-    def on_their_way(self, nodes: Set[PartName]) -> Set[PartName]:
-        """Return those nodes that are on their way, or wait for their turn."""
-        return (nodes & self._pursuits.keys()) | (nodes & self._waiting.keys())
+    def on_their_way(self, parts: Set[PartName]) -> Set[PartName]:
+        """Return those nodes among parts that are on their way; their turn has come."""
+        return self._pursuits.keys() & parts
 
     @property
     def is_idle(self) -> bool:
@@ -108,19 +108,28 @@ class NodeSteps:
             self._foresee(pursuit)
             self._advance(node, now)
 
+    def drop_waiting(self, parts: Set[PartName]) -> dict[PartName, ChangeId]:
+        """Let those nodes among parts that wait for their turn not move at all.
+
+        Returns:
+            The change of each of them, in the order in which they waited.
+        """
+        dropped = {node: change.id for node, change in self._waiting.items() if node in parts}
+        for node in dropped:
+            del self._waiting[node]
+        return dropped
+
     def drop(self, node: PartName, status: StepStatus, now: Instant) -> tuple[ChangeId, bool]:
         """Start no further step of a node that is on its way.
 
         Args:
-            node: On its way, or waiting for its turn.
+            node: Its turn has come.
             status: Of the steps that are not started: superseded or canceled.
             now: The current time.
 
         Returns:
             The change that drove it, and whether a step of that is in flight; it ends by itself.
         """
-        if (waited_for := self._waiting.pop(node, None)) is not None:
-            return waited_for.id, False
         pursuit = self._pursuits.pop(node)
         pursuit.outcome = status
         pursuit.drop_pending(status, now)

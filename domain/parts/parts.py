@@ -32,15 +32,15 @@ from domain.state_and_mode import DEFAULT_MODE, PartName, StateAndMode
 from domain.timebase import Instant
 
 LOOKS_AT_ONCE = 100
-"""Parts whose deviations one turn tells. Those that a request of a large robot caused are told in
-several, in the order of the parts, before anything else of the request goes on."""
+"""Parts whose states and deviations one turn tells. What a request of a large robot changed is told
+in several later ones, in the order of the parts, before anything else of the request goes on."""
 
 _UNKNOWN = Actual(LifecycleState.UNKNOWN)
 
 
 @dataclass(frozen=True, slots=True)
 class _Cause:
-    """The input that may have made parts deviate."""
+    """The input that may have changed parts, or made them deviate."""
 
     event: int
     actor: Actor
@@ -67,7 +67,9 @@ class Parts(Concern):
         self._untold: set[PartName] = set()
         """Those of them whose actual may differ from the published one."""
         self._to_look: dict[PartName, _Cause] = {}
-        """Parts whose deviations are told in later turns; their views show them already."""
+        """Parts of which is told in later turns; their views show everything already."""
+        self._in_order = True
+        """Whether those are in the order of their names."""
         self._views: dict[PartName, PartView] = {}
         """Cached until something about the part changes."""
         self._changes: dict[PartName, ChangeId] = {}
@@ -157,27 +159,31 @@ class Parts(Concern):
             return False
         touched, self._touched = self._touched, set()
         self._outbox.parts |= touched
-        for part in touched:
-            self._views.pop(part, None)
-        if self._untold:
-            untold, self._untold = self._untold, set()
-            self._tell_actuals(untold)
-        moved, self._moved = sorted(self._moved), set()
-        for part in moved[:LOOKS_AT_ONCE]:
-            self._to_look.pop(part, None)
-            self._look(part, now)
+        if self._views:
+            for part in touched:
+                self._views.pop(part, None)
+        moved, self._moved = self._moved, set()
+        untold, self._untold = self._untold, set()
         if len(moved) > LOOKS_AT_ONCE:
             cause = _Cause(self._outbox.record_input(), self._outbox.actor, now)
-            self._to_look.update(dict.fromkeys(moved[LOOKS_AT_ONCE:], cause))
+            self._to_look.update(dict.fromkeys(moved, cause))
+            self._in_order = False
+            return True
+        self._tell_actuals(untold)
+        for part in sorted(moved):
+            self._to_look.pop(part, None)
+            self._look(part, now)
         return True
 
     @property
     def has_more(self) -> bool:
-        """Tell whether deviations are still to be told."""
+        """Tell whether states or deviations are still to be told."""
         return bool(self._to_look)
 
     def go_on(self, now: Instant) -> None:
-        """Tell some more deviations."""
+        """Tell some more states and deviations."""
+        if not self._in_order:
+            self._to_look, self._in_order = dict(sorted(self._to_look.items())), True
         self._look_late(list(islice(self._to_look, LOOKS_AT_ONCE)), now)
 
     # --- what can be seen ------------------------------------------------------------------------
@@ -224,11 +230,12 @@ class Parts(Concern):
             self._outbox.emit(NodeReachable(node) if reachable else NodeUnreachable(node))
 
     def _look_late(self, parts: Iterable[PartName], now: Instant) -> None:
-        """Tell the deviations of those parts whose turn has not come yet."""
+        """Tell states and deviations of those parts whose turn has not come yet."""
         for part in parts:
             cause = self._to_look.pop(part, None)
             if cause is not None:
                 self._outbox.resume(now, cause.event, cause.actor)
+                self._tell_actuals((part,))
                 self._look(part, cause.at)
 
     def _look(self, part: PartName, since: Instant) -> None:

@@ -8,7 +8,7 @@ README.
 """
 
 from collections.abc import Collection, Iterable, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from itertools import chain
 from types import MappingProxyType
 
@@ -100,7 +100,7 @@ class SmhModel:
         if findings:
             raise InvalidModelError(findings)
         object.__setattr__(self, "nodes", MappingProxyType(dict(self.nodes)))
-        object.__setattr__(self, "systems", MappingProxyType(dict(self.systems)))
+        object.__setattr__(self, "systems", MappingProxyType(_shared(self.nodes, self.systems)))
         object.__setattr__(self, "mode_settings", MappingProxyType(dict(self.mode_settings)))
         object.__setattr__(
             self, "ancestors", MappingProxyType(_ancestors(self.systems, self.nodes))
@@ -171,6 +171,28 @@ class SmhModel:
                 seen.add(name)
                 waiting.extend(reversed(systems[name].parts))
         return tuple(found)
+
+
+def _shared(
+    nodes: Mapping[PartName, NodeModel], systems: Mapping[PartName, SystemModel]
+) -> dict[PartName, SystemModel]:
+    """Return the same systems with one object for each name and for each state and mode.
+
+    A request of a large robot looks at those of all parts, and most of its time goes into fetching
+    them from memory.
+    """
+    names = {name: name for name in (*systems, *nodes)}
+    pairs: dict[StateAndMode, StateAndMode] = {}
+    return {
+        name: replace(
+            system,
+            modes={
+                mode: {names[part]: pairs.setdefault(want, want) for part, want in wanted.items()}
+                for mode, wanted in system.modes.items()
+            },
+        )
+        for name, system in systems.items()
+    }
 
 
 def find_errors(

@@ -83,6 +83,10 @@ class BlockerJson(Json):
     refuses: bool = Field(
         description="Whether a request is rejected because of it; false: it is only shown"
     )
+    causes: "list[BlockerJson]" = Field(description="What it follows from; empty: it is a cause")
+    condition: str | None = Field(
+        description="Text of the condition that is not true, if it is one"
+    )
 
     @classmethod
     def of(cls, blocker: Blocker, clock: Clock) -> "BlockerJson":
@@ -96,6 +100,8 @@ class BlockerJson(Json):
             since_at=timestamp_or_none(clock, blocker.since),
             root_cause=blocker.root_cause,
             refuses=blocker.refuses,
+            causes=[cls.of(cause, clock) for cause in blocker.causes],
+            condition=blocker.condition,
         )
 
 

@@ -160,6 +160,8 @@ async def test_a_mode_with_a_node_that_is_gone_names_the_node_and_can_be_asked_f
         "since_at",
         "root_cause",
         "refuses",
+        "causes",
+        "condition",
     }
     assert blocker["code"].startswith("UNREACHABLE")
     assert blocker["path"] == ["actuation", "manipulator"]

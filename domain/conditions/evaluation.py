@@ -1,0 +1,93 @@
+"""Evaluates conditions with three values (Kleene's logic): true, false and unknown."""
+
+import math
+import operator as python
+from collections.abc import Callable, Mapping
+from enum import IntEnum
+from typing import Any, assert_never
+
+from domain.conditions.condition import Condition
+from domain.conditions.facts import Facts, Observation
+from domain.conditions.tree import (
+    AllOf,
+    AnyOf,
+    Comparison,
+    Constant,
+    Node,
+    Operator,
+    Value,
+    is_number,
+)
+
+
+class Truth(IntEnum):
+    """Value of a condition; `and` is the least of its operands, `or` the greatest."""
+
+    FALSE = 0
+    UNKNOWN = 1
+    TRUE = 2
+
+
+def evaluate(condition: Condition, facts: Facts) -> Truth:
+    """Return whether a condition is true, as far as the facts are known."""
+    return truth_of(condition.root, facts)
+
+
+def truth_of(node: Node, facts: Facts) -> Truth:
+    """Return the value of a condition or of a part of one."""
+    match node:
+        case Comparison():
+            return compare(node, facts.observe(node.subject))
+        case AllOf(operands):
+            return min(truth_of(operand, facts) for operand in operands)
+        case AnyOf(operands):
+            return max(truth_of(operand, facts) for operand in operands)
+        case Constant(value):
+            return _TRUTHS[value]
+        case _:
+            assert_never(node)
+
+
+def compare(leaf: Comparison, observed: Observation) -> Truth:
+    """Return the value of a comparison.
+
+    Unknown: the value is in doubt or not a number (NaN), or it cannot be compared with the
+    constant, such as a word with a number. No value, such as no mode, equals nothing.
+    """
+    value, operator = observed.value, leaf.operator
+    if observed.doubt:
+        return Truth.UNKNOWN
+    if value is None:
+        return _OF_NOTHING.get(operator, Truth.UNKNOWN)
+    if isinstance(value, float) and math.isnan(value):
+        return Truth.UNKNOWN
+    if operator is Operator.IN or operator is Operator.NOT_IN:
+        if leaf.values and not any(_same_kind(value, one) for one in leaf.values):
+            return Truth.UNKNOWN
+        among = any(value == one for one in leaf.values if _same_kind(value, one))
+        return _TRUTHS[among is (operator is Operator.IN)]
+    constant = leaf.values[0]
+    if not _same_kind(value, constant) or (operator.is_order and not is_number(value)):
+        return Truth.UNKNOWN
+    return _TRUTHS[_COMPARE[operator](value, constant)]
+
+
+def _same_kind(value: Value, other: Value) -> bool:
+    return type(value) is type(other) or (is_number(value) and is_number(other))
+
+
+_TRUTHS = (Truth.FALSE, Truth.TRUE)
+_OF_NOTHING: Mapping[Operator, Truth] = {
+    Operator.EQUAL: Truth.FALSE,
+    Operator.IN: Truth.FALSE,
+    Operator.NOT_EQUAL: Truth.TRUE,
+    Operator.NOT_IN: Truth.TRUE,
+}
+_COMPARE: Mapping[Operator, Callable[[Any, Any], bool]] = {
+    Operator.EQUAL: python.eq,
+    Operator.NOT_EQUAL: python.ne,
+    Operator.LESS: python.lt,
+    Operator.LESS_OR_EQUAL: python.le,
+    Operator.GREATER: python.gt,
+    Operator.GREATER_OR_EQUAL: python.ge,
+}
