@@ -25,6 +25,7 @@ from domain.outbox import Outbox, Outputs
 from domain.parts.parts import Parts
 from domain.parts.system_model import SmhModel
 from domain.restart import Restart
+from domain.robot_facts import RobotFacts
 from domain.robot_state import RobotState
 from domain.snapshot import (
     ChangeView,
@@ -84,6 +85,8 @@ class Supervision:
             self._outbox,
             start,
         )
+        self.facts = RobotFacts(self._parts, self._health, self.driving, self._parts.error)
+        """What conditions are evaluated over."""
         storage = Storage(self._outbox)
         self._robot_state = RobotState(self._health, self.driving, storage, self._outbox)
         self._changing = Changing(self._parts, self._health, settings.changes, self._outbox)

@@ -30,18 +30,23 @@ class Truth(IntEnum):
 
 def evaluate(condition: Condition, facts: Facts) -> Truth:
     """Return whether a condition is true, as far as the facts are known."""
-    return truth_of(condition.root, facts)
+    return truth_of(condition.root, lambda leaf: compare(leaf, facts.observe(leaf.subject)))
 
 
-def truth_of(node: Node, facts: Facts) -> Truth:
-    """Return the value of a condition or of a part of one."""
+def truth_of(node: Node, truth_of_leaf: Callable[[Comparison], Truth]) -> Truth:
+    """Return the value of a condition or of a part of one.
+
+    Args:
+        node: The condition.
+        truth_of_leaf: Returns the value of a comparison.
+    """
     match node:
         case Comparison():
-            return compare(node, facts.observe(node.subject))
+            return truth_of_leaf(node)
         case AllOf(operands):
-            return min(truth_of(operand, facts) for operand in operands)
+            return min(truth_of(operand, truth_of_leaf) for operand in operands)
         case AnyOf(operands):
-            return max(truth_of(operand, facts) for operand in operands)
+            return max(truth_of(operand, truth_of_leaf) for operand in operands)
         case Constant(value):
             return _TRUTHS[value]
         case _:

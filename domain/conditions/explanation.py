@@ -1,8 +1,8 @@
 """Explains why a condition is not true, as a tree of blockers down to the leaves that decide it."""
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from types import MappingProxyType
-from typing import assert_never
+from typing import TypeAlias, assert_never
 
 from domain.conditions.condition import Condition
 from domain.conditions.evaluation import Truth, compare, truth_of
@@ -21,68 +21,98 @@ from domain.conditions.tree import (
     value_text,
 )
 from domain.findings import Blocker
+from domain.timebase import Instant
 
 CONDITION = "CONDITION"
 UNKNOWN_VALUE = "UNKNOWN_VALUE"
 
 
-def explain(condition: Condition, facts: Facts) -> tuple[Blocker, ...]:
+Since: TypeAlias = Callable[[Comparison], Instant | None]
+"""Returns since when a comparison is not true; None: that is not recorded."""
+
+
+def explain(
+    condition: Condition, facts: Facts, since: Since = lambda _: None
+) -> tuple[Blocker, ...]:
     """Return why a condition is not true; empty: it is.
 
     One blocker is returned, with the text of the condition as it is written. Below an `and` stand
     the operands that are not true, below an `or` all of them; what is negated is shown turned
     round. A leaf is explained further by the facts.
-    """
-    if truth_of(condition.root, facts) is Truth.TRUE:
-        return ()
-    return (_explained(condition.root, facts, condition.text.strip()),)
-
-
-def _explained(node: Node, facts: Facts, text: str) -> Blocker:
-    """Return why a node, which is not true, is not.
 
     Args:
-        node: The node.
-        facts: What is known.
-        text: How it is written.
+        condition: The condition.
+        facts: What is known now.
+        since: Tells since when a comparison is not true, where the facts do not.
     """
-    match node:
-        case Comparison():
-            return _compared(node, facts, text)
-        case Constant():
-            return Blocker(CONDITION, "it is always false", (), condition=text)
-        case AllOf(operands) | AnyOf(operands):
-            failing = [o for o in operands if truth_of(o, facts) is not Truth.TRUE]
-            causes = tuple(_explained(operand, facts, operand.text) for operand in failing)
-            unknown = truth_of(node, facts) is Truth.UNKNOWN
-            return Blocker(
-                UNKNOWN_VALUE if unknown else CONDITION,
-                f"{'unknown' if unknown else 'not met'}: {text}",
-                (),
-                root_cause=False,
-                causes=causes,
-                condition=text,
-            )
-        case _:
-            assert_never(node)
+    explanation = _Explanation(facts, since)
+    if explanation.truth(condition.root) is Truth.TRUE:
+        return ()
+    return (explanation.of(condition.root, condition.text.strip()),)
 
 
-def _compared(leaf: Comparison, facts: Facts, text: str) -> Blocker:
-    observed = facts.observe(leaf.subject)
-    causes = facts.why(leaf)
-    kind, name, part = leaf.subject.topic
-    named = part or (name if kind in (TopicKind.PART, TopicKind.SIGNAL) else "")
-    return Blocker(
-        CONDITION if compare(leaf, observed) is Truth.FALSE else UNKNOWN_VALUE,
-        leaf_words(leaf, observed),
-        (named,) if named else (),
-        observed.value,
-        leaf.threshold,
-        observed.since,
-        root_cause=not causes,
-        causes=causes,
-        condition=text,
-    )
+class _Explanation:
+    """Each comparison is observed once."""
+
+    def __init__(self, facts: Facts, since: Since) -> None:
+        self._facts = facts
+        self._since = since
+        self._observed: dict[str, Observation] = {}
+
+    def truth(self, node: Node) -> Truth:
+        return truth_of(node, lambda leaf: compare(leaf, self._observe(leaf)))
+
+    def of(self, node: Node, text: str) -> Blocker:
+        """Return why a node that is not true is not.
+
+        Args:
+            node: The node.
+            text: How it is written.
+        """
+        match node:
+            case Comparison():
+                return self._of_leaf(node, text)
+            case Constant():
+                return Blocker(CONDITION, "it is always false", (), condition=text)
+            case AllOf(operands) | AnyOf(operands):
+                return self._of_several(node, operands, text)
+            case _:
+                assert_never(node)
+
+    def _observe(self, leaf: Comparison) -> Observation:
+        observed = self._observed.get(leaf.text)
+        if observed is None:
+            observed = self._observed[leaf.text] = self._facts.observe(leaf.subject)
+        return observed
+
+    def _of_several(self, node: Node, operands: tuple[Node, ...], text: str) -> Blocker:
+        failing = [operand for operand in operands if self.truth(operand) is not Truth.TRUE]
+        unknown = self.truth(node) is Truth.UNKNOWN
+        return Blocker(
+            UNKNOWN_VALUE if unknown else CONDITION,
+            f"{'unknown' if unknown else 'not met'}: {text}",
+            (),
+            root_cause=False,
+            causes=tuple(self.of(operand, operand.text) for operand in failing),
+            condition=text,
+        )
+
+    def _of_leaf(self, leaf: Comparison, text: str) -> Blocker:
+        observed = self._observe(leaf)
+        causes = self._facts.why(leaf)
+        kind, name, part = leaf.subject.topic
+        named = part or (name if kind in (TopicKind.PART, TopicKind.SIGNAL) else "")
+        return Blocker(
+            CONDITION if compare(leaf, observed) is Truth.FALSE else UNKNOWN_VALUE,
+            leaf_words(leaf, observed),
+            (named,) if named else (),
+            observed.value,
+            leaf.threshold,
+            self._since(leaf) if observed.since is None else observed.since,
+            root_cause=not causes,
+            causes=causes,
+            condition=text,
+        )
 
 
 # --- words ---------------------------------------------------------------------------------------

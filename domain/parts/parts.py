@@ -14,6 +14,7 @@ from domain.events.parts import (
     NodeUnreachable,
     PartActualChanged,
 )
+from domain.findings import Blocker
 from domain.identifiers import ChangeId
 from domain.inputs import NodeReport, Restored
 from domain.lifecycle import LifecycleState
@@ -22,6 +23,7 @@ from domain.parameters import check_values
 from domain.parts.convergence import is_there
 from domain.parts.deviations import Deviations
 from domain.parts.mode_inference import ModeInference
+from domain.parts.node_doubts import doubt_of
 from domain.parts.node_facts import NodeFacts
 from domain.parts.reachability import Reachability
 from domain.parts.system_model import SmhModel
@@ -211,6 +213,12 @@ class Parts(Concern):
     def views(self) -> Mapping[PartName, PartView]:
         """Return the views of all parts, systems first, in the order of the model file."""
         return {part: self.view(part) for part in self.model.parts}
+
+    def error(self, part: PartName, name: str) -> Blocker | None:
+        """Return why an error of a part is active; None: it is not, or the part has none such."""
+        facts = self.facts.get(part)
+        doubt = None if facts is None else doubt_of(part, facts, (part,))
+        return doubt if doubt is not None and doubt.code == name else None
 
     def parameters(self, node: PartName) -> tuple[ParameterView, ...]:
         """Return the parameters of a node, with the values that its target requires."""
