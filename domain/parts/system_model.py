@@ -118,6 +118,12 @@ class SmhModel:
         """Return all names: systems first, then nodes, each in the order of the file."""
         return (*self.systems, *self.nodes)
 
+    @property
+    def has_conditions(self) -> bool:
+        """Tell whether any mode has a guard."""
+        settings = chain.from_iterable(by_mode.values() for by_mode in self.mode_settings.values())
+        return any(own.requires or own.invariants for own in settings)
+
     def __contains__(self, name: str) -> bool:
         """Tell whether there is a part of that name."""
         return name in self.systems or name in self.nodes

@@ -1,18 +1,34 @@
 """The parameters of one part of an SMH file, sorted by subject."""
 
 from collections import defaultdict
+from dataclasses import dataclass
 from itertools import chain
 
+from domain.conditions.condition import Condition
 from domain.findings import Finding
 from domain.state_and_mode import DEFAULT_MODE, ModeName, PartName, part_name
 from service.files.extension import Setting, read_extensions
 from service.files.parameter_file import PARAMETERS_KEY, NodeParameters, Parameter
-from service.files.yaml_tree import Node, finding_at
+from service.files.yaml_tree import Node, Scalar, finding_at
 
 MODE_SETTINGS = "mode_settings"
 """The block about guards and order of modes."""
 
 _RESERVED_NAMES = frozenset(("state", "states", "mode", "modes", "parameters"))
+
+
+@dataclass(frozen=True, slots=True)
+class WrittenCondition:
+    """A condition with its place in the file."""
+
+    part: PartName
+    """The part whose block it stands in."""
+    where: str
+    """The place in words, for messages."""
+    condition: Condition
+    place: Scalar
+    shift: int
+    """Characters of the scalar before the condition."""
 
 
 class SmhBlock:
@@ -29,6 +45,7 @@ class SmhBlock:
         self.parts: list[Parameter] = []
         self.modes: dict[ModeName, list[tuple[str, Parameter]]] = {}
         """The lines of each mode: name below the mode, and the parameter."""
+        self.conditions: list[WrittenCondition] = []
         self.rules: dict[str, dict[str, Parameter]] = defaultdict(dict)
         self._misread: set[str] = set()
         extensions, findings = read_extensions(source)

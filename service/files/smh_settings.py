@@ -2,10 +2,11 @@
 
 from collections.abc import Collection, Iterable, Mapping
 from contextlib import suppress
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from typing import TypeVar
 
-from domain.conditions.condition import MAX_LENGTH, Condition
+from domain.conditions.condition import Condition
+from domain.conditions.lexer import ConditionSyntaxError
 from domain.errors import near_match, shortened
 from domain.findings import Finding
 from domain.parts.mode_settings import ModeSettings, OnFailure, TransitionSettings
@@ -15,8 +16,9 @@ from domain.state_and_mode import ModeName, PartName
 from domain.timebase import Duration
 from service.files.extension import Setting
 from service.files.setting_values import InvalidSettingError, SettingValues
-from service.files.smh_block import MODE_SETTINGS, SmhBlock
+from service.files.smh_block import MODE_SETTINGS, SmhBlock, WrittenCondition
 from service.files.smh_order import ORDER_KEYS, Order, OrderReader
+from service.files.source_text import SourceText
 
 MAX_CONDITIONS = 50
 """Conditions in one list."""
@@ -41,13 +43,14 @@ class _Written:
 
 
 def read_mode_settings(
-    block: SmhBlock, known: Collection[PartName]
+    block: SmhBlock, known: Collection[PartName], source: SourceText
 ) -> Mapping[ModeName, ModeSettings]:
     """Read the settings of all modes of a part; those of `__ALL__` fill in what a mode lacks.
 
     Args:
         block: Block of the part; receives findings.
         known: All parts of the model.
+        source: Text of the file.
     """
     lines: dict[ModeName, list[Setting]] = {}
     for setting in block.settings:
@@ -58,7 +61,7 @@ def read_mode_settings(
             block.complain(setting.key, "NOT_A_BLOCK", message)
     if not lines:
         return {}
-    reader = _Reader(block, known)
+    reader = _Reader(block, known, source)
     every = reader.read(EVERY_MODE, lines.pop(EVERY_MODE, []), _Written())
     written = {mode: reader.read(mode, of_mode, every) for mode, of_mode in lines.items()}
     return _merged(block, every, written)
@@ -75,11 +78,7 @@ def _merged(
     merged = {mode: _settings(mode, of_mode, every, parts) for mode, of_mode in own.items()}
     merged[EVERY_MODE] = _settings(EVERY_MODE, every, every, parts)
     fallbacks = {mode: merged.get(mode, merged[EVERY_MODE]).fallback for mode in block.modes}
-    for finding in fallback_circles(block.name, fallbacks):
-        part, key, mode, fallback = finding.path
-        if ModeName(mode) not in own or own[ModeName(mode)].fallback is None:
-            finding = replace(finding, path=(part, key, EVERY_MODE, fallback))
-        block.findings.append(finding)
+    block.findings.extend(fallback_circles(block.name, fallbacks))
     return merged
 
 
@@ -109,8 +108,9 @@ def _first(own: T | None, every: T | None, usual: T) -> T:
 class _Reader:
     """Reads the settings of one part."""
 
-    def __init__(self, block: SmhBlock, known: Collection[PartName]) -> None:
+    def __init__(self, block: SmhBlock, known: Collection[PartName], source: SourceText) -> None:
         self._block = block
+        self._source = source
         self._known = known
         self._values = SettingValues(block)
         self._unknown: set[tuple[str, ...]] = set()
@@ -211,13 +211,19 @@ class _Reader:
             written.on_failure = OnFailure(word)
 
     def _conditions(self, line: Setting, where: str) -> tuple[Condition, ...]:
-        conditions = []
+        """Read conditions; one that cannot be read is reported and left out."""
+        written = []
         for text, place in self._values.texts(line, where, MAX_CONDITIONS):
-            if not text.strip() or len(text) > MAX_LENGTH:
-                message = f"{where}: expected a condition of 1 to {MAX_LENGTH} characters"
-                self._values.reject(place, message, "INVALID_CONDITION")
-            conditions.append(Condition(text.strip()))
-        return tuple(conditions)
+            shift = len(text) - len(text.lstrip())
+            try:
+                condition = Condition.parse(text.strip())
+            except ConditionSyntaxError as error:
+                at = self._source.place(place, shift + error.column - 1)
+                self._block.complain(at, error.code, f"{where}: {error.message}")
+            else:
+                written.append(WrittenCondition(self._block.name, where, condition, place, shift))
+        self._block.conditions += written
+        return tuple(own.condition for own in written)
 
     def _fallback(self, line: Setting, where: str) -> ModeName:
         text, place = self._values.text(line, where)

@@ -90,9 +90,14 @@ def finding_at(
     return Finding(severity, code, message, part, (), place.line, place.column)
 
 
+def lines_of_yaml(text: str) -> list[str]:
+    """Return the lines of a text as libyaml counts them."""
+    return _LINE_BREAK.split(text)
+
+
 def in_order(text: str, findings: Iterable[Finding]) -> list[Finding]:
     """Sort findings by place; places that libyaml reports after the last line move to its end."""
-    lines = _LINE_BREAK.split(text)
+    lines = lines_of_yaml(text)
     last, end = len(lines), len(lines[-1]) + 1
     inside = (replace(f, line=last, column=end) if (f.line or 0) > last else f for f in findings)
     return sorted(inside, key=lambda finding: (finding.line or 0, finding.column or 0))
@@ -129,7 +134,7 @@ def read_tree(text: str, takes_alias: Callable[[list[str]], bool] = no_alias) ->
 
 def _bad_character(text: str, character: str | int, index: int) -> Finding:
     code = ord(character) if isinstance(character, str) else character
-    lines = _LINE_BREAK.split(text[:index])
+    lines = lines_of_yaml(text[:index])
     message = f"the character U+{code:04X} is not allowed in YAML; is this a text file?"
     return Finding(
         "error", "YAML_SYNTAX", message, line=len(lines), column=len(lines[-1].lstrip("\ufeff")) + 1

@@ -1,5 +1,4 @@
 import gc
-import re
 from pathlib import Path
 
 import pytest
@@ -250,18 +249,3 @@ def test_lines_moved_and_doubled_are_a_model_or_are_complained_of(data: st.DataO
     place = data.draw(st.integers(0, len(lines)))
 
     assert_harmless("".join([*lines[:place], *moved, *lines[place:]]))
-
-
-def test_every_code_is_explained_in_the_documentation() -> None:
-    modules = [
-        *(PROJECT / "service" / "files").glob("*.py"),
-        PROJECT / "domain" / "parts" / "model_lint.py",
-        PROJECT / "domain" / "parts" / "settings_check.py",
-        PROJECT / "domain" / "parts" / "system_model.py",
-    ]
-    code = re.compile(r'"(ALIAS|CYCLE|HEADER|[A-Z]+(?:_[A-Z]+)+)"')
-    used = {name for path in modules for name in code.findall(path.read_text(encoding="utf-8"))}
-    page = (PROJECT / "docs" / "reference" / "findings.md").read_text(encoding="utf-8")
-    explained = set(re.findall(r"^\|? ?`([A-Z_]+)`", page, re.MULTILINE))
-
-    assert used - {"UNREADABLE_FILE", "INVALID_ROBOT_FILE", "INVALID_WAYPOINTS"} == explained

@@ -10,7 +10,7 @@ from service.files.model_file import check_model, read_model
 ARM, BASE, CAMERA = PartName("arm"), PartName("base"), PartName("left/camera")
 FAST, SAFE = ModeName("FAST"), ModeName("SAFE")
 ROBOT = """\
-robot:
+carrier:
   ros__parameters:
     type: system
     modes:
@@ -38,7 +38,7 @@ def robot(settings: str) -> str:
 
 
 def read(settings: str) -> dict[ModeName, ModeSettings]:
-    return dict(read_model(robot(settings)).model.mode_settings[PartName("robot")])
+    return dict(read_model(robot(settings)).model.mode_settings[PartName("carrier")])
 
 
 def told(settings: str) -> list[tuple[str, int | None, int | None]]:
@@ -114,26 +114,27 @@ def test_the_fallback_of_all_modes_is_not_its_own() -> None:
     model = read_model(robot("__ALL__: {fallback: SAFE, grace_s: 1}")).model
 
     modes = (DEFAULT_MODE, FAST, SAFE)
-    settings = [model.settings_of(PartName("robot"), mode) for mode in modes]
+    settings = [model.settings_of(PartName("carrier"), mode) for mode in modes]
     assert [own.fallback for own in settings] == [SAFE, SAFE, None]
     assert {own.grace for own in settings} == {seconds(1)}
 
 
 def test_a_mode_that_asks_for_nothing_asks_for_nothing_though_all_others_do() -> None:
-    text = robot("__ALL__: {requires: 'x > 1'}\nSAFE: {requires: []}")
+    text = robot("__ALL__: {requires: 'battery_level > 0'}\nSAFE: {requires: []}")
 
     assert [finding.code for finding in check_model(text)] == ["NOT_FOR_CPP"]
-    assert read_model(text).model.settings_of(PartName("robot"), SAFE).requires == ()
+    assert read_model(text).model.settings_of(PartName("carrier"), SAFE).requires == ()
 
 
 def test_a_node_has_guards_and_deadlines() -> None:
     text = robot("FAST: {grace_s: 1}") + (
         "lidar: {ros__parameters: {type: node, modes: {__DEFAULT__: {ros__parameters: {hz: 10}}},"
-        " mode_settings: {__DEFAULT__: {requires: 'x > 1', transition: {deadline_s: 3}}}}}\n"
+        " mode_settings: {__DEFAULT__: {requires: 'battery_level > 0',"
+        " transition: {deadline_s: 3}}}}}\n"
     )
 
     settings = read_model(text).model.mode_settings[PartName("lidar")][DEFAULT_MODE]
-    assert settings.requires == (Condition("x > 1"),)
+    assert settings.requires == (Condition("battery_level > 0"),)
     assert settings.transition.deadline == seconds(3)
 
 
@@ -228,12 +229,20 @@ def test_a_node_has_guards_and_deadlines() -> None:
             46,
             id="a sequence that lacks a part",
         ),
-        pytest.param("FAST: {requires: ''}", "INVALID_CONDITION", 9, 24, id="an empty condition"),
+        pytest.param("FAST: {requires: ''}", "CONDITION_SYNTAX", 9, 25, id="an empty condition"),
         pytest.param(
-            f"FAST: {{requires: '{'x' * 501}'}}", "INVALID_CONDITION", 9, 24, id="a long condition"
+            "FAST: {requires: [estop, temperature >]}", "CONDITION_SYNTAX", 9, 45, id="half of one"
+        ),
+        pytest.param("FAST: {requires: 'a => 1'}", "CONDITION_SYNTAX", 9, 27, id="no operator"),
+        pytest.param(
+            f"FAST: {{requires: '{'x' * 501}'}}", "CONDITION_SYNTAX", 9, 525, id="a long condition"
         ),
         pytest.param(
-            f"FAST: {{requires: [{', '.join(['x'] * 51)}]}}", "TOO_LARGE", 9, 14, id="too many"
+            f"FAST: {{requires: [{', '.join(['battery_level > 0'] * 51)}]}}",
+            "TOO_LARGE",
+            9,
+            14,
+            id="too many",
         ),
     ],
 )
@@ -250,7 +259,7 @@ def test_what_is_wrong_is_told_with_its_place(
         ("FAST: {require: x}", "did you mean requires?"),
         ("FAST: {fallback: SAVE}", "did you mean SAFE?"),
         ("FAST: {transition: {after: {bas: arm}}}", "did you mean base?"),
-        ("FAST: {transition: {after: {other: arm}}}", "other is not a part of robot"),
+        ("FAST: {transition: {after: {other: arm}}}", "other is not a part of carrier"),
         ("FAST: {xyz: 1}", "known: requires, invariants, grace_s, fallback, transition"),
     ],
 )
