@@ -4,7 +4,7 @@ from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 
 from domain.conditions.condition import Condition
-from domain.conditions.tree import Comparison, Node, Subject, TopicKind, comparisons
+from domain.conditions.tree import Comparison, Node, Operator, Subject, TopicKind, comparisons
 from domain.findings import Finding
 from domain.lifecycle import LifecycleState
 from domain.parts.lint.demands import Demands, contradict
@@ -42,6 +42,8 @@ class GuardLint:
         guards += [_Guard("invariants", condition) for condition in settings.invariants]
         held: list[_Guard] = []
         for guard in guards:
+            if self._is_told_by_the_check(guard.condition.root):
+                continue
             why = self._why_never(part, mode, guard, held)
             if why is None:
                 held.append(guard)
@@ -69,6 +71,14 @@ class GuardLint:
                 if not self._can_be_true([own, *facts]):
                     return f"the mode itself requires {below} to be {pair.label}"
         return None
+
+    def _is_told_by_the_check(self, root: Node) -> bool:
+        """Tell whether a condition is one comparison with what the fact can never be."""
+        return (
+            isinstance(root, Comparison)
+            and root.operator not in (Operator.NOT_EQUAL, Operator.NOT_IN)
+            and not self._can_be_true([root])
+        )
 
     def _demanded(
         self, part: PartName, mode: ModeName, condition: Condition
