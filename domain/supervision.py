@@ -6,7 +6,7 @@ live service, in a simulation and in a test.
 Its concerns make the decisions; this module keeps their order.
 """
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -33,8 +33,8 @@ from domain.snapshot import (
     ModeView,
     ParameterView,
     PartView,
+    PlanView,
     SignalView,
-    StepView,
     SystemStateView,
 )
 from domain.stalls import Stalls
@@ -230,8 +230,8 @@ class Supervision:
         """Return the transitions that would be accepted now and change something."""
         return self._changing.available_transitions(part)
 
-    def plan(self, request: ChangeRequest) -> Sequence[StepView]:
-        """Return the steps that a request would take now, without starting them.
+    def plan(self, request: ChangeRequest) -> PlanView:
+        """Return what a request would do now, without starting it.
 
         Raises:
             PilothouseError: The request would be rejected.

@@ -7,6 +7,7 @@ from typing import Literal
 
 from domain.conditions.condition import Condition
 from domain.conditions.tree import (
+    ORDERS,
     Comparison,
     Operator,
     Subject,
@@ -72,7 +73,7 @@ def _check(leaf: Comparison, vocabulary: Vocabulary) -> Iterator[Fault]:
         yield Fault("error", "WRONG_TYPE", message, subject.column)
     elif not leaf.values:
         yield Fault("error", "EMPTY_LIST", "the list is empty", leaf.columns[0])
-    elif leaf.operator.is_order and terms.kind is not Kind.NUMBER:
+    elif leaf.operator in ORDERS and terms.kind is not Kind.NUMBER:
         message = f"{leaf.subject.text} is {_WORDS[terms.kind]}, which has no order"
         yield Fault("error", "WRONG_TYPE", message, leaf.columns[0])
     else:

@@ -1,6 +1,5 @@
 """Evaluates conditions with three values (Kleene's logic): true, false and unknown."""
 
-import math
 import operator as python
 from collections.abc import Callable, Mapping
 from enum import IntEnum
@@ -9,6 +8,7 @@ from typing import Any, assert_never
 from domain.conditions.condition import Condition
 from domain.conditions.facts import Facts, Observation
 from domain.conditions.tree import (
+    ORDERS,
     AllOf,
     AnyOf,
     Comparison,
@@ -16,7 +16,6 @@ from domain.conditions.tree import (
     Node,
     Operator,
     Value,
-    is_number,
 )
 
 
@@ -44,9 +43,19 @@ def truth_of(node: Node, truth_of_leaf: Callable[[Comparison], Truth]) -> Truth:
         case Comparison():
             return truth_of_leaf(node)
         case AllOf(operands):
-            return min(truth_of(operand, truth_of_leaf) for operand in operands)
+            least = Truth.TRUE
+            for operand in operands:
+                least = min(least, truth_of(operand, truth_of_leaf))
+                if least is Truth.FALSE:
+                    break
+            return least
         case AnyOf(operands):
-            return max(truth_of(operand, truth_of_leaf) for operand in operands)
+            greatest = Truth.FALSE
+            for operand in operands:
+                greatest = max(greatest, truth_of(operand, truth_of_leaf))
+                if greatest is Truth.TRUE:
+                    break
+            return greatest
         case Constant(value):
             return _TRUTHS[value]
         case _:
@@ -64,23 +73,31 @@ def compare(leaf: Comparison, observed: Observation) -> Truth:
         return Truth.UNKNOWN
     if value is None:
         return _OF_NOTHING.get(operator, Truth.UNKNOWN)
-    if isinstance(value, float) and math.isnan(value):
-        return Truth.UNKNOWN
     if operator is Operator.IN or operator is Operator.NOT_IN:
-        if leaf.values and not any(_same_kind(value, one) for one in leaf.values):
-            return Truth.UNKNOWN
-        among = any(value == one for one in leaf.values if _same_kind(value, one))
-        return _TRUTHS[among is (operator is Operator.IN)]
+        return _among(value, leaf)
     constant = leaf.values[0]
-    if not _same_kind(value, constant) or (operator.is_order and not is_number(value)):
+    if not _same_kind(value, constant) or (operator in ORDERS and type(value) in _UNORDERED):
         return Truth.UNKNOWN
-    return _TRUTHS[_COMPARE[operator](value, constant)]
+    return Truth.TRUE if _COMPARE[operator](value, constant) else Truth.FALSE
+
+
+def _among(value: Value, leaf: Comparison) -> Truth:
+    comparable = [one for one in leaf.values if _same_kind(value, one)]
+    if leaf.values and not comparable:
+        return Truth.UNKNOWN
+    return _TRUTHS[(value in comparable) is (leaf.operator is Operator.IN)]
 
 
 def _same_kind(value: Value, other: Value) -> bool:
-    return type(value) is type(other) or (is_number(value) and is_number(other))
+    """Tell whether two values can be compared; NaN cannot be compared with anything."""
+    one, another = type(value), type(other)
+    if one is float and value != value:
+        return False
+    return one is another or (one in _NUMBERS and another in _NUMBERS)
 
 
+_NUMBERS = (float, int)
+_UNORDERED = (str, bool)
 _TRUTHS = (Truth.FALSE, Truth.TRUE)
 _OF_NOTHING: Mapping[Operator, Truth] = {
     Operator.EQUAL: Truth.FALSE,

@@ -45,25 +45,20 @@ def explain(
         facts: What is known now.
         since: Tells since when a comparison is not true, where the facts do not.
     """
-    explanation = _Explanation(facts, since)
-    if explanation.truth(condition.root) is Truth.TRUE:
-        return ()
-    return (explanation.of(condition.root, condition.text.strip()),)
+    blocker = _Explanation(facts, since).of(condition.root, condition.text.strip())
+    return () if blocker is None else (blocker,)
 
 
 class _Explanation:
-    """Each comparison is observed once."""
+    """Each comparison is evaluated once; what is true is never explained."""
 
     def __init__(self, facts: Facts, since: Since) -> None:
         self._facts = facts
         self._since = since
-        self._observed: dict[str, Observation] = {}
+        self._leaves: dict[str, tuple[Observation, Truth]] = {}
 
-    def truth(self, node: Node) -> Truth:
-        return truth_of(node, lambda leaf: compare(leaf, self._observe(leaf)))
-
-    def of(self, node: Node, text: str) -> Blocker:
-        """Return why a node that is not true is not.
+    def of(self, node: Node, text: str) -> Blocker | None:
+        """Return why a node is not true; None: it is.
 
         Args:
             node: The node.
@@ -72,38 +67,46 @@ class _Explanation:
         match node:
             case Comparison():
                 return self._of_leaf(node, text)
-            case Constant():
-                return Blocker(CONDITION, "it is always false", (), condition=text)
-            case AllOf(operands) | AnyOf(operands):
-                return self._of_several(node, operands, text)
+            case Constant(value):
+                return (
+                    None if value else Blocker(CONDITION, "it is always false", (), condition=text)
+                )
+            case AllOf(operands):
+                causes = self._of_each(operands)
+                if not causes:
+                    return None
+                return _joined(text, causes, is_false=any(c.code == CONDITION for c in causes))
+            case AnyOf(operands):
+                if truth_of(node, self._truth) is Truth.TRUE:
+                    return None
+                causes = self._of_each(operands)
+                return _joined(text, causes, is_false=all(c.code == CONDITION for c in causes))
             case _:
                 assert_never(node)
 
-    def _observe(self, leaf: Comparison) -> Observation:
-        observed = self._observed.get(leaf.text)
-        if observed is None:
-            observed = self._observed[leaf.text] = self._facts.observe(leaf.subject)
-        return observed
+    def _of_each(self, operands: tuple[Node, ...]) -> tuple[Blocker, ...]:
+        causes = [self.of(operand, operand.text) for operand in operands]
+        return tuple([cause for cause in causes if cause is not None])
 
-    def _of_several(self, node: Node, operands: tuple[Node, ...], text: str) -> Blocker:
-        failing = [operand for operand in operands if self.truth(operand) is not Truth.TRUE]
-        unknown = self.truth(node) is Truth.UNKNOWN
-        return Blocker(
-            UNKNOWN_VALUE if unknown else CONDITION,
-            f"{'unknown' if unknown else 'not met'}: {text}",
-            (),
-            root_cause=False,
-            causes=tuple(self.of(operand, operand.text) for operand in failing),
-            condition=text,
-        )
+    def _look(self, leaf: Comparison) -> tuple[Observation, Truth]:
+        seen = self._leaves.get(leaf.text)
+        if seen is None:
+            observed = self._facts.observe(leaf.subject)
+            seen = self._leaves[leaf.text] = observed, compare(leaf, observed)
+        return seen
 
-    def _of_leaf(self, leaf: Comparison, text: str) -> Blocker:
-        observed = self._observe(leaf)
+    def _truth(self, leaf: Comparison) -> Truth:
+        return self._look(leaf)[1]
+
+    def _of_leaf(self, leaf: Comparison, text: str) -> Blocker | None:
+        observed, truth = self._look(leaf)
+        if truth is Truth.TRUE:
+            return None
         causes = self._facts.why(leaf)
         kind, name, part = leaf.subject.topic
         named = part or (name if kind in (TopicKind.PART, TopicKind.SIGNAL) else "")
         return Blocker(
-            CONDITION if compare(leaf, observed) is Truth.FALSE else UNKNOWN_VALUE,
+            CONDITION if truth is Truth.FALSE else UNKNOWN_VALUE,
             leaf_words(leaf, observed),
             (named,) if named else (),
             observed.value,
@@ -113,6 +116,11 @@ class _Explanation:
             causes=causes,
             condition=text,
         )
+
+
+def _joined(text: str, causes: tuple[Blocker, ...], *, is_false: bool) -> Blocker:
+    code, words = (CONDITION, "not met") if is_false else (UNKNOWN_VALUE, "unknown")
+    return Blocker(code, f"{words}: {text}", (), root_cause=False, causes=causes, condition=text)
 
 
 # --- words ---------------------------------------------------------------------------------------

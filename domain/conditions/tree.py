@@ -35,6 +35,9 @@ class TopicKind(StrEnum):
     VEHICLE = "vehicle"
     HOLD = "hold"
 
+    # That of Enum is written in Python, and tables are keyed by kinds.
+    __hash__ = str.__hash__
+
 
 class Topic(NamedTuple):
     """What changes as one: a signal, a part, an error, a hold, the robot, its task or vehicle."""
@@ -95,15 +98,13 @@ class Operator(StrEnum):
     IN = "in"
     NOT_IN = "not in"
 
+    # That of Enum is written in Python, and tables are keyed by operators.
+    __hash__ = str.__hash__
+
     @property
     def opposite(self) -> "Operator":
         """Return the operator that is true where this one is false."""
         return _OPPOSITES[self]
-
-    @property
-    def is_order(self) -> bool:
-        """Tell whether it compares by size, which only numbers have."""
-        return self in _ORDERS
 
 
 _O = Operator
@@ -114,7 +115,8 @@ _PAIRS = (
     (_O.IN, _O.NOT_IN),
 )
 _OPPOSITES = {a: b for pair in _PAIRS for a, b in (pair, pair[::-1])}
-_ORDERS = frozenset({_O.LESS, _O.LESS_OR_EQUAL, _O.GREATER, _O.GREATER_OR_EQUAL})
+ORDERS = frozenset({_O.LESS, _O.LESS_OR_EQUAL, _O.GREATER, _O.GREATER_OR_EQUAL})
+"""Operators that compare by size, which only numbers have."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -123,8 +123,8 @@ class Parts(Concern):
         self._moved |= changed
         self._tell_actuals(changed)
 
-    def ask(self, wanted: Mapping[PartName, StateAndMode]) -> None:
-        """Set requested targets; they are in force at once."""
+    def ask(self, wanted: Mapping[PartName, StateAndMode | None]) -> None:
+        """Set requested targets, in force at once; None: the part has none any more."""
         moved = self._targets.ask(wanted) | wanted.keys()
         self._touched |= moved
         self._moved |= moved
@@ -198,6 +198,10 @@ class Parts(Concern):
     def target(self, part: PartName) -> StateAndMode | None:
         """Return the target in force of a part; None: it has none."""
         return self.inference.target(part)
+
+    def asked(self, part: PartName) -> StateAndMode | None:
+        """Return the requested target of a part; None: there is none."""
+        return self._targets.asked(part)
 
     def change_of(self, part: PartName) -> ChangeId | None:
         """Return the change that drives a part; None: there is none."""

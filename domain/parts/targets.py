@@ -20,12 +20,16 @@ class Targets:
 
     def __init__(self, inference: ModeInference) -> None:
         self._inference = inference
-        self._asked: dict[PartName, StateAndMode] = {}
+        self._asked: dict[PartName, StateAndMode | None] = {}
         self._shared: dict[tuple[LifecycleState, ModeName | None], EffectiveTarget] = {}
         """One object for all parts with the same target."""
 
-    def ask(self, wanted: Mapping[PartName, StateAndMode]) -> set[PartName]:
-        """Set requested targets, in force at once; return the parts whose actual changed."""
+    def ask(self, wanted: Mapping[PartName, StateAndMode | None]) -> set[PartName]:
+        """Set requested targets, in force at once; return the parts whose actual changed.
+
+        Args:
+            wanted: By part; None: the part has no target any more.
+        """
         self._asked.update(wanted)
         return self._inference.set_targets(wanted)
 

@@ -12,7 +12,7 @@ from pydantic import BaseModel, ConfigDict, Field
 from domain.findings import Blocker, Fact, Finding
 from domain.lifecycle import LifecycleState
 from domain.state_and_mode import StateAndMode
-from domain.timebase import Instant
+from domain.timebase import Duration, Instant, to_seconds
 from service.clock import Clock
 
 Timestamp = Annotated[
@@ -54,6 +54,11 @@ def timestamp(clock: Clock, at: Instant) -> str:
 def timestamp_or_none(clock: Clock, at: Instant | None) -> str | None:
     """Return an instant of `clock` as RFC 3339; None stays None."""
     return None if at is None else rfc3339(clock.wall_time(at))
+
+
+def seconds_or_none(duration: Duration | None) -> float | None:
+    """Return a duration in seconds; None stays None."""
+    return None if duration is None else to_seconds(duration)
 
 
 class StateAndModeJson(Json):
