@@ -21,6 +21,7 @@ from domain.events.changes import (
 )
 from domain.findings import Blocker
 from domain.health.health import Health
+from domain.health.part_errors import PartErrors
 from domain.identifiers import ChangeId
 from domain.inputs import (
     BackendStatus,
@@ -46,13 +47,18 @@ class Changing(Concern):
     """Admits requests, drives the steps of changes, and restores nodes that reappear."""
 
     def __init__(
-        self, parts: Parts, health: Health, settings: ChangeSettings, outbox: Outbox
+        self,
+        parts: Parts,
+        health: Health,
+        part_errors: PartErrors,
+        settings: ChangeSettings,
+        outbox: Outbox,
     ) -> None:
         self._parts = parts
         self._health = health
         self._outbox = outbox
         self._admission = ChangeAdmission(parts.model, parts.facts)
-        self._changes = Changes(parts, settings, outbox, health)
+        self._changes = Changes(parts, settings, outbox, health, part_errors)
         self._restoring = Restoring(parts, self._changes, settings, outbox, self._admit)
         self._backend = BackendStatus(available=True)
         self._backend_since: Instant | None = None

@@ -64,6 +64,8 @@ class Parts(Concern):
         """Parts about which something changed since the last `settle`."""
         self._moved: set[PartName] = set()
         """Those of them whose actual or target changed, so that a deviation may begin or end."""
+        self._changed: set[PartName] = set()
+        """Parts whose view changed since `take_changed` was called last."""
         self._untold: set[PartName] = set()
         """Those of them whose actual may differ from the published one."""
         self._to_look: dict[PartName, _Cause] = {}
@@ -159,6 +161,7 @@ class Parts(Concern):
             return False
         touched, self._touched = self._touched, set()
         self._outbox.parts |= touched
+        self._changed |= touched
         if self._views:
             for part in touched:
                 self._views.pop(part, None)
@@ -174,6 +177,11 @@ class Parts(Concern):
             self._to_look.pop(part, None)
             self._look(part, now)
         return True
+
+    def take_changed(self) -> set[PartName]:
+        """Return the parts whose views changed since the last call, for whoever judges them."""
+        changed, self._changed = self._changed, set()
+        return changed
 
     @property
     def has_more(self) -> bool:
