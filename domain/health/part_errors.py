@@ -148,7 +148,8 @@ class PartErrors(Concern):
         while parts := self._deadlines.pop_due(now):
             for part in parts:
                 self._due[part] = self._deviating[part].at + DEVIATES_AFTER
-        self._raise_due()
+        if len(self._due) <= LOOKS_AT_ONCE:
+            self._raise_due()
 
     def settle(self, now: Instant) -> bool:
         """Look at the parts that changed, or let later turns do so; return whether there are any.
