@@ -88,6 +88,25 @@ class KeptError:
 
 
 @dataclass(frozen=True, slots=True)
+class KeptFailedChange:
+    """The last change of a part that ended did so without success."""
+
+    part: PartName
+    change: ChangeId
+    message: str
+    """How it ended, in words."""
+    status: str
+    """`failed` or `timed_out`."""
+    since: Instant
+    """When the first change ended so since the last success."""
+
+    @property
+    def name(self) -> str:
+        """Return its name among those of its kind."""
+        return self.part
+
+
+@dataclass(frozen=True, slots=True)
 class KeptHold:
     """A hold that somebody set."""
 
@@ -146,7 +165,14 @@ class KeptProgress:
 
 
 Kept: TypeAlias = (
-    KeptTarget | KeptChange | KeptEmergencyStop | KeptError | KeptHold | KeptTask | KeptProgress
+    KeptTarget
+    | KeptChange
+    | KeptEmergencyStop
+    | KeptError
+    | KeptFailedChange
+    | KeptHold
+    | KeptTask
+    | KeptProgress
 )
 
 

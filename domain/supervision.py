@@ -6,7 +6,7 @@ live service, in a simulation and in a test.
 Its concerns make the decisions; this module keeps their order.
 """
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -20,6 +20,7 @@ from domain.events.service import TimeWasDue
 from domain.fact_changes import FactChanges
 from domain.health.emergency_stop import EmergencyStop
 from domain.health.health import Health
+from domain.health.part_errors import PartErrors
 from domain.health.signals import SignalSettings, default_signals
 from domain.inputs import ChangeRequest, Input, TimePassed
 from domain.lifecycle import Transition
@@ -33,6 +34,8 @@ from domain.robot_state import RobotState
 from domain.snapshot import (
     ChangeView,
     EmergencyStopView,
+    ErrorKey,
+    ErrorView,
     ModeView,
     ParameterView,
     PartView,
@@ -88,14 +91,16 @@ class Supervision:
             self._outbox,
             start,
         )
-        self.facts = RobotFacts(self._parts, self._health, self.driving, self._parts.error)
-        """What conditions are evaluated over."""
         storage = Storage(self._outbox)
         self._robot_state = RobotState(self._health, self.driving, storage, self._outbox)
+        self._part_errors = PartErrors(self._parts, self._health.error_list, self._outbox, start)
+        self.facts = RobotFacts(self._parts, self._health, self.driving, self._part_errors.reason)
+        """What conditions are evaluated over."""
         watched = WatchedConditions(self.facts)
         self._changing = Changing(
             self._parts,
             self._health,
+            self._part_errors,
             settings.changes,
             self._outbox,
             Guards(model, watched, start),
@@ -110,11 +115,13 @@ class Supervision:
             Standstill(self.driving, self._emergency_stop, self._outbox),
             storage,
             self._robot_state,
-            FactChanges(watched, self._health, self.driving, self._outbox),
+            self._part_errors,
+            FactChanges(watched, self.driving, self._outbox),
             self._changing,
             Audit(self._outbox),
             Stalls(self._outbox),
         )
+        self._outbox.errors.clear()  # What is on from the start is no change.
         self._takers = _takers(self._concerns)
         self._clocked = [c for c in self._concerns if _overrides(c, "wake_at")]
         self._settling = [c for c in self._concerns if _overrides(c, "settle")]
@@ -279,6 +286,29 @@ class Supervision:
     def signals(self) -> Mapping[str, SignalView]:
         """Return all signals."""
         return self._health.signals()
+
+    def error(self, key: ErrorKey) -> ErrorView:
+        """Return one error, as `Outputs.errors` names it."""
+        return self._health.error_list.view(key)
+
+    def errors(self) -> Iterator[ErrorView]:
+        """Yield all errors: the robot's own, then those of the parts in the order of the file."""
+        yield from self._health.error_views()
+        for part in self.model.parts:
+            yield from self._part_errors.views_of(part)
+
+    def errors_of(self, part: PartName) -> Iterator[ErrorView]:
+        """Yield the errors of one part; the model must have it."""
+        return self._part_errors.views_of(part)
+
+    def open_errors(self) -> Mapping[str, ErrorView]:
+        """Return the errors that are not normal, by their names."""
+        return self._health.error_list.open_ones()
+
+    @property
+    def parts_with_errors(self) -> Mapping[str, int]:
+        """Return by error how many parts have it now."""
+        return self._health.error_list.parts_with
 
     def system_state(self) -> SystemStateView:
         """Return the state of the robot."""

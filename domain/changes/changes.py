@@ -21,6 +21,7 @@ from domain.deadlines import Deadlines
 from domain.errors import UnknownChangeError
 from domain.events.changes import CHANGE_ENDS
 from domain.health.health import Health
+from domain.health.part_errors import PartErrors
 from domain.identifiers import ChangeId
 from domain.inputs import ChangeRequest, NodeAnswer, NodeReport, ReportBacklog, Restored
 from domain.kept import KeptChange
@@ -57,8 +58,10 @@ class Changes:
         outbox: Outbox,
         health: Health,
         guards: Guards,
+        part_errors: PartErrors,
     ) -> None:
         self._parts = parts
+        self._part_errors = part_errors
         self._inference = parts.inference
         self._outbox = outbox
         self._steps = NodeSteps(
@@ -133,7 +136,7 @@ class Changes:
         for change in ended_by_restart(restored.kept, now):
             self._changes[change.id] = change
             self._outbox.forget(KeptChange, change.id)
-            self._outbox.emit(CHANGE_ENDS[change.status](change.id, change.part, change.reason))
+            self._tell_end(change, now)
 
     def begin(
         self, part: PartName, request: ChangeRequest, goal: ChangeGoal, now: Instant
@@ -442,8 +445,13 @@ class Changes:
         self._guarded.drop(change)
         self._outbox.forget(KeptChange, change.id)
         self._let_go(change, {change.part, *change.targets, *change.pursuits})
-        self._outbox.emit(CHANGE_ENDS[status](change.id, change.part, reason))
+        self._tell_end(change, now)
         self._pack(change)
+
+    def _tell_end(self, change: Change, now: Instant) -> None:
+        ended = CHANGE_ENDS[change.status](change.id, change.part, change.reason)
+        event = self._outbox.emit(ended)
+        self._part_errors.note_end(ended, event, (change.targets, change.pursuits), now)
 
     def _let_go(self, change: Change, parts: Iterable[PartName]) -> None:
         """Release the parts of an ended change, except nodes that it is still driving."""

@@ -22,6 +22,7 @@ from domain.events.changes import (
 )
 from domain.findings import Blocker
 from domain.health.health import Health
+from domain.health.part_errors import PartErrors
 from domain.identifiers import ChangeId
 from domain.inputs import (
     BackendStatus,
@@ -51,6 +52,7 @@ class Changing(Concern):
         self,
         parts: Parts,
         health: Health,
+        part_errors: PartErrors,
         settings: ChangeSettings,
         outbox: Outbox,
         guards: Guards,
@@ -60,7 +62,7 @@ class Changing(Concern):
         self._outbox = outbox
         self._guards = guards
         self._admission = ChangeAdmission(parts.model, parts.facts, guards)
-        self._changes = Changes(parts, settings, outbox, health, guards)
+        self._changes = Changes(parts, settings, outbox, health, guards, part_errors)
         self._restoring = Restoring(parts, self._changes, settings, outbox, self._admit)
         self._backend = BackendStatus(available=True)
         self._backend_since: Instant | None = None

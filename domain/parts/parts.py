@@ -14,7 +14,6 @@ from domain.events.parts import (
     NodeUnreachable,
     PartActualChanged,
 )
-from domain.findings import Blocker
 from domain.identifiers import ChangeId
 from domain.inputs import NodeReport, Restored
 from domain.lifecycle import LifecycleState
@@ -23,7 +22,6 @@ from domain.parameters import check_values
 from domain.parts.convergence import is_there
 from domain.parts.deviations import Deviations
 from domain.parts.mode_inference import ModeInference
-from domain.parts.node_doubts import doubt_of
 from domain.parts.node_facts import NodeFacts
 from domain.parts.reachability import Reachability
 from domain.parts.system_model import SmhModel
@@ -66,6 +64,8 @@ class Parts(Concern):
         """Parts about which something changed since the last `settle`."""
         self._moved: set[PartName] = set()
         """Those of them whose actual or target changed, so that a deviation may begin or end."""
+        self._changed: set[PartName] = set()
+        """Parts whose view changed since `take_changed` was called last."""
         self._untold: set[PartName] = set()
         """Those of them whose actual may differ from the published one."""
         self._to_look: dict[PartName, _Cause] = {}
@@ -161,6 +161,7 @@ class Parts(Concern):
             return False
         touched, self._touched = self._touched, set()
         self._outbox.parts |= touched
+        self._changed |= touched
         if self._views:
             for part in touched:
                 self._views.pop(part, None)
@@ -176,6 +177,11 @@ class Parts(Concern):
             self._to_look.pop(part, None)
             self._look(part, now)
         return True
+
+    def take_changed(self) -> set[PartName]:
+        """Return the parts whose views changed since the last call, for whoever judges them."""
+        changed, self._changed = self._changed, set()
+        return changed
 
     @property
     def has_more(self) -> bool:
@@ -217,12 +223,6 @@ class Parts(Concern):
     def views(self) -> Mapping[PartName, PartView]:
         """Return the views of all parts, systems first, in the order of the model file."""
         return {part: self.view(part) for part in self.model.parts}
-
-    def error(self, part: PartName, name: str) -> Blocker | None:
-        """Return why an error of a part is active; None: it is not, or the part has none such."""
-        facts = self.facts.get(part)
-        doubt = None if facts is None else doubt_of(part, facts, (part,))
-        return doubt if doubt is not None and doubt.code == name else None
 
     def parameters(self, node: PartName) -> tuple[ParameterView, ...]:
         """Return the parameters of a node, with the values that its target requires."""

@@ -56,6 +56,7 @@ NAMES: Mapping[type, str] = {
     kept.KeptChange: "kept_change",
     kept.KeptEmergencyStop: "kept_emergency_stop",
     kept.KeptError: "kept_error",
+    kept.KeptFailedChange: "kept_failed_change",
     kept.KeptHold: "kept_hold",
     kept.KeptTask: "kept_task",
     kept.KeptProgress: "kept_progress",

@@ -131,10 +131,23 @@ EVENTS: Mapping[str, tuple[object, ...]] = {
     "emergency_stop.engaged": (EmergencyStopEngaged(reason='Größe ≤ 3 — "gripper\\jam"'),),
     "emergency_stop.released": (EmergencyStopReleased(reason='Größe ≤ 3 — "gripper\\jam"'),),
     "emergency_stop.standstill": (EmergencyStopStandstill(),),
-    "error.acknowledged": (ErrorAcknowledged(error="LOW_BATTERY"),),
-    "error.cleared": (ErrorCleared(error="LOW_BATTERY"),),
+    "error.acknowledged": (
+        ErrorAcknowledged(error="LOW_BATTERY"),
+        ErrorAcknowledged(error="DEVIATES", part=PartName("arm")),
+    ),
+    "error.cleared": (
+        ErrorCleared(error="LOW_BATTERY"),
+        ErrorCleared(error="DEVIATES", part=PartName("arm")),
+    ),
     "error.raised": (
         ErrorRaised(error="LOW_BATTERY", message="12.5 % < 20 %", value=12.5, threshold=12.5),
+        ErrorRaised(
+            error="DEVIATES",
+            message="arm is inactive, target active.FAST",
+            value="inactive",
+            threshold="active.FAST",
+            part=PartName("arm"),
+        ),
     ),
     "goal.ended": (GoalEnded(goal=GoalId(5), succeeded=True, reason='Größe ≤ 3 — "gripper\\jam"'),),
     "goal.feedback": (GoalProgressed(goal=GoalId(5)),),

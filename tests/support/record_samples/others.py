@@ -14,6 +14,7 @@ from domain.kept import (
     KeptChange,
     KeptEmergencyStop,
     KeptError,
+    KeptFailedChange,
     KeptHold,
     KeptProgress,
     KeptTarget,
@@ -146,6 +147,15 @@ OTHERS: Mapping[str, tuple[object, ...]] = {
             error="LOW_BATTERY",
             since=1764420000123456789,
             message="12.5 % < 20 %",
+        ),
+    ),
+    "kept_failed_change": (
+        KeptFailedChange(
+            part=PartName("arm"),
+            change=ChangeId("3"),
+            message="change 3 failed: 12.5 % < 20 %",
+            status="failed",
+            since=1764420000123456789,
         ),
     ),
     "kept_hold": (
