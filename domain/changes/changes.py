@@ -8,7 +8,7 @@ from collections.abc import Iterable, Mapping, Sequence, Set
 from itertools import islice
 
 from domain.changes.kept_changes import ended_by_restart, kept_of
-from domain.changes.kept_targets import KeptTargets
+from domain.changes.kept_targets import KeptTargets, RequestOrder
 from domain.changes.node_steps import NodeSteps
 from domain.changes.plan import ChangeGoal
 from domain.changes.record import Change, Pursuit, Step
@@ -104,10 +104,21 @@ class Changes:
             self._outbox.forget(KeptChange, change.id)
             self._outbox.emit(CHANGE_ENDS[change.status](change.id, change.part, change.reason))
 
+    def ask(self, part: PartName, targets: Mapping[PartName, StateAndMode]) -> None:
+        """Set the targets that a request of a part asks for, and keep them over a restart."""
+        if targets:
+            self._parts.ask(targets)
+            self._kept_targets.note(part, targets)
+
+    @property
+    def requests(self) -> RequestOrder:
+        """Return which request set the target of each part; read only."""
+        return self._kept_targets
+
     def begin(
         self, part: PartName, request: ChangeRequest, goal: ChangeGoal, now: Instant
     ) -> ChangeId:
-        """Begin an admitted change; it may already have ended when this returns.
+        """Begin a change towards targets that are set; it may have ended when this returns.
 
         Args:
             part: The requested part.
@@ -123,9 +134,6 @@ class Changes:
             self._supersede(goal.targets.keys() | goal.nodes.keys(), change, now)
         self._changes[identity] = self._running[identity] = change
         self._parts.put_under(identity, (part, *goal.targets, *goal.nodes))
-        self._parts.ask(goal.targets)
-        if goal.targets:
-            self._kept_targets.note(part, goal.targets)
         self._outbox.keep(kept_of(change))
         change.set_out(goal.nodes)
         self._steps.add(change)
@@ -242,8 +250,8 @@ class Changes:
         resting = StateAndMode(self._parts.facts[node].known_state)
         if resting.state is LifecycleState.UNCONFIGURED:
             change.targets[node] = resting
-            self._parts.ask({node: resting})
-            self._kept_targets.note(node, {node: resting})
+            if self._parts.let_stay(node, resting):
+                self._kept_targets.note(node, {node: resting})
 
     def _conclude(self, change: Change, now: Instant) -> None:
         """End a running change after its last node has ended; success is verified."""
