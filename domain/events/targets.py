@@ -15,15 +15,14 @@ class DisplacementBegan(Event):
 
     part: PartName
     target: StateAndMode
-    was: StateAndMode | None
+    was: StateAndMode
     because: Because
     rule: str
     reason: str
 
     def _words(self) -> str:
-        instead = f" instead of {self.was.label}" if self.was else ""
-        words = f"{self.part}: {self.because} {self.rule} sets {self.target.label}{instead}"
-        return because(words, self.reason)
+        instead = f"{self.target.label} instead of {self.was.label}"
+        return because(f"{self.part}: {self.because} {self.rule} sets {instead}", self.reason)
 
 
 @dataclass(frozen=True, slots=True)
@@ -40,8 +39,9 @@ class DisplacementEnded(Event):
     reason: str
 
     def _words(self) -> str:
-        back = f"back to {self.target.label}" if self.target else "without a target"
-        return because(f"{self.part}: {back} after {self.because} {self.rule}", self.reason)
+        now = self.target.label if self.target else "no target"
+        what = f"{self.was.label} of {self.because} {self.rule}"
+        return because(f"{self.part}: {now} replaces {what}", self.reason)
 
 
 @dataclass(frozen=True, slots=True)

@@ -85,6 +85,7 @@ class Displacing:
         """
         system, rule = watch.system, watch.rule
         was, request = self._parts.target(system), self._request(watch)
+        assert was is not None, "it is the target that the rule replaces"
         goal = self._changing.admission.goal(request)
         began = DisplacementBegan(
             system, rule.new_target, was, Because.RULE, rule.name, watch.reason
