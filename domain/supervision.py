@@ -6,7 +6,7 @@ live service, in a simulation and in a test.
 Its concerns make the decisions; this module keeps their order.
 """
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -27,6 +27,7 @@ from domain.parts.system_model import SmhModel
 from domain.reactions.rules import Rules
 from domain.reactions.settings import RuleSettings
 from domain.restart import Restart
+from domain.robot_facts import RobotFacts
 from domain.robot_state import RobotState
 from domain.snapshot import (
     ChangeView,
@@ -34,8 +35,8 @@ from domain.snapshot import (
     ModeView,
     ParameterView,
     PartView,
+    PlanView,
     SignalView,
-    StepView,
     SystemStateView,
 )
 from domain.stalls import Stalls
@@ -87,6 +88,8 @@ class Supervision:
             self._outbox,
             start,
         )
+        self.facts = RobotFacts(self._parts, self._health, self.driving, self._parts.error)
+        """What conditions are evaluated over."""
         storage = Storage(self._outbox)
         self._robot_state = RobotState(self._health, self.driving, storage, self._outbox)
         self._changing = Changing(self._parts, self._health, settings.changes, self._outbox)
@@ -231,8 +234,8 @@ class Supervision:
         """Return the transitions that would be accepted now and change something."""
         return self._changing.available_transitions(part)
 
-    def plan(self, request: ChangeRequest) -> Sequence[StepView]:
-        """Return the steps that a request would take now, without starting them.
+    def plan(self, request: ChangeRequest) -> PlanView:
+        """Return what a request would do now, without starting it.
 
         Raises:
             PilothouseError: The request would be rejected.

@@ -5,6 +5,7 @@ from collections.abc import Iterator
 from docs.generate.markdown import code, page, table
 from docs.generate.source_scan import codes_given_to, codes_in, require_described
 from domain.changes.admission import ADVISORY
+from domain.conditions.explanation import CONDITION, UNKNOWN_VALUE
 from domain.errors import BackendUnavailableError
 from domain.health.signals import (
     DECLARED_BIT,
@@ -33,6 +34,13 @@ _OF_THE_VEHICLE = {
     "braking with [`driving.braking_mps2`](settings.md) takes.",
     STANDSTILL_UNKNOWN: "No pose shows after that time whether the vehicle stands.",
 }
+_OF_CONDITIONS = {
+    CONDITION: "A condition is false.",
+    UNKNOWN_VALUE: "A condition is neither true nor false, since something that it names is not "
+    "known: a signal that was never seen or is stale, a silent node, an old pose.",
+    "DEVIATES": "A part is not where its target says; the message names the part below it.",
+    "HOLD": "A hold keeps the task paused.",
+}
 _WARNINGS = {
     "CLOCK_SKEW": "The stamps of a signal differ from the local clock by more than a second.",
     "LATE_TICKS": "Ticks were skipped: the machine is overloaded.",
@@ -54,7 +62,9 @@ reason says why the robot is in ERROR, or that the vehicle should stand and does
 | `value`, `threshold` | the current value, and what it is compared with; `null` if there is none |
 | `since_at` | since when |
 | `root_cause` | whether it is a cause itself rather than the effect of another one |
-| `refuses` | whether a request is rejected because of it; false: it is only shown |"""
+| `refuses` | whether a request is rejected because of it; false: it is only shown |
+| `causes` | what it follows from, in the same form; empty: it is a cause |
+| `condition` | the [condition](../explanation/conditions.md) that is not true; `null`: none |"""
 
 _VEHICLE = """\
 The vehicle should stand after a task was held or ended and after a hold was set, and as long as a
@@ -77,6 +87,8 @@ def blockers_page() -> str:
     """
     of_changes = codes_in("domain/changes/admission.py") | {ESTOP, BackendUnavailableError.code}
     require_described("blockers", of_changes, set(_OF_CHANGES))
+    of_conditions = codes_in("domain/robot_reasons.py") | {CONDITION, UNKNOWN_VALUE}
+    require_described("conditions", of_conditions, set(_OF_CONDITIONS))
     require_described("warnings", codes_given_to("WarningJson"), set(_WARNINGS))
     changes = (
         (code(name), "no" if name in ADVISORY else "yes", about)
@@ -90,6 +102,10 @@ def blockers_page() -> str:
         table(("code", "rejects the change", "cause"), changes),
         "A blocker that does not reject the change is a warning: an unreachable node may reappear"
         "\nbefore the deadline. Otherwise the change fails and names it.",
+        "## Conditions",
+        "A condition that is not true is shown as a tree: below an `and` what is not true, below an"
+        "\n`or` everything, and below each comparison what it comes from.",
+        table(("code", "meaning"), ((code(name), about) for name, about in _OF_CONDITIONS.items())),
         "## Signal errors",
         _SIGNALS,
         table(("error", "bit", "signal", "when"), _errors()),

@@ -12,7 +12,10 @@ from domain.changes.kept_targets import KeptTargets, RequestOrder
 from domain.changes.node_steps import NodeSteps
 from domain.changes.plan import ChangeGoal
 from domain.changes.record import Change, Pursuit, Step
+from domain.changes.rollback import goals_before
+from domain.changes.schedule import Schedule, schedule_of
 from domain.changes.settings import ChangeSettings
+from domain.deadlines import Deadlines
 from domain.errors import UnknownChangeError
 from domain.events.changes import CHANGE_ENDS
 from domain.health.health import Health
@@ -22,10 +25,12 @@ from domain.kept import KeptChange
 from domain.lifecycle import LifecycleState
 from domain.outbox import Outbox
 from domain.parts.convergence import is_there
+from domain.parts.mode_settings import OnFailure
 from domain.parts.parts import Parts
-from domain.snapshot import ChangeStatus, StepStatus
+from domain.plans.durations import Durations
+from domain.snapshot import ChangeStatus, Rollback, StepStatus
 from domain.state_and_mode import PartName, StateAndMode
-from domain.timebase import Instant
+from domain.timebase import Instant, to_seconds
 
 KEPT_CHANGES = 1_000
 KEPT_PURSUITS = 50_000
@@ -60,6 +65,7 @@ class Changes:
         self._running: dict[ChangeId, Change] = {}
         self._kept_targets = KeptTargets(parts.model, outbox)
         self._to_pack: dict[ChangeId, Change] = {}
+        self._deadlines: Deadlines[ChangeId] = Deadlines()
         self._count = 0
 
     # --- what can be seen ------------------------------------------------------------------------
@@ -80,9 +86,23 @@ class Changes:
         """Return the changes that are kept, the newest first."""
         return tuple(reversed(self._changes.values()))
 
+    def schedule(self, request: ChangeRequest, goal: ChangeGoal) -> Schedule:
+        """Return how the change that an admitted request begins would proceed."""
+        return schedule_of(
+            self._parts.model, request, goal, lambda part: self._inference.actual(part).mode
+        )
+
+    @property
+    def durations(self) -> Durations:
+        """Return how long steps took."""
+        return self._steps.durations
+
     def wake_at(self) -> Instant | None:
-        """Return the next deadline; None: there is none."""
-        return self._steps.wake_at()
+        """Return the next deadline; None: there is none, or reports must be taken in before."""
+        due, own = self._steps.wake_at(), self._deadlines.next()
+        if own is None or own > self._steps.judged_until(own):
+            return due
+        return own if due is None else min(due, own)
 
     @property
     def has_more(self) -> bool:
@@ -104,44 +124,62 @@ class Changes:
             self._outbox.forget(KeptChange, change.id)
             self._outbox.emit(CHANGE_ENDS[change.status](change.id, change.part, change.reason))
 
-    def ask(self, part: PartName, targets: Mapping[PartName, StateAndMode]) -> None:
-        """Set the targets that a request of a part asks for, and keep them over a restart."""
-        if targets:
-            self._parts.ask(targets)
-            self._kept_targets.note(part, targets)
-
     @property
     def requests(self) -> RequestOrder:
         """Return which request set the target of each part; read only."""
         return self._kept_targets
 
     def begin(
-        self, part: PartName, request: ChangeRequest, goal: ChangeGoal, now: Instant
+        self,
+        part: PartName,
+        request: ChangeRequest,
+        goal: ChangeGoal,
+        now: Instant,
+        *,
+        is_asked: bool = True,
     ) -> ChangeId:
-        """Begin a change towards targets that are set; it may have ended when this returns.
+        """Begin an admitted change; it may already have ended when this returns.
 
         Args:
             part: The requested part.
             request: What was requested.
             goal: Its targets and node goals, from the admission.
             now: The current time.
+            is_asked: Whether its targets are requested. Otherwise they are in force already, and a
+                failure does not lead back.
         """
         self._count += 1
         identity = ChangeId(f"c{self._count}")
         cause = self._outbox.record_input()
-        change = Change(identity, part, request, dict(goal.targets), now, cause)
+        schedule, targets = self.schedule(request, goal), dict(goal.targets)
+        if not is_asked:
+            schedule = schedule.without_rollback()
+        change = Change(
+            identity, part, request, targets, now, cause, schedule, self._steps.durations
+        )
         if self._running or not self._steps.is_idle:
             self._supersede(goal.targets.keys() | goal.nodes.keys(), change, now)
         self._changes[identity] = self._running[identity] = change
         self._parts.put_under(identity, (part, *goal.targets, *goal.nodes))
+        if is_asked:
+            self._ask(change)
         self._outbox.keep(kept_of(change))
+        if schedule.deadline is not None:
+            change.deadline_at = now + schedule.deadline
+            self._deadlines.set(identity, change.deadline_at)
         change.set_out(goal.nodes)
-        self._steps.add(change)
-        for node in islice(goal.nodes, STARTS_AT_ONCE):
-            self._steps.start(node, now)
+        self._set_out(change, now)
         self._conclude(change, now)
         self._forget_old()
         return identity
+
+    def _ask(self, change: Change) -> None:
+        """Set the targets that a change is to reach, and keep them over a restart."""
+        if change.schedule.on_failure is OnFailure.ROLLBACK:
+            change.targets_before = {name: self._parts.asked(name) for name in change.targets}
+        self._parts.ask(change.targets)
+        if change.targets:
+            self._kept_targets.note(change.part, change.targets)
 
     def cancel(self, change: ChangeId, now: Instant) -> None:
         """Start no further step of a change; without effect if all its nodes have ended.
@@ -155,8 +193,9 @@ class Changes:
         if found.open:
             self._outbox.record_input()
         self._drop(found.open.copy(), StepStatus.CANCELED, now)
+        found.leave(list(found.open), StepStatus.CANCELED, now)
         if found.status is ChangeStatus.RUNNING:
-            self._end(found, ChangeStatus.CANCELED, "canceled on request", now)
+            self._end_by(found, ChangeStatus.CANCELED, "canceled on request", now)
 
     def report(self, report: NodeReport, now: Instant) -> None:
         """Judge the step in flight by a report that the parts have processed, and continue."""
@@ -173,6 +212,9 @@ class Changes:
     def pass_time(self, now: Instant) -> None:
         """Handle all deadlines up to `now`."""
         self._steps.pass_time(now)
+        until = self._steps.judged_until(now)
+        while (identity := self._deadlines.pop_due(until)) is not None:
+            self._is_late(self._changes[identity], now)
 
     def go_on(self, now: Instant) -> None:
         """Start some more nodes of the change that began first."""
@@ -186,6 +228,60 @@ class Changes:
         for node in [node for node, waited_for in first if waited_for is change]:
             self._steps.start(node, now)
 
+    # --- the order of its nodes ------------------------------------------------------------------
+
+    def _set_out(self, change: Change, now: Instant) -> None:
+        """Start the nodes that wait for no other; foresee the steps of those that do."""
+        blocked = change.order.blocked
+        free = [node for node in change.goals if node not in blocked] if blocked else change.goals
+        if blocked:
+            for node in islice(change.goals, STARTS_AT_ONCE):
+                self._steps.foresee(change.pursue(node))
+        self._steps.add(change, free)
+        for node in islice(free, STARTS_AT_ONCE):
+            self._steps.start(node, now)
+
+    def _follow(self, change: Change, pursuit: Pursuit, now: Instant) -> None:
+        """Let those nodes begin that waited for one; or none any more, since that one failed."""
+        if change.status is not ChangeStatus.RUNNING or change.is_stopping:
+            return
+        is_strict = change.is_going_back or change.schedule.on_failure is not OnFailure.CONTINUE
+        if is_strict and pursuit.outcome is not StepStatus.SUCCEEDED:
+            self._stop(change, now)
+        else:
+            self._steps.add(change, change.order.done(pursuit.node))
+
+    def _stop(self, change: Change, now: Instant) -> None:
+        """Begin no further step of a running change; steps in flight end."""
+        change.is_stopping = True
+        in_flight = self._steps.stop(change.open, change.id, now)
+        change.leave(change.open - in_flight, StepStatus.CANCELED, now)
+
+    def _is_late(self, change: Change, now: Instant) -> None:
+        """End a change that is not done by its deadline, unless it ends or goes back already."""
+        if change.is_stopping or change.is_going_back or change.deadline_at is None:
+            return
+        allowed = to_seconds(change.deadline_at - change.started_at)
+        reason = f"not done within {allowed:g} s: {_joined(sorted(change.open))}"
+        if change.schedule.on_failure is OnFailure.ROLLBACK:
+            change.failure = (ChangeStatus.TIMED_OUT, reason)
+            self._stop(change, now)
+            self._conclude(change, now)
+            return
+        self._drop(change.open.copy(), StepStatus.CANCELED, now)
+        change.leave(list(change.open), StepStatus.CANCELED, now)
+        self._end(change, ChangeStatus.TIMED_OUT, reason, now)
+
+    def _go_back(self, change: Change, now: Instant) -> None:
+        """Take the nodes that were asked for something back to where they were."""
+        self._deadlines.clear(change.id)
+        self._parts.ask(change.targets_before)
+        self._kept_targets.restore_before(change.targets_before)
+        goals = goals_before(change)
+        change.turn_back(goals, change.schedule.order.turned(goals))
+        self._set_out(change, now)
+        self._conclude(change, now)
+
     # --- inside ----------------------------------------------------------------------------------
 
     @property
@@ -198,7 +294,16 @@ class Changes:
         reason = f"superseded by change {newer.id} of {newer.part}"
         for change in list(self._running.values()):
             if not change.pursuits.keys().isdisjoint(parts):
-                self._end(change, ChangeStatus.SUPERSEDED, reason, now)
+                self._leave_later_stages(change, now)
+                self._end_by(change, ChangeStatus.SUPERSEDED, reason, now)
+
+    def _leave_later_stages(self, change: Change, now: Instant) -> None:
+        """Let no node begin that waits for others; of those that go back, none at all."""
+        if change.is_going_back:
+            self._stop(change, now)
+        else:
+            blocked = [node for node in change.order.blocked if node in change.open]
+            change.leave(blocked, StepStatus.SUPERSEDED, now)
 
     def _drop(self, parts: Set[PartName], status: StepStatus, now: Instant) -> None:
         """Start no further step of nodes on their way, which may be of several changes."""
@@ -235,6 +340,7 @@ class Changes:
         change = self._changes[pursuit.change]
         change.open.discard(pursuit.node)
         self._let_stay(change, pursuit)
+        self._follow(change, pursuit, now)
         self._conclude(change, now)
         self._let_go(change, {pursuit.node})
         self._pack(change)
@@ -257,14 +363,42 @@ class Changes:
         """End a running change after its last node has ended; success is verified."""
         if change.open or change.status is not ChangeStatus.RUNNING:
             return
+        status, reason = self._verdict(change)
+        if change.failure is not None and change.is_going_back:
+            self._end_gone_back(change, reason, now)
+        elif status is ChangeStatus.SUCCEEDED:
+            self._end(change, status, None, now)
+        elif change.schedule.on_failure is OnFailure.ROLLBACK:
+            change.failure = change.failure or (ChangeStatus.FAILED, reason or "")
+            self._go_back(change, now)
+        else:
+            self._end(change, status, reason, now)
+
+    def _verdict(self, change: Change) -> tuple[ChangeStatus, str | None]:
+        """Return how the nodes of a change ended, all together, and why."""
+        if change.failure is not None and not change.is_going_back:
+            return change.failure
         for outcome, status in _UNHAPPY_ENDS.items():
             errors = change.errors_of(outcome)
             if errors:
-                self._end(change, status, _joined(errors), now)
-                return
-        missed = self._missed_target(change)
-        status = ChangeStatus.FAILED if missed else ChangeStatus.SUCCEEDED
-        self._end(change, status, missed, now)
+                return status, _joined(errors)
+        missed = None if change.is_going_back else self._missed_target(change)
+        return (ChangeStatus.FAILED, missed) if missed else (ChangeStatus.SUCCEEDED, None)
+
+    def _end_gone_back(self, change: Change, error: str | None, now: Instant) -> None:
+        """End a change whose nodes went back, or did not all."""
+        assert change.failure is not None
+        status, reason = change.failure
+        change.rollback = Rollback.INCOMPLETE if error else Rollback.DONE
+        words = f"rollback incomplete: {error}" if error else "rolled back"
+        self._end(change, status, f"{reason}; {words}", now)
+
+    def _end_by(self, change: Change, status: ChangeStatus, why: str, now: Instant) -> None:
+        """End a change by a request; one that goes back has failed, and remains half-way."""
+        if change.is_going_back:
+            self._end_gone_back(change, why, now)
+        else:
+            self._end(change, status, why, now)
 
     def _missed_target(self, change: Change) -> str | None:
         """Return how the requested part deviates from its target although all steps succeeded."""
@@ -285,6 +419,7 @@ class Changes:
     def _end(self, change: Change, status: ChangeStatus, reason: str | None, now: Instant) -> None:
         change.status, change.reason, change.ended_at = status, reason, now
         del self._running[change.id]
+        self._deadlines.clear(change.id)
         self._outbox.forget(KeptChange, change.id)
         self._let_go(change, {change.part, *change.targets, *change.pursuits})
         self._outbox.emit(CHANGE_ENDS[status](change.id, change.part, reason))

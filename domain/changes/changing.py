@@ -1,6 +1,6 @@
 """Changes as a concern of the core: requests in; steps and verified results out."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from itertools import islice
 
 from domain.changes.admission import ChangeAdmission, refuse
@@ -38,9 +38,10 @@ from domain.inputs import (
 from domain.lifecycle import LifecycleState, Transition
 from domain.outbox import Outbox
 from domain.parts.parts import Parts
-from domain.snapshot import ChangeView, ModeView, StepView
+from domain.plans.durations import Durations
+from domain.snapshot import ChangeView, ModeView, PlanView
 from domain.state_and_mode import ModeName, PartName
-from domain.timebase import Instant
+from domain.timebase import Duration, Instant
 
 
 class Changing(Concern):
@@ -102,7 +103,6 @@ class Changing(Concern):
         goal = self._admit(request)
         self._outbox.begin(now, _described(part, request), request.actor)
         self._parts.note_request(part)
-        self._changes.ask(part, goal.targets)
         self._outbox.change = self._changes.begin(part, request, goal, now)
         self._restoring.forget(goal.targets)
 
@@ -166,7 +166,7 @@ class Changing(Concern):
             goal: Its targets and node goals.
             now: The current time.
         """
-        self._changes.begin(part, request, goal, now)
+        self._changes.begin(part, request, goal, now, is_asked=False)
 
     # --- what can be seen ------------------------------------------------------------------------
 
@@ -193,21 +193,23 @@ class Changing(Concern):
             return ()
         return self._admission.available_transitions(part, self._health.stop_reasons)
 
-    def plan(self, request: ChangeRequest) -> Sequence[StepView]:
-        """Return the steps that a request would take now, without starting them.
+    def plan(self, request: ChangeRequest) -> PlanView:
+        """Return what a request would do now, without starting it.
 
         Raises:
             PilothouseError: The request would be rejected.
         """
         check_request(self._parts.model, self._parts.facts, request)
         goal = self._admit(request)
-        steps = []
+        order, durations = self._changes.schedule(request, goal).order, self._changes.durations
+        steps: dict[PartName, list[Step]] = {}
         for node, node_goal in goal.nodes.items():
             facts = self._parts.facts[node]
             unknown = facts.known_state is LifecycleState.UNKNOWN
             actions = presumed_steps(node_goal) if unknown else next_steps(facts, node_goal)
-            steps += [Step(ChangeId(""), node, action) for action in actions or ()]
-        return StepTable(steps)
+            steps[node] = [Step(ChangeId(""), node, action) for action in actions or ()]
+        table = StepTable([step for own in steps.values() for step in own], order, durations)
+        return PlanView(table, order.stages, order.longest(_expected_times(steps, durations)))
 
     def change(self, identity: str) -> ChangeView:
         """Return a change.
@@ -228,6 +230,20 @@ class Changing(Concern):
         """
         kept = (c for c in self._changes.all() if part is None or c.part == part)
         return tuple(change.view() for change in islice(kept, limit))
+
+
+def _expected_times(
+    steps: Mapping[PartName, Sequence[Step]], durations: Durations
+) -> dict[PartName, Duration] | None:
+    """Return how long each node is expected to take; None: of some step it is not known."""
+    times: dict[PartName, Duration] = {}
+    for node, own in steps.items():
+        each = [durations.expected(node, step.action_name) for step in own]
+        known = [took for took in each if took is not None]
+        if len(known) < len(each):
+            return None
+        times[node] = sum(known)
+    return times
 
 
 def _described(part: PartName, request: ChangeRequest) -> ChangeRequested:

@@ -62,6 +62,17 @@ class KeptTargets:
         self._outbox.keep(KeptTarget(part, target, self._order, staying_in(target, targets)))
         self._own(self._order, targets)
 
+    def restore_before(self, targets: Mapping[PartName, StateAndMode | None]) -> None:
+        """Keep targets again that a request had replaced; None: there was none."""
+        for part, target in targets.items():
+            if target is None:
+                self._disown([part])
+                self._owner.pop(part, None)
+            else:
+                self._order += 1
+                self._outbox.keep(KeptTarget(part, target, self._order))
+                self._own(self._order, [part])
+
     def restore(self, kept: Iterable[Kept]) -> dict[PartName, StateAndMode]:
         """Return the targets of all parts that follow from the requests that were kept.
 
@@ -99,9 +110,13 @@ class KeptTargets:
 
     def _own(self, order: int, parts: Collection[PartName]) -> None:
         """Note that a request set the targets of parts; forget those that have none left."""
-        replaced = Counter(map(self._owner.get, parts))
+        self._disown(parts)
         self._owner.update(dict.fromkeys(parts, order))
         self._count[order] = len(parts)
+
+    def _disown(self, parts: Collection[PartName]) -> None:
+        """Note that the targets of parts are replaced; forget requests that have none left."""
+        replaced = Counter(map(self._owner.get, parts))
         for earlier, count in replaced.items():
             if earlier is None:
                 continue

@@ -148,7 +148,7 @@ class Restoring:
             return False
         self._begun[node] = [*begun, now]
         self._outbox.begin(now, NodeRestoring(node, target), cause=cause)
-        self._changes.begin(node, request, goal, now)
+        self._changes.begin(node, request, goal, now, is_asked=False)
         return True
 
     def _tell_not_restored(self, told: NodeNotRestored, cause: int, now: Instant) -> None:

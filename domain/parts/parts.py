@@ -23,6 +23,7 @@ from domain.parameters import check_values
 from domain.parts.convergence import is_there
 from domain.parts.deviations import Deviations
 from domain.parts.mode_inference import ModeInference
+from domain.parts.node_doubts import doubt_of
 from domain.parts.node_facts import NodeFacts
 from domain.parts.reachability import Reachability
 from domain.parts.system_model import SmhModel
@@ -122,8 +123,8 @@ class Parts(Concern):
         self._moved |= changed
         self._tell_actuals(changed)
 
-    def ask(self, wanted: Mapping[PartName, StateAndMode]) -> None:
-        """Set requested targets; they are in force at once."""
+    def ask(self, wanted: Mapping[PartName, StateAndMode | None]) -> None:
+        """Set requested targets, in force at once; None: the part has none any more."""
         self._note_moved(self._targets.ask(wanted) | wanted.keys())
 
     def displace(self, displaced: Displacement) -> None:
@@ -217,6 +218,10 @@ class Parts(Concern):
         """Return the target in force of a part; None: it has none."""
         return self.inference.target(part)
 
+    def asked(self, part: PartName) -> StateAndMode | None:
+        """Return the requested target of a part; None: there is none."""
+        return self._targets.asked(part)
+
     @property
     def displacements(self) -> Sequence[Displacement]:
         """Return which systems are displaced, those that prevail last; read only."""
@@ -240,6 +245,12 @@ class Parts(Concern):
     def views(self) -> Mapping[PartName, PartView]:
         """Return the views of all parts, systems first, in the order of the model file."""
         return {part: self.view(part) for part in self.model.parts}
+
+    def error(self, part: PartName, name: str) -> Blocker | None:
+        """Return why an error of a part is active; None: it is not, or the part has none such."""
+        facts = self.facts.get(part)
+        doubt = None if facts is None else doubt_of(part, facts, (part,))
+        return doubt if doubt is not None and doubt.code == name else None
 
     def parameters(self, node: PartName) -> tuple[ParameterView, ...]:
         """Return the parameters of a node, with the values that its target requires."""

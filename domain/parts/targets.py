@@ -52,17 +52,17 @@ class Targets:
 
     def __init__(self, inference: ModeInference) -> None:
         self._inference = inference
-        self._asked: dict[PartName, StateAndMode] = {}
+        self._asked: dict[PartName, StateAndMode | None] = {}
         self._displacements: list[Displacement] = []
         """Whoever prevails comes last."""
         self._shared: _Shown = {}
         """One object for all parts with the same requested target."""
 
-    def ask(self, wanted: Mapping[PartName, StateAndMode]) -> set[PartName]:
+    def ask(self, wanted: Mapping[PartName, StateAndMode | None]) -> set[PartName]:
         """Set requested targets, in force at once; return the parts about which that changed more.
 
         Args:
-            wanted: The targets of the requested part and of those below it.
+            wanted: Of the requested part and of those below it; None: the part has none any more.
         """
         self._asked.update(wanted)
         if not self._displacements:

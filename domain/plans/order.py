@@ -7,11 +7,11 @@ say which node waits for which parts.
 
 from collections.abc import Callable, Collection, Iterable, Mapping, Sequence, Set
 from dataclasses import dataclass, field
-from graphlib import TopologicalSorter
 
 from domain.parts.mode_settings import TransitionSettings
 from domain.parts.system_model import SmhModel
 from domain.state_and_mode import PartName
+from domain.timebase import Duration
 
 
 @dataclass(slots=True, eq=False)
@@ -35,7 +35,7 @@ class Order:
         """Begin with no node done.
 
         Args:
-            units: The outer ones first; each has nodes.
+            units: The outer ones first.
         """
         self._units = units
         self._of_node: dict[PartName, list[int]] = {}
@@ -70,31 +70,64 @@ class Order:
     def after(self, node: PartName) -> tuple[PartName, ...]:
         """Return the nodes that a node waits for, without those that these wait for."""
         for number in reversed(self._of_node.get(node, ())):
-            if before := self._units[number].before:
-                return tuple(dict.fromkeys(name for part in before for name in self._last(part)))
+            if last := self._last_before(number):
+                return last
         return ()
 
     def done(self, node: PartName) -> list[PartName]:
         """Note that a node is done; return those that now wait for nothing any more."""
-        released: list[PartName] = []
+        ended = []
         for number in self._of_node.get(node, ()):
             unit = self._units[number]
             unit.open -= 1
             if not unit.open:
-                self._release(unit.followers, released)
-        return released
+                ended.append(number)
+        return self._release(ended)
 
-    def _release(self, units: Iterable[int], released: list[PartName]) -> None:
-        for number in units:
-            unit = self._units[number]
-            unit.waits -= 1
-            if unit.waits:
-                continue
-            for node in unit.nodes:
-                self._blocked[node] -= 1
-                if not self._blocked[node]:
-                    del self._blocked[node]
-                    released.append(node)
+    def longest(self, times: Mapping[PartName, Duration] | None) -> Duration | None:
+        """Return how long all nodes take in this order; None: of some it is not known.
+
+        Args:
+            times: Of each node of the change.
+        """
+        if times is None:
+            return None
+        ends: dict[PartName, Duration] = {}
+        for node in sorted(times, key=self.stage):
+            begin = max((ends[name] for name in self.after(node)), default=0)
+            ends[node] = begin + times[node]
+        return max(ends.values(), default=0)
+
+    def turned(self, nodes: Collection[PartName]) -> "Order":
+        """Return the order in which some of the nodes go back: what came last goes first."""
+        return Order(
+            [
+                Unit(
+                    tuple(node for node in unit.nodes if node in nodes),
+                    list(unit.followers),
+                    list(unit.before),
+                )
+                for unit in self._units
+            ]
+        )
+
+    def _release(self, ended: list[int]) -> list[PartName]:
+        """Return the nodes that wait for nothing any more, since these parts are done."""
+        released: list[PartName] = []
+        while ended:
+            for number in self._units[ended.pop()].followers:
+                unit = self._units[number]
+                unit.waits -= 1
+                if unit.waits:
+                    continue
+                if not unit.nodes:
+                    ended.append(number)
+                for node in unit.nodes:
+                    self._blocked[node] -= 1
+                    if not self._blocked[node]:
+                        del self._blocked[node]
+                        released.append(node)
+        return released
 
     def _begin(self) -> None:
         """Begin with no node done."""
@@ -104,6 +137,8 @@ class Order:
             if unit.before:
                 for node in unit.nodes:
                     self._blocked[node] = self._blocked.get(node, 0) + 1
+        # A part without nodes in the change is done as soon as those before it are.
+        self._release([n for n, unit in enumerate(self._units) if not (unit.nodes or unit.before)])
 
     def _number(self) -> dict[PartName, int]:
         """Do all nodes, stage by stage; return the stage of each."""
@@ -113,6 +148,18 @@ class Order:
             stages.update(dict.fromkeys(ready, stage))
             stage, ready = stage + 1, [name for node in ready for name in self.done(node)]
         return stages
+
+    def _last_before(self, number: int) -> tuple[PartName, ...]:
+        """Return the last nodes of the parts that a part waits for."""
+        last: dict[PartName, None] = {}
+        before = list(self._units[number].before)
+        for part in before:
+            unit = self._units[part]
+            if unit.nodes:
+                last.update(dict.fromkeys(self._last(part)))
+            else:
+                before += [name for name in unit.before if name not in before]
+        return tuple(last)
 
     def _last(self, part: int) -> Iterable[PartName]:
         """Return the nodes of a part that no other one of its nodes waits for."""
@@ -187,15 +234,12 @@ def _add_units(
     after: Mapping[PartName, Sequence[PartName]],
     below: Mapping[PartName, tuple[PartName, ...]],
 ) -> None:
-    """Add the parts of one system; who waits for a part without nodes waits for what it does."""
-    stands_for: dict[PartName, list[int]] = {}
-    for part in TopologicalSorter(after).static_order():
-        waits_for = (number for name in after.get(part, ()) for number in stands_for[name])
-        before = list(dict.fromkeys(waits_for))
-        if not below[part]:
-            stands_for[part] = before
-            continue
-        stands_for[part] = [len(units)]
-        for earlier in before:
-            units[earlier].followers.append(len(units))
-        units.append(Unit(below[part], before))
+    """Add the parts of one system that wait or are waited for."""
+    numbers = {part: len(units) + place for place, part in enumerate(below)}
+    units += [
+        Unit(nodes, [numbers[name] for name in dict.fromkeys(after.get(part, ()))])
+        for part, nodes in below.items()
+    ]
+    for number in numbers.values():
+        for before in units[number].before:
+            units[before].followers.append(number)

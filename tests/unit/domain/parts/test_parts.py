@@ -374,6 +374,8 @@ def test_what_a_request_changes_of_a_large_robot_is_told_in_later_turns_and_in_o
 
 def test_the_state_of_a_system_is_told_before_its_deviation() -> None:
     robot = LargeRobot()
+    for node in BIG.nodes:
+        robot.report(NodeReport(node, state=S.INACTIVE), now=1)
     robot.ask_all(now=7)
     while robot.parts.has_more:
         robot.go_on(now=9)
