@@ -55,13 +55,28 @@ class Actual:
         object.__setattr__(self, "state_and_mode", StateAndMode(self.state, self.mode))
 
 
+class Because(StrEnum):
+    """Who set the target in force of a part; each prevails over those before it."""
+
+    REQUESTED = "requested"
+    RULE = "rule"
+    INVARIANT = "invariant"
+    REACTION = "reaction"
+
+
 @dataclass(frozen=True, slots=True)
 class EffectiveTarget:
     """The target in force, and why it may differ from the requested one."""
 
     state: LifecycleState
     mode: ModeName | None
-    because: str
+    because: Because
+    rule: str | None = None
+    """Name of the rule that set it; None: no rule did."""
+    cause: int | None = None
+    """Id of the event that recorded why it differs; None: it is the requested one."""
+    blockers: tuple[Blocker, ...] = ()
+    """Why the requested target is not in force; empty: it is."""
 
 
 @dataclass(frozen=True, slots=True)

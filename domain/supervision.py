@@ -28,6 +28,8 @@ from domain.loosening import may_loosen
 from domain.outbox import Outbox, Outputs
 from domain.parts.parts import Parts
 from domain.parts.system_model import SmhModel
+from domain.reactions.rules import Rules
+from domain.reactions.settings import RuleSettings
 from domain.restart import Restart
 from domain.robot_facts import RobotFacts
 from domain.robot_state import RobotState
@@ -64,6 +66,7 @@ class SupervisionSettings:
     changes: ChangeSettings = field(default_factory=ChangeSettings)
     tasks: TaskSettings = field(default_factory=TaskSettings)
     vehicle: VehicleLimits = field(default_factory=VehicleLimits)
+    rules: RuleSettings = field(default_factory=RuleSettings)
 
 
 class Supervision:
@@ -118,6 +121,7 @@ class Supervision:
             self._part_errors,
             FactChanges(watched, self.driving, self._outbox),
             self._changing,
+            Rules(self._parts, self._changing, self._health, settings.rules, self._outbox),
             Audit(self._outbox),
             Stalls(self._outbox),
         )

@@ -6,6 +6,7 @@ from itertools import islice
 from domain.changes.admission import ChangeAdmission, refuse
 from domain.changes.changes import Changes
 from domain.changes.guards import Guards
+from domain.changes.kept_targets import RequestOrder
 from domain.changes.plan import ChangeGoal, next_steps, presumed_steps
 from domain.changes.record import Step, StepTable
 from domain.changes.request_check import check_request
@@ -148,6 +149,34 @@ class Changing(Concern):
 
     def _take_backlog(self, backlog: ReportBacklog, now: Instant) -> None:
         self._changes.note_backlog(backlog)
+
+    # --- for concerns that set targets in force ---------------------------------------------------
+
+    @property
+    def admission(self) -> ChangeAdmission:
+        """Return what judges goals."""
+        return self._admission
+
+    @property
+    def requests(self) -> RequestOrder:
+        """Return which request set the target of each part; read only."""
+        return self._changes.requests
+
+    @property
+    def is_available(self) -> bool:
+        """Tell whether the backend works, so that a change could begin at all."""
+        return self._backend.available
+
+    def drive(self, part: PartName, request: ChangeRequest, goal: ChangeGoal, now: Instant) -> None:
+        """Begin a change towards targets that are in force already; it supersedes others.
+
+        Args:
+            part: The part whose target it is.
+            request: What it would be as a request, in the name of who set the target.
+            goal: Its targets and node goals.
+            now: The current time.
+        """
+        self._changes.begin(part, request, goal, now, is_asked=False)
 
     # --- what can be seen ------------------------------------------------------------------------
 

@@ -5,7 +5,7 @@ import pytest
 from domain.events.event import RecordedEvent
 from domain.health.part_errors import DEVIATES_AFTER, LOOKS_AT_ONCE
 from domain.inputs import ModeRequest, NodeReport, ParametersRequest, Restored, TimePassed
-from domain.kept import KeptChange, KeptFailedChange
+from domain.kept import Keeping, KeptChange, KeptFailedChange
 from domain.lifecycle import LifecycleState, Transition
 from domain.parts.system_model import SmhModel
 from domain.simulation.node_settings import Fault
@@ -455,7 +455,7 @@ def test_who_comes_back_before_its_turn_is_not_told_to_have_deviated() -> None:
         due = robot.core.wake_at()
         assert due is not None
         robot.core.handle(TimePassed(), due)
-    now = due
+    now = robot.core.wake_at() or 0
     robot.core.handle(
         NodeReport(
             last,
