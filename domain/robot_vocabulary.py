@@ -1,11 +1,13 @@
 """What conditions can name on a robot: the parts of its model, its signals and their errors."""
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
+from typing import Protocol
 
 from domain.conditions.vocabulary import Kind, PartTerms, Terms, Vocabulary
 from domain.health.signals import STALE_DATA, SignalKind, SignalSettings, SignalSpec
 from domain.parameters import ParameterValue
-from domain.parts.system_model import NodeModel, SmhModel
+from domain.parts.system_model import NodeModel, SystemModel
+from domain.state_and_mode import PartName
 
 ERRORS_OF_PARTS = ("DEVIATES", "CHANGE_FAILED", "INVARIANT_BROKEN")
 """Errors that every part has."""
@@ -13,8 +15,22 @@ ERRORS_OF_NODES = ("UNREACHABLE", "ERROR_PROCESSING", "PARAMETERS_DRIFTED", *ERR
 """Errors that every node has."""
 
 
+class PartsOfRobot(Protocol):
+    """The parts of a model, which may have errors."""
+
+    @property
+    def nodes(self) -> Mapping[PartName, NodeModel]:
+        """Return the nodes by name."""
+        ...
+
+    @property
+    def systems(self) -> Mapping[PartName, SystemModel]:
+        """Return the systems by name."""
+        ...
+
+
 def vocabulary_of(
-    model: SmhModel, signals: Iterable[SignalSettings], *, is_complete: bool
+    model: PartsOfRobot, signals: Iterable[SignalSettings], *, is_complete: bool
 ) -> Vocabulary:
     """Return what conditions can name.
 

@@ -5,6 +5,8 @@ from itertools import islice
 
 from domain.changes.admission import ChangeAdmission, refuse
 from domain.changes.changes import Changes
+from domain.changes.guards import Guards
+from domain.changes.kept_targets import RequestOrder
 from domain.changes.plan import ChangeGoal, next_steps, presumed_steps
 from domain.changes.record import Step, StepTable
 from domain.changes.request_check import check_request
@@ -21,6 +23,7 @@ from domain.events.changes import (
 )
 from domain.findings import Blocker
 from domain.health.health import Health
+from domain.health.part_errors import PartErrors
 from domain.identifiers import ChangeId
 from domain.inputs import (
     BackendStatus,
@@ -47,13 +50,20 @@ class Changing(Concern):
     """Admits requests, drives the steps of changes, and restores nodes that reappear."""
 
     def __init__(
-        self, parts: Parts, health: Health, settings: ChangeSettings, outbox: Outbox
+        self,
+        parts: Parts,
+        health: Health,
+        part_errors: PartErrors,
+        settings: ChangeSettings,
+        outbox: Outbox,
+        guards: Guards,
     ) -> None:
         self._parts = parts
         self._health = health
         self._outbox = outbox
-        self._admission = ChangeAdmission(parts.model, parts.facts)
-        self._changes = Changes(parts, settings, outbox, health)
+        self._guards = guards
+        self._admission = ChangeAdmission(parts.model, parts.facts, guards)
+        self._changes = Changes(parts, settings, outbox, health, guards, part_errors)
         self._restoring = Restoring(parts, self._changes, settings, outbox, self._admit)
         self._backend = BackendStatus(available=True)
         self._backend_since: Instant | None = None
@@ -94,8 +104,9 @@ class Changing(Concern):
         self._changes.go_on(now)
 
     def settle(self, now: Instant) -> bool:
-        """Begin the next change that restores a node; return whether one began."""
-        return self._restoring.begin_next(now)
+        """End changes whose guards broke, and begin the next one that restores a node."""
+        has_ended = self._changes.judge_guards(now)
+        return self._restoring.begin_next(now) or has_ended
 
     def _take_request(self, request: ChangeRequest, now: Instant) -> None:
         part = check_request(self._parts.model, self._parts.facts, request)
@@ -138,6 +149,34 @@ class Changing(Concern):
 
     def _take_backlog(self, backlog: ReportBacklog, now: Instant) -> None:
         self._changes.note_backlog(backlog)
+
+    # --- for concerns that set targets in force ---------------------------------------------------
+
+    @property
+    def admission(self) -> ChangeAdmission:
+        """Return what judges goals."""
+        return self._admission
+
+    @property
+    def requests(self) -> RequestOrder:
+        """Return which request set the target of each part; read only."""
+        return self._changes.requests
+
+    @property
+    def is_available(self) -> bool:
+        """Tell whether the backend works, so that a change could begin at all."""
+        return self._backend.available
+
+    def drive(self, part: PartName, request: ChangeRequest, goal: ChangeGoal, now: Instant) -> None:
+        """Begin a change towards targets that are in force already; it supersedes others.
+
+        Args:
+            part: The part whose target it is.
+            request: What it would be as a request, in the name of who set the target.
+            goal: Its targets and node goals.
+            now: The current time.
+        """
+        self._changes.begin(part, request, goal, now, is_asked=False)
 
     # --- what can be seen ------------------------------------------------------------------------
 

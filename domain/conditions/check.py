@@ -64,7 +64,7 @@ def check(condition: Condition, vocabulary: Vocabulary) -> list[Fault]:
 
 
 def _check(leaf: Comparison, vocabulary: Vocabulary) -> Iterator[Fault]:
-    terms = _terms_of(leaf.subject, vocabulary)
+    terms = terms_of(leaf.subject, vocabulary)
     if isinstance(terms, Fault):
         yield terms
     elif leaf.stands_alone and terms.kind is not Kind.BOOLEAN:
@@ -83,8 +83,8 @@ def _check(leaf: Comparison, vocabulary: Vocabulary) -> Iterator[Fault]:
 # --- names ---------------------------------------------------------------------------------------
 
 
-def _terms_of(subject: Subject, vocabulary: Vocabulary) -> Terms | Fault:
-    """Return the values that a subject can have, or why there is no such subject."""
+def terms_of(subject: Subject, vocabulary: Vocabulary) -> Terms | Fault:
+    """Return the values that a fact can have, or why there is no such fact."""
     kind, name, part = subject.topic
     if kind is TopicKind.SIGNAL:
         return vocabulary.signals.get(name) or _unknown_signal(subject, vocabulary)
