@@ -8,22 +8,27 @@ import itertools
 import random
 from collections.abc import Callable, Iterator
 from contextlib import suppress
+from dataclasses import replace
 from typing import TypeAlias
 
 import pytest
 
+from domain import supervision
 from domain.conditions.condition import Condition
 from domain.conditions.evaluation import Truth, evaluate
 from domain.conditions.explanation import explain
+from domain.conditions.facts import Facts
 from domain.conditions.tree import TopicKind, comparisons
 from domain.conditions.watched import WatchedConditions
 from domain.errors import PilothouseError
 from domain.findings import Blocker
 from domain.inputs import NodeReport
 from domain.lifecycle import LifecycleState
+from domain.parts.mode_settings import ModeSettings
+from domain.parts.system_model import SmhModel
 from domain.simulation.node_settings import Fault
 from domain.snapshot import PartView, SignalView
-from domain.state_and_mode import PartName
+from domain.state_and_mode import ModeName, PartName
 from domain.supervision import Supervision
 from tests.support.core_robot import CoreRobot
 from tests.support.good import GOOD
@@ -201,3 +206,49 @@ def test_what_does_not_exist_is_unknown_and_never_raises() -> None:
         (leaf,) = comparisons(condition.root)
         is_hold = leaf.subject.topic.kind is TopicKind.HOLD
         assert (truth is Truth.FALSE) is is_hold, text
+
+
+# --- what the core keeps up to date by itself ----------------------------------------------------
+
+MORE = (
+    *("drive_base.parameters.max_speed > 0.5", "manipulator.parameters.max_torque > 0.12"),
+    *("drive_base.parameters.other > 1", "vehicle.x_m > 0.5", "task.progress > 0.02"),
+    *("drive_base.errors.UNREACHABLE", "actuation.errors.DEVIATES", "robot.state == RUNNING"),
+    *("drive_base.errors.PARAMETERS_DRIFTED", "part('robot').errors.CHANGE_FAILED"),
+)
+
+
+def _guarded(conditions: tuple[Condition, ...]) -> SmhModel:
+    """Return the nested model, with all conditions as guards of a mode."""
+    guards = {ModeName("MODERATE"): ModeSettings(requires=conditions)}
+    return replace(nested_model(), mode_settings={PartName("actuation"): guards})
+
+
+def _set_a_parameter(robot: CoreRobot, rng: random.Random) -> None:
+    """Let a node report a parameter; that may change nothing else about it."""
+    name, value = (
+        rng.choice(["max_speed", "max_torque", "other"]),
+        rng.choice([0.1, 0.15, 0.9, 5.0]),
+    )
+    robot.give(NodeReport(PartName(rng.choice(NODES)), parameters={name: value}))
+
+
+@pytest.mark.parametrize("seed", range(6))
+def test_every_change_of_a_fact_reaches_the_guards_that_name_it(
+    seed: int, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    made: list[WatchedConditions] = []
+
+    def noted(facts: Facts) -> WatchedConditions:
+        made.append(WatchedConditions(facts))
+        return made[-1]
+
+    monkeypatch.setattr(supervision, "WatchedConditions", noted)
+    rng = random.Random(seed)
+    guards = tuple(map(Condition, (*EXPECTED, *MORE)))
+    robot = CoreRobot(_guarded(guards))
+    (watched,) = made
+    for _ in range(STEPS):
+        rng.choice([_set_a_parameter, _let_happen, _let_happen])(robot, rng)
+        for guard in guards:
+            assert watched.truth(guard) is evaluate(guard, robot.core.facts), guard.text
