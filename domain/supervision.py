@@ -99,14 +99,15 @@ class Supervision:
         self._part_errors = PartErrors(self._parts, self._health.error_list, self._outbox, start)
         self.facts = RobotFacts(self._parts, self._health, self.driving, self._part_errors.reason)
         """What conditions are evaluated over."""
-        watched = WatchedConditions(self.facts)
+        self.conditions = WatchedConditions(self.facts)
+        """The conditions of the model, kept up to date; read only."""
         self._changing = Changing(
             self._parts,
             self._health,
             self._part_errors,
             settings.changes,
             self._outbox,
-            Guards(model, watched, start),
+            Guards(model, self.conditions, start),
         )
         # Driving stops the vehicle before the state is published and changes continue.
         self._concerns: tuple[Concern, ...] = (
@@ -119,19 +120,23 @@ class Supervision:
             storage,
             self._robot_state,
             self._part_errors,
-            FactChanges(watched, self.driving, self._outbox),
+            FactChanges(self.conditions, self.driving, self._outbox),
             self._changing,
             Rules(self._parts, self._changing, self._health, settings.rules, self._outbox),
             Audit(self._outbox),
             Stalls(self._outbox),
         )
         self._outbox.errors.clear()  # What is on from the start is no change.
+        self._arrange()
+
+    def _arrange(self) -> None:
+        """Note which concerns have to be asked when; most have nothing to do most of the time."""
         self._takers = _takers(self._concerns)
         self._clocked = [c for c in self._concerns if _overrides(c, "wake_at")]
         self._settling = [c for c in self._concerns if _overrides(c, "settle")]
         self._portioned = [c for c in self._concerns if _overrides(c, "go_on")]
         self._has_more = False
-        self._max_rounds = _SPARE_ROUNDS + len(model.parts)
+        self._max_rounds = _SPARE_ROUNDS + len(self.model.parts)
         self._wake_at = self._next_wake()
         """Cached: it is read several times per input, and only inputs and time change it."""
 
