@@ -13,11 +13,9 @@ from typing import TypeAlias
 
 import pytest
 
-from domain import supervision
 from domain.conditions.condition import Condition
 from domain.conditions.evaluation import Truth, evaluate
 from domain.conditions.explanation import explain
-from domain.conditions.facts import Facts
 from domain.conditions.tree import TopicKind, comparisons
 from domain.conditions.watched import WatchedConditions
 from domain.errors import PilothouseError
@@ -234,21 +232,12 @@ def _set_a_parameter(robot: CoreRobot, rng: random.Random) -> None:
 
 
 @pytest.mark.parametrize("seed", range(6))
-def test_every_change_of_a_fact_reaches_the_guards_that_name_it(
-    seed: int, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    made: list[WatchedConditions] = []
-
-    def noted(facts: Facts) -> WatchedConditions:
-        made.append(WatchedConditions(facts))
-        return made[-1]
-
-    monkeypatch.setattr(supervision, "WatchedConditions", noted)
+def test_every_change_of_a_fact_reaches_the_guards_that_name_it(seed: int) -> None:
     rng = random.Random(seed)
     guards = tuple(map(Condition, (*EXPECTED, *MORE)))
     robot = CoreRobot(_guarded(guards))
-    (watched,) = made
     for _ in range(STEPS):
         rng.choice([_set_a_parameter, _let_happen, _let_happen])(robot, rng)
         for guard in guards:
-            assert watched.truth(guard) is evaluate(guard, robot.core.facts), guard.text
+            kept = robot.core.conditions.truth(guard)
+            assert kept is evaluate(guard, robot.core.facts), guard.text
