@@ -6,7 +6,7 @@ from domain.conditions.condition import Condition
 from domain.conditions.evaluation import Truth
 from domain.conditions.watched import WatchedConditions
 from domain.fact_changes import FactChanges
-from domain.inputs import ModeRequest
+from domain.inputs import ModeRequest, NodeReport
 from domain.outbox import Outbox
 from domain.parts.mode_settings import ModeSettings
 from domain.parts.system_model import SmhModel
@@ -102,3 +102,15 @@ def test_without_conditions_nothing_is_done() -> None:
     watched = WatchedConditions(SetFacts())
     robot = CoreRobot(actuation_model())
     assert not FactChanges(watched, robot.core.driving, Outbox()).settle(0)
+
+
+def test_a_parameter_reaches_its_guard_though_nothing_else_about_the_node_changed() -> None:
+    model = actuation_model()
+    guard = Condition("drive_base.parameters.max_speed > 0.5")
+    settings = {ACTUATION: {PERFORMANCE: ModeSettings(requires=(guard,))}}
+    robot = CoreRobot(SmhModel(model.nodes, model.systems, settings))
+    robot.advance(0)
+
+    robot.give(NodeReport(BASE, parameters={"max_speed": 0.9}))
+
+    assert robot.core.conditions.truth(guard) is Truth.TRUE
