@@ -44,7 +44,7 @@ def vocabulary_of(
     for name, system in model.systems.items():
         modes = tuple(map(str, system.modes))
         parts[str(name)] = PartTerms(is_node=False, modes=modes, errors=ERRORS_OF_PARTS)
-    errors = [bound.error for signal in known for bound in signal.conditions]
+    errors = [bound.error for signal in known for bound in signal.bounds]
     return Vocabulary(
         parts,
         {signal.spec.name: _terms_of_signal(signal.spec) for signal in known},

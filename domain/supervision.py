@@ -12,9 +12,12 @@ from typing import Any
 
 from domain.audit import Audit
 from domain.changes.changing import Changing
+from domain.changes.guards import Guards
 from domain.changes.settings import ChangeSettings
 from domain.concern import Concern, settle
+from domain.conditions.watched import WatchedConditions
 from domain.events.service import TimeWasDue
+from domain.fact_changes import FactChanges
 from domain.health.emergency_stop import EmergencyStop
 from domain.health.health import Health
 from domain.health.signals import SignalSettings, default_signals
@@ -89,7 +92,14 @@ class Supervision:
         """What conditions are evaluated over."""
         storage = Storage(self._outbox)
         self._robot_state = RobotState(self._health, self.driving, storage, self._outbox)
-        self._changing = Changing(self._parts, self._health, settings.changes, self._outbox)
+        watched = WatchedConditions(self.facts)
+        self._changing = Changing(
+            self._parts,
+            self._health,
+            settings.changes,
+            self._outbox,
+            Guards(model, watched, start),
+        )
         # Driving stops the vehicle before the state is published and changes continue.
         self._concerns: tuple[Concern, ...] = (
             Restart(self._outbox),
@@ -100,6 +110,7 @@ class Supervision:
             Standstill(self.driving, self._emergency_stop, self._outbox),
             storage,
             self._robot_state,
+            FactChanges(watched, self._health, self.driving, self._outbox),
             self._changing,
             Audit(self._outbox),
             Stalls(self._outbox),

@@ -13,7 +13,7 @@ from domain.health.signals import (
     RATIO,
     STALE_DATA,
     STALE_DATA_BIT,
-    Condition,
+    Bound,
     SignalKind,
     SignalSettings,
     default_signals,
@@ -64,7 +64,7 @@ reason says why the robot is in ERROR, or that the vehicle should stand and does
 | `root_cause` | whether it is a cause itself rather than the effect of another one |
 | `refuses` | whether a request is rejected because of it; false: it is only shown |
 | `causes` | what it follows from, in the same form; empty: it is a cause |
-| `condition` | the text of the [condition](../explanation/conditions.md) that is not true; `null`: it is none |"""
+| `condition` | the [condition](../explanation/conditions.md) that is not true; `null`: none |"""
 
 _VEHICLE = """\
 The vehicle should stand after a task was held or ended and after a hold was set, and as long as a
@@ -119,21 +119,21 @@ def blockers_page() -> str:
 
 def _errors() -> Iterator[tuple[str, str, str, str]]:
     for settings in default_signals():
-        for condition in settings.conditions:
+        for bound in settings.bounds:
             name = settings.spec.name
-            yield code(condition.error), str(condition.bit), code(name), _when(settings, condition)
+            yield code(bound.error), str(bound.bit), code(name), _when(settings, bound)
     stale = f"older than {to_seconds(default_signals()[0].stale_after):g} s, or never received"
     yield code(STALE_DATA), str(STALE_DATA_BIT), "any", stale
     yield "of a declared signal", str(DECLARED_BIT), "its own", "as declared in the robot file"
 
 
-def _when(settings: SignalSettings, condition: Condition) -> str:
+def _when(settings: SignalSettings, bound: Bound) -> str:
     spec = settings.spec
     if spec.kind is SignalKind.NUMBER:
         unit = "" if spec.unit == RATIO else f" {spec.unit}"
-        words = f"{condition.comparison} {condition.threshold}{unit}"
+        words = f"{bound.comparison} {bound.threshold}{unit}"
     else:
-        words = code(str(condition.threshold).lower() if spec.is_stop else f"{condition.threshold}")
-    if condition.for_:
-        words += f" for {to_seconds(condition.for_):g} s"
+        words = code(str(bound.threshold).lower() if spec.is_stop else f"{bound.threshold}")
+    if bound.for_:
+        words += f" for {to_seconds(bound.for_):g} s"
     return f"{words}, or the emergency stop is engaged" if spec.is_stop else words

@@ -3,9 +3,11 @@
 `GET .../modes` shows the same blockers that a request would meet.
 """
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
+from itertools import islice
 
+from domain.changes.guards import Guards
 from domain.changes.plan import TOWARDS_REST, ChangeGoal, NodeGoal, NodeGoals, goal_of, next_steps
 from domain.errors import BlockedError, IllegalTransitionError
 from domain.findings import Blocker
@@ -36,9 +38,12 @@ _WORDS = {
 class ChangeAdmission:
     """Judges requests by the current facts about the nodes."""
 
-    def __init__(self, model: SmhModel, facts: Mapping[PartName, NodeFacts]) -> None:
+    def __init__(
+        self, model: SmhModel, facts: Mapping[PartName, NodeFacts], guards: Guards
+    ) -> None:
         self._model = model
         self._facts = facts
+        self._guards = guards
         self._goals = NodeGoals(model)
 
     def admit(self, request: ChangeRequest, estop: Sequence[Blocker]) -> ChangeGoal:
@@ -133,7 +138,18 @@ class ChangeAdmission:
         blockers = [self._blocker(part, node, code) for code, node in found[:MAX_BLOCKERS]]
         if estop and any(self._activates(node, want) for node, want in goal.nodes.items()):
             blockers = [replace(why, path=(part, *why.path)) for why in estop] + blockers
-        return tuple(blockers)
+        if guarded := self._guards.of(goal.targets):
+            of_guards = self._guard_blockers(part, guarded, goal)
+            blockers = [*islice(of_guards, MAX_BLOCKERS), *blockers]
+        return tuple(blockers[:MAX_BLOCKERS])
+
+    def _guard_blockers(
+        self, part: PartName, guarded: Sequence[PartName], goal: ChangeGoal
+    ) -> Iterator[Blocker]:
+        """Find the guards that do not hold, of the requested part first."""
+        for blocker in self._guards.blockers(guarded, goal.targets):
+            owner, *below = blocker.path
+            yield replace(blocker, path=(*self._path(part, PartName(owner)), *below))
 
     def _activates(self, node: PartName, goal: NodeGoal) -> bool:
         """Tell whether a node would, or in an unknown state might, be activated."""

@@ -7,6 +7,8 @@ from collections import defaultdict
 from collections.abc import Iterable, Mapping, Sequence, Set
 from itertools import islice
 
+from domain.changes.guarded_changes import GuardedChanges
+from domain.changes.guards import Guards
 from domain.changes.kept_changes import ended_by_restart, kept_of
 from domain.changes.kept_targets import KeptTargets
 from domain.changes.node_steps import NodeSteps
@@ -54,18 +56,26 @@ class Changes:
         settings: ChangeSettings,
         outbox: Outbox,
         health: Health,
+        guards: Guards,
     ) -> None:
         self._parts = parts
         self._inference = parts.inference
         self._outbox = outbox
         self._steps = NodeSteps(
-            parts, settings, outbox, health, self._take_end, self._take_loose_end
+            parts,
+            settings,
+            outbox,
+            health,
+            self._take_end,
+            self._take_loose_end,
+            self._forbidden,
         )
         self._changes: dict[ChangeId, Change] = {}
         self._running: dict[ChangeId, Change] = {}
         self._kept_targets = KeptTargets(parts.model, outbox)
         self._to_pack: dict[ChangeId, Change] = {}
         self._deadlines: Deadlines[ChangeId] = Deadlines()
+        self._guarded = GuardedChanges(guards, self._inference.model)
         self._count = 0
 
     # --- what can be seen ------------------------------------------------------------------------
@@ -99,10 +109,11 @@ class Changes:
 
     def wake_at(self) -> Instant | None:
         """Return the next deadline; None: there is none, or reports must be taken in before."""
-        due, own = self._steps.wake_at(), self._deadlines.next()
-        if own is None or own > self._steps.judged_until(own):
-            return due
-        return own if due is None else min(due, own)
+        own = self._deadlines.next()
+        if own is not None and own > self._steps.judged_until(own):
+            own = None
+        due = (self._steps.wake_at(), own, self._guarded.due)
+        return min((at for at in due if at is not None), default=None)
 
     @property
     def has_more(self) -> bool:
@@ -142,6 +153,7 @@ class Changes:
         change = Change(
             identity, part, request, targets, now, cause, schedule, self._steps.durations
         )
+        change.guarded = frozenset(self._guarded.parts_of(targets))
         if self._running or not self._steps.is_idle:
             self._supersede(goal.targets.keys() | goal.nodes.keys(), change, now)
         self._changes[identity] = self._running[identity] = change
@@ -156,6 +168,7 @@ class Changes:
             change.deadline_at = now + schedule.deadline
             self._deadlines.set(identity, change.deadline_at)
         change.set_out(goal.nodes)
+        self._guarded.add(change)
         self._set_out(change, now)
         self._conclude(change, now)
         self._forget_old()
@@ -208,6 +221,30 @@ class Changes:
         for node in [node for node, waited_for in first if waited_for is change]:
             self._steps.start(node, now)
 
+    def judge_guards(self, now: Instant) -> bool:
+        """End running changes of which an invariant is broken; return whether there are any."""
+        broken = self._guarded.broken(now)
+        for change, reason in broken:
+            self._fail(change, reason, now)
+        return bool(broken)
+
+    def _fail(self, change: Change, reason: str, now: Instant) -> None:
+        """Stop a running change, which then goes back if it is to on a failure."""
+        change.failure = (ChangeStatus.FAILED, reason)
+        self._guarded.drop(change)
+        self._stop(change, now)
+        self._conclude(change, now)
+
+    def _forbidden(self, pursuit: Pursuit) -> str | None:
+        """Return which guard keeps a node from its next step; None: none does."""
+        change = self._changes[pursuit.change]
+        if pursuit.rollback or not change.guarded:
+            return None
+        broken = self._guarded.forbids(change, pursuit.node)
+        if broken is not None and change.failure is None:
+            change.failure = (ChangeStatus.FAILED, broken)
+        return broken
+
     # --- the order of its nodes ------------------------------------------------------------------
 
     def _set_out(self, change: Change, now: Instant) -> None:
@@ -226,6 +263,7 @@ class Changes:
         if change.status is not ChangeStatus.RUNNING or change.is_stopping:
             return
         is_strict = change.is_going_back or change.schedule.on_failure is not OnFailure.CONTINUE
+        is_strict |= change.failure is not None
         if is_strict and pursuit.outcome is not StepStatus.SUCCEEDED:
             self._stop(change, now)
         else:
@@ -255,6 +293,7 @@ class Changes:
     def _go_back(self, change: Change, now: Instant) -> None:
         """Take the nodes that were asked for something back to where they were."""
         self._deadlines.clear(change.id)
+        self._guarded.drop(change)
         self._parts.ask(change.targets_before)
         self._kept_targets.restore_before(change.targets_before)
         goals = goals_before(change)
@@ -400,6 +439,7 @@ class Changes:
         change.status, change.reason, change.ended_at = status, reason, now
         del self._running[change.id]
         self._deadlines.clear(change.id)
+        self._guarded.drop(change)
         self._outbox.forget(KeptChange, change.id)
         self._let_go(change, {change.part, *change.targets, *change.pursuits})
         self._outbox.emit(CHANGE_ENDS[status](change.id, change.part, reason))

@@ -5,6 +5,7 @@ from itertools import islice
 
 from domain.changes.admission import ChangeAdmission, refuse
 from domain.changes.changes import Changes
+from domain.changes.guards import Guards
 from domain.changes.plan import ChangeGoal, next_steps, presumed_steps
 from domain.changes.record import Step, StepTable
 from domain.changes.request_check import check_request
@@ -47,13 +48,19 @@ class Changing(Concern):
     """Admits requests, drives the steps of changes, and restores nodes that reappear."""
 
     def __init__(
-        self, parts: Parts, health: Health, settings: ChangeSettings, outbox: Outbox
+        self,
+        parts: Parts,
+        health: Health,
+        settings: ChangeSettings,
+        outbox: Outbox,
+        guards: Guards,
     ) -> None:
         self._parts = parts
         self._health = health
         self._outbox = outbox
-        self._admission = ChangeAdmission(parts.model, parts.facts)
-        self._changes = Changes(parts, settings, outbox, health)
+        self._guards = guards
+        self._admission = ChangeAdmission(parts.model, parts.facts, guards)
+        self._changes = Changes(parts, settings, outbox, health, guards)
         self._restoring = Restoring(parts, self._changes, settings, outbox, self._admit)
         self._backend = BackendStatus(available=True)
         self._backend_since: Instant | None = None
@@ -94,8 +101,9 @@ class Changing(Concern):
         self._changes.go_on(now)
 
     def settle(self, now: Instant) -> bool:
-        """Begin the next change that restores a node; return whether one began."""
-        return self._restoring.begin_next(now)
+        """End changes whose guards broke, and begin the next one that restores a node."""
+        has_ended = self._changes.judge_guards(now)
+        return self._restoring.begin_next(now) or has_ended
 
     def _take_request(self, request: ChangeRequest, now: Instant) -> None:
         part = check_request(self._parts.model, self._parts.facts, request)

@@ -40,6 +40,7 @@ class NodeSteps:
         health: Health,
         ended: Callable[[Pursuit, Instant], None],
         loose_ended: Callable[[ChangeId], None],
+        forbidden: Callable[[Pursuit], str | None],
     ) -> None:
         """Begin without a pursuit.
 
@@ -50,6 +51,7 @@ class NodeSteps:
             health: Whether ESTOP is on.
             ended: Is handed each pursuit that reached its goal or failed, at once.
             loose_ended: Is handed the change of a step that ended after its pursuit was dropped.
+            forbidden: Returns why no further step of a node may begin; None: it may.
         """
         self._parts = parts
         self._facts = parts.facts
@@ -58,6 +60,7 @@ class NodeSteps:
         self._health = health
         self._ended = ended
         self._loose_ended = loose_ended
+        self._forbidden = forbidden
         self._waiting: dict[PartName, Change] = {}
         """By node that waits for its turn, in this order, the change that wants something of it."""
         self._pursuits: dict[PartName, Pursuit] = {}
@@ -239,6 +242,8 @@ class NodeSteps:
         elif step.action is Transition.ACTIVATE and self._health.is_stopped:
             why = f"{node} is not activated while ESTOP is active"
             self._finish(pursuit, StepStatus.FAILED, why, now)
+        elif (forbidden := self._forbidden(pursuit)) is not None:
+            self._finish(pursuit, StepStatus.FAILED, f"{node}: {forbidden}", now)
         else:
             self._begin_step(pursuit, step, now)
 

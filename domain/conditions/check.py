@@ -175,7 +175,10 @@ def _kind_of(value: Value) -> Kind:
 
 
 def _wrong_type(leaf: Comparison, terms: Terms, value: Value, column: int) -> Fault:
-    message = f"{leaf.subject.text} is {_WORDS[terms.kind]}, and {value_text(value)} is not"
+    text = value_text(value)
+    message = f"{leaf.subject.text} is {_WORDS[terms.kind]}, and {text} is not"
+    if terms.words is not None and text in terms.words:
+        message += f"; write '{text}' in quotes"
     return Fault("error", "WRONG_TYPE", message, column)
 
 

@@ -141,4 +141,5 @@ def _check_number(text: str, token: Token) -> None:
     if rest or not _NUMBER.fullmatch(token.text.lower()):
         written = token.text + rest
         shown = written if len(written) <= 20 else f"{written[:20]}..."
-        raise ConditionSyntaxError(f"{shown!r} is neither a number nor a word", token.column)
+        message = f"{shown!r} is neither a number nor a word; a name like this needs quotes"
+        raise ConditionSyntaxError(message, token.column)

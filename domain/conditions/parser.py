@@ -192,7 +192,8 @@ class _Parser:
         if word in ("and", "or", "not", "in"):
             raise ConditionSyntaxError(f"something is missing before {word!r}", token.column)
         if is_keyword(word):
-            words = _OF_PYTHON.get(word, f"a word of Python; write part('{word}') for a part")
+            other = f"a word of Python; write signal('{word}') or part('{word}')"
+            words = _OF_PYTHON.get(word, other)
             raise ConditionSyntaxError(f"{word!r}: {words}", token.column)
         if self._is_sign("("):
             return self._call(token)
@@ -299,7 +300,7 @@ class _Parser:
     def _fail_unexpected(self, wanted: str) -> NoReturn:
         token = self._token
         if token.kind is TokenKind.SIGN and token.text in "+-":
-            self._fail("a condition does not calculate")
+            self._fail("a condition does not calculate; a name with signs needs quotes")
         if token.kind is TokenKind.WORD and token.text in _OF_PYTHON:
             self._fail(f"{token.text!r}: {_OF_PYTHON[token.text]}")
         self._fail(f"expected {wanted}, found {token.shown}")

@@ -1,6 +1,6 @@
 """Conditions that are kept up to date: a change touches only those that name what changed."""
 
-from collections.abc import Iterable
+from collections.abc import Collection, Iterable
 from dataclasses import dataclass, field
 
 from domain.conditions.condition import Condition
@@ -19,6 +19,8 @@ class _Watched:
     condition: Condition
     truth: Truth
     since: Instant
+    broken_since: Instant | None
+    """Since when it is false or unknown; None: it is true."""
 
 
 @dataclass(slots=True)
@@ -47,6 +49,13 @@ class WatchedConditions:
         self._by_topic: dict[Topic, dict[Subject, list[_Leaf]]] = {}
         self._touched: dict[Topic, None] = {}
         """In the order in which they were touched."""
+        self.revision = 0
+        """Rises whenever a condition gets another value."""
+
+    @property
+    def topics(self) -> Collection[Topic]:
+        """Return what the conditions name."""
+        return self._by_topic.keys()
 
     def watch(self, conditions: Iterable[Condition], now: Instant) -> None:
         """Add conditions, and evaluate them; those that are watched already stay as they are.
@@ -59,7 +68,9 @@ class WatchedConditions:
             if condition.text in self._watched:
                 continue
             leaves = {leaf.text: self._leaf(leaf, now) for leaf in comparisons(condition.root)}
-            watched = _Watched(condition, self._truth_of(condition), now)
+            truth = self._truth_of(condition)
+            broken_since = None if truth is Truth.TRUE else now
+            watched = _Watched(condition, truth, now, broken_since)
             self._watched[condition.text] = watched
             for leaf in leaves.values():
                 leaf.conditions.append(watched)
@@ -89,7 +100,12 @@ class WatchedConditions:
             truth = self._truth_of(watched.condition)
             if truth is not watched.truth:
                 watched.truth, watched.since = truth, now
+                if truth is Truth.TRUE:
+                    watched.broken_since = None
+                elif watched.broken_since is None:
+                    watched.broken_since = now
                 changed.append(watched.condition)
+        self.revision += len(changed)
         return tuple(changed)
 
     def truth(self, condition: Condition) -> Truth:
@@ -99,6 +115,10 @@ class WatchedConditions:
     def since(self, condition: Condition) -> Instant:
         """Return since when a condition that is watched has its value."""
         return self._watched[condition.text].since
+
+    def broken_since(self, condition: Condition) -> Instant | None:
+        """Return since when a condition that is watched is false or unknown; None: it is true."""
+        return self._watched[condition.text].broken_since
 
     def explain(self, condition: Condition) -> tuple[Blocker, ...]:
         """Return why a condition that is watched is not true; empty: it is."""

@@ -13,6 +13,7 @@ from domain.outbox import Outbox, Outputs
 from domain.parts.parts import Parts
 from domain.snapshot import ModeView
 from domain.state_and_mode import PartName
+from tests.support.guards import unguarded
 from tests.support.models import ARM, BASE, FAST, actuation_model
 
 
@@ -24,7 +25,8 @@ class Robot:
         self.parts = Parts(actuation_model(), self.outbox)
         health = Health(default_signals(), self.outbox, 0)
         settings = ChangeSettings(restored_nodes=frozenset({BASE}))
-        self.changing = Changing(self.parts, health, settings, self.outbox)
+        guards = unguarded(self.parts.model)
+        self.changing = Changing(self.parts, health, settings, self.outbox, guards)
 
     def hand_in(self, given: Input, now: int = 0) -> Outputs:
         for concern in (self.parts, self.changing):

@@ -16,6 +16,7 @@ PARTS = {
         errors=("UNREACHABLE", "SILENT"),
     ),
     "left/arm": PartTerms(is_node=True),
+    "camera": PartTerms(is_node=True, modes=("__DEFAULT__", "2", "true")),
     "actuation": PartTerms(is_node=False, modes=("__DEFAULT__", "PERFORMANCE")),
 }
 SIGNALS = {
@@ -66,6 +67,8 @@ def test_everything_that_the_robot_has_can_be_named(text: str) -> None:
         ("drive_base.state == 3", "WRONG_TYPE", 21, "drive_base.state is a word, and 3 is not"),
         ("battery_level == LOW", "WRONG_TYPE", 18, "is a number, and LOW is not"),
         ("battery_level == true", "WRONG_TYPE", 18, "is a number, and true is not"),
+        ("camera.mode == 2", "WRONG_TYPE", 16, "and 2 is not; write '2' in quotes"),
+        ("camera.mode == true", "WRONG_TYPE", 16, "write 'true' in quotes"),
         ("estop == 1", "WRONG_TYPE", 10, "is true or false, and 1 is not"),
         ("estop in [true, yes]", "WRONG_TYPE", 17, "is true or false, and yes is not"),
         ("estop > false", "WRONG_TYPE", 9, "estop is true or false, which has no order"),
