@@ -2,7 +2,7 @@
 
 from dataclasses import replace
 
-from domain.commands import AskTransition
+from domain.commands import AskFacts, AskTransition
 from domain.lifecycle import Transition
 from domain.parts.system_model import NodeModel, Rule, SmhModel, SystemModel
 from domain.snapshot import EffectiveTarget
@@ -73,6 +73,13 @@ class RuledRobot(RestartingRobot):
     def __init__(self, model: SmhModel) -> None:
         super().__init__(model)
         self.read(**GOOD)
+
+    def come_back(self) -> None:
+        """Restart the service, and let it ask all nodes what they are in."""
+        self.restart()
+        for node in self.model.nodes:
+            self.nodes.handle(AskFacts(0, node), self.now)
+        self.advance(0)
 
     def somebody_asks(self, node: str, transition: str) -> None:
         """Let somebody else ask a node for a transition; let that be done."""

@@ -506,7 +506,7 @@ def test_what_is_requested_is_reached_and_stays(first: str) -> None:
 def test_what_a_rule_set_survives_a_restart_and_nothing_returns_by_itself() -> None:
     robot = degrading().degraded()
     cause = robot.pursued("actuation").cause
-    robot.restart()
+    robot.come_back()
     robot.advance(2)
     assert robot.target("drive_base") == f"{DEFAULT} by degrade"
     assert robot.asked("actuation") == "active.PERFORMANCE"
@@ -528,7 +528,7 @@ def test_a_part_that_outranked_a_rule_still_does_after_a_restart() -> None:
     robot = degrading().degraded()
     robot.ask_mode("drive_base", "SLOW")
     robot.advance(2)
-    robot.restart()
+    robot.come_back()
     robot.advance(2)
 
     assert robot.target("drive_base") == "active.SLOW"
@@ -538,7 +538,7 @@ def test_a_part_that_outranked_a_rule_still_does_after_a_restart() -> None:
 def test_after_a_restart_a_rule_deactivates_and_activates_nothing() -> None:
     up = Rule("up", active("MODERATE"), (BASE, active("FAST")), active("PERFORMANCE"))
     robot = RuledRobot(degrading_model(up)).in_performance()
-    robot.restart()
+    robot.come_back()
     robot.advance(2)
     robot.somebody_asks("drive_base", "deactivate")
     robot.advance(2)
@@ -551,7 +551,7 @@ def test_after_a_restart_a_rule_that_would_activate_waits_for_an_operator() -> N
     robot = RuledRobot(degrading_model(up))
     robot.ask_mode("actuation", "__DEFAULT__")
     robot.advance(2)
-    robot.restart()
+    robot.come_back()
     robot.advance(2)
     robot.somebody_sets("drive_base", "SLOW")
     robot.advance(20)
@@ -563,7 +563,7 @@ def test_after_a_restart_a_rule_that_would_activate_waits_for_an_operator() -> N
 def test_what_a_rule_set_that_the_model_no_longer_has_is_left_out_and_told() -> None:
     robot = degrading().degraded()
     robot.model = actuation_model()
-    robot.restart()
+    robot.come_back()
 
     assert robot.target("actuation") == "active.PERFORMANCE"
     (told,) = robot.happened("service.not_restored")
