@@ -10,12 +10,21 @@ from fastapi import APIRouter, Request, Response
 
 from api.http.body_parsing import InvalidBodyError
 from api.http.change_answers import CHANGE_RESPONSES, ChangeOptionsDep, answer_change
-from api.http.dependencies import ActorDep, PartDep, SupervisorDep
+from api.http.dependencies import (
+    ActorDep,
+    PartDep,
+    PartPath,
+    SupervisorDep,
+    known_of_kind,
+    known_part,
+)
+from api.http.error_answers import ActiveQuery, answer_errors
 from api.http.list_answers import json_list
 from api.http.part_text import part_text
 from api.http.request_body import JsonRoute
 from api.http.route_policy import AuditClass, Permission, policy
 from api.http.schemas.base import timestamp
+from api.http.schemas.errors import ErrorsJson
 from api.http.schemas.parts import (
     EnterableModeJson,
     ModeBody,
@@ -30,6 +39,7 @@ from api.http.schemas.parts import (
 from domain.errors import UnknownModeError
 from domain.inputs import ModeRequest, TransitionRequest
 from domain.lifecycle import PRIMARY_STATES, LifecycleState, Transition
+from domain.state_and_mode import part_name
 
 router = APIRouter(route_class=JsonRoute)
 
@@ -117,6 +127,24 @@ async def list_modes(part: PartDep, supervisor: SupervisorDep) -> ModesJson:
         items.append(EnterableModeJson.of(supervisor.core.mode(part, mode), supervisor.clock))
         await asyncio.sleep(0)
     return ModesJson(items=items)
+
+
+@router.get("/{part:path}/errors", response_model=ErrorsJson)
+@policy(Permission.OBSERVE)
+async def list_part_errors(
+    part: PartPath, supervisor: SupervisorDep, request: Request, *, active: ActiveQuery = None
+) -> Response:
+    """List the errors of the part, also those that are normal."""
+    whole = part_name(f"{part}/errors")
+    if whole in known_of_kind(request, supervisor):
+        # The longest known part wins.
+        view = supervisor.core.part(whole)
+        text = part_text(view, partial(timestamp, supervisor.clock))
+        return Response(text, media_type="application/json")
+    name = known_part(part, request, supervisor)
+    # What is due by now is an error by now.
+    supervisor.let_pass()
+    return await answer_errors(supervisor, supervisor.core.errors_of(name), active)
 
 
 # Last, since its path matches those of all others.
