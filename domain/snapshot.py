@@ -55,13 +55,28 @@ class Actual:
         object.__setattr__(self, "state_and_mode", StateAndMode(self.state, self.mode))
 
 
+class Because(StrEnum):
+    """Who set the target in force of a part; each prevails over those before it."""
+
+    REQUESTED = "requested"
+    RULE = "rule"
+    INVARIANT = "invariant"
+    REACTION = "reaction"
+
+
 @dataclass(frozen=True, slots=True)
 class EffectiveTarget:
     """The target in force, and why it may differ from the requested one."""
 
     state: LifecycleState
     mode: ModeName | None
-    because: str
+    because: Because
+    rule: str | None = None
+    """Name of the rule that set it; None: no rule did."""
+    cause: int | None = None
+    """Id of the event that recorded why it differs; None: it is the requested one."""
+    blockers: tuple[Blocker, ...] = ()
+    """Why the requested target is not in force; empty: it is."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -128,6 +143,14 @@ class ChangeStatus(StrEnum):
     CANCELED = "canceled"
 
 
+class Rollback(StrEnum):
+    """What became of going back after a failure."""
+
+    DONE = "done"
+    """All parts are where they were."""
+    INCOMPLETE = "incomplete"
+
+
 @dataclass(frozen=True, slots=True)
 class StepView:
     """One step of a change: one request to one node."""
@@ -138,6 +161,24 @@ class StepView:
     started_at: Instant | None
     ended_at: Instant | None
     error: str | None
+    stage: int = 0
+    """From 0; the nodes of one stage may run side by side."""
+    after: tuple[PartName, ...] = ()
+    """The nodes that its node waits for, without those that these wait for."""
+    expected: Duration | None = None
+    """How long it is expected to take; None: it was never done."""
+    rollback: bool = False
+    """It takes its node back to where it was."""
+
+
+@dataclass(frozen=True, slots=True)
+class PlanView:
+    """What a request would do now."""
+
+    steps: Sequence[StepView]
+    stages: int
+    expected: Duration | None
+    """Of all steps, in their order; None: of some it is not known."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -155,6 +196,12 @@ class ChangeView:
     ended_at: Instant | None
     cause: int
     """Id of the event that recorded the request."""
+    stage: int = 0
+    """The highest stage of which a node has begun."""
+    deadline_at: Instant | None = None
+    """When it times out as a whole; None: only its steps do."""
+    rollback: Rollback | None = None
+    """None: it does not go back, or not yet."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -6,15 +6,18 @@ live service, in a simulation and in a test.
 Its concerns make the decisions; this module keeps their order.
 """
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
 from domain.audit import Audit
 from domain.changes.changing import Changing
+from domain.changes.guards import Guards
 from domain.changes.settings import ChangeSettings
 from domain.concern import Concern, settle
+from domain.conditions.watched import WatchedConditions
 from domain.events.service import TimeWasDue
+from domain.fact_changes import FactChanges
 from domain.health.emergency_stop import EmergencyStop
 from domain.health.health import Health
 from domain.health.part_errors import PartErrors
@@ -25,7 +28,10 @@ from domain.loosening import may_loosen
 from domain.outbox import Outbox, Outputs
 from domain.parts.parts import Parts
 from domain.parts.system_model import SmhModel
+from domain.reactions.rules import Rules
+from domain.reactions.settings import RuleSettings
 from domain.restart import Restart
+from domain.robot_facts import RobotFacts
 from domain.robot_state import RobotState
 from domain.snapshot import (
     ChangeView,
@@ -35,8 +41,8 @@ from domain.snapshot import (
     ModeView,
     ParameterView,
     PartView,
+    PlanView,
     SignalView,
-    StepView,
     SystemStateView,
 )
 from domain.stalls import Stalls
@@ -60,6 +66,7 @@ class SupervisionSettings:
     changes: ChangeSettings = field(default_factory=ChangeSettings)
     tasks: TaskSettings = field(default_factory=TaskSettings)
     vehicle: VehicleLimits = field(default_factory=VehicleLimits)
+    rules: RuleSettings = field(default_factory=RuleSettings)
 
 
 class Supervision:
@@ -90,8 +97,16 @@ class Supervision:
         storage = Storage(self._outbox)
         self._robot_state = RobotState(self._health, self.driving, storage, self._outbox)
         self._part_errors = PartErrors(self._parts, self._health.error_list, self._outbox, start)
+        self.facts = RobotFacts(self._parts, self._health, self.driving, self._part_errors.reason)
+        """What conditions are evaluated over."""
+        watched = WatchedConditions(self.facts)
         self._changing = Changing(
-            self._parts, self._health, self._part_errors, settings.changes, self._outbox
+            self._parts,
+            self._health,
+            self._part_errors,
+            settings.changes,
+            self._outbox,
+            Guards(model, watched, start),
         )
         # Driving stops the vehicle before the state is published and changes continue.
         self._concerns: tuple[Concern, ...] = (
@@ -104,7 +119,9 @@ class Supervision:
             storage,
             self._robot_state,
             self._part_errors,
+            FactChanges(watched, self.driving, self._outbox),
             self._changing,
+            Rules(self._parts, self._changing, self._health, settings.rules, self._outbox),
             Audit(self._outbox),
             Stalls(self._outbox),
         )
@@ -235,8 +252,8 @@ class Supervision:
         """Return the transitions that would be accepted now and change something."""
         return self._changing.available_transitions(part)
 
-    def plan(self, request: ChangeRequest) -> Sequence[StepView]:
-        """Return the steps that a request would take now, without starting them.
+    def plan(self, request: ChangeRequest) -> PlanView:
+        """Return what a request would do now, without starting it.
 
         Raises:
             PilothouseError: The request would be rejected.

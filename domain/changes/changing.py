@@ -1,10 +1,12 @@
 """Changes as a concern of the core: requests in; steps and verified results out."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from itertools import islice
 
 from domain.changes.admission import ChangeAdmission, refuse
 from domain.changes.changes import Changes
+from domain.changes.guards import Guards
+from domain.changes.kept_targets import RequestOrder
 from domain.changes.plan import ChangeGoal, next_steps, presumed_steps
 from domain.changes.record import Step, StepTable
 from domain.changes.request_check import check_request
@@ -38,9 +40,10 @@ from domain.inputs import (
 from domain.lifecycle import LifecycleState, Transition
 from domain.outbox import Outbox
 from domain.parts.parts import Parts
-from domain.snapshot import ChangeView, ModeView, StepView
+from domain.plans.durations import Durations
+from domain.snapshot import ChangeView, ModeView, PlanView
 from domain.state_and_mode import ModeName, PartName
-from domain.timebase import Instant
+from domain.timebase import Duration, Instant
 
 
 class Changing(Concern):
@@ -53,12 +56,14 @@ class Changing(Concern):
         part_errors: PartErrors,
         settings: ChangeSettings,
         outbox: Outbox,
+        guards: Guards,
     ) -> None:
         self._parts = parts
         self._health = health
         self._outbox = outbox
-        self._admission = ChangeAdmission(parts.model, parts.facts)
-        self._changes = Changes(parts, settings, outbox, health, part_errors)
+        self._guards = guards
+        self._admission = ChangeAdmission(parts.model, parts.facts, guards)
+        self._changes = Changes(parts, settings, outbox, health, guards, part_errors)
         self._restoring = Restoring(parts, self._changes, settings, outbox, self._admit)
         self._backend = BackendStatus(available=True)
         self._backend_since: Instant | None = None
@@ -99,8 +104,9 @@ class Changing(Concern):
         self._changes.go_on(now)
 
     def settle(self, now: Instant) -> bool:
-        """Begin the next change that restores a node; return whether one began."""
-        return self._restoring.begin_next(now)
+        """End changes whose guards broke, and begin the next one that restores a node."""
+        has_ended = self._changes.judge_guards(now)
+        return self._restoring.begin_next(now) or has_ended
 
     def _take_request(self, request: ChangeRequest, now: Instant) -> None:
         part = check_request(self._parts.model, self._parts.facts, request)
@@ -144,6 +150,34 @@ class Changing(Concern):
     def _take_backlog(self, backlog: ReportBacklog, now: Instant) -> None:
         self._changes.note_backlog(backlog)
 
+    # --- for concerns that set targets in force ---------------------------------------------------
+
+    @property
+    def admission(self) -> ChangeAdmission:
+        """Return what judges goals."""
+        return self._admission
+
+    @property
+    def requests(self) -> RequestOrder:
+        """Return which request set the target of each part; read only."""
+        return self._changes.requests
+
+    @property
+    def is_available(self) -> bool:
+        """Tell whether the backend works, so that a change could begin at all."""
+        return self._backend.available
+
+    def drive(self, part: PartName, request: ChangeRequest, goal: ChangeGoal, now: Instant) -> None:
+        """Begin a change towards targets that are in force already; it supersedes others.
+
+        Args:
+            part: The part whose target it is.
+            request: What it would be as a request, in the name of who set the target.
+            goal: Its targets and node goals.
+            now: The current time.
+        """
+        self._changes.begin(part, request, goal, now, is_asked=False)
+
     # --- what can be seen ------------------------------------------------------------------------
 
     def mode(self, part: PartName, mode: ModeName) -> ModeView:
@@ -169,21 +203,23 @@ class Changing(Concern):
             return ()
         return self._admission.available_transitions(part, self._health.stop_reasons)
 
-    def plan(self, request: ChangeRequest) -> Sequence[StepView]:
-        """Return the steps that a request would take now, without starting them.
+    def plan(self, request: ChangeRequest) -> PlanView:
+        """Return what a request would do now, without starting it.
 
         Raises:
             PilothouseError: The request would be rejected.
         """
         check_request(self._parts.model, self._parts.facts, request)
         goal = self._admit(request)
-        steps = []
+        order, durations = self._changes.schedule(request, goal).order, self._changes.durations
+        steps: dict[PartName, list[Step]] = {}
         for node, node_goal in goal.nodes.items():
             facts = self._parts.facts[node]
             unknown = facts.known_state is LifecycleState.UNKNOWN
             actions = presumed_steps(node_goal) if unknown else next_steps(facts, node_goal)
-            steps += [Step(ChangeId(""), node, action) for action in actions or ()]
-        return StepTable(steps)
+            steps[node] = [Step(ChangeId(""), node, action) for action in actions or ()]
+        table = StepTable([step for own in steps.values() for step in own], order, durations)
+        return PlanView(table, order.stages, order.longest(_expected_times(steps, durations)))
 
     def change(self, identity: str) -> ChangeView:
         """Return a change.
@@ -204,6 +240,20 @@ class Changing(Concern):
         """
         kept = (c for c in self._changes.all() if part is None or c.part == part)
         return tuple(change.view() for change in islice(kept, limit))
+
+
+def _expected_times(
+    steps: Mapping[PartName, Sequence[Step]], durations: Durations
+) -> dict[PartName, Duration] | None:
+    """Return how long each node is expected to take; None: of some step it is not known."""
+    times: dict[PartName, Duration] = {}
+    for node, own in steps.items():
+        each = [durations.expected(node, step.action_name) for step in own]
+        known = [took for took in each if took is not None]
+        if len(known) < len(each):
+            return None
+        times[node] = sum(known)
+    return times
 
 
 def _described(part: PartName, request: ChangeRequest) -> ChangeRequested:

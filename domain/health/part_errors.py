@@ -12,6 +12,7 @@ from domain.events.changes import ChangeEnded
 from domain.events.event import because
 from domain.events.health import ErrorCleared, ErrorRaised
 from domain.events.service import NotRestored
+from domain.findings import Blocker
 from domain.health.built_in_errors import (
     CHANGE_FAILED,
     DEVIATES,
@@ -201,6 +202,13 @@ class PartErrors(Concern):
         """Yield the errors of a part, also those that were never raised."""
         for error in self.names_of(part):
             yield self._view(part, error)
+
+    def reason(self, part: PartName, error: str) -> Blocker | None:
+        """Return why an error of a part is active; None: it is not, or the part has none such."""
+        if not self._errors.is_on(ErrorKey(part, error)):
+            return None
+        view = self._view(part, error)
+        return Blocker(error, view.message, (part,), view.value, view.threshold, view.since)
 
     # --- inside ----------------------------------------------------------------------------------
 

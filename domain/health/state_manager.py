@@ -311,7 +311,7 @@ class StateManager:
 def _check_declared(declared: tuple[SignalSettings, ...]) -> None:
     """Reject duplicate names of signals or errors, and a missing e-stop."""
     names = [item.spec.name for item in declared]
-    errors = [STALE_DATA, *(c.error for item in declared for c in item.conditions)]
+    errors = [STALE_DATA, *(c.error for item in declared for c in item.bounds)]
     for kind, given in (("signal", names), ("error", errors)):
         twice = sorted({name for name in given if given.count(name) > 1})
         if twice:

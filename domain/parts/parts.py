@@ -1,6 +1,6 @@
 """The parts as a concern of the core: reports of nodes, inferred states and targets."""
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence, Set
 from dataclasses import dataclass
 from itertools import islice
 
@@ -14,6 +14,7 @@ from domain.events.parts import (
     NodeUnreachable,
     PartActualChanged,
 )
+from domain.findings import Blocker
 from domain.identifiers import ChangeId
 from domain.inputs import NodeReport, Restored
 from domain.lifecycle import LifecycleState
@@ -25,7 +26,7 @@ from domain.parts.mode_inference import ModeInference
 from domain.parts.node_facts import NodeFacts
 from domain.parts.reachability import Reachability
 from domain.parts.system_model import SmhModel
-from domain.parts.targets import Targets
+from domain.parts.targets import Displacement, Targets
 from domain.parts.waiting_parts import WaitingParts
 from domain.snapshot import Actual, ParameterView, PartView
 from domain.state_and_mode import DEFAULT_MODE, PartName, StateAndMode
@@ -123,12 +124,31 @@ class Parts(Concern):
         self._moved |= changed
         self._tell_actuals(changed)
 
-    def ask(self, wanted: Mapping[PartName, StateAndMode]) -> None:
-        """Set requested targets; they are in force at once."""
-        moved = self._targets.ask(wanted) | wanted.keys()
-        self._touched |= moved
-        self._moved |= moved
-        self._untold |= moved
+    def ask(self, wanted: Mapping[PartName, StateAndMode | None]) -> None:
+        """Set requested targets, in force at once; None: the part has none any more."""
+        self._note_moved(self._targets.ask(wanted) | wanted.keys())
+
+    def displace(self, displaced: Displacement) -> None:
+        """Put another target than the requested one in force for a system."""
+        self._note_moved(self._targets.displace(displaced))
+
+    def end_displacement(self, displaced: Displacement) -> None:
+        """Put what a displacement replaced in force again."""
+        self._note_moved(self._targets.end(displaced))
+
+    def let_stay(self, node: PartName, target: StateAndMode) -> bool:
+        """Replace the target in force of a node; return whether it was the requested one."""
+        moved, was_requested = self._targets.let_stay(node, target)
+        self._note_moved(moved)
+        return was_requested
+
+    def explain(self, displaced: Displacement, blockers: tuple[Blocker, ...]) -> bool:
+        """Say why a displacement is in force; return whether that was said differently before."""
+        if blockers == displaced.blockers:
+            return False
+        displaced.blockers = blockers
+        self.touch(displaced.targets)
+        return True
 
     def put_under(self, change: ChangeId, parts: Iterable[PartName]) -> None:
         """Record that a change drives parts; it replaces an earlier one."""
@@ -205,6 +225,19 @@ class Parts(Concern):
         """Return the target in force of a part; None: it has none."""
         return self.inference.target(part)
 
+    def asked(self, part: PartName) -> StateAndMode | None:
+        """Return the requested target of a part; None: there is none."""
+        return self._targets.asked(part)
+
+    @property
+    def displacements(self) -> Sequence[Displacement]:
+        """Return which systems are displaced, those that prevail last; read only."""
+        return self._targets.displacements
+
+    def targets_without(self, displaced: Displacement) -> Mapping[PartName, StateAndMode]:
+        """Return the targets that the end of a displacement would put in force, by part."""
+        return self._targets.without(displaced)
+
     def change_of(self, part: PartName) -> ChangeId | None:
         """Return the change that drives a part; None: there is none."""
         return self._changes.get(part)
@@ -231,6 +264,11 @@ class Parts(Concern):
         return tuple(ParameterView(name, known.get(name), wanted.get(name)) for name in names)
 
     # --- inside ----------------------------------------------------------------------------------
+
+    def _note_moved(self, parts: Set[PartName]) -> None:
+        self._touched |= parts
+        self._moved |= parts
+        self._untold |= parts
 
     def _note_reachable(self, node: PartName, *, reachable: bool) -> None:
         if self._reachability.note(node, reachable=reachable):

@@ -53,6 +53,7 @@ NAMES: Mapping[type, str] = {
     # What is kept.
     kept.Keeping: "keeping",
     kept.KeptTarget: "kept_target",
+    kept.KeptEffectiveTarget: "kept_effective_target",
     kept.KeptChange: "kept_change",
     kept.KeptEmergencyStop: "kept_emergency_stop",
     kept.KeptError: "kept_error",

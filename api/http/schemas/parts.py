@@ -15,7 +15,7 @@ from api.http.schemas.base import (
 from api.http.schemas.sent_values import SentParameter
 from domain.lifecycle import LifecycleState, Transition
 from domain.parameters import ParameterValue, value_type
-from domain.snapshot import Actual, EffectiveTarget, ModeView, ParameterView, PartView
+from domain.snapshot import Actual, Because, EffectiveTarget, ModeView, ParameterView, PartView
 from service.clock import Clock
 
 ParameterType: TypeAlias = Literal[
@@ -64,12 +64,26 @@ class EffectiveTargetJson(Json):
 
     state: LifecycleState
     mode: str | None
-    because: str
+    because: Because = Field(description="Who set it; each prevails over those before it")
+    rule: str | None = Field(description="Name of the rule that set it")
+    cause: int | None = Field(
+        description="Id of the event that recorded why it differs from the requested one"
+    )
+    blockers: tuple[BlockerJson, ...] = Field(
+        description="Why the requested target is not in force; empty: it is"
+    )
 
     @classmethod
-    def of(cls, target: EffectiveTarget) -> "EffectiveTargetJson":
+    def of(cls, target: EffectiveTarget, clock: Clock) -> "EffectiveTargetJson":
         """Show `target`."""
-        return cls(state=target.state, mode=target.mode, because=target.because)
+        return cls(
+            state=target.state,
+            mode=target.mode,
+            because=target.because,
+            rule=target.rule,
+            cause=target.cause,
+            blockers=tuple(BlockerJson.of(blocker, clock) for blocker in target.blockers),
+        )
 
 
 class PartJson(Json):
@@ -100,7 +114,7 @@ class PartJson(Json):
             kind=view.kind,
             parts=view.parts,
             target=StateAndModeJson.of(view.target) if view.target else None,
-            effective_target=EffectiveTargetJson.of(effective) if effective else None,
+            effective_target=EffectiveTargetJson.of(effective, clock) if effective else None,
             actual=ActualJson.of(view.actual),
             converged=view.converged,
             deviation_since_at=timestamp_or_none(clock, view.deviation_since),

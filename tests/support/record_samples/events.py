@@ -72,9 +72,15 @@ from domain.events.service import (
     TimeWasDue,
     WriteAnswered,
 )
+from domain.events.targets import (
+    DisplacementBegan,
+    DisplacementEnded,
+    DisplacementStays,
+    RuleNotApplied,
+)
 from domain.identifiers import ChangeId, GoalId, TaskId
 from domain.lifecycle import LifecycleState, Transition
-from domain.snapshot import StepStatus, SystemState
+from domain.snapshot import Because, StepStatus, SystemState
 from domain.state_and_mode import ModeName, PartName, StateAndMode
 from tests.support.record_samples.pieces import PARAMETERS
 
@@ -239,6 +245,43 @@ EVENTS: Mapping[str, tuple[object, ...]] = {
     ),
     "signal.settled": (SignalSettled(signal="battery_level", error="LOW_BATTERY", stale=True),),
     "signal.skewed": (SignalSkewed(signal="battery_level"),),
+    "rule.not_applied": (
+        RuleNotApplied(
+            part=PartName("left/arm"),
+            rule="slow_down",
+            target=StateAndMode(state=LifecycleState.ACTIVE, mode=ModeName("SLOW")),
+            reason='Größe ≤ 3 — "gripper\\jam"',
+        ),
+    ),
+    "target.displacement_began": (
+        DisplacementBegan(
+            part=PartName("left/arm"),
+            target=StateAndMode(state=LifecycleState.ACTIVE, mode=ModeName("SLOW")),
+            was=StateAndMode(state=LifecycleState.ACTIVE, mode=ModeName("FAST")),
+            because=Because.RULE,
+            rule="slow_down",
+            reason='Größe ≤ 3 — "gripper\\jam"',
+        ),
+    ),
+    "target.displacement_ended": (
+        DisplacementEnded(
+            part=PartName("left/arm"),
+            target=StateAndMode(state=LifecycleState.ACTIVE, mode=ModeName("FAST")),
+            was=StateAndMode(state=LifecycleState.ACTIVE, mode=ModeName("SLOW")),
+            because=Because.RULE,
+            rule="slow_down",
+            reason='Größe ≤ 3 — "gripper\\jam"',
+        ),
+    ),
+    "target.displacement_stays": (
+        DisplacementStays(
+            part=PartName("left/arm"),
+            target=StateAndMode(state=LifecycleState.ACTIVE, mode=ModeName("SLOW")),
+            because=Because.RULE,
+            rule="slow_down",
+            reason='Größe ≤ 3 — "gripper\\jam"',
+        ),
+    ),
     "system_state.changed": (
         SystemStateChanged(
             state=SystemState.ERROR,

@@ -12,6 +12,7 @@ from domain.inputs import TimePassed
 from domain.kept import (
     Keeping,
     KeptChange,
+    KeptEffectiveTarget,
     KeptEmergencyStop,
     KeptError,
     KeptFailedChange,
@@ -114,6 +115,27 @@ OTHERS: Mapping[str, tuple[object, ...]] = {
             target=StateAndMode(state=LifecycleState.INACTIVE, mode=ModeName("FAST")),
             order=9,
             staying={},
+        ),
+    ),
+    "kept_effective_target": (
+        KeptEffectiveTarget(
+            part=PartName("arm"),
+            target=StateAndMode(state=LifecycleState.INACTIVE),
+            rule="slow_down",
+            order=2,
+            after=9,
+            cause=40,
+            since=1764420000123456789,
+            staying={PartName("left/arm"): LifecycleState.UNCONFIGURED},
+        ),
+        KeptEffectiveTarget(
+            part=PartName("arm"),
+            target=StateAndMode(state=LifecycleState.INACTIVE),
+            rule="slow_down",
+            order=2,
+            after=9,
+            cause=40,
+            since=1764420000123456789,
         ),
     ),
     "kept_change": (

@@ -607,7 +607,7 @@ def test_a_dry_run_shows_the_steps_that_the_change_takes_and_changes_nothing(
     robot: CoreRobot, request_: ModeRequest | TransitionRequest | ParametersRequest
 ) -> None:
     before = _seen(robot.core)
-    planned = [(step.node, str(step.action)) for step in robot.core.plan(request_)]
+    planned = [(step.node, str(step.action)) for step in robot.core.plan(request_).steps]
     assert _seen(robot.core) == before
     change = robot.give(request_).change
     assert change is not None
@@ -624,7 +624,7 @@ def test_a_dry_run_is_refused_as_the_request_would_be(robot: CoreRobot) -> None:
 
 
 def test_of_a_node_that_is_not_heard_of_the_last_step_is_shown() -> None:
-    steps = _core().plan(TransitionRequest(BASE, T.ACTIVATE))
+    steps = _core().plan(TransitionRequest(BASE, T.ACTIVATE)).steps
     assert [(step.node, step.action) for step in steps] == [(BASE, T.ACTIVATE)]
 
 

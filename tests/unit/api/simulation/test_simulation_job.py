@@ -84,6 +84,21 @@ def test_wrong_settings_are_told_with_their_place(robot: dict[str, Any], pointer
     assert refused.value.faults[0].pointer.startswith(pointer)
 
 
+def test_a_condition_that_names_what_the_robot_does_not_have_is_told_before_it_runs() -> None:
+    steps = [
+        {"t_s": 0, "expect": "speed < 1 and drive_base.mode == FASTER"},
+        {"t_s": 0, "expect": "battery_level >= 30"},
+    ]
+    declared = {"signals": {"speed": {"unit": "m/s"}}}
+
+    with pytest.raises(InvalidBodyError) as caught:
+        posted({"until_s": 1, "robot": declared, "steps": steps})
+
+    (fault,) = caught.value.faults
+    assert (fault.pointer, fault.code) == ("/steps/0/expect", "UNKNOWN_MODE")
+    assert fault.message.startswith("column 34: drive_base.mode is never 'FASTER'")
+
+
 def test_a_wrong_model_is_told_with_its_findings() -> None:
     with pytest.raises(InvalidModelError):
         posted({"until_s": 1, "model": WRONG})

@@ -14,6 +14,7 @@ from domain.outbox import Outbox, Outputs
 from domain.parts.parts import Parts
 from domain.snapshot import ModeView
 from domain.state_and_mode import PartName
+from tests.support.guards import unguarded
 from tests.support.models import ARM, BASE, FAST, actuation_model
 
 
@@ -26,7 +27,8 @@ class Robot:
         health = Health(default_signals(), self.outbox, 0)
         part_errors = PartErrors(self.parts, health.error_list, self.outbox, 0)
         settings = ChangeSettings(restored_nodes=frozenset({BASE}))
-        self.changing = Changing(self.parts, health, part_errors, settings, self.outbox)
+        guards = unguarded(self.parts.model)
+        self.changing = Changing(self.parts, health, part_errors, settings, self.outbox, guards)
 
     def hand_in(self, given: Input, now: int = 0) -> Outputs:
         for concern in (self.parts, self.changing):
