@@ -20,7 +20,7 @@ from domain.changes.schedule import Schedule, schedule_of
 from domain.changes.settings import ChangeSettings
 from domain.deadlines import Deadlines
 from domain.errors import UnknownChangeError
-from domain.events.changes import CHANGE_ENDS
+from domain.events.changes import CHANGE_ENDS, ChangeWaiting
 from domain.health.health import Health
 from domain.health.part_errors import PartErrors
 from domain.identifiers import ChangeId
@@ -149,6 +149,7 @@ class Changes:
         now: Instant,
         *,
         is_asked: bool = True,
+        waited: Change | None = None,
     ) -> ChangeId:
         """Begin an admitted change; it may already have ended when this returns.
 
@@ -159,15 +160,17 @@ class Changes:
             now: The current time.
             is_asked: Whether its targets are requested. Otherwise they are in force already, and a
                 failure does not lead back.
+            waited: The same change, if it waited until now.
         """
-        self._count += 1
-        identity = ChangeId(f"c{self._count}")
-        cause = self._outbox.record_input()
+        if waited is None:
+            identity, started_at, cause = self._next_id(), now, self._outbox.record_input()
+        else:
+            identity, started_at, cause = waited.id, waited.started_at, waited.cause
         schedule, targets = self.schedule(request, goal), dict(goal.targets)
         if not is_asked:
             schedule = schedule.without_rollback()
         change = Change(
-            identity, part, request, targets, now, cause, schedule, self._steps.durations
+            identity, part, request, targets, started_at, cause, schedule, self._steps.durations
         )
         change.guarded = frozenset(self._guarded.parts_of(targets))
         if self._running or not self._steps.is_idle:
@@ -187,6 +190,32 @@ class Changes:
         self._forget_old()
         return identity
 
+    def _next_id(self) -> ChangeId:
+        self._count += 1
+        return ChangeId(f"c{self._count}")
+
+    def let_wait(self, part: PartName, request: ChangeRequest, now: Instant, why: str) -> Change:
+        """Record a change that waits; `begin` begins it, or `end_waiting` ends it.
+
+        Args:
+            part: The requested part.
+            request: What was requested.
+            now: The current time.
+            why: What it waits for.
+        """
+        cause, identity = self._outbox.record_input(), self._next_id()
+        status = ChangeStatus.WAITING
+        change = Change(identity, part, request, {}, now, cause, status=status, reason=why)
+        self._changes[identity] = change
+        self._outbox.keep(kept_of(change))
+        self._outbox.emit(ChangeWaiting(identity, part, why))
+        self._forget_old()
+        return change
+
+    def end_waiting(self, change: Change, status: ChangeStatus, why: str, now: Instant) -> None:
+        """End a change that waits."""
+        self._end(change, status, why, now)
+
     def _ask(self, change: Change) -> None:
         """Set the targets that a change is to reach, and keep them over a restart."""
         if change.schedule.on_failure is OnFailure.ROLLBACK:
@@ -204,11 +233,11 @@ class Changes:
             UnknownChangeError: The id is unknown.
         """
         found = self.get(change)
-        if found.open:
+        if found.open or found.status is ChangeStatus.WAITING:
             self._outbox.record_input()
         self._drop(found.open.copy(), StepStatus.CANCELED, now)
         found.leave(list(found.open), StepStatus.CANCELED, now)
-        if found.status is ChangeStatus.RUNNING:
+        if not found.status.is_final:
             self._end_by(found, ChangeStatus.CANCELED, "canceled on request", now)
 
     def report(self, report: NodeReport, now: Instant) -> None:
@@ -442,7 +471,7 @@ class Changes:
 
     def _end(self, change: Change, status: ChangeStatus, reason: str | None, now: Instant) -> None:
         change.status, change.reason, change.ended_at = status, reason, now
-        del self._running[change.id]
+        self._running.pop(change.id, None)
         self._deadlines.clear(change.id)
         self._guarded.drop(change)
         self._outbox.forget(KeptChange, change.id)
