@@ -107,6 +107,12 @@ class ModeView:
     mode: ModeName
     can_enter: bool
     blockers: tuple[Blocker, ...]
+    can_stay: bool | None = None
+    """Whether all its invariants hold; None: it is not the mode in force."""
+    requires: tuple[str, ...] = ()
+    """Conditions of entering it."""
+    invariants: tuple[str, ...] = ()
+    """Conditions of entering it and of staying in it."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -18,6 +18,7 @@ from domain.concern import Concern, settle
 from domain.conditions.watched import WatchedConditions
 from domain.events.service import TimeWasDue
 from domain.fact_changes import FactChanges
+from domain.findings import Blocker
 from domain.health.emergency_stop import EmergencyStop
 from domain.health.health import Health
 from domain.health.part_errors import PartErrors
@@ -248,6 +249,10 @@ class Supervision:
     def mode(self, part: PartName, mode: ModeName) -> ModeView:
         """Return a mode of a part, with its blockers."""
         return self._changing.mode(part, mode)
+
+    def why(self, part: PartName) -> tuple[Blocker, ...]:
+        """Return why a part is not where it should be, the reasons nearest to it first."""
+        return self._changing.why(part)
 
     def parameters(self, node: PartName) -> tuple[ParameterView, ...]:
         """Return the parameters of a node."""

@@ -12,6 +12,7 @@ from domain.changes.record import Step, StepTable
 from domain.changes.request_check import check_request
 from domain.changes.restoring import Restoring
 from domain.changes.settings import ChangeSettings
+from domain.changes.why import Whys
 from domain.concern import Concern, Takers
 from domain.errors import BackendUnavailableError
 from domain.events.changes import (
@@ -42,7 +43,7 @@ from domain.outbox import Outbox
 from domain.parts.parts import Parts
 from domain.plans.durations import Durations
 from domain.snapshot import ChangeView, ModeView, PlanView
-from domain.state_and_mode import ModeName, PartName
+from domain.state_and_mode import DEFAULT_MODE, ModeName, PartName
 from domain.timebase import Duration, Instant
 
 
@@ -64,6 +65,7 @@ class Changing(Concern):
         self._guards = guards
         self._admission = ChangeAdmission(parts.model, parts.facts, guards)
         self._changes = Changes(parts, settings, outbox, health, guards, part_errors)
+        self._whys = Whys(parts, self._admission, health)
         self._restoring = Restoring(parts, self._changes, settings, outbox, self._admit)
         self._backend = BackendStatus(available=True)
         self._backend_since: Instant | None = None
@@ -186,7 +188,29 @@ class Changing(Concern):
             *self._backend_blockers(part),
             *self._admission.blockers(ModeRequest(part, mode), self._health.stop_reasons),
         )
-        return ModeView(mode, not refuse(blockers), blockers)
+        settings = self._parts.model.settings_of(part, mode)
+        is_in_force = mode == self._mode_in_force(part)
+        return ModeView(
+            mode,
+            not refuse(blockers),
+            blockers,
+            self._guards.can_stay(part, mode) if is_in_force else None,
+            tuple(condition.text for condition in settings.requires),
+            tuple(condition.text for condition in settings.invariants),
+        )
+
+    def _mode_in_force(self, part: PartName) -> ModeName | None:
+        """Return the mode of the target in force, else the actual one; None: there is none."""
+        target = self._parts.target(part)
+        if target is None:
+            return self._parts.inference.actual(part).mode
+        if target.state is not LifecycleState.ACTIVE:
+            return None
+        return target.mode or DEFAULT_MODE
+
+    def why(self, part: PartName) -> tuple[Blocker, ...]:
+        """Return why a part is not where it should be, the reasons nearest to it first."""
+        return (*self._backend_blockers(part), *self._whys.of(part))
 
     def _backend_error(self) -> BackendUnavailableError | None:
         return None if self._backend.available else BackendUnavailableError(self._backend.reason)

@@ -23,6 +23,16 @@ def posted(body: Mapping[str, Any], live: LiveCopy | None = None) -> Any:  # noq
     return json.loads(simulate_posted(json.dumps(body).encode(), ACTUATION, live))
 
 
+def test_a_guard_on_a_signal_that_the_robot_does_not_have_is_rejected() -> None:
+    guard = "    mode_settings: {MODERATE: {requires: reach > 3}}\n    modes:\n"
+    model = ACTUATION.replace("    modes:\n", guard, 1)
+
+    with pytest.raises(InvalidModelError):
+        virtual_robot(scenario(model=model, robot={"mock": True}))
+    robot = virtual_robot(scenario(model=model, robot={"signals": {"reach": {"minimum": 0}}}))
+    assert robot.supervisor.warnings == ()
+
+
 @pytest.fixture
 def live() -> VirtualService:
     """A robot that is in the middle of something."""
