@@ -4,14 +4,15 @@ What a change wants of its nodes is the work of `node_steps.py`.
 """
 
 from collections import defaultdict
-from collections.abc import Iterable, Mapping, Sequence, Set
+from collections.abc import Iterable, Mapping, Set
 from itertools import islice
 
 from domain.changes.guarded_changes import GuardedChanges
 from domain.changes.guards import Guards
 from domain.changes.kept_changes import ended_by_restart, kept_of
-from domain.changes.kept_targets import KeptTargets
+from domain.changes.kept_targets import KeptTargets, RequestOrder
 from domain.changes.node_steps import NodeSteps
+from domain.changes.outcome import joined, missed_target
 from domain.changes.plan import ChangeGoal
 from domain.changes.record import Change, Pursuit, Step
 from domain.changes.rollback import goals_before
@@ -21,12 +22,12 @@ from domain.deadlines import Deadlines
 from domain.errors import UnknownChangeError
 from domain.events.changes import CHANGE_ENDS
 from domain.health.health import Health
+from domain.health.part_errors import PartErrors
 from domain.identifiers import ChangeId
 from domain.inputs import ChangeRequest, NodeAnswer, NodeReport, ReportBacklog, Restored
 from domain.kept import KeptChange
 from domain.lifecycle import LifecycleState
 from domain.outbox import Outbox
-from domain.parts.convergence import is_there
 from domain.parts.mode_settings import OnFailure
 from domain.parts.parts import Parts
 from domain.plans.durations import Durations
@@ -43,8 +44,6 @@ MAX_IN_FLIGHT = 2_500
 """Steps in flight, above which no further node of a large change is started. Their reports come all
 at once, and are taken in long before a step is late: being busy must not look like a late node."""
 _ENOUGH_IN_FLIGHT = MAX_IN_FLIGHT - STARTS_AT_ONCE
-_TOLD_ERRORS = 20
-"""Largest number of errors in the reason of one change; more would not be read."""
 
 
 class Changes:
@@ -57,8 +56,10 @@ class Changes:
         outbox: Outbox,
         health: Health,
         guards: Guards,
+        part_errors: PartErrors,
     ) -> None:
         self._parts = parts
+        self._part_errors = part_errors
         self._inference = parts.inference
         self._outbox = outbox
         self._steps = NodeSteps(
@@ -133,10 +134,21 @@ class Changes:
         for change in ended_by_restart(restored.kept, now):
             self._changes[change.id] = change
             self._outbox.forget(KeptChange, change.id)
-            self._outbox.emit(CHANGE_ENDS[change.status](change.id, change.part, change.reason))
+            self._tell_end(change, now)
+
+    @property
+    def requests(self) -> RequestOrder:
+        """Return which request set the target of each part; read only."""
+        return self._kept_targets
 
     def begin(
-        self, part: PartName, request: ChangeRequest, goal: ChangeGoal, now: Instant
+        self,
+        part: PartName,
+        request: ChangeRequest,
+        goal: ChangeGoal,
+        now: Instant,
+        *,
+        is_asked: bool = True,
     ) -> ChangeId:
         """Begin an admitted change; it may already have ended when this returns.
 
@@ -145,11 +157,15 @@ class Changes:
             request: What was requested.
             goal: Its targets and node goals, from the admission.
             now: The current time.
+            is_asked: Whether its targets are requested. Otherwise they are in force already, and a
+                failure does not lead back.
         """
         self._count += 1
         identity = ChangeId(f"c{self._count}")
         cause = self._outbox.record_input()
         schedule, targets = self.schedule(request, goal), dict(goal.targets)
+        if not is_asked:
+            schedule = schedule.without_rollback()
         change = Change(
             identity, part, request, targets, now, cause, schedule, self._steps.durations
         )
@@ -158,11 +174,8 @@ class Changes:
             self._supersede(goal.targets.keys() | goal.nodes.keys(), change, now)
         self._changes[identity] = self._running[identity] = change
         self._parts.put_under(identity, (part, *goal.targets, *goal.nodes))
-        if schedule.on_failure is OnFailure.ROLLBACK:
-            change.targets_before = {name: self._parts.asked(name) for name in goal.targets}
-        self._parts.ask(goal.targets)
-        if goal.targets:
-            self._kept_targets.note(part, goal.targets)
+        if is_asked:
+            self._ask(change)
         self._outbox.keep(kept_of(change))
         if schedule.deadline is not None:
             change.deadline_at = now + schedule.deadline
@@ -173,6 +186,14 @@ class Changes:
         self._conclude(change, now)
         self._forget_old()
         return identity
+
+    def _ask(self, change: Change) -> None:
+        """Set the targets that a change is to reach, and keep them over a restart."""
+        if change.schedule.on_failure is OnFailure.ROLLBACK:
+            change.targets_before = {name: self._parts.asked(name) for name in change.targets}
+        self._parts.ask(change.targets)
+        if change.targets:
+            self._kept_targets.note(change.part, change.targets)
 
     def cancel(self, change: ChangeId, now: Instant) -> None:
         """Start no further step of a change; without effect if all its nodes have ended.
@@ -280,7 +301,7 @@ class Changes:
         if change.is_stopping or change.is_going_back or change.deadline_at is None:
             return
         allowed = to_seconds(change.deadline_at - change.started_at)
-        reason = f"not done within {allowed:g} s: {_joined(sorted(change.open))}"
+        reason = f"not done within {allowed:g} s: {joined(sorted(change.open))}"
         if change.schedule.on_failure is OnFailure.ROLLBACK:
             change.failure = (ChangeStatus.TIMED_OUT, reason)
             self._stop(change, now)
@@ -375,8 +396,8 @@ class Changes:
         resting = StateAndMode(self._parts.facts[node].known_state)
         if resting.state is LifecycleState.UNCONFIGURED:
             change.targets[node] = resting
-            self._parts.ask({node: resting})
-            self._kept_targets.note(node, {node: resting})
+            if self._parts.let_stay(node, resting):
+                self._kept_targets.note(node, {node: resting})
 
     def _conclude(self, change: Change, now: Instant) -> None:
         """End a running change after its last node has ended; success is verified."""
@@ -400,8 +421,8 @@ class Changes:
         for outcome, status in _UNHAPPY_ENDS.items():
             errors = change.errors_of(outcome)
             if errors:
-                return status, _joined(errors)
-        missed = None if change.is_going_back else self._missed_target(change)
+                return status, joined(errors)
+        missed = None if change.is_going_back else missed_target(change, self._inference)
         return (ChangeStatus.FAILED, missed) if missed else (ChangeStatus.SUCCEEDED, None)
 
     def _end_gone_back(self, change: Change, error: str | None, now: Instant) -> None:
@@ -419,22 +440,6 @@ class Changes:
         else:
             self._end(change, status, why, now)
 
-    def _missed_target(self, change: Change) -> str | None:
-        """Return how the requested part deviates from its target although all steps succeeded."""
-        target = change.targets.get(change.part)
-        if target is None or self._inference.converged(change.part):
-            return None
-        actual = self._inference.actual(change.part)
-        if is_there(actual, target):
-            return self._inference.deviation_reason(change.part)
-        words = f"{change.part} is {actual.state_and_mode.label}, not {target.label}"
-        others = [
-            f"{node} is {self._inference.actual(node).state_and_mode.label}"
-            for node in self._inference.model.nodes_below(change.part)
-            if node != change.part and self._inference.actual(node).state is not target.state
-        ]
-        return _joined([actual.reason or words, *others])
-
     def _end(self, change: Change, status: ChangeStatus, reason: str | None, now: Instant) -> None:
         change.status, change.reason, change.ended_at = status, reason, now
         del self._running[change.id]
@@ -442,8 +447,13 @@ class Changes:
         self._guarded.drop(change)
         self._outbox.forget(KeptChange, change.id)
         self._let_go(change, {change.part, *change.targets, *change.pursuits})
-        self._outbox.emit(CHANGE_ENDS[status](change.id, change.part, reason))
+        self._tell_end(change, now)
         self._pack(change)
+
+    def _tell_end(self, change: Change, now: Instant) -> None:
+        ended = CHANGE_ENDS[change.status](change.id, change.part, change.reason)
+        event = self._outbox.emit(ended)
+        self._part_errors.note_end(ended, event, (change.targets, change.pursuits), now)
 
     def _let_go(self, change: Change, parts: Iterable[PartName]) -> None:
         """Release the parts of an ended change, except nodes that it is still driving."""
@@ -461,12 +471,6 @@ class Changes:
                 del self._changes[identity]
                 excess -= 1
                 kept -= change.node_count
-
-
-def _joined(reasons: Sequence[str]) -> str:
-    more = len(reasons) - _TOLD_ERRORS
-    told = [*reasons[:_TOLD_ERRORS], *([f"and {more} more"] if more > 0 else [])]
-    return "; ".join(told)
 
 
 _UNHAPPY_ENDS: Mapping[StepStatus, ChangeStatus] = {

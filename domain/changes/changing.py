@@ -6,11 +6,13 @@ from itertools import islice
 from domain.changes.admission import ChangeAdmission, refuse
 from domain.changes.changes import Changes
 from domain.changes.guards import Guards
+from domain.changes.kept_targets import RequestOrder
 from domain.changes.plan import ChangeGoal, next_steps, presumed_steps
 from domain.changes.record import Step, StepTable
 from domain.changes.request_check import check_request
 from domain.changes.restoring import Restoring
 from domain.changes.settings import ChangeSettings
+from domain.changes.why import Whys
 from domain.concern import Concern, Takers
 from domain.errors import BackendUnavailableError
 from domain.events.changes import (
@@ -22,6 +24,7 @@ from domain.events.changes import (
 )
 from domain.findings import Blocker
 from domain.health.health import Health
+from domain.health.part_errors import PartErrors
 from domain.identifiers import ChangeId
 from domain.inputs import (
     BackendStatus,
@@ -40,7 +43,7 @@ from domain.outbox import Outbox
 from domain.parts.parts import Parts
 from domain.plans.durations import Durations
 from domain.snapshot import ChangeView, ModeView, PlanView
-from domain.state_and_mode import ModeName, PartName
+from domain.state_and_mode import DEFAULT_MODE, ModeName, PartName
 from domain.timebase import Duration, Instant
 
 
@@ -51,6 +54,7 @@ class Changing(Concern):
         self,
         parts: Parts,
         health: Health,
+        part_errors: PartErrors,
         settings: ChangeSettings,
         outbox: Outbox,
         guards: Guards,
@@ -60,7 +64,8 @@ class Changing(Concern):
         self._outbox = outbox
         self._guards = guards
         self._admission = ChangeAdmission(parts.model, parts.facts, guards)
-        self._changes = Changes(parts, settings, outbox, health, guards)
+        self._changes = Changes(parts, settings, outbox, health, guards, part_errors)
+        self._whys = Whys(parts, self._admission, health)
         self._restoring = Restoring(parts, self._changes, settings, outbox, self._admit)
         self._backend = BackendStatus(available=True)
         self._backend_since: Instant | None = None
@@ -147,6 +152,34 @@ class Changing(Concern):
     def _take_backlog(self, backlog: ReportBacklog, now: Instant) -> None:
         self._changes.note_backlog(backlog)
 
+    # --- for concerns that set targets in force ---------------------------------------------------
+
+    @property
+    def admission(self) -> ChangeAdmission:
+        """Return what judges goals."""
+        return self._admission
+
+    @property
+    def requests(self) -> RequestOrder:
+        """Return which request set the target of each part; read only."""
+        return self._changes.requests
+
+    @property
+    def is_available(self) -> bool:
+        """Tell whether the backend works, so that a change could begin at all."""
+        return self._backend.available
+
+    def drive(self, part: PartName, request: ChangeRequest, goal: ChangeGoal, now: Instant) -> None:
+        """Begin a change towards targets that are in force already; it supersedes others.
+
+        Args:
+            part: The part whose target it is.
+            request: What it would be as a request, in the name of who set the target.
+            goal: Its targets and node goals.
+            now: The current time.
+        """
+        self._changes.begin(part, request, goal, now, is_asked=False)
+
     # --- what can be seen ------------------------------------------------------------------------
 
     def mode(self, part: PartName, mode: ModeName) -> ModeView:
@@ -155,7 +188,29 @@ class Changing(Concern):
             *self._backend_blockers(part),
             *self._admission.blockers(ModeRequest(part, mode), self._health.stop_reasons),
         )
-        return ModeView(mode, not refuse(blockers), blockers)
+        settings = self._parts.model.settings_of(part, mode)
+        is_in_force = mode == self._mode_in_force(part)
+        return ModeView(
+            mode,
+            not refuse(blockers),
+            blockers,
+            self._guards.can_stay(part, mode) if is_in_force else None,
+            tuple(condition.text for condition in settings.requires),
+            tuple(condition.text for condition in settings.invariants),
+        )
+
+    def _mode_in_force(self, part: PartName) -> ModeName | None:
+        """Return the mode of the target in force, else the actual one; None: there is none."""
+        target = self._parts.target(part)
+        if target is None:
+            return self._parts.inference.actual(part).mode
+        if target.state is not LifecycleState.ACTIVE:
+            return None
+        return target.mode or DEFAULT_MODE
+
+    def why(self, part: PartName) -> tuple[Blocker, ...]:
+        """Return why a part is not where it should be, the reasons nearest to it first."""
+        return (*self._backend_blockers(part), *self._whys.of(part))
 
     def _backend_error(self) -> BackendUnavailableError | None:
         return None if self._backend.available else BackendUnavailableError(self._backend.reason)

@@ -1,7 +1,7 @@
 """How a change proceeds: in which order, until when, and what it does on a failure."""
 
 from collections.abc import Callable
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 from domain.changes.plan import TOWARDS_REST, ChangeGoal
 from domain.inputs import ChangeRequest, ParametersRequest, TransitionRequest
@@ -21,6 +21,12 @@ class Schedule:
     deadline: Duration | None = None
     """Of the whole change; None: only its steps have deadlines."""
     on_failure: OnFailure = OnFailure.CONTINUE
+
+    def without_rollback(self) -> "Schedule":
+        """Return the same, in which a failure does not lead back: the other nodes go on."""
+        if self.on_failure is not OnFailure.ROLLBACK:
+            return self
+        return replace(self, on_failure=OnFailure.CONTINUE)
 
 
 def schedule_of(
@@ -46,7 +52,8 @@ def schedule_of(
     is_resting = isinstance(request, TransitionRequest) and request.transition in TOWARDS_REST
 
     def settings(part: PartName) -> TransitionSettings:
-        mode = mode_of(part) if is_resting else goal.targets[part].mode
+        target = goal.targets.get(part)
+        mode = mode_of(part) if is_resting or target is None else target.mode
         return model.settings_of(part, mode).transition
 
     own = settings(request.part)

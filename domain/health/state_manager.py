@@ -226,6 +226,16 @@ class StateManager:
         return self._seen.errors
 
     @property
+    def names(self) -> tuple[str, ...]:
+        """Return all errors that can be raised, in the order of their bits."""
+        return self._registry.names
+
+    @property
+    def present(self) -> frozenset[str]:
+        """Return the active errors whose cause is still present."""
+        return self._registry.present
+
+    @property
     def reasons(self) -> tuple[Blocker, ...]:
         """Return why errors are active, the most urgent first."""
         return self._seen.reasons

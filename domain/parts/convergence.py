@@ -113,6 +113,10 @@ class Convergence:
         """Tell whether a part and all its parts are where their targets say."""
         return part not in self._causes
 
+    def cause(self, part: PartName) -> PartName | None:
+        """Return the part because of which a part has not converged; None: it has."""
+        return self._causes.get(part)
+
     def reason(self, part: PartName) -> str | None:
         """Return which part is not where its target says; None: the part has converged."""
         cause = self._causes.get(part)

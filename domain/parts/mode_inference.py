@@ -154,6 +154,10 @@ class ModeInference:
         """
         return self._convergence.converged(part)
 
+    def deviation_cause(self, part: PartName) -> PartName | None:
+        """Return the part that is not where its target says: this one or one below; None: none."""
+        return self._convergence.cause(part)
+
     def deviation_reason(self, part: PartName) -> str | None:
         """Return which part is not where its target says; None: the part has converged."""
         return self._convergence.reason(part)

@@ -1,6 +1,6 @@
 """The parts as a concern of the core: reports of nodes, inferred states and targets."""
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence, Set
 from dataclasses import dataclass
 from itertools import islice
 
@@ -23,11 +23,10 @@ from domain.parameters import check_values
 from domain.parts.convergence import is_there
 from domain.parts.deviations import Deviations
 from domain.parts.mode_inference import ModeInference
-from domain.parts.node_doubts import doubt_of
 from domain.parts.node_facts import NodeFacts
 from domain.parts.reachability import Reachability
 from domain.parts.system_model import SmhModel
-from domain.parts.targets import Targets
+from domain.parts.targets import Displacement, Targets
 from domain.parts.waiting_parts import WaitingParts
 from domain.snapshot import Actual, ParameterView, PartView
 from domain.state_and_mode import DEFAULT_MODE, PartName, StateAndMode
@@ -66,6 +65,8 @@ class Parts(Concern):
         """Parts about which something changed since the last `settle`."""
         self._moved: set[PartName] = set()
         """Those of them whose actual or target changed, so that a deviation may begin or end."""
+        self._changed: set[PartName] = set()
+        """Parts whose view changed since `take_changed` was called last."""
         self._untold: set[PartName] = set()
         """Those of them whose actual may differ from the published one."""
         self._to_look: dict[PartName, _Cause] = {}
@@ -125,10 +126,29 @@ class Parts(Concern):
 
     def ask(self, wanted: Mapping[PartName, StateAndMode | None]) -> None:
         """Set requested targets, in force at once; None: the part has none any more."""
-        moved = self._targets.ask(wanted) | wanted.keys()
-        self._touched |= moved
-        self._moved |= moved
-        self._untold |= moved
+        self._note_moved(self._targets.ask(wanted) | wanted.keys())
+
+    def displace(self, displaced: Displacement) -> None:
+        """Put another target than the requested one in force for a system."""
+        self._note_moved(self._targets.displace(displaced))
+
+    def end_displacement(self, displaced: Displacement) -> None:
+        """Put what a displacement replaced in force again."""
+        self._note_moved(self._targets.end(displaced))
+
+    def let_stay(self, node: PartName, target: StateAndMode) -> bool:
+        """Replace the target in force of a node; return whether it was the requested one."""
+        moved, was_requested = self._targets.let_stay(node, target)
+        self._note_moved(moved)
+        return was_requested
+
+    def explain(self, displaced: Displacement, blockers: tuple[Blocker, ...]) -> bool:
+        """Say why a displacement is in force; return whether that was said differently before."""
+        if blockers == displaced.blockers:
+            return False
+        displaced.blockers = blockers
+        self.touch(displaced.targets)
+        return True
 
     def put_under(self, change: ChangeId, parts: Iterable[PartName]) -> None:
         """Record that a change drives parts; it replaces an earlier one."""
@@ -161,6 +181,7 @@ class Parts(Concern):
             return False
         touched, self._touched = self._touched, set()
         self._outbox.parts |= touched
+        self._changed |= touched
         if self._views:
             for part in touched:
                 self._views.pop(part, None)
@@ -176,6 +197,11 @@ class Parts(Concern):
             self._to_look.pop(part, None)
             self._look(part, now)
         return True
+
+    def take_changed(self) -> set[PartName]:
+        """Return the parts whose views changed since the last call, for whoever judges them."""
+        changed, self._changed = self._changed, set()
+        return changed
 
     @property
     def has_more(self) -> bool:
@@ -203,6 +229,15 @@ class Parts(Concern):
         """Return the requested target of a part; None: there is none."""
         return self._targets.asked(part)
 
+    @property
+    def displacements(self) -> Sequence[Displacement]:
+        """Return which systems are displaced, those that prevail last; read only."""
+        return self._targets.displacements
+
+    def targets_without(self, displaced: Displacement) -> Mapping[PartName, StateAndMode]:
+        """Return the targets that the end of a displacement would put in force, by part."""
+        return self._targets.without(displaced)
+
     def change_of(self, part: PartName) -> ChangeId | None:
         """Return the change that drives a part; None: there is none."""
         return self._changes.get(part)
@@ -218,12 +253,6 @@ class Parts(Concern):
         """Return the views of all parts, systems first, in the order of the model file."""
         return {part: self.view(part) for part in self.model.parts}
 
-    def error(self, part: PartName, name: str) -> Blocker | None:
-        """Return why an error of a part is active; None: it is not, or the part has none such."""
-        facts = self.facts.get(part)
-        doubt = None if facts is None else doubt_of(part, facts, (part,))
-        return doubt if doubt is not None and doubt.code == name else None
-
     def parameters(self, node: PartName) -> tuple[ParameterView, ...]:
         """Return the parameters of a node, with the values that its target requires."""
         known = self.facts[node].parameters
@@ -235,6 +264,11 @@ class Parts(Concern):
         return tuple(ParameterView(name, known.get(name), wanted.get(name)) for name in names)
 
     # --- inside ----------------------------------------------------------------------------------
+
+    def _note_moved(self, parts: Set[PartName]) -> None:
+        self._touched |= parts
+        self._moved |= parts
+        self._untold |= parts
 
     def _note_reachable(self, node: PartName, *, reachable: bool) -> None:
         if self._reachability.note(node, reachable=reachable):

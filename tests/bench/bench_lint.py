@@ -7,7 +7,7 @@ import pytest
 from service.files.model_file import check_model
 from tests.support.bench import report
 from tests.support.big_model import big_model_text
-from tests.support.guarded_model import guarded_model_text
+from tests.support.guarded_model_text import guarded_model_text
 
 pytestmark = pytest.mark.bench
 

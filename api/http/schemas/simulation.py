@@ -11,6 +11,7 @@ from pydantic import (
     field_validator,
     model_validator,
 )
+from pydantic_core import PydanticCustomError
 
 from api.http.schemas.base import MAX_MODEL_BYTES, BlockerJson, Body, Json
 from api.http.schemas.health import MAX_SOURCE
@@ -194,7 +195,10 @@ class ConditionStep(TimedStep):
         try:
             Condition.parse(text)
         except ConditionSyntaxError as error:
-            raise ValueError(f"column {error.column}: {error.message}") from error
+            told = {"column": error.column, "message": error.message}
+            raise PydanticCustomError(
+                "condition_syntax", "column {column}: {message}", told
+            ) from error
         return text
 
 
@@ -319,6 +323,7 @@ class SampleJson(Json):
     system_state: dict[str, Any]
     parts: dict[str, Any]
     signals: dict[str, Any]
+    errors: dict[str, Any] = Field(description="Those that are not normal, by name")
     task: dict[str, Any] | None = Field(description="The current task; null: there is none")
     vehicle: dict[str, Any]
     holds: dict[str, Any] = Field(description="By owner")

@@ -180,7 +180,7 @@ def test_without_readings_or_changes_nothing_is_due() -> None:
 def test_deadlines_pass_in_order_each_at_its_own_time_however_late_the_call(
     robot: CoreRobot,
 ) -> None:
-    """The arm is silent after its change; GPS is bad, and then all is silent."""
+    """The arm is silent after its change, which fails; it deviates, and GPS is bad."""
     robot.core.handle(_readings(gps_accuracy=300.0), 0)
     robot.core.handle(TransitionRequest(ARM, T.CONFIGURE), 0)
     outputs = robot.core.handle(TimePassed(), seconds(3600))
@@ -189,6 +189,8 @@ def test_deadlines_pass_in_order_each_at_its_own_time_however_late_the_call(
         (seconds(2) + 1, "error.raised"),
         (seconds(11), "change.step_ended"),
         (seconds(11), "change.timed_out"),
+        (seconds(11), "error.raised"),
+        (seconds(12), "error.raised"),
         (seconds(15), "error.raised"),
     ]
     stop = Drive(DriveCommand(0.0, 0.0))
@@ -811,7 +813,7 @@ def test_acknowledging_what_is_on_is_recorded_with_who_did_it() -> None:
         ("error.acknowledged", "alice"),
         ("error.cleared", "alice"),
     ]
-    assert dict(events[0].data) == {"error": "BATTERY_LOW"}
+    assert dict(events[0].data) == {"error": "BATTERY_LOW", "part": None}
 
 
 def test_a_deviation_counts_from_the_input_that_began_it(robot: CoreRobot) -> None:

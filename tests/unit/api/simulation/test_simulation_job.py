@@ -109,6 +109,15 @@ def test_a_condition_that_names_what_the_robot_does_not_have_is_told_before_it_r
     assert fault.message.startswith("column 34: drive_base.mode is never 'FASTER'")
 
 
+def test_a_condition_that_cannot_be_read_is_told_with_its_column() -> None:
+    with pytest.raises(InvalidBodyError) as caught:
+        posted({"until_s": 1, "steps": [{"t_s": 0, "expect": "estop and {x}"}]})
+
+    (fault,) = caught.value.faults
+    assert (fault.pointer, fault.code) == ("/steps/0/expect", "CONDITION_SYNTAX")
+    assert fault.message == "column 11: '{' is not allowed here"
+
+
 def test_a_wrong_model_is_told_with_its_findings() -> None:
     with pytest.raises(InvalidModelError):
         posted({"until_s": 1, "model": WRONG})

@@ -10,7 +10,7 @@ from domain.lifecycle import LifecycleState
 from domain.outbox import Outbox
 from domain.parts.parts import LOOKS_AT_ONCE, Parts
 from domain.parts.system_model import NodeModel, SmhModel, SystemModel
-from domain.snapshot import EffectiveTarget, ParameterView
+from domain.snapshot import Because, EffectiveTarget, ParameterView
 from domain.state_and_mode import DEFAULT_MODE, ModeName, PartName, StateAndMode
 from tests.support.big_model import big_model
 from tests.support.models import ACTUATION, ARM, BASE, active, inactive, nested_model
@@ -64,7 +64,7 @@ def test_what_is_asked_is_what_is_pursued(robot: Robot) -> None:
     robot.ask(BASE, active("FAST"))
     view = robot.parts.view(BASE)
     assert view.target == active("FAST")
-    assert view.effective_target == EffectiveTarget(S.ACTIVE, ModeName("FAST"), "requested")
+    assert view.effective_target == EffectiveTarget(S.ACTIVE, ModeName("FAST"), Because.REQUESTED)
 
 
 def test_a_part_that_nothing_was_asked_of_has_no_target(robot: Robot) -> None:
