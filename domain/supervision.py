@@ -102,13 +102,9 @@ class Supervision:
         """What conditions are evaluated over."""
         self.conditions = WatchedConditions(self.facts)
         """The conditions of the model, kept up to date; read only."""
+        guards = Guards(model, self.conditions, start)
         self._changing = Changing(
-            self._parts,
-            self._health,
-            self._part_errors,
-            settings.changes,
-            self._outbox,
-            Guards(model, self.conditions, start),
+            self._parts, self._health, self._part_errors, settings.changes, self._outbox, guards
         )
         # Driving stops the vehicle before the state is published and changes continue.
         self._concerns: tuple[Concern, ...] = (

@@ -100,10 +100,19 @@ class Displacing:
         self._parts.displace(displaced)
         self._changing.drive(system, request, goal, now)
 
-    def refuse(self, watch: RuleWatch, why: str, cause: int, now: Instant) -> None:
-        """Tell that a rule is not applied, and why."""
+    def guard_ahead(self, watch: RuleWatch) -> Blocker | None:
+        """Return a guard of the target of a rule that does not hold; None: all do."""
+        admission = self._changing.admission
+        blockers = admission.guard_blockers(watch.system, admission.goal(self._request(watch)))
+        return blockers[0] if blockers else None
+
+    def refuse(self, watch: RuleWatch, why: str, wait: Wait, now: Instant) -> None:
+        """Tell once that a rule is not applied, and why."""
+        if wait.is_told:
+            return
+        wait.is_told = True
         told = RuleNotApplied(watch.system, watch.rule.name, watch.rule.new_target, why)
-        self._outbox.begin(now, told, _actor(watch), cause)
+        self._outbox.begin(now, told, _actor(watch), wait.cause)
         self._outbox.record_input()
 
     # --- and how that ends -----------------------------------------------------------------------
@@ -152,6 +161,10 @@ class Displacing:
         self._outbox.begin(now, stays, _actor(watch), cause)
         self._outbox.record_input()
         self._parts.explain(displaced, (why,))
+
+    def keep(self, watch: RuleWatch) -> None:
+        """Keep which nodes turned out to be elsewhere than where a rule led them."""
+        self._kept.renew(self._of_rule[watch])
 
     def explain(self, watch: RuleWatch, obstacles: tuple[Blocker, ...]) -> bool:
         """Show why a rule displaces something; return whether something else was shown before."""

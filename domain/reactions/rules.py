@@ -62,6 +62,7 @@ class Rules(Concern):
         self._changing = changing
         self._health = health
         self._outbox = outbox
+        self._grace = settings.grace
         self._displacing = Displacing(parts, changing, outbox)
         self._rules = _rules_of(parts)
         self._about = _by_part(self._rules)
@@ -128,7 +129,7 @@ class Rules(Concern):
             else:
                 holds = rule not in self._staying and self._is_free(rule) and rule.is_cause_gone()
                 self._relieved.note(rule, now, holds=holds, record=record)
-                self._relieved.reconsider(rule)
+                self._displacing.keep(rule)
 
     def _is_free(self, rule: RuleWatch) -> bool:
         """Tell whether no change of the system or the part is running, and one could begin."""
@@ -151,20 +152,22 @@ class Rules(Concern):
 
     def _fire(self, rule: RuleWatch, wait: Wait, now: Instant) -> None:
         """Let a rule act, or say why it does not."""
-        bound = self._firings[rule]
-        free_at = bound.free_at(now)
-        if free_at > now:
-            often = f"it was applied {MAX_FIRINGS} times {_WITHIN}"
-            self._displacing.refuse(rule, often, wait.cause, now)
-            self._matching.postpone(rule, free_at)
-            return
         why = self._why_not(rule, wait)
         if why and self._displacing.would_activate(rule):
-            self._displacing.refuse(rule, why, wait.cause, now)
+            self._displacing.refuse(rule, why, wait, now)
             wait.is_idle = True
             return
+        free_at = self._firings[rule].free_at(now)
+        if free_at > now:
+            why = f"it was applied {MAX_FIRINGS} times {_WITHIN}"
+        elif guard := self._displacing.guard_ahead(rule):
+            why, free_at = guard.message, now + self._grace
+        if free_at > now:
+            self._displacing.refuse(rule, why or "", wait, now)
+            self._matching.postpone(rule, free_at)
+            return
         self._matching.end(rule)
-        bound.note(now)
+        self._firings[rule].note(now)
         self._displacing.displace(rule, wait, now)
 
     def _why_not(self, rule: RuleWatch, wait: Wait) -> str | None:
@@ -185,7 +188,7 @@ class Rules(Concern):
             self._displacing.let_stay(rule, stays, wait.cause, now)
             return True
         if obstacles := self._displacing.obstacles(rule):
-            wait.is_idle = True
+            self._relieved.postpone(rule, now + self._grace)
             return self._displacing.explain(rule, obstacles)
         self._relieved.end(rule)
         self._returns[rule.system].note(now)
