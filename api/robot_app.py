@@ -22,6 +22,7 @@ from api.http.problem_handlers import add_problem_handlers
 from api.http.routes import (
     changes,
     emergency_stop,
+    errors,
     example_tracks,
     holds,
     inference,
@@ -54,6 +55,7 @@ _RESOURCES = (
     inference.router,
     signals.router,
     system_state.router,
+    errors.router,
     emergency_stop.router,
     mock.router,
     tasks.router,

@@ -2,9 +2,11 @@
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
+from typing import Generic, TypeVar
 
 from domain.snapshot import (
     EmergencyStopView,
+    ErrorView,
     HoldView,
     PartView,
     SignalView,
@@ -16,9 +18,13 @@ from domain.state_and_mode import PartName
 from domain.timebase import Instant
 from service.watching import Watched
 
-PARTS_AT_ONCE = 250
-"""Changed parts in one frame. The others wait for the next ones, in the order in which they
-changed: encoding the parts of a large robot at once would delay this frame and those after it."""
+Name = TypeVar("Name", bound=str)
+View = TypeVar("View")
+
+PARTS_AT_ONCE = ERRORS_AT_ONCE = 250
+"""Changed parts, and changed errors, in one frame. The others wait for the next ones, in the order
+in which they changed: encoding the parts of a large robot at once would delay this frame and those
+after it."""
 
 LARGE = 500
 """A robot with more parts is large: whoever missed frames of it is told only what changed since."""
@@ -36,6 +42,8 @@ class Frame:
     """The parts that changed since the previous frame; in a full frame, all parts."""
     signals: Mapping[str, SignalView]
     """As for `parts`."""
+    errors: Mapping[str, ErrorView]
+    """As for `parts`, by name; a full frame has those that are not normal."""
     task: TaskView | None
     """The current task, or else the last one; None: there has been none."""
     task_changed: bool
@@ -66,10 +74,9 @@ class FrameFeed(Watched):
         super().__init__()
         self._newest: Frame | None = None
         self._complete: Frame | None = None
-        self._parts: dict[PartName, PartView] = {}
-        """Those that changed last come last."""
-        self._changed_in: dict[PartName, int] = {}
-        """Number of the frame in which each part changed last."""
+        self._parts = _Members[PartName, PartView]()
+        self._errors = _Members[str, ErrorView]()
+        """All that were ever told, so that who merges frames learns of each end."""
         self._signals: dict[str, SignalView] = {}
         self._has_all = False
 
@@ -81,7 +88,12 @@ class FrameFeed(Watched):
     @property
     def parts(self) -> Mapping[PartName, PartView]:
         """The newest view of every part; read only."""
-        return self._parts
+        return self._parts.views
+
+    @property
+    def errors(self) -> Mapping[str, ErrorView]:
+        """The newest view of every error that was told; read only."""
+        return self._errors.views
 
     @property
     def signals(self) -> Mapping[str, SignalView]:
@@ -95,11 +107,8 @@ class FrameFeed(Watched):
 
     def publish(self, frame: Frame) -> None:
         """Replace the newest frame and wake the readers. Never blocks."""
-        for part, view in frame.parts.items():
-            if self._parts.get(part) is not view:
-                self._parts.pop(part, None)
-                self._parts[part] = view
-                self._changed_in[part] = frame.seq
+        self._parts.take(frame.parts, frame.seq)
+        self._errors.take(frame.errors, frame.seq)
         self._signals.update(frame.signals)
         self._has_all = self._has_all or frame.full
         self._newest = frame
@@ -114,8 +123,9 @@ class FrameFeed(Watched):
         if self._complete is None and self._newest is not None and self._has_all:
             self._complete = replace(
                 _all_changed(self._newest),
-                parts=dict(self._parts),
+                parts=dict(self.parts),
                 signals=dict(self._signals),
+                errors=dict(self.errors),
                 full=True,
             )
         return self._complete
@@ -130,25 +140,51 @@ class FrameFeed(Watched):
             seen: Number of the last frame that the reader took; None: none.
         """
         newest = self._newest
-        if seen is None or newest is None or len(self._parts) <= LARGE:
+        if seen is None or newest is None or len(self.parts) <= LARGE:
             return self.complete()
         return replace(
             _all_changed(newest),
             parts=dict(self.parts_since(seen)),
             signals=dict(self._signals),
+            errors=dict(self.errors_since(seen)),
             full=False,
         )
 
     def parts_since(self, seen: int) -> Iterator[tuple[PartName, PartView]]:
         """Yield the parts that changed after the frame `seen`, the newest first."""
-        for part in reversed(self._parts):
-            if self._changed_in[part] <= seen:
+        return self._parts.since(seen)
+
+    def errors_since(self, seen: int) -> Iterator[tuple[str, ErrorView]]:
+        """Yield the errors that changed after the frame `seen`, the newest first."""
+        return self._errors.since(seen)
+
+
+class _Members(Generic[Name, View]):
+    """The newest view of each member of a topic; those that changed last come last."""
+
+    def __init__(self) -> None:
+        self.views: dict[Name, View] = {}
+        self._changed_in: dict[Name, int] = {}
+        """Number of the frame in which each changed last."""
+
+    def take(self, views: Mapping[Name, View], seq: int) -> None:
+        """Take over the members that a frame tells."""
+        for name, view in views.items():
+            if self.views.get(name) is not view:
+                self.views.pop(name, None)
+                self.views[name] = view
+                self._changed_in[name] = seq
+
+    def since(self, seen: int) -> Iterator[tuple[Name, View]]:
+        """Yield the members that changed after the frame `seen`, the newest first."""
+        for name in reversed(self.views):
+            if self._changed_in[name] <= seen:
                 return
-            yield part, self._parts[part]
+            yield name, self.views[name]
 
 
 def _all_changed(frame: Frame) -> Frame:
-    """Return a frame that tells everything but parts and signals anew."""
+    """Return a frame that tells everything anew but parts, signals and errors."""
     return replace(
         frame,
         task_changed=True,

@@ -4,16 +4,19 @@ import logging
 from collections.abc import Callable, Mapping
 from dataclasses import replace
 from itertools import islice
+from typing import Generic, TypeVar
 
 from domain.outbox import Outputs
-from domain.snapshot import PartView, SignalView
+from domain.snapshot import ErrorKey, ErrorView, PartView, SignalView
 from domain.state_and_mode import PartName
 from domain.supervision import Supervision
 from domain.timebase import Instant, seconds, to_seconds
 from service.clock import Clock
-from service.frame_feed import PARTS_AT_ONCE, Frame, FrameFeed
+from service.frame_feed import ERRORS_AT_ONCE, PARTS_AT_ONCE, Frame, FrameFeed
 
 log = logging.getLogger(__name__)
+
+Key = TypeVar("Key", PartName, ErrorKey)
 
 PERIOD = seconds(0.05)
 
@@ -48,11 +51,8 @@ class FramePublisher:
         self._core = core
         self._clock = clock
         self._simulated = simulated
-        self._changed_parts: dict[PartName, None] = {}
-        """In the order in which they changed."""
-        self._noted_parts: list[frozenset[PartName]] = []
-        """Those that changed since, by input; put in order by the next frame: a request may change
-        ten thousand, and its own turn is long enough."""
+        self._changed_parts = _Changed[PartName]()
+        self._changed_errors = _Changed[ErrorKey]()
         self._changed_signals: set[str] = set()
         self._signals_told_at: dict[str, Instant] = {}
         self._task_changed = False
@@ -79,8 +79,8 @@ class FramePublisher:
 
     def note(self, outputs: Outputs) -> None:
         """Remember what changed; the next frame shows it."""
-        if outputs.parts:
-            self._noted_parts.append(outputs.parts)
+        self._changed_parts.note(outputs.parts)
+        self._changed_errors.note(outputs.errors)
         self._changed_signals |= outputs.signals
         self._task_changed |= outputs.task_changed
         self._vehicle_changed |= outputs.vehicle_changed
@@ -103,6 +103,7 @@ class FramePublisher:
             system_state=core.system_state(),
             parts=self._take_parts(full=full),
             signals=self._take_signals(full=full),
+            errors=self._take_errors(full=full),
             task=core.driving.latest_task if last is None or self._task_changed else last.task,
             task_changed=full or self._task_changed,
             vehicle=core.driving.vehicle,
@@ -123,16 +124,18 @@ class FramePublisher:
 
     def _take_parts(self, *, full: bool) -> Mapping[PartName, PartView]:
         """Return all parts for a full frame, or else those that changed first."""
-        for parts in self._noted_parts:
-            self._changed_parts.update(dict.fromkeys(sorted(parts)))
-        self._noted_parts.clear()
         if full:
             self._changed_parts.clear()
             return self._core.parts()
-        taken = list(islice(self._changed_parts, PARTS_AT_ONCE))
-        for part in taken:
-            del self._changed_parts[part]
-        return {part: self._core.part(part) for part in taken}
+        return {part: self._core.part(part) for part in self._changed_parts.take(PARTS_AT_ONCE)}
+
+    def _take_errors(self, *, full: bool) -> Mapping[str, ErrorView]:
+        """Return the errors that are not normal for a full frame, or else some that changed."""
+        if full:
+            self._changed_errors.clear()
+            return self._core.open_errors()
+        taken = self._changed_errors.take(ERRORS_AT_ONCE)
+        return {key.name: self._core.error(key) for key in taken}
 
     def _take_signals(self, *, full: bool) -> Mapping[str, SignalView]:
         """Return the signals that changed; one that was only received again waits its turn."""
@@ -155,6 +158,36 @@ class FramePublisher:
                 observe(to_seconds(now - self.last_tick_at))
         self.last_tick_at = now
         self.publish()
+
+
+class _Changed(Generic[Key]):
+    """What changed and is not in a frame yet, in the order in which it changed."""
+
+    def __init__(self) -> None:
+        self._keys: dict[Key, None] = {}
+        self._noted: list[frozenset[Key]] = []
+        """What changed since, by input; put in order by the next frame: a request may change ten
+        thousand parts, and its own turn is long enough."""
+
+    def note(self, keys: frozenset[Key]) -> None:
+        """Note what an input changed."""
+        if keys:
+            self._noted.append(keys)
+
+    def take(self, most: int) -> list[Key]:
+        """Remove what changed first, and return it."""
+        for keys in self._noted:
+            self._keys.update(dict.fromkeys(sorted(keys, key=str)))
+        self._noted.clear()
+        taken = list(islice(self._keys, most))
+        for key in taken:
+            del self._keys[key]
+        return taken
+
+    def clear(self) -> None:
+        """Forget what changed: a full frame tells it."""
+        self._keys.clear()
+        self._noted.clear()
 
 
 def _only_repeats(view: SignalView, told: SignalView) -> bool:

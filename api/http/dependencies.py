@@ -3,6 +3,7 @@
 All are coroutines: the framework would call plain functions in a thread.
 """
 
+from collections.abc import Collection
 from itertools import islice
 from typing import Annotated
 
@@ -39,18 +40,35 @@ ActorDep = Annotated[Actor, Depends(_actor)]
 """The client of the request."""
 
 
-async def _part(
-    part: Annotated[str, Path(description="Name as in the model file; it may contain slashes")],
-    request: Request,
-    supervisor: SupervisorDep,
-) -> PartName:
+PartPath = Annotated[str, Path(description="Name as in the model file; it may contain slashes")]
+
+
+async def _part(part: PartPath, request: Request, supervisor: SupervisorDep) -> PartName:
     """Return the part that the path names.
 
     Raises:
         UnknownPartError: There is no part of that name and kind; the error has a hint.
     """
-    kind = "system" if request.url.path.startswith("/systems/") else "node"
-    known = supervisor.model.systems if kind == "system" else supervisor.model.nodes
+    return known_part(part, request, supervisor)
+
+
+def _kind(request: Request) -> str:
+    return "system" if request.url.path.startswith("/systems/") else "node"
+
+
+def known_of_kind(request: Request, supervisor: Supervisor) -> Collection[PartName]:
+    """Return the parts of the kind that the path of a request asks for."""
+    model = supervisor.model
+    return model.systems.keys() if _kind(request) == "system" else model.nodes.keys()
+
+
+def known_part(part: str, request: Request, supervisor: Supervisor) -> PartName:
+    """Return the part that a piece of the path names.
+
+    Raises:
+        UnknownPartError: There is no part of that name and kind; the error has a hint.
+    """
+    kind, known = _kind(request), known_of_kind(request, supervisor)
     name = part_name(part)
     if name in known:
         return name
@@ -81,5 +99,5 @@ def _hint(model: SmhModel, kind: str, part: str, path: str) -> str | None:
         name = name.rpartition("/")[0]
         if name in model:
             more = " and parameters" if name in model.nodes else ""
-            return f"there is {name}, with state, states, mode, modes{more}"
+            return f"there is {name}, with state, states, mode, modes, errors{more}"
     return None

@@ -62,6 +62,12 @@ class _RobotCollector(Collector):
             "error",
             ((error, 1.0) for error in view.errors),
         )
+        yield _gauge(
+            "pilothouse_part_errors",
+            "Number of parts that have an error, by error",
+            "error",
+            ((error, float(count)) for error, count in core.parts_with_errors.items()),
+        )
         deviating = (name for name, part in core.parts().items() if not part.converged)
         yield _gauge(
             "pilothouse_part_deviates",

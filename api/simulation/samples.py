@@ -56,6 +56,7 @@ class Sampler:
             f'{{"t_s":{t_s!r},"system_state":{state},'
             f'"parts":{encoder.parts.text(core.parts())},'
             f'"signals":{encoder.signals.text(core.signals())},'
+            f'"errors":{encoder.errors.text(core.open_errors())},'
             f'"task":{encoder.task(driving.current_task)},'
             f'"vehicle":{encoder.vehicle(driving.vehicle)},'
             f'"holds":{encoder.holds(driving.holds)},'

@@ -15,6 +15,7 @@ TOPICS = (
     "system_state",
     "parts",
     "signals",
+    "errors",
     "task",
     "vehicle",
     "holds",

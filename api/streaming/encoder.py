@@ -10,7 +10,7 @@ from api.http.problems import problem_of
 from api.http.schemas.base import timestamp
 from api.http.schemas.stream import GapJson, HelloJson, ReplayJson
 from api.streaming.client_input import STATE_TOPICS, TOPICS
-from api.streaming.robot_encoder import RobotEncoder
+from api.streaming.robot_encoder import MemberCache, RobotEncoder, View
 from domain.errors import PilothouseError
 from domain.timebase import to_seconds
 from service.event_log import DEFAULT_CAPACITY, Gap
@@ -49,8 +49,8 @@ class StreamEncoder:
         self._earlier: OrderedDict[int, str] = OrderedDict()
         self.replay: Callable[[], ReplayJson | None] = lambda: None
         """Tells how a recording is shown; None: it is a robot."""
-        self._prepared = 0
-        """Number of the frame up to which parts are encoded."""
+        self._prepared: dict[str, int] = {}
+        """By topic, number of the frame up to which its members are encoded."""
 
     def hello(self, topics: frozenset[str]) -> str:
         """Return the `hello` frame."""
@@ -66,19 +66,36 @@ class StreamEncoder:
         ).model_dump_json()
 
     async def prepare(self, topics: frozenset[str]) -> None:
-        """Encode changed parts a few at a time, and let other tasks run in between.
+        """Encode changed parts and errors a few at a time, and let other tasks run in between.
 
         A client may be sent a complete frame next, and parts go on changing meanwhile: what is left
         for one turn is little, unless parts change faster than they can be encoded.
         """
-        if "parts" not in topics:
-            return
-        feed, cache = self._supervisor.frames, self._robot.parts
+        feed, robot = self._supervisor.frames, self._robot
+        if "parts" in topics:
+            await self._prepare("parts", robot.parts, feed.parts_since)
+        if "errors" in topics:
+            await self._prepare("errors", robot.errors, feed.errors_since)
+
+    async def _prepare(
+        self,
+        topic: str,
+        cache: MemberCache[View],
+        since: Callable[[int], Iterator[tuple[str, View]]],
+    ) -> None:
+        """Encode the changed members of one topic.
+
+        Args:
+            topic: Its name.
+            cache: Holds the texts of its members.
+            since: Yields those that changed after a frame.
+        """
+        feed = self._supervisor.frames
         for _ in range(_PASSES):
             if feed.newest is None:
                 return
-            new = list(cache.new_ones(feed.parts_since(self._prepared)))
-            self._prepared = feed.newest.seq
+            new = list(cache.new_ones(since(self._prepared.get(topic, 0))))
+            self._prepared[topic] = feed.newest.seq
             for start in range(0, len(new), _MEMBERS_AT_ONCE):
                 cache.learn(new[start : start + _MEMBERS_AT_ONCE])
                 if len(new) > _MEMBERS_AT_ONCE:
@@ -127,6 +144,8 @@ class StreamEncoder:
             yield f'"parts":{robot.parts.text(frame.parts)}'
         if "signals" in topics and (frame.full or frame.signals):
             yield f'"signals":{robot.signals.text(frame.signals)}'
+        if "errors" in topics and (frame.full or frame.errors):
+            yield f'"errors":{robot.errors.text(frame.errors)}'
         if "task" in topics and frame.task_changed:
             yield f'"task":{robot.task(frame.task)}'
         if "vehicle" in topics and frame.vehicle_changed:

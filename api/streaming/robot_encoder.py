@@ -5,6 +5,7 @@ from typing import Any, Generic, TypeVar
 
 from pydantic_core import to_json
 
+from api.http.error_text import error_text
 from api.http.part_text import part_text
 from api.http.schemas.base import rfc3339, timestamp
 from api.http.schemas.health import EmergencyStopJson, StreamedSignalJson, SystemStateJson
@@ -13,6 +14,7 @@ from domain.actor import Actor
 from domain.events.event import RecordedEvent
 from domain.snapshot import (
     EmergencyStopView,
+    ErrorView,
     HoldView,
     PartView,
     SignalView,
@@ -40,11 +42,12 @@ class RobotEncoder:
         self._supervisor = supervisor
         self._clock = clock = supervisor.clock
         since = LatestCache[Instant](lambda at: timestamp(clock, at))
-        """Most parts that deviate do so since the same moment."""
+        """Most parts that deviate do so since the same moment, and so their errors."""
         self.parts = MemberCache[PartView](lambda view: part_text(view, since.text))
         self.signals = MemberCache[SignalView](
             lambda view: StreamedSignalJson.of(view, clock).model_dump_json()
         )
+        self.errors = MemberCache[ErrorView](lambda view: error_text(view, since.text))
         self._holds = LatestCache[Mapping[str, HoldView]](self._encode_holds)
         self._moments = LatestCache[Instant](lambda at: timestamp(clock, at))
         """An input and what follows from it are at the same moment."""

@@ -1,6 +1,5 @@
 """All errors, of the robot and of its parts: which are on, since when, and how often."""
 
-from collections import Counter
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 
@@ -36,7 +35,7 @@ class ErrorList:
         """Those that are not normal."""
         self._ended: dict[ErrorKey, ErrorView] = {}
         """Those that are normal, and were raised before."""
-        self._parts_with: Counter[str] = Counter()
+        self._parts_with: dict[str, int] = {}
         """By error, how many parts have it."""
         self._count_on = 0
         self._first: ErrorKey | None = None
@@ -119,7 +118,7 @@ class ErrorList:
     def _count(self, key: ErrorKey, step: int) -> None:
         """Count an error that was raised or ended, and tell which was first."""
         if key.part is not None:
-            self._parts_with[key.error] += step
+            self._parts_with[key.error] = self._parts_with.get(key.error, 0) + step
         self._count_on += step
         if step > 0 and self._count_on == 1:
             self._mark_first(key)

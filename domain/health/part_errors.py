@@ -79,7 +79,7 @@ class PartErrors(Concern):
         """Whether those are in the order of the file."""
         self._deviating: dict[PartName, _Origin] = {}
         """Parts that deviate with no change under way, and what began it."""
-        self._deadlines = SharedDeadlines[PartName]()
+        self._deadlines: SharedDeadlines[PartName] = SharedDeadlines()
         self._due: dict[PartName, Instant] = {}
         """Parts whose time is up, and when it was; later turns raise their errors."""
         self._drifted: set[PartName] = set()

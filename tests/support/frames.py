@@ -10,8 +10,12 @@ from domain.lifecycle import LifecycleState
 from domain.snapshot import (
     Actual,
     EmergencyStopView,
+    ErrorKey,
+    ErrorState,
+    ErrorView,
     HoldView,
     PartView,
+    Severity,
     SignalView,
     SystemState,
     SystemStateView,
@@ -68,10 +72,26 @@ def signal_view(name: str, value: float = 1.0) -> SignalView:
     )
 
 
+def error_view(part: str | None, error: str, state: ErrorState = ErrorState.ACTIVE) -> ErrorView:
+    """Show an error that was raised once."""
+    return ErrorView(
+        key=ErrorKey(None if part is None else PartName(part), error),
+        severity=Severity.WARNING,
+        state=state,
+        first_out=False,
+        message="it is so",
+        value=None,
+        threshold=None,
+        since=seconds(1),
+        count=1,
+    )
+
+
 def frame(
     seq: int,
     parts: Sequence[PartView] = (),
     signals: Sequence[SignalView] = (),
+    errors: Sequence[ErrorView] = (),
     *,
     full: bool = False,
     system_state: SystemStateView = IDLE,
@@ -91,6 +111,7 @@ def frame(
         system_state=system_state,
         parts={view.name: view for view in parts},
         signals={view.signal: view for view in signals},
+        errors={view.key.name: view for view in errors},
         task=task,
         task_changed=full or task_changed,
         vehicle=vehicle,

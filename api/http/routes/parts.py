@@ -10,12 +10,21 @@ from fastapi import APIRouter, Request, Response
 
 from api.http.body_parsing import InvalidBodyError
 from api.http.change_answers import CHANGE_RESPONSES, ChangeOptionsDep, answer_change
-from api.http.dependencies import ActorDep, PartDep, SupervisorDep
+from api.http.dependencies import (
+    ActorDep,
+    PartDep,
+    PartPath,
+    SupervisorDep,
+    known_of_kind,
+    known_part,
+)
+from api.http.error_answers import ActiveQuery, answer_errors
 from api.http.list_answers import json_list
 from api.http.part_text import part_text
 from api.http.request_body import JsonRoute
 from api.http.route_policy import AuditClass, Permission, policy
 from api.http.schemas.base import timestamp
+from api.http.schemas.errors import ErrorsJson
 from api.http.schemas.parts import (
     EnterableModeJson,
     ModeBody,
@@ -31,6 +40,7 @@ from api.http.schemas.parts import (
 from domain.errors import UnknownModeError
 from domain.inputs import ModeRequest, TransitionRequest
 from domain.lifecycle import PRIMARY_STATES, LifecycleState, Transition
+from domain.state_and_mode import part_name
 
 router = APIRouter(route_class=JsonRoute)
 
@@ -120,14 +130,41 @@ async def list_modes(part: PartDep, supervisor: SupervisorDep) -> ModesJson:
     return ModesJson(items=items)
 
 
-@router.get("/{part:path}/why")
+@router.get("/{part:path}/why", response_model=WhyJson)
 @policy(Permission.OBSERVE)
-async def get_why(part: PartDep, supervisor: SupervisorDep) -> WhyJson:
+async def get_why(part: PartPath, supervisor: SupervisorDep, request: Request) -> Response:
     """Show why the part is not where it should be; no reasons: it is."""
+    if (whole := _longer_name(f"{part}/why", request, supervisor)) is not None:
+        return whole
+    name = known_part(part, request, supervisor)
     # A request would find that what is due has passed.
     supervisor.let_pass()
     core = supervisor.core
-    return WhyJson.of(core.part(part), core.why(part), supervisor.clock)
+    shown = WhyJson.of(core.part(name), core.why(name), supervisor.clock)
+    return Response(shown.model_dump_json(), media_type="application/json")
+
+
+@router.get("/{part:path}/errors", response_model=ErrorsJson)
+@policy(Permission.OBSERVE)
+async def list_part_errors(
+    part: PartPath, supervisor: SupervisorDep, request: Request, *, active: ActiveQuery = None
+) -> Response:
+    """List the errors of the part, also those that are normal."""
+    if (whole := _longer_name(f"{part}/errors", request, supervisor)) is not None:
+        return whole
+    name = known_part(part, request, supervisor)
+    # What is due by now is an error by now.
+    supervisor.let_pass()
+    return await answer_errors(supervisor, supervisor.core.errors_of(name), active)
+
+
+def _longer_name(path: str, request: Request, supervisor: SupervisorDep) -> Response | None:
+    """Return the part that a whole path names; None: there is none. The longest name wins."""
+    whole = part_name(path)
+    if whole not in known_of_kind(request, supervisor):
+        return None
+    text = part_text(supervisor.core.part(whole), partial(timestamp, supervisor.clock))
+    return Response(text, media_type="application/json")
 
 
 # Last, since its path matches those of all others.

@@ -323,6 +323,7 @@ class SampleJson(Json):
     system_state: dict[str, Any]
     parts: dict[str, Any]
     signals: dict[str, Any]
+    errors: dict[str, Any] = Field(description="Those that are not normal, by name")
     task: dict[str, Any] | None = Field(description="The current task; null: there is none")
     vehicle: dict[str, Any]
     holds: dict[str, Any] = Field(description="By owner")

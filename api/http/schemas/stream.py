@@ -6,6 +6,7 @@ from pydantic import ConfigDict, Field
 from pydantic.json_schema import SkipJsonSchema
 
 from api.http.schemas.base import Body, Json, Timestamp, left_out
+from api.http.schemas.errors import ErrorJson
 from api.http.schemas.health import (
     EmergencyStopJson,
     ReadingBody,
@@ -72,6 +73,15 @@ class StateFrame(Json):
     signals: dict[str, StreamedSignalJson] | SkipJsonSchema[None] = Field(
         default=None,
         description="Signals that have changed; all of them in a full frame",
+        json_schema_extra=left_out,
+    )
+    errors: dict[str, ErrorJson] | SkipJsonSchema[None] = Field(
+        default=None,
+        description=(
+            "Errors that have changed, by name: `BATTERY_LOW`, `drive_base.UNREACHABLE`; one that"
+            " ended is told once more, as `normal`. In a full frame, all that are not normal, and"
+            " those that ended since the service told them first"
+        ),
         json_schema_extra=left_out,
     )
     task: TaskJson | None = Field(

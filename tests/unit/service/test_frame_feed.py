@@ -9,10 +9,10 @@ from domain.inputs import (
     ReleaseRequest,
     TaskRequest,
 )
-from domain.snapshot import PartView, TaskPhase
+from domain.snapshot import ErrorState, PartView, TaskPhase
 from domain.state_and_mode import PartName
 from service.frame_feed import LARGE, Frame, FrameFeed, FrameReader
-from tests.support.frames import frame, part_view, signal_view
+from tests.support.frames import error_view, frame, part_view, signal_view
 from tests.support.live_robot import make_supervisor, running
 from tests.support.manual_clock import ManualClock
 from tests.support.paths import straight
@@ -283,3 +283,53 @@ def test_who_merges_what_it_is_told_has_all_parts_whatever_it_missed(data: st.Da
         if data.draw(st.booleans()):
             held.update(taken(reader)[0].parts)
             assert held == now
+
+
+# --- errors --------------------------------------------------------------------------------------
+
+LOST = error_view("arm", "UNREACHABLE")
+FOUND = error_view("arm", "UNREACHABLE", ErrorState.NORMAL)
+
+
+def test_who_missed_the_end_of_an_error_learns_of_it_from_a_complete_frame() -> None:
+    feed = FrameFeed()
+    feed.publish(frame(1, [ARM], errors=[LOST], full=True))
+    reader = FrameReader(feed)
+    assert taken(reader)[0].errors == {"arm.UNREACHABLE": LOST}
+    feed.publish(frame(2, errors=[FOUND]))
+    feed.publish(frame(3))
+    newest, skipped = taken(reader)
+    assert (skipped, newest.full) == (1, True)
+    assert newest.errors == {"arm.UNREACHABLE": FOUND}
+
+
+def test_of_a_large_robot_only_the_errors_that_changed_since_are_told() -> None:
+    feed = FrameFeed()
+    parts = [part_view(f"node_{number}") for number in range(LARGE + 1)]
+    low = error_view(None, "BATTERY_LOW")
+    feed.publish(frame(1, parts, errors=[LOST, low], full=True))
+    reader = FrameReader(feed)
+    reader.take()
+    feed.publish(frame(2, errors=[FOUND]))
+    feed.publish(frame(3))
+    newest, _ = taken(reader)
+    assert (newest.full, newest.errors) == (False, {"arm.UNREACHABLE": FOUND})
+
+
+@given(st.data())
+def test_who_merges_what_it_is_told_has_all_errors_whatever_it_missed(data: st.DataObject) -> None:
+    names = [f"node_{number}" for number in range(4)]
+    parts = [part_view(f"node_{number}") for number in range(data.draw(st.sampled_from([1, 600])))]
+    feed, held = FrameFeed(), dict[str, ErrorState]()
+    now = {f"{name}.DEVIATES": error_view(name, "DEVIATES") for name in names}
+    feed.publish(frame(1, parts, errors=list(now.values()), full=True))
+    reader = FrameReader(feed)
+    for seq in range(2, 12):
+        changed = data.draw(st.sets(st.sampled_from(names)))
+        state = data.draw(st.sampled_from(ErrorState))
+        told = {f"{name}.DEVIATES": error_view(name, "DEVIATES", state) for name in changed}
+        now |= told
+        feed.publish(frame(seq, errors=list(told.values())))
+        if data.draw(st.booleans()):
+            held |= {name: view.state for name, view in taken(reader)[0].errors.items()}
+            assert held == {name: view.state for name, view in now.items()}

@@ -10,6 +10,7 @@ from domain.inputs import (
     EmergencyStopRequest,
     HoldRequest,
     ModeRequest,
+    NodeReport,
     Reading,
     TaskRequest,
 )
@@ -44,6 +45,19 @@ async def test_the_metrics_tell_the_state_and_the_errors_of_the_robot(
         assert await metric(http, "pilothouse_system_state", state="IDLE") == 0
         assert await metric(http, "pilothouse_error_active", error="ESTOP") == 1
         assert await metric(http, "pilothouse_error_active", error="BATTERY_LOW") is None
+
+
+async def test_the_metrics_count_the_parts_with_an_error(
+    http: httpx.AsyncClient, supervisor: Supervisor
+) -> None:
+    name = "pilothouse_part_errors"
+    async with running(supervisor):
+        assert not await metric(http, name, error="UNREACHABLE")
+        for node in ("drive_base", "manipulator"):
+            supervisor.submit(NodeReport(PartName(node), reachable=False))
+        assert await metric(http, name, error="UNREACHABLE") == 2
+        supervisor.submit(NodeReport(PartName("drive_base"), reachable=True))
+        assert await metric(http, name, error="UNREACHABLE") == 1
 
 
 async def test_the_metrics_tell_which_parts_are_on_their_way(

@@ -33,6 +33,7 @@ def test_a_sample_shows_all_there_is(robot: VirtualService) -> None:
     assert sample["task"] is None
     assert sample["signals"]["battery_level"]["unit"] == "ratio"
     assert sample["emergency_stop"]["engaged"] is False
+    assert all(error["state"] != "normal" for error in sample["errors"].values())
 
 
 def test_holds_are_shown_by_owner(robot: VirtualService) -> None:

@@ -18,7 +18,7 @@ from domain.state_and_mode import PartName
 from domain.timebase import seconds
 from service.event_log import Gap
 from service.supervisor import Supervisor
-from tests.support.frames import event, frame, part_view, signal_view
+from tests.support.frames import error_view, event, frame, part_view, signal_view
 from tests.support.live_robot import make_supervisor
 
 ALL = STATE_TOPICS
@@ -125,10 +125,36 @@ def test_holds_are_sent_whole_and_the_emergency_stop_too_when_they_changed(
     assert "holds" not in stopped
 
 
+def test_errors_are_sent_by_name_when_they_changed(encoder: StreamEncoder) -> None:
+    lost, low = error_view("arm", "UNREACHABLE"), error_view(None, "BATTERY_LOW")
+
+    shown = read(encoder.frame(frame(2, errors=[lost, low]), 0, ALL))
+    quiet = read(encoder.frame(frame(3), 0, ALL))
+
+    assert list(shown["errors"]) == ["arm.UNREACHABLE", "BATTERY_LOW"]
+    assert (shown["errors"]["arm.UNREACHABLE"]["part"], quiet.get("errors")) == ("arm", None)
+
+
+async def test_errors_are_encoded_ahead_also_for_clients_that_want_no_parts(
+    encoder: StreamEncoder, supervisor: Supervisor, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    lost = error_view("arm", "UNREACHABLE")
+    supervisor.frames.publish(frame(1, [ARM], errors=[lost], full=True))
+    await encoder.prepare(frozenset({"errors"}))
+    monkeypatch.setattr(encoder._robot.errors, "_encode", lambda _view: "{}")  # noqa: SLF001
+
+    complete = supervisor.frames.complete()
+    assert complete is not None
+    shown = read(encoder.frame(complete, 0, ALL))
+
+    assert shown["errors"]["arm.UNREACHABLE"]["state"] == "active"
+
+
 def test_a_full_frame_of_a_robot_without_parts_says_so(encoder: StreamEncoder) -> None:
     shown = read(encoder.frame(frame(2, full=True), 0, ALL))
 
     assert (shown["parts"], shown["signals"], shown["task"]) == ({}, {}, None)
+    assert shown["errors"] == {}
     assert shown["holds"] == {}
     assert shown["emergency_stop"]["engaged"] is False
 
@@ -139,6 +165,7 @@ def test_a_full_frame_of_a_robot_without_parts_says_so(encoder: StreamEncoder) -
         ({"system_state"}, set()),
         ({"parts"}, {"parts"}),
         ({"signals", "events"}, {"signals"}),
+        ({"errors"}, {"errors"}),
         ({"task"}, {"task"}),
         ({"vehicle"}, {"vehicle"}),
         ({"holds"}, {"holds"}),

@@ -23,7 +23,7 @@ def test_while_a_change_runs_each_node_that_is_elsewhere_tells_which_change() ->
     robot.begin(ModeRequest(ACTUATION, PERFORMANCE))
     base = next(why for why in robot.core.why(ACTUATION) if why.path[-1] == BASE)
     assert (base.code, base.path) == ("DEVIATES", ("actuation", "drive_base"))
-    assert base.message == ("drive_base is configuring, target active.FAST; change c1 is under way")
+    assert base.message == "drive_base is unconfigured, target active.FAST; change c1 is under way"
     robot.advance(5)
     assert robot.core.why(ACTUATION) == ()
 

@@ -9,6 +9,7 @@ def test_what_has_not_changed_is_left_out_of_a_frame() -> None:
     assert set(SCHEMA["properties"]) - set(SCHEMA["required"]) == {
         "parts",
         "signals",
+        "errors",
         "task",
         "vehicle",
         "holds",

@@ -1,0 +1,49 @@
+"""Errors of the robot and of its parts as clients see them."""
+
+from pydantic import Field
+
+from api.http.schemas.base import Json, Timestamp
+from domain.findings import Fact
+from domain.snapshot import ErrorState, Severity
+
+
+class ErrorNameJson(Json):
+    """Which error."""
+
+    part: str | None = Field(description="null: the robot's own")
+    error: str
+
+
+class ErrorJson(Json):
+    """One error of the robot or of a part."""
+
+    error: str = Field(examples=["DEVIATES"])
+    part: str | None = Field(description="null: the robot's own")
+    severity: Severity = Field(description="`critical` and `fatal` put the robot into ERROR")
+    state: ErrorState = Field(
+        description=(
+            "`active`, `acknowledged` and `latched` are on; `latched`: its cause is gone, and an"
+            " operator has yet to acknowledge it; `pending`: raised unless the cause ends in time"
+        )
+    )
+    shelved_until_at: Timestamp | None
+    suppressed: bool
+    chattering: bool
+    root_cause: bool = Field(description="No other error causes it")
+    first_out: bool = Field(description="It was raised first since no error was on")
+    caused_by: list[ErrorNameJson]
+    roots: list[ErrorNameJson] = Field(description="The errors that it goes back to")
+    message: str = Field(description="What was found; empty while it is normal")
+    value: Fact
+    threshold: Fact
+    since_at: Timestamp | None = Field(
+        description="When it was raised, or began to be pending; null: it is normal"
+    )
+    count: int = Field(description="How often it was raised in this run of the service")
+    hint: str | None
+
+
+class ErrorsJson(Json):
+    """Errors: first the robot's own, then those of the parts in the order of the model file."""
+
+    items: list[ErrorJson]
