@@ -83,17 +83,12 @@ class Supervision:
         """
         self.model = model
         self._now = start
-        self._outbox = Outbox()
+        outbox = self._outbox = Outbox()
         self._parts = Parts(model, self._outbox)
         self._health = Health(settings.signals, self._outbox, start)
         self._emergency_stop = EmergencyStop(self._health, self._outbox)
         self.driving = Driving(
-            settings.tasks,
-            settings.vehicle,
-            self._health,
-            self._emergency_stop,
-            self._outbox,
-            start,
+            settings.tasks, settings.vehicle, self._health, self._emergency_stop, outbox, start
         )
         storage = Storage(self._outbox)
         self._robot_state = RobotState(self._health, self.driving, storage, self._outbox)
