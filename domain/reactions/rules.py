@@ -152,23 +152,28 @@ class Rules(Concern):
 
     def _fire(self, rule: RuleWatch, wait: Wait, now: Instant) -> None:
         """Let a rule act, or say why it does not."""
+        way = self._displacing.way_ahead(rule)
         why = self._why_not(rule, wait)
-        if why and self._displacing.would_activate(rule):
+        if why and self._displacing.would_activate(way):
             self._displacing.refuse(rule, why, wait, now)
             wait.is_idle = True
             return
         free_at = self._firings[rule].free_at(now)
         if free_at > now:
-            why = f"it was applied {MAX_FIRINGS} times {_WITHIN}"
-        elif guard := self._displacing.guard_ahead(rule):
-            why, free_at = guard.message, now + self._grace
-        if free_at > now:
-            self._displacing.refuse(rule, why or "", wait, now)
-            self._matching.postpone(rule, free_at)
-            return
-        self._matching.end(rule)
-        self._firings[rule].note(now)
-        self._displacing.displace(rule, wait, now)
+            often = f"it was applied {MAX_FIRINGS} times {_WITHIN}"
+            self._postpone(rule, often, wait, free_at, now)
+        elif guard := self._displacing.guard_ahead(rule, way):
+            self._postpone(rule, guard.message, wait, now + self._grace, now)
+        else:
+            self._matching.end(rule)
+            self._firings[rule].note(now)
+            self._displacing.displace(rule, way, wait, now)
+
+    def _postpone(
+        self, rule: RuleWatch, why: str, wait: Wait, until: Instant, now: Instant
+    ) -> None:
+        self._displacing.refuse(rule, why, wait, now)
+        self._matching.postpone(rule, until)
 
     def _why_not(self, rule: RuleWatch, wait: Wait) -> str | None:
         """Return why nothing may be activated; None: it may."""
@@ -178,21 +183,22 @@ class Rules(Concern):
 
     def _return(self, rule: RuleWatch, wait: Wait, now: Instant) -> bool:
         """Let a system return, or say why it stays; return whether that is something new."""
-        if not self._displacing.is_seen(rule):
-            self._displacing.take_back(rule, wait.cause, now)
+        way = self._displacing.way_back(rule)
+        if way is None:
             self._relieved.end(rule)
+            self._displacing.take_back(rule, way, wait, now)
             return True
         if (stays := self._why_staying(rule, wait, now)) is not None:
             self._relieved.end(rule)
             self._staying.add(rule)
-            self._displacing.let_stay(rule, stays, wait.cause, now)
+            self._displacing.let_stay(rule, stays, wait, now)
             return True
-        if obstacles := self._displacing.obstacles(rule):
+        if obstacles := self._displacing.obstacles(way):
             self._relieved.postpone(rule, now + self._grace)
             return self._displacing.explain(rule, obstacles)
         self._relieved.end(rule)
         self._returns[rule.system].note(now)
-        self._displacing.take_back(rule, wait.cause, now)
+        self._displacing.take_back(rule, way, wait, now)
         return True
 
     def _why_staying(self, rule: RuleWatch, wait: Wait, now: Instant) -> Blocker | None:
