@@ -44,6 +44,8 @@ _EVENTS_AT_ONCE: Final = 200
 """A step with more events is written down in a turn of its own: for 1,000 it takes 20 ms."""
 BATCH_S: Final = 0.05
 """How long what nobody waits for is gathered."""
+FOLLOW_EVERY_S = 0.5
+"""How often the writer does what no answer waits for, such as to bring the state up to the log."""
 RETRY_S: Final = 1.0
 SLOW_S: Final = 1.0
 """Storage that takes longer for one flight is degraded."""
@@ -76,6 +78,9 @@ class SqliteJournal:
         self._is_due = False
         self._flying: asyncio.Task[None] | None = None
         self._took_off_at = 0.0
+        self._followed_at = 0.0
+        self._lags = False
+        """Whether something was written after the writer did last what can wait."""
         self._fault: str | None = None
         self._is_closed = False
         self._deferred = deque[Step]()
@@ -261,7 +266,7 @@ class SqliteJournal:
         def end() -> None:
             try:
                 (folder.recover if is_degraded else folder.write)(flight)
-                folder.follow(flight)
+                folder.follow()
             finally:
                 folder.close()
                 self._opened.lock.release()
@@ -306,22 +311,28 @@ class SqliteJournal:
 
     def _take_off(self) -> None:
         self._timer, self._is_due = None, False
-        flight = self._backlog.take(self._must_last)
-        waiters, self._waiters, self._must_last = self._waiters, [], False
         loop = asyncio.get_running_loop()
         self._took_off_at = loop.time()
+        waiters, self._waiters = self._waiters, []
+        if self._backlog.is_empty and not waiters and self._fault is None:
+            self._flying = loop.create_task(self._fly(None, waiters))
+            return
+        flight = self._backlog.take(self._must_last)
+        self._must_last = False
         self._flying = loop.create_task(self._fly(flight, waiters))
 
-    async def _fly(self, flight: Flight, waiters: "list[asyncio.Future[None]]") -> None:
-        """Write a flight down, and see to the next one."""
+    async def _fly(self, flight: Flight | None, waiters: "list[asyncio.Future[None]]") -> None:
+        """Write a flight down, and see to the next one; None: only do what can wait."""
         folder = self._opened.folder
-        write = folder.write if self._fault is None else folder.recover
         try:
-            await self._writer.run(lambda: write(flight))
-            self._backlog.written()
-            self._wants_checkpoint |= any(batch.hole for batch in flight.batches)
+            if flight is not None:
+                await self._write(flight)
             self._settle(waiters, None)
-            self._take_report(await self._writer.run(lambda: folder.follow(flight)))
+            now = asyncio.get_running_loop().time()
+            is_due = now - self._followed_at >= FOLLOW_EVERY_S
+            if is_due or flight is None or self._fault is not None:
+                self._followed_at, self._lags = now, False
+                self._take_report(await self._writer.run(folder.follow))
         except FAILURES as error:
             self._fail(words(error), waiters)
         except Exception as error:
@@ -331,6 +342,14 @@ class SqliteJournal:
         self._flying = None
         self._go_on()
 
+    async def _write(self, flight: Flight) -> None:
+        folder = self._opened.folder
+        write = folder.write if self._fault is None else folder.recover
+        await self._writer.run(lambda: write(flight))
+        self._lags = True
+        self._backlog.written()
+        self._wants_checkpoint |= any(batch.hole for batch in flight.batches)
+
     def _go_on(self) -> None:
         if self._is_closed:
             return
@@ -338,7 +357,7 @@ class SqliteJournal:
             self._timer = asyncio.get_running_loop().call_later(RETRY_S, self._take_off)
         elif self._waiters:
             self._hurry()
-        elif not self._backlog.is_empty:
+        elif not self._backlog.is_empty or self._lags:
             self._schedule()
 
     def _take_report(self, report: Report) -> None:

@@ -13,8 +13,9 @@ from service.codec.codec import STEPS
 from service.storage.journal import EventQuery, Step
 from service.storage.sqlite import journal as sqlite_journal
 from service.storage.sqlite.batch import Flight
-from service.storage.sqlite.folder import Folder, Retention
+from service.storage.sqlite.folder import Folder, Report, Retention
 from service.storage.sqlite.recorded_log import RecordedLog
+from service.storage.sqlite.state_file import StateFile
 from tests.support.folder_robot import ENOUGH_S, as_a_kill_leaves, found_in, holds, started
 from tests.support.noted_robot import NotedRobot
 
@@ -86,6 +87,33 @@ async def test_what_nobody_waits_for_is_written_all_the_same(folder: Path, disk:
     await until(lambda: bool(disk.flights))
 
     assert disk.flights == [2]
+    await robot.journal.close()
+
+
+async def test_the_state_follows_the_log_when_nobody_waits(
+    folder: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(sqlite_journal, "FOLLOW_EVERY_S", ENOUGH_S)
+    followed: list[int] = []
+    follow = Folder.follow
+
+    def counted(folder: Folder) -> Report:
+        followed.append(1)
+        return follow(folder)
+
+    monkeypatch.setattr(Folder, "follow", counted)
+    robot = await started(folder)
+    for number in range(10):
+        robot.holds(f"operator {number}")
+        assert await robot.journal.commit(ENOUGH_S)
+    while_asked = len(followed)
+
+    await until(lambda: len(followed) > while_asked)
+
+    assert while_asked <= 1
+    state = StateFile.open(as_a_kill_leaves(folder) / "state.db")
+    assert ("kept_hold", "operator 9") in state.kept()
+    state.close()
     await robot.journal.close()
 
 
