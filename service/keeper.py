@@ -31,8 +31,6 @@ LOOK_EVERY = seconds(0.25)
 WORKS_FOR = seconds(3.0)
 """Storage that failed works again if it has worked for so long."""
 RETRY_CHECKPOINT = seconds(60.0)
-LAST_REQUEST = "last_request"
-"""Under this name the journal has number and kind of the last request that was stored first."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -183,8 +181,8 @@ class Keeper:
 
     async def _store_first(self, given: Input) -> None:
         self._requests += 1
-        self._journal.keep(LAST_REQUEST, [self._requests, type(given).__name__])
-        if not await self._journal.commit(BARRIER_S):
+        what: Plain = [self._requests, type(given).__name__]
+        if not await self._journal.announce(what, BARRIER_S):
             raise StorageDegradedError(f"the disk takes more than {BARRIER_S:g} s")
 
     async def _is_stored(self, patience_s: float) -> bool:

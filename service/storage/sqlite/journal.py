@@ -31,6 +31,7 @@ from service.storage.journal import (
     StorageStatus,
     StoredEvent,
 )
+from service.storage.sqlite.announcer import Announcer
 from service.storage.sqlite.backlog import Backlog
 from service.storage.sqlite.batch import IDS, OWN, Flight
 from service.storage.sqlite.connection import FAILURES, words
@@ -71,6 +72,7 @@ class SqliteJournal:
         self._opened = opened
         self._report = opened.report
         self._reader = DiskThread("journal-reader")
+        self._announcer = Announcer(opened.announced)
         self._backlog = Backlog(settings.backlog_bytes, opened.next.batch, opened.next.step)
         self._waiters: list[asyncio.Future[None]] = []
         self._must_last = False
@@ -198,17 +200,33 @@ class SqliteJournal:
             self._wants_checkpoint, self._checkpoint_at = False, at
             self._schedule()
 
+    async def announce(self, what: Plain, patience_s: float) -> bool:
+        """Put on disk what is about to be done; return whether it is there, in that time."""
+        self._require_use()
+        try:
+            async with asyncio.timeout(patience_s):
+                await self._announcer.announce(what)
+        except TimeoutError:
+            return False
+        except OSError as error:
+            self._fail_beside_flights(words(error))
+            raise StorageDegradedError(words(error)) from error
+        return True
+
     async def commit(self, patience_s: float) -> bool:
         """Wait until all that was noted before is on disk; return whether it is, in that time."""
         for _ in range(len(self._deferred)):
             # In each turn at least one of them is taken.
             await asyncio.sleep(0)
+        self._require_use()
+        self._must_last = True
+        return await self._landed(patience_s)
+
+    def _require_use(self) -> None:
         if self._is_closed:
             raise StorageDegradedError("storage is closed")
         if self._fault is not None:
             raise StorageDegradedError(self._fault)
-        self._must_last = True
-        return await self._landed(patience_s)
 
     def status(self) -> StorageStatus:
         """Return how storage is doing."""
@@ -251,6 +269,7 @@ class SqliteJournal:
             _log.error("storage is too slow: the last entries may be lost")
         self._writer.end()
         self._reader.end()
+        self._announcer.end()
 
     async def _end(self) -> None:
         while self._deferred:
@@ -261,7 +280,8 @@ class SqliteJournal:
             self._backlog.change((IDS, kind), _id_text(first))
         self._backlog.end_run()
         flight = self._backlog.take(must_last=True)
-        folder, is_degraded = self._opened.folder, self._fault is not None
+        opened, is_degraded = self._opened, self._fault is not None
+        folder = opened.folder
 
         def end() -> None:
             try:
@@ -269,7 +289,8 @@ class SqliteJournal:
                 folder.follow()
             finally:
                 folder.close()
-                self._opened.lock.release()
+                opened.announced.close()
+                opened.lock.release()
 
         try:
             await self._writer.run(end)
@@ -323,29 +344,39 @@ class SqliteJournal:
 
     async def _fly(self, flight: Flight | None, waiters: "list[asyncio.Future[None]]") -> None:
         """Write a flight down, and see to the next one; None: only do what can wait."""
-        folder = self._opened.folder
+        is_recovering = self._fault is not None
         try:
             if flight is not None:
-                await self._write(flight)
+                await self._write(flight, is_recovering=is_recovering)
             self._settle(waiters, None)
             now = asyncio.get_running_loop().time()
-            is_due = now - self._followed_at >= FOLLOW_EVERY_S
-            if is_due or flight is None or self._fault is not None:
+            if flight is None or is_recovering or now - self._followed_at >= FOLLOW_EVERY_S:
                 self._followed_at, self._lags = now, False
-                self._take_report(await self._writer.run(folder.follow))
+                self._take_report(await self._writer.run(self._opened.folder.follow))
         except FAILURES as error:
             self._fail(words(error), waiters)
         except Exception as error:
             _log.exception("steps cannot be written down")
             self._backlog.discard(words(error))
             self._fail(words(error), waiters)
+        else:
+            if is_recovering:
+                _log.warning("storage works again")
+                self._fault = None
         self._flying = None
         self._go_on()
 
-    async def _write(self, flight: Flight) -> None:
-        folder = self._opened.folder
-        write = folder.write if self._fault is None else folder.recover
-        await self._writer.run(lambda: write(flight))
+    async def _write(self, flight: Flight, *, is_recovering: bool) -> None:
+        folder, announced = self._opened.folder, self._opened.announced
+
+        def write() -> None:
+            if is_recovering:
+                folder.recover(flight)
+                announced.renew()
+            else:
+                folder.write(flight)
+
+        await self._writer.run(write)
         self._lags = True
         self._backlog.written()
         self._wants_checkpoint |= any(batch.hole for batch in flight.batches)
@@ -363,9 +394,6 @@ class SqliteJournal:
     def _take_report(self, report: Report) -> None:
         self._report = report
         self._wants_checkpoint |= report.began_file
-        if self._fault is not None:
-            _log.warning("storage works again")
-            self._fault = None
 
     def _fail(self, reason: str, waiters: "list[asyncio.Future[None]]") -> None:
         if self._fault is None:
@@ -373,6 +401,17 @@ class SqliteJournal:
         self._fault = reason
         self._settle([*waiters, *self._waiters], StorageDegradedError(reason))
         self._waiters = []
+
+    def _fail_beside_flights(self, reason: str) -> None:
+        """Degrade at once; a flight that is in the air or due lands first."""
+        if self._fault is not None or self._is_closed:
+            return
+        self._fail(reason, [])
+        if self._flying is None:
+            if self._timer is not None:
+                self._timer.cancel()
+            self._is_due = False
+            self._go_on()
 
     def _settle(
         self, waiters: "list[asyncio.Future[None]]", error: StorageDegradedError | None
