@@ -45,7 +45,7 @@ _EVENTS_AT_ONCE: Final = 200
 """A step with more events is written down in a turn of its own: for 1,000 it takes 20 ms."""
 BATCH_S: Final = 0.05
 """How long what nobody waits for is gathered."""
-FOLLOW_EVERY_S = 0.5
+FOLLOW_EVERY_S = 1.0
 """How often the writer does what no answer waits for, such as to bring the state up to the log."""
 RETRY_S: Final = 1.0
 SLOW_S: Final = 1.0

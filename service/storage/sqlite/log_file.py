@@ -21,7 +21,9 @@ from service.storage.sqlite.packing import DictionaryMaker, pack
 from service.storage.sqlite.schema import LOG, bring_up, describe, examine
 
 _COMPRESSION = 1
-_CHECKPOINT_AT_PAGES = 1_000
+_CHECKPOINT_AT_PAGES = 4_000
+"""16 MiB. Commits wait while they are taken into the file, some ms for these as for fewer, since
+most of them are the same few pages again."""
 _SYNC_EVERY: Duration = seconds(0.5)
 """What nobody waits for may be lost with the power for so long."""
 
