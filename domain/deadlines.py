@@ -1,4 +1,4 @@
-"""A queue of deadlines by key."""
+"""Queues of deadlines by key."""
 
 import heapq
 from collections.abc import Hashable
@@ -47,3 +47,49 @@ class Deadlines(Generic[KeyT]):
     def _drop_forgotten(self) -> None:
         while self._heap and self._at.get(self._heap[0][2]) != self._heap[0][:2]:
             heapq.heappop(self._heap)
+
+
+class SharedDeadlines(Generic[KeyT]):
+    """As `Deadlines`, for keys of which thousands have the same deadline."""
+
+    def __init__(self) -> None:
+        self._at: dict[KeyT, Instant] = {}
+        self._keys: dict[Instant, dict[KeyT, None]] = {}
+        """In the order in which they were set."""
+        self._heap: list[Instant] = []
+
+    def __contains__(self, key: KeyT) -> bool:
+        """Tell whether a key has a deadline."""
+        return key in self._at
+
+    def set(self, key: KeyT, at: Instant) -> None:
+        """Set the deadline of `key`; it replaces an earlier one."""
+        self.clear(key)
+        self._at[key] = at
+        keys = self._keys.get(at)
+        if keys is None:
+            keys = self._keys[at] = {}
+            heapq.heappush(self._heap, at)
+        keys[key] = None
+
+    def clear(self, key: KeyT) -> None:
+        """Remove the deadline of `key`, if any."""
+        at = self._at.pop(key, None)
+        if at is not None:
+            del self._keys[at][key]
+
+    def next(self) -> Instant | None:
+        """Return the earliest deadline; None: there is none."""
+        while self._heap and not self._keys[self._heap[0]]:
+            del self._keys[heapq.heappop(self._heap)]
+        return self._heap[0] if self._heap else None
+
+    def pop_due(self, now: Instant) -> tuple[KeyT, ...]:
+        """Remove the earliest deadline that has passed and return its keys; empty: none has."""
+        at = self.next()
+        if at is None or at > now:
+            return ()
+        keys = tuple(self._keys.pop(heapq.heappop(self._heap)))
+        for key in keys:
+            del self._at[key]
+        return keys

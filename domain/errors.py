@@ -23,9 +23,9 @@
     +-- BackendUnavailableError       the backend is down: no node can be reached
     +-- StorageDegradedError          storage cannot be written, or not be read
 
-`service` and `api` add errors below the same root: files that cannot be read (`service/files/`), a
-worker that is busy (`service/worker.py`), malformed bodies (`api/http/body_parsing.py`). A rejected
-input changes nothing.
+Other modules add errors below the same root: conditions (`conditions/lexer.py`) and files
+(`service/files/`) that cannot be read, a worker that is busy (`service/worker.py`), malformed
+bodies (`api/http/body_parsing.py`). A rejected input changes nothing.
 """
 
 from collections.abc import Sequence

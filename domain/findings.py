@@ -24,6 +24,10 @@ class Blocker:
     root_cause: bool = True
     refuses: bool = True
     """Whether a request is rejected because of it; False: it is only shown."""
+    causes: "tuple[Blocker, ...]" = ()
+    """What it follows from; empty: it is a leaf of the tree."""
+    condition: str | None = None
+    """The text of the condition that is not true; None: it is no condition."""
 
 
 @dataclass(frozen=True, slots=True)

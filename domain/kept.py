@@ -36,6 +36,31 @@ class KeptTarget:
 
 
 @dataclass(frozen=True, slots=True)
+class KeptEffectiveTarget:
+    """A target that is in force for a system instead of the requested one."""
+
+    part: PartName
+    target: StateAndMode
+    rule: str
+    """Name of the rule of the system that set it."""
+    order: int
+    """Rises with each displacement: a later one prevails where two concern the same part."""
+    after: int
+    """Order of the last request before it: parts of which something was requested later do not
+    inherit it."""
+    cause: int
+    """Id of the event that recorded it."""
+    since: Instant
+    staying: Mapping[PartName, LifecycleState] = field(default_factory=dict)
+    """Nodes below to which it does not apply, and the state that each is to keep."""
+
+    @property
+    def name(self) -> str:
+        """Return its name among those of its kind."""
+        return str(self.order)
+
+
+@dataclass(frozen=True, slots=True)
 class KeptChange:
     """A change that has not ended."""
 
@@ -85,6 +110,25 @@ class KeptError:
     def name(self) -> str:
         """Return its name among those of its kind."""
         return self.error
+
+
+@dataclass(frozen=True, slots=True)
+class KeptFailedChange:
+    """The last change of a part that ended did so without success."""
+
+    part: PartName
+    change: ChangeId
+    message: str
+    """How it ended, in words."""
+    status: str
+    """`failed` or `timed_out`."""
+    since: Instant
+    """When the first change ended so since the last success."""
+
+    @property
+    def name(self) -> str:
+        """Return its name among those of its kind."""
+        return self.part
 
 
 @dataclass(frozen=True, slots=True)
@@ -146,7 +190,15 @@ class KeptProgress:
 
 
 Kept: TypeAlias = (
-    KeptTarget | KeptChange | KeptEmergencyStop | KeptError | KeptHold | KeptTask | KeptProgress
+    KeptTarget
+    | KeptEffectiveTarget
+    | KeptChange
+    | KeptEmergencyStop
+    | KeptError
+    | KeptFailedChange
+    | KeptHold
+    | KeptTask
+    | KeptProgress
 )
 
 

@@ -123,6 +123,7 @@ def _merged(parts: Sequence[Outputs]) -> Outputs:
         next((part.change for part in parts if part.change is not None), None),
         frozenset().union(*(part.parts for part in parts)),
         frozenset().union(*(part.signals for part in parts)),
+        frozenset().union(*(part.errors for part in parts)),
         any(part.system_state for part in parts),
         next((part.task for part in parts if part.task is not None), None),
         any(part.task_changed for part in parts),

@@ -8,6 +8,7 @@ from domain.events.event import Event, RecordedEvent
 from domain.events.service import TimeWasDue
 from domain.identifiers import ChangeId, TaskId
 from domain.kept import Keeping, Kept
+from domain.snapshot import ErrorKey
 from domain.state_and_mode import PartName
 from domain.timebase import Instant
 
@@ -23,6 +24,8 @@ class Outputs(NamedTuple):
     """Parts whose view changed."""
     signals: frozenset[str] = frozenset()
     """Signals whose view changed."""
+    errors: frozenset[ErrorKey] = frozenset()
+    """Errors whose view changed."""
     system_state: bool = False
     """Whether the system state changed."""
     task: TaskId | None = None
@@ -49,6 +52,7 @@ class Outbox:
         self.change: ChangeId | None = None
         self.parts: set[PartName] = set()
         self.signals: set[str] = set()
+        self.errors: set[ErrorKey] = set()
         self.system_state = False
         self.task: TaskId | None = None
         self.task_changed = False
@@ -145,6 +149,7 @@ class Outbox:
             self.change,
             frozenset(self.parts),
             frozenset(self.signals),
+            frozenset(self.errors),
             self.system_state,
             self.task,
             self.task_changed,
@@ -154,7 +159,7 @@ class Outbox:
         self._kept = {}
         self._commands, self._events = [], []
         self.change, self.system_state = None, False
-        self.parts, self.signals = set(), set()
+        self.parts, self.signals, self.errors = set(), set(), set()
         self.task, self.task_changed, self.vehicle_changed = None, False, False
         return outputs
 
@@ -167,6 +172,7 @@ class Outbox:
             or self.task_changed
             or self.parts
             or self.signals
+            or self.errors
             or self.system_state
             or self.change
             or self.task

@@ -6,7 +6,7 @@ Nothing here refers to a live object, so a snapshot may be kept, compared and se
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from enum import StrEnum
-from typing import Literal
+from typing import Literal, NamedTuple
 
 from domain.findings import Blocker, Fact
 from domain.identifiers import ChangeId, TaskId
@@ -55,13 +55,28 @@ class Actual:
         object.__setattr__(self, "state_and_mode", StateAndMode(self.state, self.mode))
 
 
+class Because(StrEnum):
+    """Who set the target in force of a part; each prevails over those before it."""
+
+    REQUESTED = "requested"
+    RULE = "rule"
+    INVARIANT = "invariant"
+    REACTION = "reaction"
+
+
 @dataclass(frozen=True, slots=True)
 class EffectiveTarget:
     """The target in force, and why it may differ from the requested one."""
 
     state: LifecycleState
     mode: ModeName | None
-    because: str
+    because: Because
+    rule: str | None = None
+    """Name of the rule that set it; None: no rule did."""
+    cause: int | None = None
+    """Id of the event that recorded why it differs; None: it is the requested one."""
+    blockers: tuple[Blocker, ...] = ()
+    """Why the requested target is not in force; empty: it is."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -92,6 +107,12 @@ class ModeView:
     mode: ModeName
     can_enter: bool
     blockers: tuple[Blocker, ...]
+    can_stay: bool | None = None
+    """Whether all its invariants hold; None: it is not the mode in force."""
+    requires: tuple[str, ...] = ()
+    """Conditions of entering it."""
+    invariants: tuple[str, ...] = ()
+    """Conditions of entering it and of staying in it."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -128,6 +149,14 @@ class ChangeStatus(StrEnum):
     CANCELED = "canceled"
 
 
+class Rollback(StrEnum):
+    """What became of going back after a failure."""
+
+    DONE = "done"
+    """All parts are where they were."""
+    INCOMPLETE = "incomplete"
+
+
 @dataclass(frozen=True, slots=True)
 class StepView:
     """One step of a change: one request to one node."""
@@ -138,6 +167,24 @@ class StepView:
     started_at: Instant | None
     ended_at: Instant | None
     error: str | None
+    stage: int = 0
+    """From 0; the nodes of one stage may run side by side."""
+    after: tuple[PartName, ...] = ()
+    """The nodes that its node waits for, without those that these wait for."""
+    expected: Duration | None = None
+    """How long it is expected to take; None: it was never done."""
+    rollback: bool = False
+    """It takes its node back to where it was."""
+
+
+@dataclass(frozen=True, slots=True)
+class PlanView:
+    """What a request would do now."""
+
+    steps: Sequence[StepView]
+    stages: int
+    expected: Duration | None
+    """Of all steps, in their order; None: of some it is not known."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -155,6 +202,12 @@ class ChangeView:
     ended_at: Instant | None
     cause: int
     """Id of the event that recorded the request."""
+    stage: int = 0
+    """The highest stage of which a node has begun."""
+    deadline_at: Instant | None = None
+    """When it times out as a whole; None: only its steps do."""
+    rollback: Rollback | None = None
+    """None: it does not go back, or not yet."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -192,6 +245,69 @@ class SystemStateView:
     task_status: TaskStatus
     storage_fault: str | None = None
     """Why what happens cannot be written down; None: it can."""
+
+
+class Severity(StrEnum):
+    """How bad an error is, by its consequence."""
+
+    WARNING = "warning"
+    """Nothing changes."""
+    URGENT = "urgent"
+    """It needs attention soon."""
+    CRITICAL = "critical"
+    """The task cannot go on; the robot is in ERROR."""
+    FATAL = "fatal"
+    """It needs hands; the robot is in ERROR."""
+
+
+class ErrorState(StrEnum):
+    """State of an error. Source: ISA-18.2, states of an alarm."""
+
+    NORMAL = "normal"
+    PENDING = "pending"
+    """Its condition is met, and not yet for long enough."""
+    ACTIVE = "active"
+    ACKNOWLEDGED = "acknowledged"
+    """Active, and an operator has acknowledged it."""
+    LATCHED = "latched"
+    """Its cause is gone, and an operator has yet to acknowledge it."""
+
+    @property
+    def is_on(self) -> bool:
+        """Tell whether the error is raised."""
+        return self not in (ErrorState.NORMAL, ErrorState.PENDING)
+
+
+class ErrorKey(NamedTuple):
+    """Which error: of a part, or of the robot itself."""
+
+    part: PartName | None
+    """None: the robot's own."""
+    error: str
+
+    @property
+    def name(self) -> str:
+        """Return its name among all errors, such as `BATTERY_LOW` or `drive_base.UNREACHABLE`."""
+        return self.error if self.part is None else f"{self.part}.{self.error}"
+
+
+@dataclass(frozen=True, slots=True)
+class ErrorView:
+    """One error of the robot or of a part."""
+
+    key: ErrorKey
+    severity: Severity
+    state: ErrorState
+    first_out: bool
+    """It was raised first since no error was on."""
+    message: str
+    """What was found; empty while it is normal."""
+    value: Fact
+    threshold: Fact
+    since: Instant | None
+    """When it was raised, or when it began to be pending; None: it is normal."""
+    count: int
+    """How often it was raised, in this run of the service."""
 
 
 @dataclass(frozen=True, slots=True)

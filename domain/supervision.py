@@ -6,17 +6,22 @@ live service, in a simulation and in a test.
 Its concerns make the decisions; this module keeps their order.
 """
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
 from domain.audit import Audit
 from domain.changes.changing import Changing
+from domain.changes.guards import Guards
 from domain.changes.settings import ChangeSettings
 from domain.concern import Concern, settle
+from domain.conditions.watched import WatchedConditions
 from domain.events.service import TimeWasDue
+from domain.fact_changes import FactChanges
+from domain.findings import Blocker
 from domain.health.emergency_stop import EmergencyStop
 from domain.health.health import Health
+from domain.health.part_errors import PartErrors
 from domain.health.signals import SignalSettings, default_signals
 from domain.inputs import ChangeRequest, Input, TimePassed
 from domain.lifecycle import Transition
@@ -24,16 +29,21 @@ from domain.loosening import may_loosen
 from domain.outbox import Outbox, Outputs
 from domain.parts.parts import Parts
 from domain.parts.system_model import SmhModel
+from domain.reactions.rules import Rules
+from domain.reactions.settings import RuleSettings
 from domain.restart import Restart
+from domain.robot_facts import RobotFacts
 from domain.robot_state import RobotState
 from domain.snapshot import (
     ChangeView,
     EmergencyStopView,
+    ErrorKey,
+    ErrorView,
     ModeView,
     ParameterView,
     PartView,
+    PlanView,
     SignalView,
-    StepView,
     SystemStateView,
 )
 from domain.stalls import Stalls
@@ -57,6 +67,7 @@ class SupervisionSettings:
     changes: ChangeSettings = field(default_factory=ChangeSettings)
     tasks: TaskSettings = field(default_factory=TaskSettings)
     vehicle: VehicleLimits = field(default_factory=VehicleLimits)
+    rules: RuleSettings = field(default_factory=RuleSettings)
 
 
 class Supervision:
@@ -86,7 +97,19 @@ class Supervision:
         )
         storage = Storage(self._outbox)
         self._robot_state = RobotState(self._health, self.driving, storage, self._outbox)
-        self._changing = Changing(self._parts, self._health, settings.changes, self._outbox)
+        self._part_errors = PartErrors(self._parts, self._health.error_list, self._outbox, start)
+        self.facts = RobotFacts(self._parts, self._health, self.driving, self._part_errors.reason)
+        """What conditions are evaluated over."""
+        self.conditions = WatchedConditions(self.facts)
+        """The conditions of the model, kept up to date; read only."""
+        self._changing = Changing(
+            self._parts,
+            self._health,
+            self._part_errors,
+            settings.changes,
+            self._outbox,
+            Guards(model, self.conditions, start),
+        )
         # Driving stops the vehicle before the state is published and changes continue.
         self._concerns: tuple[Concern, ...] = (
             Restart(self._outbox),
@@ -97,16 +120,24 @@ class Supervision:
             Standstill(self.driving, self._emergency_stop, self._outbox),
             storage,
             self._robot_state,
+            self._part_errors,
+            FactChanges(self.conditions, self.driving, self._outbox),
             self._changing,
+            Rules(self._parts, self._changing, self._health, settings.rules, self._outbox),
             Audit(self._outbox),
             Stalls(self._outbox),
         )
+        self._outbox.errors.clear()  # What is on from the start is no change.
+        self._arrange()
+
+    def _arrange(self) -> None:
+        """Note which concerns have to be asked when; most have nothing to do most of the time."""
         self._takers = _takers(self._concerns)
         self._clocked = [c for c in self._concerns if _overrides(c, "wake_at")]
         self._settling = [c for c in self._concerns if _overrides(c, "settle")]
         self._portioned = [c for c in self._concerns if _overrides(c, "go_on")]
         self._has_more = False
-        self._max_rounds = _SPARE_ROUNDS + len(model.parts)
+        self._max_rounds = _SPARE_ROUNDS + len(self.model.parts)
         self._wake_at = self._next_wake()
         """Cached: it is read several times per input, and only inputs and time change it."""
 
@@ -219,6 +250,10 @@ class Supervision:
         """Return a mode of a part, with its blockers."""
         return self._changing.mode(part, mode)
 
+    def why(self, part: PartName) -> tuple[Blocker, ...]:
+        """Return why a part is not where it should be, the reasons nearest to it first."""
+        return self._changing.why(part)
+
     def parameters(self, node: PartName) -> tuple[ParameterView, ...]:
         """Return the parameters of a node."""
         return self._parts.parameters(node)
@@ -227,8 +262,8 @@ class Supervision:
         """Return the transitions that would be accepted now and change something."""
         return self._changing.available_transitions(part)
 
-    def plan(self, request: ChangeRequest) -> Sequence[StepView]:
-        """Return the steps that a request would take now, without starting them.
+    def plan(self, request: ChangeRequest) -> PlanView:
+        """Return what a request would do now, without starting it.
 
         Raises:
             PilothouseError: The request would be rejected.
@@ -265,6 +300,29 @@ class Supervision:
     def signals(self) -> Mapping[str, SignalView]:
         """Return all signals."""
         return self._health.signals()
+
+    def error(self, key: ErrorKey) -> ErrorView:
+        """Return one error, as `Outputs.errors` names it."""
+        return self._health.error_list.view(key)
+
+    def errors(self) -> Iterator[ErrorView]:
+        """Yield all errors: the robot's own, then those of the parts in the order of the file."""
+        yield from self._health.error_views()
+        for part in self.model.parts:
+            yield from self._part_errors.views_of(part)
+
+    def errors_of(self, part: PartName) -> Iterator[ErrorView]:
+        """Yield the errors of one part; the model must have it."""
+        return self._part_errors.views_of(part)
+
+    def open_errors(self) -> Mapping[str, ErrorView]:
+        """Return the errors that are not normal, by their names."""
+        return self._health.error_list.open_ones()
+
+    @property
+    def parts_with_errors(self) -> Mapping[str, int]:
+        """Return by error how many parts have it now."""
+        return self._health.error_list.parts_with
 
     def system_state(self) -> SystemStateView:
         """Return the state of the robot."""

@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import Literal
 
 from api.cli.terminal_line import TerminalLine
+from api.http.schemas.base import BlockerJson
 from api.http.schemas.simulation import DifferenceJson, ExpectationJson, RefusalJson
 from api.simulation.expectations import MISSING
 from api.simulation.scenario_file import InvalidScenarioError, Scenario, load_scenario
@@ -108,11 +109,26 @@ def _failure(scenario: Scenario, item: ExpectationJson | RefusalJson) -> Iterato
             yield f"    hint: {item.problem.hint}"
         return
     for difference in item.differences:
-        if difference.path == "refused":
+        if item.blockers:
+            place = f"{scenario.file}:{scenario.line_of(item.step)}"
+            yield f"{place}: {difference.seen} at {item.t_s:g} s: {difference.expected}"
+            for blocker in item.blockers:
+                # The line above says already which conditions are joined.
+                is_joined = blocker.causes and blocker.threshold is None
+                for reason in blocker.causes if is_joined else (blocker,):
+                    yield from _tree(reason, 1)
+        elif difference.path == "refused":
             place = f"{scenario.file}:{scenario.line_of(item.step)}"
             yield f"{place}: not rejected at {item.t_s:g} s, although that was expected"
         else:
             yield from _difference(scenario, item, difference)
+
+
+def _tree(blocker: BlockerJson, depth: int) -> Iterator[str]:
+    """Yield a reason, and below it what it follows from."""
+    yield f"{'    ' * depth}{blocker.message}"
+    for cause in blocker.causes:
+        yield from _tree(cause, depth + 1)
 
 
 def _difference(

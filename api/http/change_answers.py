@@ -9,6 +9,7 @@ from fastapi import Depends, Query, Request, Response
 
 from api.http.change_text import change_text, with_steps
 from api.http.kept_requests import KeptRequests
+from api.http.schemas.base import seconds_or_none
 from api.http.schemas.changes import ChangeJson, PlanJson, shown_request
 from domain.changes.admission import part_of
 from domain.identifiers import ChangeId
@@ -77,9 +78,15 @@ async def answer_change(
     """
     clock = supervisor.clock
     if options.dry_run:
-        steps = supervisor.core.plan(asked)
-        plan = PlanJson(part=part_of(asked), request=shown_request(asked), steps=[])
-        return _answer(HTTPStatus.OK, await with_steps(plan, steps, clock))
+        planned = supervisor.core.plan(asked)
+        plan = PlanJson(
+            part=part_of(asked),
+            request=shown_request(asked),
+            steps=[],
+            stages=planned.stages,
+            expected_s=seconds_or_none(planned.expected),
+        )
+        return _answer(HTTPStatus.OK, await with_steps(plan, planned.steps, clock))
     change = (await KeptRequests(request).submit(asked)).change
     if change is None:
         raise RuntimeError(f"{asked} was taken and is no change")

@@ -20,6 +20,7 @@ from api.http.body_parsing import (
 from api.http.schemas.base import BlockerJson, FindingJson
 from api.http.schemas.problem import BodyFault, Problem
 from api.http.stop_asked import StopTakenError
+from domain.conditions.lexer import ConditionSyntaxError
 from domain.errors import (
     BackendUnavailableError,
     BlockedError,
@@ -75,6 +76,7 @@ STATUS_OF: Mapping[type[PilothouseError], HTTPStatus] = {
     UnknownControllerError: HTTPStatus.UNPROCESSABLE_ENTITY,
     InvalidValueError: HTTPStatus.UNPROCESSABLE_ENTITY,
     FarStartError: HTTPStatus.UNPROCESSABLE_ENTITY,
+    ConditionSyntaxError: HTTPStatus.UNPROCESSABLE_ENTITY,
     InvalidWaypointsError: HTTPStatus.UNPROCESSABLE_ENTITY,
     InvalidBodyError: HTTPStatus.UNPROCESSABLE_ENTITY,
     StopTakenError: HTTPStatus.UNPROCESSABLE_ENTITY,

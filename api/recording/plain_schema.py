@@ -2,7 +2,8 @@
 
 Lichtblick reads `type`, `properties` and `items`, and rejects a channel with anything else: no
 references, no alternatives, no null, no object without `properties`. So references are resolved,
-what is null is left out of a message, and a value that may be of several types is told as text.
+what is null is left out of a message, and a value that may be of several types is told as text. So
+is what a tree has below its top, such as the causes of a reason.
 """
 
 import json
@@ -19,11 +20,13 @@ _KEPT = ("type", "description", "enum", "const", "format", "minimum", "maximum")
 def plain_schema(model: type[BaseModel]) -> Schema:
     """Return the schema of a message; members that may be null are not required."""
     whole = model.model_json_schema(mode="serialization")
-    return _plain(whole, whole.get("$defs", {}))
+    return _plain(whole, whole.get("$defs", {}), frozenset())
 
 
 def fitted(value: Any, schema: Schema) -> Any:  # noqa: ANN401  # JSON
     """Return a value as its schema says: without null, and as text where it has several types."""
+    if schema.get("type") == "string" and not isinstance(value, str):
+        return json.dumps(value)
     match value:
         case Mapping():
             known = schema.get("properties", {})
@@ -37,26 +40,41 @@ def fitted(value: Any, schema: Schema) -> Any:  # noqa: ANN401  # JSON
         case Sequence():
             return [fitted(item, schema.get("items", {})) for item in value if item is not None]
         case _:
-            return json.dumps(value) if schema.get("type") == "string" else value
+            return value
 
 
-def _plain(schema: Mapping[str, Any], definitions: Mapping[str, Any]) -> Schema:
+def _plain(
+    schema: Mapping[str, Any], definitions: Mapping[str, Any], inside: frozenset[str]
+) -> Schema:
+    """Return a schema without references.
+
+    Args:
+        schema: With references.
+        definitions: What they name.
+        inside: The definitions that it stands inside of.
+    """
     if "$ref" in schema:
-        named = definitions[schema["$ref"].rpartition("/")[2]]
-        return {**_plain(named, definitions), **_described(schema)}
+        name = schema["$ref"].rpartition("/")[2]
+        if name in inside:
+            return {"type": "string", **_described(schema)}
+        named = _plain(definitions[name], definitions, inside | {name})
+        return {**named, **_described(schema)}
     choices = [one for one in schema.get("anyOf", ()) if one.get("type") != "null"]
     if choices:
-        chosen = _plain(choices[0], definitions) if len(choices) == 1 else {"type": "string"}
+        single = len(choices) == 1
+        chosen = _plain(choices[0], definitions, inside) if single else {"type": "string"}
         return {**chosen, **_described(schema)}
     kept = {name: schema[name] for name in _KEPT if name in schema}
     kind = schema.get("type", "string")
     if kind == "object":
         members = schema.get("properties", {})
-        kept["properties"] = {name: _plain(one, definitions) for name, one in members.items()}
+        kept["properties"] = {
+            name: _plain(one, definitions, inside) for name, one in members.items()
+        }
         optional = {name for name, one in members.items() if _may_be_null(one)}
         kept["required"] = [name for name in schema.get("required", ()) if name not in optional]
     elif kind == "array":
-        kept["items"] = _plain(schema.get("items", {"type": "string"}), definitions)
+        kept["items"] = _plain(schema.get("items", {"type": "string"}), definitions, inside)
     return {"type": kind, **kept}
 
 

@@ -8,9 +8,11 @@ from typing import Any
 
 from pydantic_core import from_json
 
+from api.http.schemas.base import BlockerJson
 from api.http.schemas.simulation import (
     ActingStep,
     AnyStep,
+    ConditionStep,
     DifferenceJson,
     ExpectationJson,
     ExpectStep,
@@ -21,6 +23,9 @@ from api.http.schemas.simulation import (
 from api.simulation.expectations import differences
 from api.simulation.samples import Sampler
 from api.simulation.steps import Actors
+from domain.conditions.condition import Condition
+from domain.conditions.evaluation import evaluate
+from domain.conditions.explanation import explain
 from domain.events.event import RecordedEvent
 from domain.timebase import NANOSECONDS_PER_SECOND, Duration, seconds, to_seconds
 from service.simulation.virtual_time import VirtualService
@@ -141,6 +146,9 @@ class Simulation:
 
     def _let_happen(self, actors: Actors, index: int, at: Duration) -> None:
         step = self._body.steps[index]
+        if isinstance(step, ConditionStep):
+            self._judge(step, index, at)
+            return
         if isinstance(step, ExpectStep):
             found = list(self._compare(step, at))
             self.expectations.append(
@@ -161,6 +169,24 @@ class Simulation:
 
     def _take_sample(self, at: Duration) -> None:
         self.samples.append(self._sampler.kept_sample(to_seconds(at), len(self.samples)))
+
+    def _judge(self, step: ConditionStep, index: int, at: Duration) -> None:
+        """Evaluate a condition; one that is not true is explained."""
+        condition, facts = Condition.parse(step.expect), self._robot.supervisor.core.facts
+        truth = evaluate(condition, facts).name.lower()
+        self.expectations.append(
+            ExpectationJson(
+                step=index,
+                t_s=to_seconds(at),
+                differences=[]
+                if truth == "true"
+                else [DifferenceJson(path="", expected=step.expect, seen=truth)],
+                blockers=[
+                    BlockerJson.of(blocker, self._robot.clock)
+                    for blocker in explain(condition, facts)
+                ],
+            )
+        )
 
     def _compare(self, step: ExpectStep, at: Duration) -> Iterator[DifferenceJson]:
         """Compare with a current sample, with the last task, and with the counts of events."""

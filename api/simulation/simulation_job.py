@@ -2,22 +2,28 @@
 
 import io
 import pickle
+from collections.abc import Iterator
 from dataclasses import dataclass
 from datetime import UTC, datetime
 from typing import NamedTuple
 
 from pydantic import ValidationError
 
-from api.http.body_parsing import InvalidBodyError, faults_of, parse_json
-from api.http.schemas.simulation import SimulationBody, place_in_body
+from api.http.body_parsing import InvalidBodyError, faults_of, parse_json, pointer_to
+from api.http.schemas.problem import BodyFault
+from api.http.schemas.simulation import ConditionStep, SimulationBody, place_in_body
 from api.simulation.simulation import Simulation
+from domain.conditions.check import check
+from domain.conditions.condition import Condition
 from domain.errors import InvalidValueError
 from domain.onboard import Onboard
+from domain.parts.system_model import SmhModel
+from domain.robot_vocabulary import vocabulary_of
 from domain.simulation.robot import SimulatedRobot
 from domain.timebase import Instant
 from service.checkpoint import CorePickler
 from service.event_log import EventLog
-from service.files.model_file import LoadedModel, read_model
+from service.files.model_file import LoadedModel, read_model, with_signals
 from service.files.robot_file import RobotSettings, robot_settings_of
 from service.onboard_parts import make_onboard
 from service.simulation.from_settings import make_simulated_robot
@@ -103,7 +109,30 @@ def robot_for(body: SimulationBody, model_text: str, live: LiveCopy | None) -> V
         robot = robot_settings_of(body.robot or {}, loaded.model)
     except InvalidValueError as error:
         raise InvalidBodyError.at(f"/robot{error.pointer}", error) from error
+    if body.robot is not None:
+        loaded = with_signals(loaded, robot.to_signal_settings())
+    if faults := list(_faults_of_conditions(body, loaded.model, robot)):
+        raise InvalidBodyError(faults)
     return _new(loaded, robot)
+
+
+def _faults_of_conditions(
+    body: SimulationBody, model: SmhModel, robot: RobotSettings
+) -> Iterator[BodyFault]:
+    """Yield what is wrong in the conditions that a scenario expects of its robot."""
+    vocabulary = None
+    for index, step in enumerate(body.steps):
+        if not isinstance(step, ConditionStep):
+            continue
+        if vocabulary is None:
+            vocabulary = vocabulary_of(model, robot.to_signal_settings(), is_complete=True)
+        for fault in check(Condition.parse(step.expect), vocabulary):
+            if fault.severity == "error":
+                yield BodyFault(
+                    pointer=pointer_to("steps", index, "expect"),
+                    code=fault.code,
+                    message=f"column {fault.column}: {fault.message}",
+                )
 
 
 def _new(loaded: LoadedModel, robot: RobotSettings) -> VirtualService:

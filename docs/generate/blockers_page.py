@@ -5,6 +5,7 @@ from collections.abc import Iterator
 from docs.generate.markdown import code, page, table
 from docs.generate.source_scan import codes_given_to, codes_in, require_described
 from domain.changes.admission import ADVISORY
+from domain.conditions.explanation import CONDITION, UNKNOWN_VALUE
 from domain.errors import BackendUnavailableError
 from domain.health.signals import (
     DECLARED_BIT,
@@ -12,7 +13,7 @@ from domain.health.signals import (
     RATIO,
     STALE_DATA,
     STALE_DATA_BIT,
-    Condition,
+    Bound,
     SignalKind,
     SignalSettings,
     default_signals,
@@ -32,6 +33,13 @@ _OF_THE_VEHICLE = {
     STILL_MOVING: "The vehicle moves after the time for a stop: 1 s, and 1.25 times the time that "
     "braking with [`driving.braking_mps2`](settings.md) takes.",
     STANDSTILL_UNKNOWN: "No pose shows after that time whether the vehicle stands.",
+}
+_OF_CONDITIONS = {
+    CONDITION: "A condition is false.",
+    UNKNOWN_VALUE: "A condition is neither true nor false, since something that it names is not "
+    "known: a signal that was never seen or is stale, a silent node, an old pose.",
+    "DEVIATES": "A part is not where its target says; the message names the part below it.",
+    "HOLD": "A hold keeps the task paused.",
 }
 _WARNINGS = {
     "CLOCK_SKEW": "The stamps of a signal differ from the local clock by more than a second.",
@@ -54,7 +62,9 @@ reason says why the robot is in ERROR, or that the vehicle should stand and does
 | `value`, `threshold` | the current value, and what it is compared with; `null` if there is none |
 | `since_at` | since when |
 | `root_cause` | whether it is a cause itself rather than the effect of another one |
-| `refuses` | whether a request is rejected because of it; false: it is only shown |"""
+| `refuses` | whether a request is rejected because of it; false: it is only shown |
+| `causes` | what it follows from, in the same form; empty: it is a cause |
+| `condition` | the [condition](../explanation/conditions.md) that is not true; `null`: none |"""
 
 _VEHICLE = """\
 The vehicle should stand after a task was held or ended and after a hold was set, and as long as a
@@ -77,6 +87,8 @@ def blockers_page() -> str:
     """
     of_changes = codes_in("domain/changes/admission.py") | {ESTOP, BackendUnavailableError.code}
     require_described("blockers", of_changes, set(_OF_CHANGES))
+    of_conditions = codes_in("domain/robot_reasons.py") | {CONDITION, UNKNOWN_VALUE}
+    require_described("conditions", of_conditions, set(_OF_CONDITIONS))
     require_described("warnings", codes_given_to("WarningJson"), set(_WARNINGS))
     changes = (
         (code(name), "no" if name in ADVISORY else "yes", about)
@@ -90,6 +102,10 @@ def blockers_page() -> str:
         table(("code", "rejects the change", "cause"), changes),
         "A blocker that does not reject the change is a warning: an unreachable node may reappear"
         "\nbefore the deadline. Otherwise the change fails and names it.",
+        "## Conditions",
+        "A condition that is not true is shown as a tree: below an `and` what is not true, below an"
+        "\n`or` everything, and below each comparison what it comes from.",
+        table(("code", "meaning"), ((code(name), about) for name, about in _OF_CONDITIONS.items())),
         "## Signal errors",
         _SIGNALS,
         table(("error", "bit", "signal", "when"), _errors()),
@@ -103,21 +119,21 @@ def blockers_page() -> str:
 
 def _errors() -> Iterator[tuple[str, str, str, str]]:
     for settings in default_signals():
-        for condition in settings.conditions:
+        for bound in settings.bounds:
             name = settings.spec.name
-            yield code(condition.error), str(condition.bit), code(name), _when(settings, condition)
+            yield code(bound.error), str(bound.bit), code(name), _when(settings, bound)
     stale = f"older than {to_seconds(default_signals()[0].stale_after):g} s, or never received"
     yield code(STALE_DATA), str(STALE_DATA_BIT), "any", stale
     yield "of a declared signal", str(DECLARED_BIT), "its own", "as declared in the robot file"
 
 
-def _when(settings: SignalSettings, condition: Condition) -> str:
+def _when(settings: SignalSettings, bound: Bound) -> str:
     spec = settings.spec
     if spec.kind is SignalKind.NUMBER:
         unit = "" if spec.unit == RATIO else f" {spec.unit}"
-        words = f"{condition.comparison} {condition.threshold}{unit}"
+        words = f"{bound.comparison} {bound.threshold}{unit}"
     else:
-        words = code(str(condition.threshold).lower() if spec.is_stop else f"{condition.threshold}")
-    if condition.for_:
-        words += f" for {to_seconds(condition.for_):g} s"
+        words = code(str(bound.threshold).lower() if spec.is_stop else f"{bound.threshold}")
+    if bound.for_:
+        words += f" for {to_seconds(bound.for_):g} s"
     return f"{words}, or the emergency stop is engaged" if spec.is_stop else words

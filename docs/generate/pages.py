@@ -7,6 +7,7 @@ from types import MappingProxyType
 from docs.generate.blockers_page import blockers_page
 from docs.generate.command_line_page import command_line_page
 from docs.generate.events_page import events_page
+from docs.generate.findings_page import findings_page
 from docs.generate.interface_documents import (
     asyncapi_document,
     openapi_document,
@@ -24,6 +25,7 @@ PAGES: Mapping[str, Callable[[], str]] = MappingProxyType(
         "blockers.md": blockers_page,
         "command-line.md": command_line_page,
         "events.md": events_page,
+        "findings.md": findings_page,
         "metrics.md": metrics_page,
         "openapi.json": openapi_document,
         "problems.md": problems_page,

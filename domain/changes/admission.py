@@ -3,17 +3,20 @@
 `GET .../modes` shows the same blockers that a request would meet.
 """
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
+from itertools import islice
 
+from domain.changes.guards import Guards
 from domain.changes.plan import TOWARDS_REST, ChangeGoal, NodeGoal, NodeGoals, goal_of, next_steps
+from domain.changes.pursuit import goal_of_targets
 from domain.errors import BlockedError, IllegalTransitionError
 from domain.findings import Blocker
 from domain.inputs import ChangeRequest, ModeRequest, TransitionRequest
 from domain.lifecycle import LifecycleState, Transition, arrival, is_legal_request
 from domain.parts.node_facts import NodeFacts
 from domain.parts.system_model import SmhModel
-from domain.state_and_mode import PartName
+from domain.state_and_mode import PartName, StateAndMode
 
 ADVISORY = frozenset({"UNREACHABLE", "UNKNOWN_STATE"})
 """Shown, but no reason to reject: an absent node may reappear before the deadline."""
@@ -36,9 +39,12 @@ _WORDS = {
 class ChangeAdmission:
     """Judges requests by the current facts about the nodes."""
 
-    def __init__(self, model: SmhModel, facts: Mapping[PartName, NodeFacts]) -> None:
+    def __init__(
+        self, model: SmhModel, facts: Mapping[PartName, NodeFacts], guards: Guards
+    ) -> None:
         self._model = model
         self._facts = facts
+        self._guards = guards
         self._goals = NodeGoals(model)
 
     def admit(self, request: ChangeRequest, estop: Sequence[Blocker]) -> ChangeGoal:
@@ -64,6 +70,22 @@ class ChangeAdmission:
         """Return all blockers of a request, including the advisory ones."""
         goal = goal_of(self._model, request, self._facts, self._goals)
         return self._blockers(request, goal, estop)
+
+    def goal(self, request: ChangeRequest) -> ChangeGoal:
+        """Return the goal of a request, whatever blocks it."""
+        return goal_of(self._model, request, self._facts, self._goals)
+
+    def goal_of_targets(self, targets: Mapping[PartName, StateAndMode]) -> ChangeGoal:
+        """Return the goal that leads each of several parts to a target of its own."""
+        return goal_of_targets(targets, self._facts, self._goals)
+
+    def blockers_of(self, request: ChangeRequest, goal: ChangeGoal) -> tuple[Blocker, ...]:
+        """Return what blocks a goal besides ESTOP, including what is advisory."""
+        return self._blockers(request, goal, ())
+
+    def would_activate(self, goal: ChangeGoal) -> bool:
+        """Tell whether a goal would, or might, activate a node."""
+        return any(self._activates(node, want) for node, want in goal.nodes.items())
 
     def available_transitions(
         self, part: PartName, estop: Sequence[Blocker]
@@ -131,9 +153,20 @@ class ChangeAdmission:
             key=lambda item: item[0] in ADVISORY,
         )
         blockers = [self._blocker(part, node, code) for code, node in found[:MAX_BLOCKERS]]
-        if estop and any(self._activates(node, want) for node, want in goal.nodes.items()):
+        if guarded := self._guards.of(goal.targets):
+            of_guards = self._guard_blockers(part, guarded, goal)
+            blockers = [*islice(of_guards, MAX_BLOCKERS), *blockers]
+        if estop and self.would_activate(goal):
             blockers = [replace(why, path=(part, *why.path)) for why in estop] + blockers
-        return tuple(blockers)
+        return tuple(blockers[:MAX_BLOCKERS])
+
+    def _guard_blockers(
+        self, part: PartName, guarded: Sequence[PartName], goal: ChangeGoal
+    ) -> Iterator[Blocker]:
+        """Find the guards that do not hold, of the requested part first."""
+        for blocker in self._guards.blockers(guarded, goal.targets):
+            owner, *below = blocker.path
+            yield replace(blocker, path=(*self.path(part, PartName(owner)), *below))
 
     def _activates(self, node: PartName, goal: NodeGoal) -> bool:
         """Tell whether a node would, or in an unknown state might, be activated."""
@@ -159,7 +192,7 @@ class ChangeAdmission:
         known = facts.known_state
         value = None if code in ADVISORY else str(known)
         words = facts.why_unknown if code in ADVISORY else _WORDS[known]
-        path = self._path(part, node)
+        path = self.path(part, node)
         return Blocker(
             code,
             f"{node} {words}",
@@ -169,7 +202,7 @@ class ChangeAdmission:
             refuses=code not in ADVISORY,
         )
 
-    def _path(self, part: PartName, node: PartName) -> tuple[str, ...]:
+    def path(self, part: PartName, node: PartName) -> tuple[str, ...]:
         """Return one path down from the requested part to the node."""
         if part == node:
             return (part,)
@@ -177,7 +210,7 @@ class ChangeAdmission:
             if child == node or (
                 child in self._model.systems and child in self._model.ancestors[node]
             ):
-                return (part, *self._path(child, node))
+                return (part, *self.path(child, node))
         return (part, node)
 
 

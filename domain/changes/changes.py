@@ -3,28 +3,37 @@
 What a change wants of its nodes is the work of `node_steps.py`.
 """
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections import defaultdict
+from collections.abc import Iterable, Mapping, Set
 from itertools import islice
 
+from domain.changes.guarded_changes import GuardedChanges
+from domain.changes.guards import Guards
 from domain.changes.kept_changes import ended_by_restart, kept_of
-from domain.changes.kept_targets import KeptTargets
+from domain.changes.kept_targets import KeptTargets, RequestOrder
 from domain.changes.node_steps import NodeSteps
+from domain.changes.outcome import joined, missed_target
 from domain.changes.plan import ChangeGoal
 from domain.changes.record import Change, Pursuit, Step
+from domain.changes.rollback import goals_before
+from domain.changes.schedule import Schedule, schedule_of
 from domain.changes.settings import ChangeSettings
+from domain.deadlines import Deadlines
 from domain.errors import UnknownChangeError
 from domain.events.changes import CHANGE_ENDS
 from domain.health.health import Health
+from domain.health.part_errors import PartErrors
 from domain.identifiers import ChangeId
 from domain.inputs import ChangeRequest, NodeAnswer, NodeReport, ReportBacklog, Restored
 from domain.kept import KeptChange
 from domain.lifecycle import LifecycleState
 from domain.outbox import Outbox
-from domain.parts.convergence import is_there
+from domain.parts.mode_settings import OnFailure
 from domain.parts.parts import Parts
-from domain.snapshot import ChangeStatus, StepStatus
+from domain.plans.durations import Durations
+from domain.snapshot import ChangeStatus, Rollback, StepStatus
 from domain.state_and_mode import PartName, StateAndMode
-from domain.timebase import Instant
+from domain.timebase import Instant, to_seconds
 
 KEPT_CHANGES = 1_000
 KEPT_PURSUITS = 50_000
@@ -35,8 +44,6 @@ MAX_IN_FLIGHT = 2_500
 """Steps in flight, above which no further node of a large change is started. Their reports come all
 at once, and are taken in long before a step is late: being busy must not look like a late node."""
 _ENOUGH_IN_FLIGHT = MAX_IN_FLIGHT - STARTS_AT_ONCE
-_TOLD_ERRORS = 20
-"""Largest number of errors in the reason of one change; more would not be read."""
 
 
 class Changes:
@@ -48,17 +55,28 @@ class Changes:
         settings: ChangeSettings,
         outbox: Outbox,
         health: Health,
+        guards: Guards,
+        part_errors: PartErrors,
     ) -> None:
         self._parts = parts
+        self._part_errors = part_errors
         self._inference = parts.inference
         self._outbox = outbox
         self._steps = NodeSteps(
-            parts, settings, outbox, health, self._take_end, self._take_loose_end
+            parts,
+            settings,
+            outbox,
+            health,
+            self._take_end,
+            self._take_loose_end,
+            self._forbidden,
         )
         self._changes: dict[ChangeId, Change] = {}
         self._running: dict[ChangeId, Change] = {}
         self._kept_targets = KeptTargets(parts.model, outbox)
         self._to_pack: dict[ChangeId, Change] = {}
+        self._deadlines: Deadlines[ChangeId] = Deadlines()
+        self._guarded = GuardedChanges(guards, self._inference.model)
         self._count = 0
 
     # --- what can be seen ------------------------------------------------------------------------
@@ -79,9 +97,24 @@ class Changes:
         """Return the changes that are kept, the newest first."""
         return tuple(reversed(self._changes.values()))
 
+    def schedule(self, request: ChangeRequest, goal: ChangeGoal) -> Schedule:
+        """Return how the change that an admitted request begins would proceed."""
+        return schedule_of(
+            self._parts.model, request, goal, lambda part: self._inference.actual(part).mode
+        )
+
+    @property
+    def durations(self) -> Durations:
+        """Return how long steps took."""
+        return self._steps.durations
+
     def wake_at(self) -> Instant | None:
-        """Return the next deadline; None: there is none."""
-        return self._steps.wake_at()
+        """Return the next deadline; None: there is none, or reports must be taken in before."""
+        own = self._deadlines.next()
+        if own is not None and own > self._steps.judged_until(own):
+            own = None
+        due = (self._steps.wake_at(), own, self._guarded.due)
+        return min((at for at in due if at is not None), default=None)
 
     @property
     def has_more(self) -> bool:
@@ -101,10 +134,21 @@ class Changes:
         for change in ended_by_restart(restored.kept, now):
             self._changes[change.id] = change
             self._outbox.forget(KeptChange, change.id)
-            self._outbox.emit(CHANGE_ENDS[change.status](change.id, change.part, change.reason))
+            self._tell_end(change, now)
+
+    @property
+    def requests(self) -> RequestOrder:
+        """Return which request set the target of each part; read only."""
+        return self._kept_targets
 
     def begin(
-        self, part: PartName, request: ChangeRequest, goal: ChangeGoal, now: Instant
+        self,
+        part: PartName,
+        request: ChangeRequest,
+        goal: ChangeGoal,
+        now: Instant,
+        *,
+        is_asked: bool = True,
     ) -> ChangeId:
         """Begin an admitted change; it may already have ended when this returns.
 
@@ -113,27 +157,43 @@ class Changes:
             request: What was requested.
             goal: Its targets and node goals, from the admission.
             now: The current time.
+            is_asked: Whether its targets are requested. Otherwise they are in force already, and a
+                failure does not lead back.
         """
         self._count += 1
         identity = ChangeId(f"c{self._count}")
         cause = self._outbox.record_input()
-        change = Change(identity, part, request, dict(goal.targets), now, cause)
+        schedule, targets = self.schedule(request, goal), dict(goal.targets)
+        if not is_asked:
+            schedule = schedule.without_rollback()
+        change = Change(
+            identity, part, request, targets, now, cause, schedule, self._steps.durations
+        )
+        change.guarded = frozenset(self._guarded.parts_of(targets))
         if self._running or not self._steps.is_idle:
-            nodes = {*goal.nodes, *self._inference.model.nodes_below(part)}
-            self._supersede(nodes, change, now)
+            self._supersede(goal.targets.keys() | goal.nodes.keys(), change, now)
         self._changes[identity] = self._running[identity] = change
         self._parts.put_under(identity, (part, *goal.targets, *goal.nodes))
-        self._parts.ask(goal.targets)
-        if goal.targets:
-            self._kept_targets.note(part, goal.targets)
+        if is_asked:
+            self._ask(change)
         self._outbox.keep(kept_of(change))
+        if schedule.deadline is not None:
+            change.deadline_at = now + schedule.deadline
+            self._deadlines.set(identity, change.deadline_at)
         change.set_out(goal.nodes)
-        self._steps.add(change)
-        for node in islice(goal.nodes, STARTS_AT_ONCE):
-            self._steps.start(node, now)
+        self._guarded.add(change)
+        self._set_out(change, now)
         self._conclude(change, now)
         self._forget_old()
         return identity
+
+    def _ask(self, change: Change) -> None:
+        """Set the targets that a change is to reach, and keep them over a restart."""
+        if change.schedule.on_failure is OnFailure.ROLLBACK:
+            change.targets_before = {name: self._parts.asked(name) for name in change.targets}
+        self._parts.ask(change.targets)
+        if change.targets:
+            self._kept_targets.note(change.part, change.targets)
 
     def cancel(self, change: ChangeId, now: Instant) -> None:
         """Start no further step of a change; without effect if all its nodes have ended.
@@ -146,9 +206,10 @@ class Changes:
         found = self.get(change)
         if found.open:
             self._outbox.record_input()
-        self._drop(sorted(found.open), StepStatus.CANCELED, now)
+        self._drop(found.open.copy(), StepStatus.CANCELED, now)
+        found.leave(list(found.open), StepStatus.CANCELED, now)
         if found.status is ChangeStatus.RUNNING:
-            self._end(found, ChangeStatus.CANCELED, "canceled on request", now)
+            self._end_by(found, ChangeStatus.CANCELED, "canceled on request", now)
 
     def report(self, report: NodeReport, now: Instant) -> None:
         """Judge the step in flight by a report that the parts have processed, and continue."""
@@ -165,6 +226,9 @@ class Changes:
     def pass_time(self, now: Instant) -> None:
         """Handle all deadlines up to `now`."""
         self._steps.pass_time(now)
+        until = self._steps.judged_until(now)
+        while (identity := self._deadlines.pop_due(until)) is not None:
+            self._is_late(self._changes[identity], now)
 
     def go_on(self, now: Instant) -> None:
         """Start some more nodes of the change that began first."""
@@ -178,31 +242,121 @@ class Changes:
         for node in [node for node, waited_for in first if waited_for is change]:
             self._steps.start(node, now)
 
+    def judge_guards(self, now: Instant) -> bool:
+        """End running changes of which an invariant is broken; return whether there are any."""
+        broken = self._guarded.broken(now)
+        for change, reason in broken:
+            self._fail(change, reason, now)
+        return bool(broken)
+
+    def _fail(self, change: Change, reason: str, now: Instant) -> None:
+        """Stop a running change, which then goes back if it is to on a failure."""
+        change.failure = (ChangeStatus.FAILED, reason)
+        self._guarded.drop(change)
+        self._stop(change, now)
+        self._conclude(change, now)
+
+    def _forbidden(self, pursuit: Pursuit) -> str | None:
+        """Return which guard keeps a node from its next step; None: none does."""
+        change = self._changes[pursuit.change]
+        if pursuit.rollback or not change.guarded:
+            return None
+        broken = self._guarded.forbids(change, pursuit.node)
+        if broken is not None and change.failure is None:
+            change.failure = (ChangeStatus.FAILED, broken)
+        return broken
+
+    # --- the order of its nodes ------------------------------------------------------------------
+
+    def _set_out(self, change: Change, now: Instant) -> None:
+        """Start the nodes that wait for no other; foresee the steps of those that do."""
+        blocked = change.order.blocked
+        free = [node for node in change.goals if node not in blocked] if blocked else change.goals
+        if blocked:
+            for node in islice(change.goals, STARTS_AT_ONCE):
+                self._steps.foresee(change.pursue(node))
+        self._steps.add(change, free)
+        for node in islice(free, STARTS_AT_ONCE):
+            self._steps.start(node, now)
+
+    def _follow(self, change: Change, pursuit: Pursuit, now: Instant) -> None:
+        """Let those nodes begin that waited for one; or none any more, since that one failed."""
+        if change.status is not ChangeStatus.RUNNING or change.is_stopping:
+            return
+        is_strict = change.is_going_back or change.schedule.on_failure is not OnFailure.CONTINUE
+        is_strict |= change.failure is not None
+        if is_strict and pursuit.outcome is not StepStatus.SUCCEEDED:
+            self._stop(change, now)
+        else:
+            self._steps.add(change, change.order.done(pursuit.node))
+
+    def _stop(self, change: Change, now: Instant) -> None:
+        """Begin no further step of a running change; steps in flight end."""
+        change.is_stopping = True
+        in_flight = self._steps.stop(change.open, change.id, now)
+        change.leave(change.open - in_flight, StepStatus.CANCELED, now)
+
+    def _is_late(self, change: Change, now: Instant) -> None:
+        """End a change that is not done by its deadline, unless it ends or goes back already."""
+        if change.is_stopping or change.is_going_back or change.deadline_at is None:
+            return
+        allowed = to_seconds(change.deadline_at - change.started_at)
+        reason = f"not done within {allowed:g} s: {joined(sorted(change.open))}"
+        if change.schedule.on_failure is OnFailure.ROLLBACK:
+            change.failure = (ChangeStatus.TIMED_OUT, reason)
+            self._stop(change, now)
+            self._conclude(change, now)
+            return
+        self._drop(change.open.copy(), StepStatus.CANCELED, now)
+        change.leave(list(change.open), StepStatus.CANCELED, now)
+        self._end(change, ChangeStatus.TIMED_OUT, reason, now)
+
+    def _go_back(self, change: Change, now: Instant) -> None:
+        """Take the nodes that were asked for something back to where they were."""
+        self._deadlines.clear(change.id)
+        self._guarded.drop(change)
+        self._parts.ask(change.targets_before)
+        self._kept_targets.restore_before(change.targets_before)
+        goals = goals_before(change)
+        change.turn_back(goals, change.schedule.order.turned(goals))
+        self._set_out(change, now)
+        self._conclude(change, now)
+
     # --- inside ----------------------------------------------------------------------------------
 
     @property
     def _may_start(self) -> bool:
         return bool(self._steps.waiting) and self._steps.count_in_flight <= _ENOUGH_IN_FLIGHT
 
-    def _supersede(self, nodes: set[PartName], newer: Change, now: Instant) -> None:
-        """Drop pursuits of `nodes`; a change that loses a node ends, but its other nodes go on."""
-        self._drop(sorted(self._steps.on_their_way(nodes)), StepStatus.SUPERSEDED, now)
+    def _supersede(self, parts: Set[PartName], newer: Change, now: Instant) -> None:
+        """Drop pursuits of `parts`; a change that loses a node ends, but its other nodes go on."""
+        self._drop(parts, StepStatus.SUPERSEDED, now)
         reason = f"superseded by change {newer.id} of {newer.part}"
         for change in list(self._running.values()):
-            if nodes & change.pursuits.keys():
-                self._end(change, ChangeStatus.SUPERSEDED, reason, now)
+            if not change.pursuits.keys().isdisjoint(parts):
+                self._leave_later_stages(change, now)
+                self._end_by(change, ChangeStatus.SUPERSEDED, reason, now)
 
-    def _drop(self, nodes: Iterable[PartName], status: StepStatus, now: Instant) -> None:
+    def _leave_later_stages(self, change: Change, now: Instant) -> None:
+        """Let no node begin that waits for others; of those that go back, none at all."""
+        if change.is_going_back:
+            self._stop(change, now)
+        else:
+            blocked = [node for node in change.order.blocked if node in change.open]
+            change.leave(blocked, StepStatus.SUPERSEDED, now)
+
+    def _drop(self, parts: Set[PartName], status: StepStatus, now: Instant) -> None:
         """Start no further step of nodes on their way, which may be of several changes."""
-        let_go: dict[ChangeId, list[PartName]] = {}
-        for node in nodes:
+        let_go: dict[ChangeId, list[PartName]] = defaultdict(list)
+        for node, identity in self._steps.drop_waiting(parts).items():
+            let_go[identity].append(node)
+        for node in sorted(self._steps.on_their_way(parts)):
             identity, is_in_flight = self._steps.drop(node, status, now)
-            change = self._changes[identity]
-            change.loose += is_in_flight
-            change.open.discard(node)
-            let_go.setdefault(identity, []).append(node)
+            self._changes[identity].loose += is_in_flight
+            let_go[identity].append(node)
         for identity, nodes in let_go.items():
             change = self._changes[identity]
+            change.open.difference_update(nodes)
             self._let_go(change, nodes)
             self._pack(change)
 
@@ -226,6 +380,7 @@ class Changes:
         change = self._changes[pursuit.change]
         change.open.discard(pursuit.node)
         self._let_stay(change, pursuit)
+        self._follow(change, pursuit, now)
         self._conclude(change, now)
         self._let_go(change, {pursuit.node})
         self._pack(change)
@@ -241,45 +396,64 @@ class Changes:
         resting = StateAndMode(self._parts.facts[node].known_state)
         if resting.state is LifecycleState.UNCONFIGURED:
             change.targets[node] = resting
-            self._parts.ask({node: resting})
-            self._kept_targets.note(node, {node: resting})
+            if self._parts.let_stay(node, resting):
+                self._kept_targets.note(node, {node: resting})
 
     def _conclude(self, change: Change, now: Instant) -> None:
         """End a running change after its last node has ended; success is verified."""
         if change.open or change.status is not ChangeStatus.RUNNING:
             return
+        status, reason = self._verdict(change)
+        if change.failure is not None and change.is_going_back:
+            self._end_gone_back(change, reason, now)
+        elif status is ChangeStatus.SUCCEEDED:
+            self._end(change, status, None, now)
+        elif change.schedule.on_failure is OnFailure.ROLLBACK:
+            change.failure = change.failure or (ChangeStatus.FAILED, reason or "")
+            self._go_back(change, now)
+        else:
+            self._end(change, status, reason, now)
+
+    def _verdict(self, change: Change) -> tuple[ChangeStatus, str | None]:
+        """Return how the nodes of a change ended, all together, and why."""
+        if change.failure is not None and not change.is_going_back:
+            return change.failure
         for outcome, status in _UNHAPPY_ENDS.items():
             errors = change.errors_of(outcome)
             if errors:
-                self._end(change, status, _joined(errors), now)
-                return
-        missed = self._missed_target(change)
-        status = ChangeStatus.FAILED if missed else ChangeStatus.SUCCEEDED
-        self._end(change, status, missed, now)
+                return status, joined(errors)
+        missed = None if change.is_going_back else missed_target(change, self._inference)
+        return (ChangeStatus.FAILED, missed) if missed else (ChangeStatus.SUCCEEDED, None)
 
-    def _missed_target(self, change: Change) -> str | None:
-        """Return how the requested part deviates from its target although all steps succeeded."""
-        target = change.targets.get(change.part)
-        if target is None or self._inference.converged(change.part):
-            return None
-        actual = self._inference.actual(change.part)
-        if is_there(actual, target):
-            return self._inference.deviation_reason(change.part)
-        words = f"{change.part} is {actual.state_and_mode.label}, not {target.label}"
-        others = [
-            f"{node} is {self._inference.actual(node).state_and_mode.label}"
-            for node in self._inference.model.nodes_below(change.part)
-            if node != change.part and self._inference.actual(node).state is not target.state
-        ]
-        return _joined([actual.reason or words, *others])
+    def _end_gone_back(self, change: Change, error: str | None, now: Instant) -> None:
+        """End a change whose nodes went back, or did not all."""
+        assert change.failure is not None
+        status, reason = change.failure
+        change.rollback = Rollback.INCOMPLETE if error else Rollback.DONE
+        words = f"rollback incomplete: {error}" if error else "rolled back"
+        self._end(change, status, f"{reason}; {words}", now)
+
+    def _end_by(self, change: Change, status: ChangeStatus, why: str, now: Instant) -> None:
+        """End a change by a request; one that goes back has failed, and remains half-way."""
+        if change.is_going_back:
+            self._end_gone_back(change, why, now)
+        else:
+            self._end(change, status, why, now)
 
     def _end(self, change: Change, status: ChangeStatus, reason: str | None, now: Instant) -> None:
         change.status, change.reason, change.ended_at = status, reason, now
         del self._running[change.id]
+        self._deadlines.clear(change.id)
+        self._guarded.drop(change)
         self._outbox.forget(KeptChange, change.id)
         self._let_go(change, {change.part, *change.targets, *change.pursuits})
-        self._outbox.emit(CHANGE_ENDS[status](change.id, change.part, reason))
+        self._tell_end(change, now)
         self._pack(change)
+
+    def _tell_end(self, change: Change, now: Instant) -> None:
+        ended = CHANGE_ENDS[change.status](change.id, change.part, change.reason)
+        event = self._outbox.emit(ended)
+        self._part_errors.note_end(ended, event, (change.targets, change.pursuits), now)
 
     def _let_go(self, change: Change, parts: Iterable[PartName]) -> None:
         """Release the parts of an ended change, except nodes that it is still driving."""
@@ -297,12 +471,6 @@ class Changes:
                 del self._changes[identity]
                 excess -= 1
                 kept -= change.node_count
-
-
-def _joined(reasons: Sequence[str]) -> str:
-    more = len(reasons) - _TOLD_ERRORS
-    told = [*reasons[:_TOLD_ERRORS], *([f"and {more} more"] if more > 0 else [])]
-    return "; ".join(told)
 
 
 _UNHAPPY_ENDS: Mapping[StepStatus, ChangeStatus] = {

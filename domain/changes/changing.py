@@ -1,15 +1,18 @@
 """Changes as a concern of the core: requests in; steps and verified results out."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from itertools import islice
 
 from domain.changes.admission import ChangeAdmission, refuse
 from domain.changes.changes import Changes
+from domain.changes.guards import Guards
+from domain.changes.kept_targets import RequestOrder
 from domain.changes.plan import ChangeGoal, next_steps, presumed_steps
 from domain.changes.record import Step, StepTable
 from domain.changes.request_check import check_request
 from domain.changes.restoring import Restoring
 from domain.changes.settings import ChangeSettings
+from domain.changes.why import Whys
 from domain.concern import Concern, Takers
 from domain.errors import BackendUnavailableError
 from domain.events.changes import (
@@ -21,6 +24,7 @@ from domain.events.changes import (
 )
 from domain.findings import Blocker
 from domain.health.health import Health
+from domain.health.part_errors import PartErrors
 from domain.identifiers import ChangeId
 from domain.inputs import (
     BackendStatus,
@@ -37,22 +41,31 @@ from domain.inputs import (
 from domain.lifecycle import LifecycleState, Transition
 from domain.outbox import Outbox
 from domain.parts.parts import Parts
-from domain.snapshot import ChangeView, ModeView, StepView
-from domain.state_and_mode import ModeName, PartName
-from domain.timebase import Instant
+from domain.plans.durations import Durations
+from domain.snapshot import ChangeView, ModeView, PlanView
+from domain.state_and_mode import DEFAULT_MODE, ModeName, PartName
+from domain.timebase import Duration, Instant
 
 
 class Changing(Concern):
     """Admits requests, drives the steps of changes, and restores nodes that reappear."""
 
     def __init__(
-        self, parts: Parts, health: Health, settings: ChangeSettings, outbox: Outbox
+        self,
+        parts: Parts,
+        health: Health,
+        part_errors: PartErrors,
+        settings: ChangeSettings,
+        outbox: Outbox,
+        guards: Guards,
     ) -> None:
         self._parts = parts
         self._health = health
         self._outbox = outbox
-        self._admission = ChangeAdmission(parts.model, parts.facts)
-        self._changes = Changes(parts, settings, outbox, health)
+        self._guards = guards
+        self._admission = ChangeAdmission(parts.model, parts.facts, guards)
+        self._changes = Changes(parts, settings, outbox, health, guards, part_errors)
+        self._whys = Whys(parts, self._admission, health)
         self._restoring = Restoring(parts, self._changes, settings, outbox, self._admit)
         self._backend = BackendStatus(available=True)
         self._backend_since: Instant | None = None
@@ -93,8 +106,9 @@ class Changing(Concern):
         self._changes.go_on(now)
 
     def settle(self, now: Instant) -> bool:
-        """Begin the next change that restores a node; return whether one began."""
-        return self._restoring.begin_next(now)
+        """End changes whose guards broke, and begin the next one that restores a node."""
+        has_ended = self._changes.judge_guards(now)
+        return self._restoring.begin_next(now) or has_ended
 
     def _take_request(self, request: ChangeRequest, now: Instant) -> None:
         part = check_request(self._parts.model, self._parts.facts, request)
@@ -138,6 +152,34 @@ class Changing(Concern):
     def _take_backlog(self, backlog: ReportBacklog, now: Instant) -> None:
         self._changes.note_backlog(backlog)
 
+    # --- for concerns that set targets in force ---------------------------------------------------
+
+    @property
+    def admission(self) -> ChangeAdmission:
+        """Return what judges goals."""
+        return self._admission
+
+    @property
+    def requests(self) -> RequestOrder:
+        """Return which request set the target of each part; read only."""
+        return self._changes.requests
+
+    @property
+    def is_available(self) -> bool:
+        """Tell whether the backend works, so that a change could begin at all."""
+        return self._backend.available
+
+    def drive(self, part: PartName, request: ChangeRequest, goal: ChangeGoal, now: Instant) -> None:
+        """Begin a change towards targets that are in force already; it supersedes others.
+
+        Args:
+            part: The part whose target it is.
+            request: What it would be as a request, in the name of who set the target.
+            goal: Its targets and node goals.
+            now: The current time.
+        """
+        self._changes.begin(part, request, goal, now, is_asked=False)
+
     # --- what can be seen ------------------------------------------------------------------------
 
     def mode(self, part: PartName, mode: ModeName) -> ModeView:
@@ -146,7 +188,29 @@ class Changing(Concern):
             *self._backend_blockers(part),
             *self._admission.blockers(ModeRequest(part, mode), self._health.stop_reasons),
         )
-        return ModeView(mode, not refuse(blockers), blockers)
+        settings = self._parts.model.settings_of(part, mode)
+        is_in_force = mode == self._mode_in_force(part)
+        return ModeView(
+            mode,
+            not refuse(blockers),
+            blockers,
+            self._guards.can_stay(part, mode) if is_in_force else None,
+            tuple(condition.text for condition in settings.requires),
+            tuple(condition.text for condition in settings.invariants),
+        )
+
+    def _mode_in_force(self, part: PartName) -> ModeName | None:
+        """Return the mode of the target in force, else the actual one; None: there is none."""
+        target = self._parts.target(part)
+        if target is None:
+            return self._parts.inference.actual(part).mode
+        if target.state is not LifecycleState.ACTIVE:
+            return None
+        return target.mode or DEFAULT_MODE
+
+    def why(self, part: PartName) -> tuple[Blocker, ...]:
+        """Return why a part is not where it should be, the reasons nearest to it first."""
+        return (*self._backend_blockers(part), *self._whys.of(part))
 
     def _backend_error(self) -> BackendUnavailableError | None:
         return None if self._backend.available else BackendUnavailableError(self._backend.reason)
@@ -163,21 +227,23 @@ class Changing(Concern):
             return ()
         return self._admission.available_transitions(part, self._health.stop_reasons)
 
-    def plan(self, request: ChangeRequest) -> Sequence[StepView]:
-        """Return the steps that a request would take now, without starting them.
+    def plan(self, request: ChangeRequest) -> PlanView:
+        """Return what a request would do now, without starting it.
 
         Raises:
             PilothouseError: The request would be rejected.
         """
         check_request(self._parts.model, self._parts.facts, request)
         goal = self._admit(request)
-        steps = []
+        order, durations = self._changes.schedule(request, goal).order, self._changes.durations
+        steps: dict[PartName, list[Step]] = {}
         for node, node_goal in goal.nodes.items():
             facts = self._parts.facts[node]
             unknown = facts.known_state is LifecycleState.UNKNOWN
             actions = presumed_steps(node_goal) if unknown else next_steps(facts, node_goal)
-            steps += [Step(ChangeId(""), node, action) for action in actions or ()]
-        return StepTable(steps)
+            steps[node] = [Step(ChangeId(""), node, action) for action in actions or ()]
+        table = StepTable([step for own in steps.values() for step in own], order, durations)
+        return PlanView(table, order.stages, order.longest(_expected_times(steps, durations)))
 
     def change(self, identity: str) -> ChangeView:
         """Return a change.
@@ -198,6 +264,20 @@ class Changing(Concern):
         """
         kept = (c for c in self._changes.all() if part is None or c.part == part)
         return tuple(change.view() for change in islice(kept, limit))
+
+
+def _expected_times(
+    steps: Mapping[PartName, Sequence[Step]], durations: Durations
+) -> dict[PartName, Duration] | None:
+    """Return how long each node is expected to take; None: of some step it is not known."""
+    times: dict[PartName, Duration] = {}
+    for node, own in steps.items():
+        each = [durations.expected(node, step.action_name) for step in own]
+        known = [took for took in each if took is not None]
+        if len(known) < len(each):
+            return None
+        times[node] = sum(known)
+    return times
 
 
 def _described(part: PartName, request: ChangeRequest) -> ChangeRequested:

@@ -6,6 +6,7 @@ is forgotten once later requests have replaced the targets of all its parts.
 
 from collections import Counter
 from collections.abc import Collection, Iterable, Mapping
+from typing import Protocol
 
 from domain.changes.plan import targets_of
 from domain.events.service import NotRestored
@@ -14,6 +15,17 @@ from domain.lifecycle import LifecycleState
 from domain.outbox import Outbox
 from domain.parts.system_model import SmhModel
 from domain.state_and_mode import PartName, StateAndMode
+
+
+class RequestOrder(Protocol):
+    """Which request set the target of each part, in numbers that rise with each request."""
+
+    @property
+    def newest(self) -> int:
+        """Return the number of the last request."""
+
+    def of(self, part: PartName) -> int:
+        """Return the number of the request that set the target of a part; 0: none did."""
 
 
 class KeptTargets:
@@ -29,6 +41,15 @@ class KeptTargets:
         self._count: dict[int, int] = {}
         """By order of a request, how many parts have their targets from it."""
 
+    @property
+    def newest(self) -> int:
+        """Return the order of the last request."""
+        return self._order
+
+    def of(self, part: PartName) -> int:
+        """Return the order of the request that set the target of a part; 0: none did."""
+        return self._owner.get(part, 0)
+
     def note(self, part: PartName, targets: Mapping[PartName, StateAndMode]) -> None:
         """Keep a request.
 
@@ -38,8 +59,19 @@ class KeptTargets:
         """
         self._order += 1
         target = targets[part]
-        self._outbox.keep(KeptTarget(part, target, self._order, _staying(target, targets)))
+        self._outbox.keep(KeptTarget(part, target, self._order, staying_in(target, targets)))
         self._own(self._order, targets)
+
+    def restore_before(self, targets: Mapping[PartName, StateAndMode | None]) -> None:
+        """Keep targets again that a request had replaced; None: there was none."""
+        for part, target in targets.items():
+            if target is None:
+                self._disown([part])
+                self._owner.pop(part, None)
+            else:
+                self._order += 1
+                self._outbox.keep(KeptTarget(part, target, self._order))
+                self._own(self._order, [part])
 
     def restore(self, kept: Iterable[Kept]) -> dict[PartName, StateAndMode]:
         """Return the targets of all parts that follow from the requests that were kept.
@@ -78,9 +110,13 @@ class KeptTargets:
 
     def _own(self, order: int, parts: Collection[PartName]) -> None:
         """Note that a request set the targets of parts; forget those that have none left."""
-        replaced = Counter(map(self._owner.get, parts))
+        self._disown(parts)
         self._owner.update(dict.fromkeys(parts, order))
         self._count[order] = len(parts)
+
+    def _disown(self, parts: Collection[PartName]) -> None:
+        """Note that the targets of parts are replaced; forget requests that have none left."""
+        replaced = Counter(map(self._owner.get, parts))
         for earlier, count in replaced.items():
             if earlier is None:
                 continue
@@ -90,7 +126,7 @@ class KeptTargets:
                 self._outbox.forget(KeptTarget, str(earlier))
 
 
-def _staying(
+def staying_in(
     target: StateAndMode, targets: Mapping[PartName, StateAndMode]
 ) -> dict[PartName, LifecycleState]:
     """Return the parts that a request towards rest leaves in the state that they are in."""

@@ -5,10 +5,10 @@ in parallel, each with at most one step in flight. A step in flight is never rec
 of its node waits until it ends or times out.
 """
 
-from collections.abc import Callable, Mapping, Set
+from collections.abc import Callable, Iterable, Mapping, Set
 
 from domain.changes.plan import SetParameters, next_steps, presumed_steps
-from domain.changes.record import Change, Pursuit, Step
+from domain.changes.record import Change, NodeBefore, Pursuit, Step
 from domain.changes.settings import ChangeSettings
 from domain.changes.step_judgement import judge_report
 from domain.commands import AskFacts, AskParameters, AskTransition
@@ -20,6 +20,7 @@ from domain.inputs import NodeAnswer, NodeReport
 from domain.lifecycle import LifecycleState, Transition
 from domain.outbox import Outbox
 from domain.parts.parts import Parts
+from domain.plans.durations import Durations
 from domain.snapshot import StepStatus
 from domain.state_and_mode import PartName
 from domain.timebase import Duration, Instant, to_seconds
@@ -39,6 +40,7 @@ class NodeSteps:
         health: Health,
         ended: Callable[[Pursuit, Instant], None],
         loose_ended: Callable[[ChangeId], None],
+        forbidden: Callable[[Pursuit], str | None],
     ) -> None:
         """Begin without a pursuit.
 
@@ -49,6 +51,7 @@ class NodeSteps:
             health: Whether ESTOP is on.
             ended: Is handed each pursuit that reached its goal or failed, at once.
             loose_ended: Is handed the change of a step that ended after its pursuit was dropped.
+            forbidden: Returns why no further step of a node may begin; None: it may.
         """
         self._parts = parts
         self._facts = parts.facts
@@ -57,6 +60,7 @@ class NodeSteps:
         self._health = health
         self._ended = ended
         self._loose_ended = loose_ended
+        self._forbidden = forbidden
         self._waiting: dict[PartName, Change] = {}
         """By node that waits for its turn, in this order, the change that wants something of it."""
         self._pursuits: dict[PartName, Pursuit] = {}
@@ -64,6 +68,8 @@ class NodeSteps:
         self._deadlines: Deadlines[PartName] = Deadlines()
         self._backlogs: dict[str, Instant] = {}
         """By source of reports that wait to be taken in, until when all are taken in."""
+        self.durations = Durations()
+        """How long steps took that succeeded."""
 
     # --- what can be seen ------------------------------------------------------------------------
 
@@ -72,9 +78,9 @@ class NodeSteps:
         """Return the nodes that wait for `start`, in order, each with its change; read only."""
         return self._waiting
 
-    def on_their_way(self, nodes: Set[PartName]) -> Set[PartName]:
-        """Return those nodes that are on their way, or wait for their turn."""
-        return (nodes & self._pursuits.keys()) | (nodes & self._waiting.keys())
+    def on_their_way(self, parts: Set[PartName]) -> Set[PartName]:
+        """Return those nodes among parts that are on their way; their turn has come."""
+        return self._pursuits.keys() & parts
 
     @property
     def is_idle(self) -> bool:
@@ -93,34 +99,50 @@ class NodeSteps:
     def wake_at(self) -> Instant | None:
         """Return the next deadline; None: there is none, or reports must be taken in before."""
         due = self._deadlines.next()
-        return None if due is None or due > self._judged_until(due) else due
+        return None if due is None or due > self.judged_until(due) else due
 
     # --- pursuits --------------------------------------------------------------------------------
 
-    def add(self, change: Change) -> None:
-        """Take over the nodes of a change, none of which is on its way; `start` lets each move."""
-        self._waiting.update(dict.fromkeys(change.goals, change))
+    def add(self, change: Change, nodes: Iterable[PartName]) -> None:
+        """Take over nodes of a change, none of which is on its way; `start` lets each move."""
+        self._waiting.update(dict.fromkeys(nodes, change))
+
+    def foresee(self, pursuit: Pursuit) -> None:
+        """Plan the steps ahead; each step is planned again from the facts before it starts."""
+        facts = self._facts[pursuit.node]
+        unknown = facts.known_state is LifecycleState.UNKNOWN
+        steps = presumed_steps(pursuit.goal) if unknown else next_steps(facts, pursuit.goal)
+        pursuit.plan(steps or ())
 
     def start(self, node: PartName, now: Instant) -> None:
         """Plan the steps of a node that waits, and start the first unless one is in flight."""
         pursuit = self._take_up(node)
         if pursuit is not None:
-            self._foresee(pursuit)
+            self.foresee(pursuit)
             self._advance(node, now)
+
+    def drop_waiting(self, parts: Set[PartName]) -> dict[PartName, ChangeId]:
+        """Let those nodes among parts that wait for their turn not move at all.
+
+        Returns:
+            The change of each of them, in the order in which they waited.
+        """
+        dropped = {node: change.id for node, change in self._waiting.items() if node in parts}
+        for node in dropped:
+            del self._waiting[node]
+        return dropped
 
     def drop(self, node: PartName, status: StepStatus, now: Instant) -> tuple[ChangeId, bool]:
         """Start no further step of a node that is on its way.
 
         Args:
-            node: On its way, or waiting for its turn.
+            node: Its turn has come.
             status: Of the steps that are not started: superseded or canceled.
             now: The current time.
 
         Returns:
             The change that drove it, and whether a step of that is in flight; it ends by itself.
         """
-        if (waited_for := self._waiting.pop(node, None)) is not None:
-            return waited_for.id, False
         pursuit = self._pursuits.pop(node)
         pursuit.outcome = status
         pursuit.drop_pending(status, now)
@@ -128,6 +150,23 @@ class NodeSteps:
         if step is None:
             self._deadlines.clear(node)
         return pursuit.change, step is not None and step.change == pursuit.change
+
+    def stop(self, nodes: Set[PartName], change: ChangeId, now: Instant) -> set[PartName]:
+        """Start no further step of nodes of a change; steps in flight end.
+
+        Returns:
+            The nodes that execute one; each ends with it.
+        """
+        self.drop_waiting(nodes)
+        in_flight: set[PartName] = set()
+        for node in sorted(self.on_their_way(nodes)):
+            step = self._in_flight.get(node)
+            if step is not None and step.change == change:
+                self._pursuits[node].is_last = True
+                in_flight.add(node)
+            else:
+                self.drop(node, StepStatus.CANCELED, now)
+        return in_flight
 
     # --- what happens ----------------------------------------------------------------------------
 
@@ -160,12 +199,13 @@ class NodeSteps:
         else:
             self._backlogs[source] = since
 
-    def _judged_until(self, now: Instant) -> Instant:
+    def judged_until(self, now: Instant) -> Instant:
+        """Return up to when deadlines may be judged: a report may wait that came before `now`."""
         return min((now, *self._backlogs.values())) if self._backlogs else now
 
     def pass_time(self, now: Instant) -> None:
         """Handle all deadlines up to `now`, unless a report may wait that came before them."""
-        until = self._judged_until(now)
+        until = self.judged_until(now)
         while (node := self._deadlines.pop_due(until)) is not None:
             if node in self._in_flight:
                 self._step_is_late(self._in_flight[node], now)
@@ -193,6 +233,8 @@ class NodeSteps:
         step = pursuit.next_step()
         if step is None:
             self._finish(pursuit, StepStatus.SUCCEEDED, None, now)
+        elif pursuit.is_last:
+            self._finish(pursuit, StepStatus.CANCELED, None, now)
         elif len(pursuit.steps) > _MAX_STEPS:
             self._finish(
                 pursuit, StepStatus.FAILED, f"{node} keeps leaving the requested state", now
@@ -200,6 +242,8 @@ class NodeSteps:
         elif step.action is Transition.ACTIVATE and self._health.is_stopped:
             why = f"{node} is not activated while ESTOP is active"
             self._finish(pursuit, StepStatus.FAILED, why, now)
+        elif (forbidden := self._forbidden(pursuit)) is not None:
+            self._finish(pursuit, StepStatus.FAILED, f"{node}: {forbidden}", now)
         else:
             self._begin_step(pursuit, step, now)
 
@@ -211,14 +255,8 @@ class NodeSteps:
         waited_for = self._waiting.pop(node, None)
         if waited_for is not None:
             self._pursuits[node] = waited_for.pursue(node)
+            waited_for.stage = max(waited_for.stage, waited_for.order.stage(node))
         return self._pursuits.get(node)
-
-    def _foresee(self, pursuit: Pursuit) -> None:
-        """Plan the steps ahead; each step is planned again from the facts before it starts."""
-        facts = self._facts[pursuit.node]
-        unknown = facts.known_state is LifecycleState.UNKNOWN
-        steps = presumed_steps(pursuit.goal) if unknown else next_steps(facts, pursuit.goal)
-        pursuit.plan(steps or ())
 
     def _begin_step(self, pursuit: Pursuit, step: Step, now: Instant) -> None:
         node, action = step.node, step.action
@@ -226,6 +264,8 @@ class NodeSteps:
         step.start_state = self._facts[node].known_state
         step.request = self._outbox.next_request()
         pursuit.waiting = False
+        if pursuit.before is None:
+            pursuit.before = self._as_it_is(pursuit)
         self._in_flight[node] = step
         step.event = self._outbox.emit(StepStarted(step.change, node, step.action_name))
         self._parts.expect_report(node, step.event)
@@ -235,6 +275,11 @@ class NodeSteps:
             self._outbox.command(AskTransition(step.request, node, action))
         self._deadlines.set(node, now + self._allowed(step))
 
+    def _as_it_is(self, pursuit: Pursuit) -> NodeBefore:
+        facts = self._facts[pursuit.node]
+        known = {n: facts.parameters[n] for n in pursuit.goal.parameters if n in facts.parameters}
+        return NodeBefore(facts.known_state, facts.mode, known)
+
     def _allowed(self, step: Step) -> Duration:
         if isinstance(step.action, SetParameters):
             return self._settings.parameters_deadline
@@ -243,6 +288,8 @@ class NodeSteps:
     def _end_step(self, step: Step, status: StepStatus, error: str | None, now: Instant) -> None:
         """Record the end of a step; unless it succeeded, its pursuit ends as well."""
         step.end(status, now, error)
+        if status is StepStatus.SUCCEEDED and step.started_at is not None:
+            self.durations.note(step.node, step.action_name, now - step.started_at)
         del self._in_flight[step.node]
         self._parts.expect_nothing(step.node)
         self._deadlines.clear(step.node)

@@ -80,6 +80,14 @@ class NodeGoals:
             configures: {state: NodeGoal(state, configures=configures) for state in LifecycleState}
             for configures in (True, False)
         }
+        self._of_parts = {
+            name: {
+                mode: {part: self.of(part, want) for part, want in wanted.items()}
+                for mode, wanted in system.modes.items()
+                if wanted.keys() <= model.nodes.keys()
+            }
+            for name, system in model.systems.items()
+        }
 
     def of(self, node: PartName, target: StateAndMode, *, configures: bool = True) -> NodeGoal:
         """Return the goal of a node whose target is `target`."""
@@ -87,20 +95,9 @@ class NodeGoals:
             return self._in_mode[node][target.mode or DEFAULT_MODE]
         return self._in_state[configures][target.state]
 
-    def of_all(
-        self, targets: Mapping[PartName, StateAndMode], facts: Mapping[PartName, NodeFacts]
-    ) -> dict[PartName, NodeGoal]:
-        """Return the goals of all nodes that have a target; as `of`, in one go for ten thousand."""
-        in_mode, in_state = self._in_mode, self._in_state[True]
-        goals: dict[PartName, NodeGoal] = {}
-        for part, target in targets.items():
-            if part not in facts:
-                continue
-            if target.state is LifecycleState.ACTIVE and part in in_mode:
-                goals[part] = in_mode[part][target.mode or DEFAULT_MODE]
-            else:
-                goals[part] = in_state[target.state]
-        return goals
+    def of_parts(self, system: PartName, mode: ModeName) -> Mapping[PartName, NodeGoal]:
+        """Return the goals of the parts of a system in a mode, all of which must be nodes."""
+        return self._of_parts[system].get(mode, {})
 
 
 def goal_of(
@@ -123,7 +120,6 @@ def goal_of(
     """
     if isinstance(request, ParametersRequest):
         return ChangeGoal({}, {request.node: NodeGoal(None, None, dict(request.values))})
-    targets: dict[PartName, StateAndMode] = {}
     if isinstance(request, ModeRequest):
         wanted = StateAndMode(LifecycleState.ACTIVE, model.require_mode(request.part, request.mode))
     elif request.transition is Transition.ACTIVATE:
@@ -131,10 +127,13 @@ def goal_of(
         wanted = StateAndMode(LifecycleState.ACTIVE, mode)
     else:
         wanted = StateAndMode(request.transition.goal)
-    _spread(model, request.part, wanted, targets)
     goals = goals or NodeGoals(model)
+    # A transition asks something else of each node, depending on the state that it is in.
+    spreading = _Spreading(model, None if isinstance(request, TransitionRequest) else goals)
+    spreading.spread(request.part, wanted)
+    targets = spreading.targets
     if not isinstance(request, TransitionRequest):
-        return ChangeGoal(targets, goals.of_all(targets, facts))
+        return ChangeGoal(targets, spreading.nodes)
     _pass_by(request, facts, targets)
     configures = request.transition is not Transition.DEACTIVATE
     nodes = {
@@ -145,26 +144,46 @@ def goal_of(
     return ChangeGoal(targets, nodes)
 
 
-def _spread(
-    model: SmhModel, part: PartName, wanted: StateAndMode, targets: dict[PartName, StateAndMode]
-) -> None:
-    """Record the targets of `part` and of all parts below it."""
-    if part in targets:
-        # Shared by two systems: the first one in the file counts, and no part is visited twice.
-        return
-    targets[part] = wanted
-    system = model.systems.get(part)
-    if system is None:
-        return
-    if wanted.state is LifecycleState.ACTIVE:
-        wants = system.modes.get(wanted.mode or DEFAULT_MODE, {})
-    else:
-        wants = dict.fromkeys(system.parts, wanted)
-    for child, want in wants.items():
-        if child in model.systems:
-            _spread(model, child, want, targets)
-        elif child not in targets:
-            targets[child] = want
+class _Spreading:
+    """Records the targets of a part and of all parts below it, and the goals of the nodes."""
+
+    def __init__(self, model: SmhModel, goals: NodeGoals | None) -> None:
+        """Begin with none; without `goals`, those of the nodes are left out."""
+        self.targets: dict[PartName, StateAndMode] = {}
+        self.nodes: dict[PartName, NodeGoal] = {}
+        self._model = model
+        self._goals = goals
+
+    def spread(self, part: PartName, wanted: StateAndMode) -> None:
+        """Record a target; of a part shared by two systems, the first one in the file counts."""
+        if part in self.targets:
+            return
+        self.targets[part] = wanted
+        system = self._model.systems.get(part)
+        if system is None:
+            if self._goals is not None:
+                self.nodes[part] = self._goals.of(part, wanted)
+            return
+        if wanted.state is not LifecycleState.ACTIVE:
+            wants: Mapping[PartName, StateAndMode] = dict.fromkeys(system.parts, wanted)
+        else:
+            mode = wanted.mode or DEFAULT_MODE
+            wants = system.modes.get(mode, {})
+            if self._all_at_once(part, mode, wants):
+                return
+        for child, want in wants.items():
+            self.spread(child, want)
+
+    def _all_at_once(
+        self, system: PartName, mode: ModeName, wants: Mapping[PartName, StateAndMode]
+    ) -> bool:
+        """Record nodes in bulk, since there may be ten thousand; return whether that was right."""
+        if not (wants.keys() <= self._model.nodes.keys() and self.targets.keys().isdisjoint(wants)):
+            return False
+        self.targets.update(wants)
+        if self._goals is not None:
+            self.nodes.update(self._goals.of_parts(system, mode))
+        return True
 
 
 def _pass_by(
@@ -201,9 +220,9 @@ def targets_of(
     model: SmhModel, part: PartName, wanted: StateAndMode
 ) -> dict[PartName, StateAndMode]:
     """Return the targets of a part and of all parts below it, whatever state the nodes are in."""
-    targets: dict[PartName, StateAndMode] = {}
-    _spread(model, part, wanted, targets)
-    return targets
+    spreading = _Spreading(model, None)
+    spreading.spread(part, wanted)
+    return spreading.targets
 
 
 def next_steps(facts: NodeFacts, goal: NodeGoal) -> tuple[Action, ...] | None:

@@ -1,15 +1,19 @@
 """The record of a change: its request, its steps and its result."""
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Literal, overload
 
 from domain.changes.plan import Action, NodeGoal, SetParameters
+from domain.changes.schedule import Schedule
 from domain.identifiers import ChangeId
 from domain.inputs import ChangeRequest
 from domain.lifecycle import LifecycleState, Transition
-from domain.snapshot import ChangeStatus, ChangeView, StepStatus, StepView
-from domain.state_and_mode import PartName, StateAndMode
+from domain.parameters import ParameterValue
+from domain.plans.durations import Durations
+from domain.plans.order import Order
+from domain.snapshot import ChangeStatus, ChangeView, Rollback, StepStatus, StepView
+from domain.state_and_mode import ModeName, PartName, StateAndMode
 from domain.timebase import Instant
 
 
@@ -32,6 +36,8 @@ class Step:
     seen_on_the_way: bool = False
     """The node reported the transitional state, so that a return to the start is a failure."""
     facts_asked: bool = False
+    rollback: bool = False
+    """It takes its node back to where it was."""
 
     def end(self, status: StepStatus, now: Instant, error: str | None = None) -> None:
         """Record how the step ended."""
@@ -56,8 +62,18 @@ class StepTable(Sequence[StepView]):
     turn may take, and Python's garbage collection would look through all that are kept.
     """
 
-    def __init__(self, steps: Sequence[Step]) -> None:
-        """Copy steps as they are now."""
+    def __init__(
+        self, steps: Sequence[Step], order: Order, durations: Durations, back: Order | None = None
+    ) -> None:
+        """Copy steps as they are now.
+
+        Args:
+            steps: Of one change.
+            order: Of its nodes.
+            durations: How long steps took; read when a view is made.
+            back: The order in which nodes go back; None: they do not.
+        """
+        self._order, self._back, self._durations = order, back or order, durations
         actions: list[Transition | Literal["set_parameters"]] = [s.shown_action for s in steps]
         self._columns = (
             [step.node for step in steps],
@@ -66,6 +82,7 @@ class StepTable(Sequence[StepView]):
             [step.started_at for step in steps],
             [step.ended_at for step in steps],
             [step.error for step in steps],
+            [step.rollback for step in steps],
         )
 
     def __len__(self) -> int:
@@ -80,16 +97,22 @@ class StepTable(Sequence[StepView]):
 
     def __getitem__(self, index: int | slice) -> StepView | tuple[StepView, ...]:
         """Return one step, or several."""
-        nodes, actions, statuses, started_at, ended_at, errors = self._columns
+        nodes, actions, statuses, started_at, ended_at, errors, rollbacks = self._columns
         if isinstance(index, slice):
             return tuple(self[number] for number in range(*index.indices(len(self))))
+        node, action = nodes[index], actions[index]
+        order = self._back if rollbacks[index] else self._order
         return StepView(
-            nodes[index],
-            actions[index],
+            node,
+            action,
             statuses[index],
             started_at[index],
             ended_at[index],
             errors[index],
+            order.stage(node),
+            order.after(node),
+            self._durations.expected(node, str(action)),
+            rollbacks[index],
         )
 
     def __eq__(self, other: object) -> bool:
@@ -97,6 +120,17 @@ class StepTable(Sequence[StepView]):
         return isinstance(other, Sequence) and tuple(self) == tuple(other)
 
     __hash__ = None  # type: ignore[assignment]
+
+
+@dataclass(frozen=True, slots=True)
+class NodeBefore:
+    """What a node was like before the first step of a change."""
+
+    state: LifecycleState
+    mode: ModeName | None
+    """As it reported it; None: it has not."""
+    parameters: Mapping[str, ParameterValue]
+    """Those that the change sets, as far as they were known."""
 
 
 @dataclass(slots=True)
@@ -112,6 +146,12 @@ class Pursuit:
     facts_asked: bool = False
     outcome: StepStatus = StepStatus.RUNNING
     error: str | None = None
+    is_last: bool = False
+    """No step follows the one in flight."""
+    before: NodeBefore | None = None
+    """None: it was asked for nothing."""
+    rollback: bool = False
+    """It takes the node back to where it was."""
 
     @property
     def has_begun(self) -> bool:
@@ -123,7 +163,9 @@ class Pursuit:
         pending = [step.action for step in self.steps if step.status is StepStatus.PENDING]
         if pending != list(actions):
             done = [step for step in self.steps if step.status is not StepStatus.PENDING]
-            new = [Step(self.change, self.node, action) for action in actions]
+            new = [
+                Step(self.change, self.node, action, rollback=self.rollback) for action in actions
+            ]
             self.steps = (*done, *new)
 
     def next_step(self) -> Step | None:
@@ -150,6 +192,11 @@ class Change:
     targets: dict[PartName, StateAndMode]
     started_at: Instant
     cause: int
+    schedule: Schedule = field(default_factory=Schedule)
+    durations: Durations = field(default_factory=Durations)
+    """Of all changes together."""
+    guarded: frozenset[PartName] = frozenset()
+    """Parts whose target mode has guards."""
     status: ChangeStatus = ChangeStatus.RUNNING
     reason: str | None = None
     ended_at: Instant | None = None
@@ -164,6 +211,20 @@ class Change:
     packed: StepTable | None = None
     """All steps, once none of them changes any more."""
     node_count: int = 0
+    stage: int = 0
+    """The highest one of which a node has begun."""
+    deadline_at: Instant | None = None
+    is_stopping: bool = False
+    """No further step begins."""
+    failure: tuple[ChangeStatus, str] | None = None
+    """How it will end, and why, once its nodes are back."""
+    targets_before: Mapping[PartName, StateAndMode | None] = field(default_factory=dict)
+    """Requested targets before; only of a change that goes back on a failure."""
+    rollback: Rollback | None = None
+    forth: tuple[Pursuit, ...] = ()
+    """What nodes did before they began to go back."""
+    back: Order | None = None
+    """In which order nodes go back; None: they do not."""
 
     def set_out(self, goals: Mapping[PartName, NodeGoal]) -> None:
         """Begin: all nodes wait for their turn.
@@ -174,10 +235,36 @@ class Change:
         self.goals, self.pursuits = goals, dict.fromkeys(goals)
         self.open, self.node_count = set(goals), len(goals)
 
+    def turn_back(self, goals: Mapping[PartName, NodeGoal], order: Order) -> None:
+        """Begin to take nodes back to where they were; none of them is on its way."""
+        self.forth, self.back = tuple(self._begun()), order
+        self.is_stopping = False
+        self.set_out(goals)
+
+    @property
+    def is_going_back(self) -> bool:
+        """Tell whether nodes go, or went, back to where they were."""
+        return self.back is not None
+
+    @property
+    def order(self) -> Order:
+        """Return the order in which nodes begin now."""
+        return self.schedule.order if self.back is None else self.back
+
     def pursue(self, node: PartName) -> Pursuit:
-        """Return the new pursuit of a node whose turn has come."""
-        pursuit = self.pursuits[node] = Pursuit(self.id, node, self.goals[node])
+        """Return the pursuit of a node; it is made when it is asked for first."""
+        pursuit = self.pursuits[node]
+        if pursuit is None:
+            pursuit = Pursuit(self.id, node, self.goals[node], rollback=self.is_going_back)
+            self.pursuits[node] = pursuit
         return pursuit
+
+    def leave(self, nodes: Iterable[PartName], status: StepStatus, now: Instant) -> None:
+        """Note that nodes are not on their way any more; their pending steps end."""
+        for node in nodes:
+            self.open.discard(node)
+            if (pursuit := self.pursuits.get(node)) is not None:
+                pursuit.drop_pending(status, now)
 
     @property
     def is_over(self) -> bool:
@@ -191,7 +278,8 @@ class Change:
     def pack(self) -> None:
         """Keep only what `view` shows, of a change that has ended in all its nodes."""
         self.packed = self._table()
-        self.goals, self.pursuits = {}, {}
+        self.goals, self.pursuits, self.forth = {}, {}, ()
+        self.targets_before = {}
 
     def view(self) -> ChangeView:
         """Return this change as it is now."""
@@ -205,10 +293,15 @@ class Change:
             self.started_at,
             self.ended_at,
             self.cause,
+            self.stage,
+            self.deadline_at,
+            self.rollback,
         )
 
     def _table(self) -> StepTable:
-        return StepTable([step for pursuit in self._begun() for step in pursuit.steps])
+        pursuits = (*self.forth, *self._begun())
+        steps = [step for pursuit in pursuits for step in pursuit.steps]
+        return StepTable(steps, self.schedule.order, self.durations, self.back)
 
     def _begun(self) -> Iterator[Pursuit]:
         return (pursuit for pursuit in self.pursuits.values() if pursuit is not None)

@@ -7,18 +7,20 @@ restart of the service, nodes that wait for an operator are left as they are.
 
 from collections.abc import Callable, Iterable
 
+from domain.actor import NOBODY
 from domain.changes.changes import Changes
 from domain.changes.plan import ChangeGoal
+from domain.changes.pursuit import request_towards
 from domain.changes.record import Step
 from domain.changes.settings import ChangeSettings
 from domain.errors import BackendUnavailableError, RefusedError
 from domain.events.changes import NodeNotRestored, NodeRestoring
 from domain.identifiers import ChangeId
-from domain.inputs import ChangeRequest, ModeRequest, NodeReport, TransitionRequest
-from domain.lifecycle import LifecycleState, Transition, arrival
+from domain.inputs import ChangeRequest, NodeReport
+from domain.lifecycle import LifecycleState
 from domain.outbox import Outbox
 from domain.parts.parts import Parts
-from domain.state_and_mode import DEFAULT_MODE, PartName, StateAndMode
+from domain.state_and_mode import PartName, StateAndMode
 from domain.timebase import Instant, seconds, to_seconds
 
 MAX_RESTORES = 3
@@ -136,7 +138,9 @@ class Restoring:
             reason = f"{often}; it is not restored again until a change of it is requested"
             self._tell_not_restored(NodeNotRestored(node, target, reason), cause, now)
             return False
-        request = self._request(node, target)
+        request = request_towards(
+            self._inference.model, self._inference.facts, node, target, NOBODY
+        )
         try:
             goal = self._admit(request)
         except (BackendUnavailableError, RefusedError) as refusal:
@@ -144,22 +148,10 @@ class Restoring:
             return False
         self._begun[node] = [*begun, now]
         self._outbox.begin(now, NodeRestoring(node, target), cause=cause)
-        self._changes.begin(node, request, goal, now)
+        self._changes.begin(node, request, goal, now, is_asked=False)
         return True
 
     def _tell_not_restored(self, told: NodeNotRestored, cause: int, now: Instant) -> None:
         # An input of its own: the actor of the current input did not request it.
         self._outbox.begin(now, told, cause=cause)
         self._outbox.record_input()
-
-    def _request(self, node: PartName, target: StateAndMode) -> ChangeRequest:
-        """Return the request that brings a node to its target."""
-        if target.state is LifecycleState.ACTIVE:
-            if self._inference.model.modes_of(node):
-                return ModeRequest(node, target.mode or DEFAULT_MODE)
-            return TransitionRequest(node, Transition.ACTIVATE)
-        if target.state is LifecycleState.UNCONFIGURED:
-            return TransitionRequest(node, Transition.CLEANUP)
-        resting = arrival(self._inference.facts[node].known_state)
-        is_active = resting is LifecycleState.ACTIVE
-        return TransitionRequest(node, Transition.DEACTIVATE if is_active else Transition.CONFIGURE)

@@ -6,7 +6,8 @@ from dataclasses import dataclass
 from domain.events.event import Event, because
 from domain.findings import Fact
 from domain.inputs import SignalValue
-from domain.snapshot import SystemState
+from domain.snapshot import ErrorKey, SystemState
+from domain.state_and_mode import PartName
 
 
 @dataclass(frozen=True, slots=True)
@@ -69,9 +70,13 @@ class SignalSkewed(Event):
         return f"the clock of the sender of {self.signal} differs from ours by more than 1 s"
 
 
+_TOLD_ALREADY = frozenset({"UNREACHABLE", "CHANGE_FAILED"})
+"""Errors of parts that follow at once from an event that a short list shows."""
+
+
 @dataclass(frozen=True, slots=True)
 class ErrorRaised(Event):
-    """An error is raised."""
+    """An error of the robot or of a part is raised."""
 
     kind = "error.raised"
 
@@ -79,21 +84,35 @@ class ErrorRaised(Event):
     message: str
     value: Fact
     threshold: Fact
+    part: PartName | None = None
+    """None: the robot's own."""
 
     def _words(self) -> str:
-        return f"{self.error}: {self.message}"
+        return f"{ErrorKey(self.part, self.error).name}: {self.message}"
+
+    @property
+    def notable(self) -> bool:
+        """Tell whether no other event of a short list says the same."""
+        return self.part is None or self.error not in _TOLD_ALREADY
 
 
 @dataclass(frozen=True, slots=True)
 class ErrorCleared(Event):
-    """An error is cleared."""
+    """An error of the robot or of a part is cleared."""
 
     kind = "error.cleared"
 
     error: str
+    part: PartName | None = None
+    """As in `error.raised`."""
 
     def _words(self) -> str:
-        return f"{self.error} cleared"
+        return f"{ErrorKey(self.part, self.error).name} cleared"
+
+    @property
+    def notable(self) -> bool:
+        """As of `error.raised`."""
+        return self.part is None or self.error not in _TOLD_ALREADY
 
 
 @dataclass(frozen=True, slots=True)
@@ -104,9 +123,11 @@ class ErrorAcknowledged(Event):
     is_input = True
 
     error: str
+    part: PartName | None = None
+    """None: the robot's own."""
 
     def _words(self) -> str:
-        return f"{self.error} acknowledged"
+        return f"{ErrorKey(self.part, self.error).name} acknowledged"
 
 
 @dataclass(frozen=True, slots=True)

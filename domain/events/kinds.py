@@ -3,7 +3,7 @@
 from collections.abc import Iterator, Mapping
 from types import ModuleType
 
-from domain.events import changes, driving, health, parts, service
+from domain.events import changes, driving, health, parts, service, targets
 from domain.events.event import Event
 
 
@@ -16,5 +16,7 @@ def _kinds(*modules: ModuleType) -> Iterator[type[Event]]:
 
 EVENTS: Mapping[str, type[Event]] = {
     kind.kind: kind
-    for kind in sorted(_kinds(parts, changes, health, driving, service), key=lambda item: item.kind)
+    for kind in sorted(
+        _kinds(parts, changes, health, driving, service, targets), key=lambda item: item.kind
+    )
 }

@@ -70,6 +70,11 @@ class ErrorRegistry:
         on = frozenset[str]().union(*(source.errors for source in self._sources))
         return tuple(error for error in self._bits if error in on)
 
+    @property
+    def present(self) -> frozenset[str]:
+        """Return the active errors whose cause is still present."""
+        return frozenset[str]().union(*(source.present for source in self._sources))
+
     def code(self, errors: Iterable[str]) -> int:
         """Return errors as a bit mask."""
         code = 0

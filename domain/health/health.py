@@ -15,12 +15,14 @@ from domain.events.health import (
 )
 from domain.events.service import NotRestored, WriteAnswered
 from domain.findings import Blocker
+from domain.health.error_list import ErrorList
+from domain.health.robot_errors import RobotErrors
 from domain.health.signals import ESTOP, SignalSettings
 from domain.health.state_manager import HealthChanges, StateManager
 from domain.inputs import AcknowledgeRequest, Readings, Restored
 from domain.kept import KeptError
 from domain.outbox import Outbox
-from domain.snapshot import SignalView, SystemStateView, TaskStatus
+from domain.snapshot import ErrorKey, ErrorView, SignalView, SystemStateView, TaskStatus
 from domain.timebase import Instant
 
 _TAKEN = 200
@@ -36,6 +38,9 @@ class Health(Concern):
     def __init__(self, signals: Iterable[SignalSettings], outbox: Outbox, start: Instant) -> None:
         self._manager = StateManager(signals, start)
         self._outbox = outbox
+        self.error_list = ErrorList(outbox)
+        """All errors; later concerns note those of parts there."""
+        self._robot_errors = RobotErrors(self._manager, self.error_list, start)
         self._pending: dict[str, int] = {}
         """By error, the event that recorded it as pending."""
         self._kept: dict[str, str] = {}
@@ -60,7 +65,7 @@ class Health(Concern):
 
     def pass_time(self, now: Instant) -> None:
         """Raise and clear the errors that are due."""
-        self._tell(self._manager.pass_time(now))
+        self._tell(self._manager.pass_time(now), now)
 
     @contextmanager
     def late(self) -> Iterator[None]:
@@ -81,7 +86,7 @@ class Health(Concern):
         values = {reading.signal: reading.value for reading in readings.items}
         released = self._manager.released_by(readings)
         self._outbox.begin(now, SignalRead(readings.source, values), readings.actor)
-        self._tell(self._manager.receive(readings, now))
+        self._tell(self._manager.receive(readings, now), now)
         sender = readings.actor.address or readings.source
         for signal in released:
             self._outbox.emit(WriteAnswered("READING", f"/signals/{signal}", _TAKEN, sender))
@@ -93,7 +98,8 @@ class Health(Concern):
             UnknownErrorNameError: There is no error of this name.
         """
         self._outbox.begin(now, ErrorAcknowledged(request.error), request.actor)
-        self._tell(self._manager.acknowledge(request.error, now))
+        self._tell(self._manager.acknowledge(request.error, now), now)
+        self._robot_errors.follow_acknowledgement(request.error, now)
 
     def press_stop(self, since: Instant | None, now: Instant) -> None:
         """Raise ESTOP for the emergency stop, or remove that cause.
@@ -102,7 +108,7 @@ class Health(Concern):
             since: When it was engaged; None: it is released.
             now: The current time.
         """
-        self._tell(self._manager.set_emergency_stop(since, now))
+        self._tell(self._manager.set_emergency_stop(since, now), now)
 
     def restore(self, restored: Restored, now: Instant) -> None:
         """Raise the errors again that nobody acknowledged, before anything is read."""
@@ -117,7 +123,7 @@ class Health(Concern):
                 errors.append(kept)
                 self._kept[kept.signal] = kept.error
         if errors:
-            self._tell(self._manager.restore(errors, now))
+            self._tell(self._manager.restore(errors, now), now)
 
     # --- what can be seen ------------------------------------------------------------------------
 
@@ -130,6 +136,11 @@ class Health(Concern):
     def reasons(self) -> tuple[Blocker, ...]:
         """Return why errors are active, the most urgent first; the same object until it changes."""
         return self._manager.reasons
+
+    def error_views(self) -> Iterator[ErrorView]:
+        """Yield the errors of the robot, also those that were never raised, by their bits."""
+        for name in self._manager.names:
+            yield self.error_list.view(ErrorKey(None, name))
 
     @property
     def is_stopped(self) -> bool:
@@ -161,7 +172,7 @@ class Health(Concern):
 
     # --- inside ----------------------------------------------------------------------------------
 
-    def _tell(self, changes: HealthChanges) -> None:
+    def _tell(self, changes: HealthChanges, now: Instant) -> None:
         """Record changes as events, causes first."""
         emit = self._outbox.emit
         for signal, error in changes.pending:
@@ -176,6 +187,7 @@ class Health(Concern):
             self.decided_by = emit(raised, self._pending.pop(reason.code, None))
         for error in changes.cleared:
             self.decided_by = emit(ErrorCleared(error))
+        self._robot_errors.follow(changes, now)
         self._outbox.signals |= changes.signals
         for signal in changes.signals:
             self._keep(self._manager.signal(signal))

@@ -17,7 +17,7 @@ from domain.health.signals import (
     ESTOP,
     STALE_DATA,
     STALE_DATA_BIT,
-    Condition,
+    Bound,
     CountsFrom,
     Recovery,
     SignalSettings,
@@ -33,8 +33,8 @@ class SignalMonitor:
     The result follows from the readings and from the instant of the last `judge`. The caller must
     call `judge` at each `wake_at`, before anything else that happens then or later.
 
-    A reading is good if it meets no condition. "For 3 s" counts as `CountsFrom` says; all
-    conditions of a signal share that timer. If the value goes from one error to another without a
+    A reading is good if it meets no bound. "For 3 s" counts as `CountsFrom` says; all
+    bounds of a signal share that timer. If the value goes from one error to another without a
     good reading in between, the second is raised at once.
 
     A stop is as fresh as the newest reading from any source. If every source had to be fresh, a
@@ -47,7 +47,7 @@ class SignalMonitor:
         self._counts_last_good = settings.counts_from is CountsFrom.LAST_GOOD
         self._counting_since = start if self._counts_last_good else None
         """From here on "for" counts; None: nothing counts."""
-        self._cause: Condition | None = None
+        self._cause: Bound | None = None
         self._counted: Duration = 0
         """How long it had counted when the error was raised."""
         self._engaged_since: Instant | None = None
@@ -55,7 +55,7 @@ class SignalMonitor:
         """What an earlier run had measured of the error that it left; empty: it left none."""
         self._facts = MappingProxyType(settings.facts())
         self.bits: Mapping[str, int] = MappingProxyType(
-            {STALE_DATA: STALE_DATA_BIT, **{c.error: c.bit for c in settings.conditions}}
+            {STALE_DATA: STALE_DATA_BIT, **{c.error: c.bit for c in settings.bounds}}
         )
         """The errors that it can raise, with their bits."""
         self._value_slot = ErrorSlot(settings.min_on, settings.recovery)
@@ -109,7 +109,7 @@ class SignalMonitor:
 
     def waits_with(self, error: str) -> bool:
         """Tell whether an error of this name, once raised, waits for an acknowledgement."""
-        has_it = any(condition.error == error for condition in self.settings.conditions)
+        has_it = any(bound.error == error for bound in self.settings.bounds)
         return has_it and self.settings.recovery is Recovery.ACKNOWLEDGE
 
     def acknowledge(self, error: str, now: Instant) -> None:
@@ -136,7 +136,7 @@ class SignalMonitor:
     def wake_at(self) -> Instant | None:
         """Return the next instant at which time alone changes something; None: never."""
         since = self._counting_since
-        due = [] if since is None else [since + condition.for_ for condition in self._waiting()]
+        due = [] if since is None else [since + bound.for_ for bound in self._waiting()]
         others = (self._stale_at(), self._value_slot.wake_at, self._stale_slot.wake_at)
         return min((*due, *(at for at in others if at is not None)), default=None)
 
@@ -206,7 +206,7 @@ class SignalMonitor:
     def _make_view(self, now: Instant) -> SignalView:
         newest = self.readings.newest
         pressing = self.readings.pressing
-        coming = min(self._waiting(), key=lambda condition: condition.for_, default=None)
+        coming = min(self._waiting(), key=lambda bound: bound.for_, default=None)
         return SignalView(
             signal=self.settings.spec.name,
             value=self.readings.value,
@@ -226,38 +226,38 @@ class SignalMonitor:
 
     # --- what is judged --------------------------------------------------------------------------
 
-    def _met_by_readings(self) -> list[Condition]:
-        """Return the conditions that the value meets, the most urgent first."""
+    def _met_by_readings(self) -> list[Bound]:
+        """Return the bounds that the value meets, the most urgent first."""
         value = self.readings.value
         if value is None:
             return []
         return [
-            condition
-            for condition in self.settings.conditions
-            if condition.is_met_by(value, error_is_on=condition is self._cause)
+            bound
+            for bound in self.settings.bounds
+            if bound.is_met_by(value, error_is_on=bound is self._cause)
         ]
 
-    def _met(self) -> list[Condition]:
-        """Return the conditions that are met; an engaged emergency stop meets all."""
+    def _met(self) -> list[Bound]:
+        """Return the bounds that are met; an engaged emergency stop meets all."""
         if self._engaged_since is not None:
-            return list(self.settings.conditions)
+            return list(self.settings.bounds)
         return self._met_by_readings()
 
-    def _is_due(self, condition: Condition, now: Instant) -> bool:
+    def _is_due(self, bound: Bound, now: Instant) -> bool:
         if self._engaged_since is not None:
             return True
-        return self._counting_since is not None and now - self._counting_since >= condition.for_
+        return self._counting_since is not None and now - self._counting_since >= bound.for_
 
-    def _find_cause(self, now: Instant) -> Condition | None:
-        """Return the most urgent condition that is met and due, or is an error already."""
+    def _find_cause(self, now: Instant) -> Bound | None:
+        """Return the most urgent bound that is met and due, or is an error already."""
         met = self._met()
-        for condition in met:
-            if condition is self._cause or self._is_due(condition, now):
-                return condition
+        for bound in met:
+            if bound is self._cause or self._is_due(bound, now):
+                return bound
         return met[0] if met and self._cause is not None else None
 
-    def _waiting(self) -> list[Condition]:
-        """Return the conditions that are met and will become the cause when they are due."""
+    def _waiting(self) -> list[Bound]:
+        """Return the bounds that are met and will become the cause when they are due."""
         met = self._met() if self._counting_since is not None else []
         return met[: met.index(self._cause)] if self._cause in met else met
 

@@ -4,7 +4,7 @@ from domain.health.error_slot import ErrorSlot
 from domain.health.held_readings import HeldReadings
 from domain.health.signals import (
     RATIO,
-    Condition,
+    Bound,
     CountsFrom,
     SignalKind,
     SignalSettings,
@@ -18,20 +18,20 @@ _TENTH = seconds(0.1)
 
 
 def value_reason(
-    settings: SignalSettings, condition: Condition, value: SignalValue, counted: Duration
+    settings: SignalSettings, bound: Bound, value: SignalValue, counted: Duration
 ) -> str:
     """Return what is wrong with a value, such as "battery 42 % is below 50 %".
 
     Args:
         settings: Settings of the signal.
-        condition: The condition whose error is active.
+        bound: The bound whose error is active.
         value: The value held.
         counted: Time that had counted when the error was raised; see `CountsFrom`.
     """
     spec = settings.spec
-    time = _measured(counted, condition.for_)
+    time = _measured(counted, bound.for_)
     if spec.kind is SignalKind.NUMBER:
-        return _number_reason(settings, condition, float(value), time)
+        return _number_reason(settings, bound, float(value), time)
     said = str(value).lower() if isinstance(value, bool) else value
     if not time:
         return f"{_label(spec)} is {said}"
@@ -77,12 +77,12 @@ def restored_reason(measured: str) -> str:
     return f"before the restart: {measured}; waits for acknowledgement"
 
 
-def _number_reason(settings: SignalSettings, condition: Condition, value: float, time: str) -> str:
+def _number_reason(settings: SignalSettings, bound: Bound, value: float, time: str) -> str:
     spec = settings.spec
     # Between the two thresholds, the value has not reached the clear threshold.
-    is_beyond = condition.is_met_by(value)
-    limit = float(condition.threshold) if is_beyond else condition.clear_limit
-    comparison = f"{condition.comparison} {_quantity(spec, limit)}"
+    is_beyond = bound.is_met_by(value)
+    limit = float(bound.threshold) if is_beyond else bound.clear_limit
+    comparison = f"{bound.comparison} {_quantity(spec, limit)}"
     subject = f"{_label(spec)} {_quantity(spec, value, limit)}"
     if not is_beyond:
         return f"{subject} is still {comparison}"
@@ -118,7 +118,7 @@ def _good_members(settings: SignalSettings) -> list[str]:
     return [
         member
         for member in settings.spec.members
-        if not any(condition.is_met_by(member) for condition in settings.conditions)
+        if not any(bound.is_met_by(member) for bound in settings.bounds)
     ]
 
 

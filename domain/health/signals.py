@@ -1,4 +1,4 @@
-"""Types of signals and their error conditions, and the table of the five default signals.
+"""Types of signals and their error bounds, and the table of the five default signals.
 
 The table and its error bits are those of smart_polaris (`gem_state_manager`); further signals are
 declared with the same types.
@@ -165,7 +165,7 @@ class SignalSpec:
 
 
 @dataclass(frozen=True, slots=True)
-class Condition:
+class Bound:
     """Which values of a signal are an error, and after how long."""
 
     error: str
@@ -177,7 +177,7 @@ class Condition:
     """Time after which the error is raised, see `CountsFrom`; 0: at once."""
     bit: int = DECLARED_BIT
     key: str = ""
-    """Prefix that tells the settings of several conditions apart, as in `lost_for_s`."""
+    """Prefix that tells the settings of several bounds apart, as in `lost_for_s`."""
 
     def is_met_by(self, value: SignalValue, *, error_is_on: bool = False) -> bool:
         """Tell whether `value` is bad; while the error is active, the clear threshold decides."""
@@ -201,15 +201,15 @@ class Condition:
 
 @dataclass(frozen=True, slots=True)
 class SignalSettings:
-    """A signal with its conditions and settings.
+    """A signal with its bounds and settings.
 
     Raises:
-        InvalidValueError: A condition does not fit the signal; `pointer` is
+        InvalidValueError: A bound does not fit the signal; `pointer` is
             `<signal>/<setting>`.
     """
 
     spec: SignalSpec
-    conditions: tuple[Condition, ...] = ()
+    bounds: tuple[Bound, ...] = ()
     """Most urgent first; empty for a number that is only shown."""
     stale_after: Duration = seconds(2.0)
     """Readings older than this are stale; 0 turns staleness off."""
@@ -218,16 +218,16 @@ class SignalSettings:
     recovery: Recovery = Recovery.AUTOMATIC
     """Recovery of value errors; staleness always recovers automatically."""
     counts_from: CountsFrom = CountsFrom.FIRST_BAD
-    """Where `for_` of the conditions begins."""
+    """Where `for_` of the bounds begins."""
 
     def __post_init__(self) -> None:
-        if len({condition.key for condition in self.conditions}) != len(self.conditions):
-            raise self._invalid("key", "must differ between conditions")
+        if len({bound.key for bound in self.bounds}) != len(self.bounds):
+            raise self._invalid("key", "must differ between bounds")
         for duration, setting in ((self.stale_after, "stale_after_s"), (self.min_on, "min_on_s")):
             if duration < 0:
                 raise self._invalid(setting, "must not be negative")
-        for condition in self.conditions:
-            self._check_condition(condition)
+        for bound in self.bounds:
+            self._check_bound(bound)
 
     def is_worse(self, value: SignalValue, held: SignalValue) -> bool:
         """Tell whether `value` is worse than the one held."""
@@ -236,11 +236,11 @@ class SignalSettings:
     def facts(self) -> dict[str, Fact]:
         """Return the settings as plain values, with units in the names."""
         facts: dict[str, Fact] = {}
-        for condition in self.conditions:
+        for bound in self.bounds:
             if self.spec.kind is SignalKind.NUMBER:
-                facts[_prefixed(condition, "threshold")] = condition.threshold
-                facts[_prefixed(condition, "clear_threshold")] = condition.clear_limit
-            facts[_prefixed(condition, "for_s")] = to_seconds(condition.for_)
+                facts[_prefixed(bound, "threshold")] = bound.threshold
+                facts[_prefixed(bound, "clear_threshold")] = bound.clear_limit
+            facts[_prefixed(bound, "for_s")] = to_seconds(bound.for_)
         facts |= {
             "stale_after_s": to_seconds(self.stale_after),
             "min_on_s": to_seconds(self.min_on),
@@ -256,31 +256,31 @@ class SignalSettings:
         if isinstance(value, str):
             return self.spec.members.index(value)
         if isinstance(value, bool):
-            return any(condition.is_met_by(value) for condition in self.conditions)
-        return max((condition.badness(value) for condition in self.conditions), default=0.0)
+            return any(bound.is_met_by(value) for bound in self.bounds)
+        return max((bound.badness(value) for bound in self.bounds), default=0.0)
 
-    def _check_condition(self, condition: Condition) -> None:
+    def _check_bound(self, bound: Bound) -> None:
         is_number = self.spec.kind is SignalKind.NUMBER
-        if is_number is (condition.comparison is Comparison.EQUAL):
+        if is_number is (bound.comparison is Comparison.EQUAL):
             words = "must be compared above or below for numbers, and equal for everything else"
-            raise self._invalid(_prefixed(condition, "threshold"), words)
-        self._check_threshold(condition, "threshold", condition.threshold)
-        if condition.for_ < 0:
-            raise self._invalid(_prefixed(condition, "for_s"), "must not be negative")
-        if condition.clear_threshold is None:
+            raise self._invalid(_prefixed(bound, "threshold"), words)
+        self._check_threshold(bound, "threshold", bound.threshold)
+        if bound.for_ < 0:
+            raise self._invalid(_prefixed(bound, "for_s"), "must not be negative")
+        if bound.clear_threshold is None:
             return
-        setting = _prefixed(condition, "clear_threshold")
+        setting = _prefixed(bound, "clear_threshold")
         if not is_number:
             raise self._invalid(setting, "is for numbers only")
-        self._check_threshold(condition, "clear_threshold", condition.clear_threshold)
-        if condition.badness(condition.clear_threshold) > 0:
+        self._check_threshold(bound, "clear_threshold", bound.clear_threshold)
+        if bound.badness(bound.clear_threshold) > 0:
             raise self._invalid(setting, "must be on the good side of the threshold")
 
-    def _check_threshold(self, condition: Condition, name: str, value: SignalValue) -> None:
+    def _check_threshold(self, bound: Bound, name: str, value: SignalValue) -> None:
         try:
             self.spec.checked(value)
         except InvalidValueError as error:
-            setting = _prefixed(condition, name)
+            setting = _prefixed(bound, name)
             raise self._invalid(setting, f"can never be reached: {error.message}") from error
 
     def _invalid(self, setting: str, what: str) -> InvalidValueError:
@@ -293,8 +293,8 @@ def _rounding(limit: float) -> float:
     return _FLOAT32_ROUNDING * (abs(limit) or 1.0)
 
 
-def _prefixed(condition: Condition, setting: str) -> str:
-    return f"{condition.key}_{setting}" if condition.key else setting
+def _prefixed(bound: Bound, setting: str) -> str:
+    return f"{bound.key}_{setting}" if bound.key else setting
 
 
 _NUMBER, _ABOVE, _BELOW = SignalKind.NUMBER, Comparison.ABOVE, Comparison.BELOW
@@ -303,15 +303,15 @@ _EQUAL = Comparison.EQUAL
 _DEFAULT_SIGNALS = (
     SignalSettings(
         SignalSpec("battery_level", _NUMBER, RATIO, "battery", minimum=0.0, maximum=1.0),
-        (Condition("BATTERY_LOW", _BELOW, 0.5, bit=1),),
+        (Bound("BATTERY_LOW", _BELOW, 0.5, bit=1),),
     ),
     SignalSettings(
         SignalSpec(ESTOP_SIGNAL, SignalKind.BOOLEAN, label="e-stop", is_stop=True),
-        (Condition(ESTOP, _EQUAL, threshold=True, bit=2),),
+        (Bound(ESTOP, _EQUAL, threshold=True, bit=2),),
     ),
     SignalSettings(
         SignalSpec("gps_accuracy", _NUMBER, "mm", "GPS accuracy", minimum=0.0),
-        (Condition("GPS_LOST", _ABOVE, 200.0, for_=seconds(15.0), bit=4),),
+        (Bound("GPS_LOST", _ABOVE, 200.0, for_=seconds(15.0), bit=4),),
         counts_from=CountsFrom.LAST_GOOD,
     ),
     SignalSettings(
@@ -323,16 +323,14 @@ _DEFAULT_SIGNALS = (
             codes=(1, 2, 0),
         ),
         (
-            Condition(
-                "SIGNAL_LOST", _EQUAL, "NOT_CONNECTED", for_=seconds(10.0), bit=8, key="lost"
-            ),
-            Condition("SIGNAL_LOW", _EQUAL, "LOW_SIGNAL", for_=seconds(20.0), bit=16, key="low"),
+            Bound("SIGNAL_LOST", _EQUAL, "NOT_CONNECTED", for_=seconds(10.0), bit=8, key="lost"),
+            Bound("SIGNAL_LOW", _EQUAL, "LOW_SIGNAL", for_=seconds(20.0), bit=16, key="low"),
         ),
         counts_from=CountsFrom.LAST_GOOD,
     ),
     SignalSettings(
         SignalSpec("temperature", _NUMBER, "°C"),
-        (Condition("TEMPERATURE_HIGH", _ABOVE, 55.0, bit=32),),
+        (Bound("TEMPERATURE_HIGH", _ABOVE, 55.0, bit=32),),
     ),
 )
 

@@ -226,6 +226,16 @@ class StateManager:
         return self._seen.errors
 
     @property
+    def names(self) -> tuple[str, ...]:
+        """Return all errors that can be raised, in the order of their bits."""
+        return self._registry.names
+
+    @property
+    def present(self) -> frozenset[str]:
+        """Return the active errors whose cause is still present."""
+        return self._registry.present
+
+    @property
     def reasons(self) -> tuple[Blocker, ...]:
         """Return why errors are active, the most urgent first."""
         return self._seen.reasons
@@ -301,7 +311,7 @@ class StateManager:
 def _check_declared(declared: tuple[SignalSettings, ...]) -> None:
     """Reject duplicate names of signals or errors, and a missing e-stop."""
     names = [item.spec.name for item in declared]
-    errors = [STALE_DATA, *(c.error for item in declared for c in item.conditions)]
+    errors = [STALE_DATA, *(c.error for item in declared for c in item.bounds)]
     for kind, given in (("signal", names), ("error", errors)):
         twice = sorted({name for name in given if given.count(name) > 1})
         if twice:

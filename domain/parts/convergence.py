@@ -29,6 +29,11 @@ def is_there(actual: StateAndMode | Actual, target: StateAndMode) -> bool:
     return actual.mode == target.mode
 
 
+def bottom_up(model: SmhModel) -> list[PartName]:
+    """Return the systems of a model, each after all systems below it."""
+    return sorted(model.systems, key=lambda name: (-len(model.ancestors[name]), name))
+
+
 class _Laggards:
     """The parts of one system that have not converged, in the order of the file."""
 
@@ -99,13 +104,18 @@ class Convergence:
         self._actuals = actuals
         self._plain = plain
         self._parents = parents
-        self._depth = {name: len(model.ancestors[name]) for name in model.systems}
+        self._bottom_up = bottom_up(model)
+        self._rank = {name: rank for rank, name in enumerate(self._bottom_up)}
         self._laggards = {name: _Laggards(system) for name, system in model.systems.items()}
         self._causes: dict[PartName, PartName] = {}
 
     def converged(self, part: PartName) -> bool:
         """Tell whether a part and all its parts are where their targets say."""
         return part not in self._causes
+
+    def cause(self, part: PartName) -> PartName | None:
+        """Return the part because of which a part has not converged; None: it has."""
+        return self._causes.get(part)
 
     def reason(self, part: PartName) -> str | None:
         """Return which part is not where its target says; None: the part has converged."""
@@ -124,33 +134,40 @@ class Convergence:
             Parts of which `converged` or `reason` changed.
         """
         moved = set(parts)
-        waiting = {part for part in parts if part in self._depth}
+        waiting = moved & self._rank.keys()
         renewed = self._renew_nodes(part for part in parts if part not in waiting)
         for node in renewed:
             waiting.update(self._parents.get(node, ()))
-        order = [(-self._depth[name], name) for name in waiting]
+        order = [self._rank[name] for name in waiting]
         heapify(order)
         while order:
-            _, name = heappop(order)
+            name = self._bottom_up[heappop(order)]
             if not self._renew(name, self._cause(name), moved):
                 continue
             renewed.add(name)
             for parent in self._parents.get(name, ()):
                 if parent not in waiting:
                     waiting.add(parent)
-                    heappush(order, (-self._depth[parent], parent))
+                    heappush(order, self._rank[parent])
         return renewed
 
     def _renew_nodes(self, nodes: Iterable[PartName]) -> set[PartName]:
         """Judge nodes that moved; return those of which what is told may have changed.
 
-        As `_renew`, with less work: the cause of a node is the node itself, and a request may move
-        ten thousand of them.
+        As `_renew` with `_is_behind`, with less work: the cause of a node is the node itself, and a
+        request may move ten thousand of them.
         """
         causes, laggards, parents = self._causes, self._laggards, self._parents
+        targets, actuals, active = self._targets, self._actuals, LifecycleState.ACTIVE
         renewed: set[PartName] = set()
         for node in nodes:
-            lags = self._is_behind(node)
+            target, lags = targets.get(node), False
+            if target is not None:
+                actual, goal = actuals[node], target.state
+                if actual.state is not goal:
+                    lags = actual.state is not active or node not in self._plain
+                elif goal is active:
+                    lags = target.mode is not None and actual.mode != target.mode
             if lags:
                 renewed.add(node)
             if lags is (node in causes):

@@ -16,7 +16,7 @@ from domain.errors import UnknownPartError
 from domain.inputs import NodeReport
 from domain.lifecycle import LifecycleState
 from domain.parameters import same_value
-from domain.parts.convergence import Convergence, is_there
+from domain.parts.convergence import Convergence, bottom_up, is_there
 from domain.parts.node_facts import NodeFacts
 from domain.parts.system_inference import SystemInference, by_bytes, parents_of
 from domain.parts.system_model import NodeModel, SmhModel
@@ -50,8 +50,9 @@ class ModeInference:
         """One object for all nodes in the same state and mode: fewer for Python to look through."""
         self._plain: set[PartName] = set()
         """Nodes without a lifecycle."""
-        self._depth = {name: len(model.ancestors[name]) for name in model.systems}
-        """Larger than that of every system above: the deepest systems are inferred first."""
+        self._bottom_up = bottom_up(model)
+        """Systems, each after all below it: that is the order in which they are inferred."""
+        self._rank = {name: rank for rank, name in enumerate(self._bottom_up)}
         self._actual = dict.fromkeys(model.parts, Actual(LifecycleState.UNKNOWN))
         self._convergence = Convergence(
             model, self._parents, self._targets, self._actual, self._plain
@@ -99,7 +100,7 @@ class ModeInference:
                 self._targets.pop(part, None)
             else:
                 self._targets[part] = target
-        nodes = targets.keys() & self._wavering
+        nodes = targets.keys() & self._wavering if self._wavering else ()
         changed = self._infer((*nodes, *(targets.keys() & self._systems.keys())))
         # In the order of the targets: in that of a set, what belongs together is far apart.
         renewed = self._convergence.renew((*targets, *(changed - targets.keys())))
@@ -153,6 +154,10 @@ class ModeInference:
         """
         return self._convergence.converged(part)
 
+    def deviation_cause(self, part: PartName) -> PartName | None:
+        """Return the part that is not where its target says: this one or one below; None: none."""
+        return self._convergence.cause(part)
+
     def deviation_reason(self, part: PartName) -> str | None:
         """Return which part is not where its target says; None: the part has converged."""
         return self._convergence.reason(part)
@@ -181,17 +186,17 @@ class ModeInference:
                 waiting.update(self._parents.get(part, ()))
         if not waiting:
             return changed
-        order = [(-self._depth[name], name) for name in waiting]
+        order = [self._rank[name] for name in waiting]
         heapify(order)
         while order:
-            _, name = heappop(order)
+            name = self._bottom_up[heappop(order)]
             if not self._renew(name, self._systems[name].infer(self._targets.get(name))):
                 continue
             changed.add(name)
             for parent in self._parents.get(name, ()):
                 if parent not in waiting:
                     waiting.add(parent)
-                    heappush(order, (-self._depth[parent], parent))
+                    heappush(order, self._rank[parent])
         return changed
 
     def _renew(self, part: PartName, actual: Actual) -> bool:

@@ -1,6 +1,6 @@
 """The parts as a concern of the core: reports of nodes, inferred states and targets."""
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence, Set
 from dataclasses import dataclass
 from itertools import islice
 
@@ -14,6 +14,7 @@ from domain.events.parts import (
     NodeUnreachable,
     PartActualChanged,
 )
+from domain.findings import Blocker
 from domain.identifiers import ChangeId
 from domain.inputs import NodeReport, Restored
 from domain.lifecycle import LifecycleState
@@ -25,22 +26,22 @@ from domain.parts.mode_inference import ModeInference
 from domain.parts.node_facts import NodeFacts
 from domain.parts.reachability import Reachability
 from domain.parts.system_model import SmhModel
-from domain.parts.targets import Targets
+from domain.parts.targets import Displacement, Targets
 from domain.parts.waiting_parts import WaitingParts
 from domain.snapshot import Actual, ParameterView, PartView
 from domain.state_and_mode import DEFAULT_MODE, PartName, StateAndMode
 from domain.timebase import Instant
 
 LOOKS_AT_ONCE = 100
-"""Parts whose deviations one turn tells. Those that a request of a large robot caused are told in
-several, in the order of the parts, before anything else of the request goes on."""
+"""Parts whose states and deviations one turn tells. What a request of a large robot changed is told
+in several later ones, in the order of the parts, before anything else of the request goes on."""
 
 _UNKNOWN = Actual(LifecycleState.UNKNOWN)
 
 
 @dataclass(frozen=True, slots=True)
 class _Cause:
-    """The input that may have made parts deviate."""
+    """The input that may have changed parts, or made them deviate."""
 
     event: int
     actor: Actor
@@ -64,10 +65,14 @@ class Parts(Concern):
         """Parts about which something changed since the last `settle`."""
         self._moved: set[PartName] = set()
         """Those of them whose actual or target changed, so that a deviation may begin or end."""
+        self._changed: set[PartName] = set()
+        """Parts whose view changed since `take_changed` was called last."""
         self._untold: set[PartName] = set()
         """Those of them whose actual may differ from the published one."""
         self._to_look: dict[PartName, _Cause] = {}
-        """Parts whose deviations are told in later turns; their views show them already."""
+        """Parts of which is told in later turns; their views show everything already."""
+        self._in_order = True
+        """Whether those are in the order of their names."""
         self._views: dict[PartName, PartView] = {}
         """Cached until something about the part changes."""
         self._changes: dict[PartName, ChangeId] = {}
@@ -119,12 +124,31 @@ class Parts(Concern):
         self._moved |= changed
         self._tell_actuals(changed)
 
-    def ask(self, wanted: Mapping[PartName, StateAndMode]) -> None:
-        """Set requested targets; they are in force at once."""
-        moved = self._targets.ask(wanted) | wanted.keys()
-        self._touched |= moved
-        self._moved |= moved
-        self._untold |= moved
+    def ask(self, wanted: Mapping[PartName, StateAndMode | None]) -> None:
+        """Set requested targets, in force at once; None: the part has none any more."""
+        self._note_moved(self._targets.ask(wanted) | wanted.keys())
+
+    def displace(self, displaced: Displacement) -> None:
+        """Put another target than the requested one in force for a system."""
+        self._note_moved(self._targets.displace(displaced))
+
+    def end_displacement(self, displaced: Displacement) -> None:
+        """Put what a displacement replaced in force again."""
+        self._note_moved(self._targets.end(displaced))
+
+    def let_stay(self, node: PartName, target: StateAndMode) -> bool:
+        """Replace the target in force of a node; return whether it was the requested one."""
+        moved, was_requested = self._targets.let_stay(node, target)
+        self._note_moved(moved)
+        return was_requested
+
+    def explain(self, displaced: Displacement, blockers: tuple[Blocker, ...]) -> bool:
+        """Say why a displacement is in force; return whether that was said differently before."""
+        if blockers == displaced.blockers:
+            return False
+        displaced.blockers = blockers
+        self.touch(displaced.targets)
+        return True
 
     def put_under(self, change: ChangeId, parts: Iterable[PartName]) -> None:
         """Record that a change drives parts; it replaces an earlier one."""
@@ -157,27 +181,37 @@ class Parts(Concern):
             return False
         touched, self._touched = self._touched, set()
         self._outbox.parts |= touched
-        for part in touched:
-            self._views.pop(part, None)
-        if self._untold:
-            untold, self._untold = self._untold, set()
-            self._tell_actuals(untold)
-        moved, self._moved = sorted(self._moved), set()
-        for part in moved[:LOOKS_AT_ONCE]:
-            self._to_look.pop(part, None)
-            self._look(part, now)
+        self._changed |= touched
+        if self._views:
+            for part in touched:
+                self._views.pop(part, None)
+        moved, self._moved = self._moved, set()
+        untold, self._untold = self._untold, set()
         if len(moved) > LOOKS_AT_ONCE:
             cause = _Cause(self._outbox.record_input(), self._outbox.actor, now)
-            self._to_look.update(dict.fromkeys(moved[LOOKS_AT_ONCE:], cause))
+            self._to_look.update(dict.fromkeys(moved, cause))
+            self._in_order = False
+            return True
+        self._tell_actuals(untold)
+        for part in sorted(moved):
+            self._to_look.pop(part, None)
+            self._look(part, now)
         return True
+
+    def take_changed(self) -> set[PartName]:
+        """Return the parts whose views changed since the last call, for whoever judges them."""
+        changed, self._changed = self._changed, set()
+        return changed
 
     @property
     def has_more(self) -> bool:
-        """Tell whether deviations are still to be told."""
+        """Tell whether states or deviations are still to be told."""
         return bool(self._to_look)
 
     def go_on(self, now: Instant) -> None:
-        """Tell some more deviations."""
+        """Tell some more states and deviations."""
+        if not self._in_order:
+            self._to_look, self._in_order = dict(sorted(self._to_look.items())), True
         self._look_late(list(islice(self._to_look, LOOKS_AT_ONCE)), now)
 
     # --- what can be seen ------------------------------------------------------------------------
@@ -190,6 +224,19 @@ class Parts(Concern):
     def target(self, part: PartName) -> StateAndMode | None:
         """Return the target in force of a part; None: it has none."""
         return self.inference.target(part)
+
+    def asked(self, part: PartName) -> StateAndMode | None:
+        """Return the requested target of a part; None: there is none."""
+        return self._targets.asked(part)
+
+    @property
+    def displacements(self) -> Sequence[Displacement]:
+        """Return which systems are displaced, those that prevail last; read only."""
+        return self._targets.displacements
+
+    def targets_without(self, displaced: Displacement) -> Mapping[PartName, StateAndMode]:
+        """Return the targets that the end of a displacement would put in force, by part."""
+        return self._targets.without(displaced)
 
     def change_of(self, part: PartName) -> ChangeId | None:
         """Return the change that drives a part; None: there is none."""
@@ -218,17 +265,23 @@ class Parts(Concern):
 
     # --- inside ----------------------------------------------------------------------------------
 
+    def _note_moved(self, parts: Set[PartName]) -> None:
+        self._touched |= parts
+        self._moved |= parts
+        self._untold |= parts
+
     def _note_reachable(self, node: PartName, *, reachable: bool) -> None:
         if self._reachability.note(node, reachable=reachable):
             self.touch((node, *self.model.ancestors[node]))
             self._outbox.emit(NodeReachable(node) if reachable else NodeUnreachable(node))
 
     def _look_late(self, parts: Iterable[PartName], now: Instant) -> None:
-        """Tell the deviations of those parts whose turn has not come yet."""
+        """Tell states and deviations of those parts whose turn has not come yet."""
         for part in parts:
             cause = self._to_look.pop(part, None)
             if cause is not None:
                 self._outbox.resume(now, cause.event, cause.actor)
+                self._tell_actuals((part,))
                 self._look(part, cause.at)
 
     def _look(self, part: PartName, since: Instant) -> None:

@@ -8,15 +8,17 @@ README.
 """
 
 from collections.abc import Collection, Iterable, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from itertools import chain
 from types import MappingProxyType
 
+from domain.circles import in_words
 from domain.errors import InvalidModelError, UnknownModeError, UnknownPartError
 from domain.findings import Finding
 from domain.lifecycle import LifecycleState
 from domain.parameters import Parameters
 from domain.parts.mode_settings import ModeSettings
+from domain.parts.settings_check import check_settings
 from domain.state_and_mode import DEFAULT_MODE, ModeName, PartName, StateAndMode
 
 EVERY_MODE = ModeName("__ALL__")
@@ -31,7 +33,6 @@ MAX_ANCESTORS = 1_000_000
 """Ancestors of all parts together; a balanced model of 10,000 nodes has less than 50,000."""
 
 _MAX_CYCLES_TOLD = 100
-_MAX_NAMES_TOLD = 12
 
 
 @dataclass(frozen=True, slots=True)
@@ -95,19 +96,33 @@ class SmhModel:
 
     def __post_init__(self) -> None:
         """Check the model, then freeze it."""
-        findings = find_errors(self.nodes, self.systems)
+        findings = find_errors(self.nodes, self.systems) or self._errors_of_settings()
         if findings:
             raise InvalidModelError(findings)
         object.__setattr__(self, "nodes", MappingProxyType(dict(self.nodes)))
-        object.__setattr__(self, "systems", MappingProxyType(dict(self.systems)))
+        object.__setattr__(self, "systems", MappingProxyType(_shared(self.nodes, self.systems)))
+        object.__setattr__(self, "mode_settings", MappingProxyType(dict(self.mode_settings)))
         object.__setattr__(
             self, "ancestors", MappingProxyType(_ancestors(self.systems, self.nodes))
         )
+
+    def _errors_of_settings(self) -> list[Finding]:
+        findings: list[Finding] = []
+        for part, settings in self.mode_settings.items():
+            parts = self.systems[part].named_parts if part in self.systems else ()
+            findings.extend(check_settings(part, settings, self.modes_of(part), parts))
+        return findings
 
     @property
     def parts(self) -> tuple[PartName, ...]:
         """Return all names: systems first, then nodes, each in the order of the file."""
         return (*self.systems, *self.nodes)
+
+    @property
+    def has_conditions(self) -> bool:
+        """Tell whether any mode has a guard."""
+        settings = chain.from_iterable(by_mode.values() for by_mode in self.mode_settings.values())
+        return any(own.requires or own.invariants for own in settings)
 
     def __contains__(self, name: str) -> bool:
         """Tell whether there is a part of that name."""
@@ -162,6 +177,28 @@ class SmhModel:
                 seen.add(name)
                 waiting.extend(reversed(systems[name].parts))
         return tuple(found)
+
+
+def _shared(
+    nodes: Mapping[PartName, NodeModel], systems: Mapping[PartName, SystemModel]
+) -> dict[PartName, SystemModel]:
+    """Return the same systems with one object for each name and for each state and mode.
+
+    A request of a large robot looks at those of all parts, and most of its time goes into fetching
+    them from memory.
+    """
+    names = {name: name for name in (*systems, *nodes)}
+    pairs: dict[StateAndMode, StateAndMode] = {}
+    return {
+        name: replace(
+            system,
+            modes={
+                mode: {names[part]: pairs.setdefault(want, want) for part, want in wanted.items()}
+                for mode, wanted in system.modes.items()
+            },
+        )
+        for name, system in systems.items()
+    }
 
 
 def find_errors(
@@ -251,11 +288,8 @@ def _check_pair(
 
 def _cycle(systems: Mapping[PartName, SystemModel], cycle: tuple[PartName, ...]) -> Finding:
     owner, name = cycle[-2:]
-    names = cycle
-    if len(cycle) > _MAX_NAMES_TOLD:
-        names = (*cycle[: _MAX_NAMES_TOLD - 2], PartName("..."), *cycle[-2:])
     mode = next(mode for mode, wanted in systems[owner].modes.items() if name in wanted)
-    message = f"{name} contains itself: {' > '.join(names)}"
+    message = f"{name} contains itself: {in_words(cycle, ' > ')}"
     return Finding("error", "CYCLE", message, owner, (owner, "modes", mode, name))
 
 

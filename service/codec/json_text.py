@@ -14,8 +14,6 @@ from service.codec.errors import CodecError
 Json: TypeAlias = Any
 """None, bool, int, float, str, or lists and dictionaries of them."""
 
-_LONG = 2**16
-
 SPECIAL_FLOATS: Mapping[str, float] = {"nan": math.nan, "inf": math.inf, "-inf": -math.inf}
 
 
@@ -27,9 +25,9 @@ def to_text(value: Json) -> bytes:
     """
     try:
         text = to_json(value, inf_nan_mode="constants")
-        # The letters may belong to a text; then the second pass changes nothing. It takes less
-        # time than to search a long one, such as a path.
-        if len(text) > _LONG or b"NaN" in text or b"Infinity" in text:
+        # The letters may belong to a text; then the second pass changes nothing. One letter alone
+        # is found much faster, and a path of many waypoints has none of them.
+        if (b"N" in text and b"NaN" in text) or (b"I" in text and b"Infinity" in text):
             text = to_json(_with_objects(value))
     except ValueError as error:
         raise CodecError(f"cannot be written as JSON: {error}") from error

@@ -53,9 +53,11 @@ NAMES: Mapping[type, str] = {
     # What is kept.
     kept.Keeping: "keeping",
     kept.KeptTarget: "kept_target",
+    kept.KeptEffectiveTarget: "kept_effective_target",
     kept.KeptChange: "kept_change",
     kept.KeptEmergencyStop: "kept_emergency_stop",
     kept.KeptError: "kept_error",
+    kept.KeptFailedChange: "kept_failed_change",
     kept.KeptHold: "kept_hold",
     kept.KeptTask: "kept_task",
     kept.KeptProgress: "kept_progress",

@@ -39,10 +39,12 @@ def _checksum(outputs: Outputs) -> int:
     """Return 0 for outputs without changed views, and else what depends on nothing but them."""
     flags = (outputs.system_state, outputs.task_changed, outputs.vehicle_changed)
     begun = (outputs.change or "", outputs.task or "")
-    if not (any(flags) or any(begun) or outputs.parts or outputs.signals):
+    if not (any(flags) or any(begun) or outputs.parts or outputs.signals or outputs.errors):
         return 0
     # The order in which a set is walked differs from process to process.
-    lines = (repr(flags), *begun, _joined(outputs.parts), _joined(outputs.signals))
+    lines = [repr(flags), *begun, _joined(outputs.parts), _joined(outputs.signals)]
+    if outputs.errors:
+        lines.append(_joined(key.name for key in outputs.errors))
     return crc32("\n".join(lines).encode())
 
 

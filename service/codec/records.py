@@ -88,6 +88,13 @@ class Shapes:
 
     def _of_class(self, kind: type) -> Shape:
         if kind not in self._classes:
+            # A class that holds others of its kind, as a tree does, meets this shape of itself.
+            self._classes[kind] = Shape(
+                (dict,),
+                lambda plain: self._classes[kind].read(plain),
+                lambda value: _written(self._classes[kind], value),
+                is_of=(kind,),
+            )
             shapes = self._of_fields(kind)
             read, write = _reader(kind, shapes), writer_of(kind, shapes, {})
             self._classes[kind] = Shape((dict,), read, write, is_of=(kind,))
@@ -110,6 +117,11 @@ class Shapes:
             if len(candidates) > 1 and taken not in (int, list):
                 raise TypeError(f"{JSON_TYPES[taken]} does not tell which of {members} it is")
         return Shape(tuple(readers), _read_one_of(readers), _write_one_of(shapes))
+
+
+def _written(shape: Shape, value: Any) -> Json:  # noqa: ANN401  # of the shape
+    assert shape.write is not None
+    return shape.write(value)
 
 
 def _members(hint: Any) -> Iterator[Any]:  # noqa: ANN401  # a type hint

@@ -7,19 +7,26 @@ Source: micro-ROS deliverable D4.8, section 4.1; micro-ROS system_modes, README.
 """
 
 import gc
-from collections.abc import Iterator
+from collections.abc import Collection, Iterable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass, replace
 from pathlib import Path
 
+from domain.conditions.check import check
+from domain.conditions.vocabulary import Vocabulary
 from domain.errors import InvalidModelError
 from domain.findings import Finding
-from domain.parts.model_lint import lint
-from domain.parts.system_model import SmhModel, find_errors
+from domain.health.signals import SignalSettings, default_signals
+from domain.parts.lint.model_lint import lint
+from domain.parts.system_model import EVERY_MODE, SmhModel, find_errors
+from domain.robot_vocabulary import vocabulary_of
+from service.files.extension import NAMES_OF_CPP, is_in_extension
 from service.files.parameter_file import PARAMETERS_KEY, NodeParameters, read_parameter_file
+from service.files.smh_block import MODE_SETTINGS
 from service.files.smh_reader import SmhParts, read_parts
+from service.files.source_text import SourceText
 from service.files.text_file import read_text_file
-from service.files.yaml_tree import Mapping, Node, Scalar, in_order, read_tree
+from service.files.yaml_tree import Mapping, Node, Scalar, Sequence, finding_at, in_order, read_tree
 
 MAX_FINDINGS = 1_000
 """Largest number of findings reported for one model; the rest is counted."""
@@ -44,27 +51,50 @@ def load_model(path: Path) -> LoadedModel:
     return read_model(read_text_file(path))
 
 
-def read_model(text: str) -> LoadedModel:
+def read_model(text: str, signals: Collection[SignalSettings] | None = None) -> LoadedModel:
     """Read a model from YAML.
+
+    Args:
+        text: The text of the file.
+        signals: All signals of the robot; a condition that names another one is an error. None:
+            not known, since there is no robot file; that is a warning then.
 
     Raises:
         InvalidModelError: The model is invalid; `findings` hold all errors.
     """
-    model, findings = _read(text)
+    model, findings = _read(text, signals)
     if model is None:
         raise InvalidModelError(findings)
     return LoadedModel(model, findings, text)
 
 
-def check_model(text: str) -> tuple[Finding, ...]:
-    """Return the errors and warnings of a model in the order of the text."""
-    return _read(text)[1]
+def with_signals(loaded: LoadedModel, signals: Collection[SignalSettings]) -> LoadedModel:
+    """Return a model whose conditions were checked against all signals of the robot.
+
+    Raises:
+        InvalidModelError: A condition names another one.
+    """
+    return read_model(loaded.text, signals) if loaded.model.has_conditions else loaded
 
 
-def _read(text: str) -> tuple[SmhModel | None, tuple[Finding, ...]]:
+def check_model(
+    text: str, signals: Collection[SignalSettings] | None = None
+) -> tuple[Finding, ...]:
+    """Return the errors and warnings of a model in the order of the text.
+
+    Args:
+        text: The text of the file.
+        signals: All signals of the robot, or None, as for `read_model`.
+    """
+    return _read(text, signals)[1]
+
+
+def _read(
+    text: str, signals: Collection[SignalSettings] | None
+) -> tuple[SmhModel | None, tuple[Finding, ...]]:
     """Return the model, if it is valid, and all findings."""
     with _collector_paused():
-        return _read_all(text)
+        return _read_all(text, signals)
 
 
 @contextmanager
@@ -82,34 +112,61 @@ def _collector_paused() -> Iterator[None]:
             gc.enable()
 
 
-def _read_all(text: str) -> tuple[SmhModel | None, tuple[Finding, ...]]:
-    tree = read_tree(text)
+def _read_all(
+    text: str, signals: Collection[SignalSettings] | None
+) -> tuple[SmhModel | None, tuple[Finding, ...]]:
+    tree = read_tree(text, is_in_extension)
     if not tree.is_complete:
         return None, _limited(in_order(text, tree.findings))
-    file = read_parameter_file(tree.documents)
-    parts = read_parts(file.nodes)
-    findings = [*tree.findings, *file.findings, *parts.findings]
+    file = read_parameter_file(tree.documents, NAMES_OF_CPP)
+    source = SourceText(text)
+    parts = read_parts(file.nodes, source)
+    places = _Places(file.nodes)
+    findings = [*tree.findings, *file.findings, *map(places.placed, parts.findings)]
+    known = default_signals() if signals is None else signals
+    vocabulary = vocabulary_of(parts, known, is_complete=signals is not None)
+    findings.extend(_faults_of_conditions(parts, source, vocabulary))
     model = None
-    if any(finding.severity == "error" for finding in findings):
+    if _has_errors(findings):
         found = find_errors(parts.nodes, parts.systems)
     else:
-        model, found = _build(parts)
-    places = _Places(file.nodes)
-    findings.extend(places.placed(finding) for finding in found)
-    return model, _limited(in_order(text, findings))
+        model, found = _build(parts, vocabulary)
+    findings.extend(map(places.placed, found))
+    return model, _limited(in_order(text, _each_once(findings)))
 
 
-def _build(parts: SmhParts) -> tuple[SmhModel | None, list[Finding]]:
+def _build(parts: SmhParts, vocabulary: Vocabulary) -> tuple[SmhModel | None, list[Finding]]:
     """Return the model and its warnings, or its errors."""
     try:
-        model = SmhModel(parts.nodes, parts.systems)
+        model = SmhModel(parts.nodes, parts.systems, parts.mode_settings)
     except InvalidModelError as error:
         return None, list(error.findings)
-    found = lint(model)
+    found = lint(model, vocabulary)
     if not model.parts:
         message = "the model has no parts"
         found.append(Finding("warning", "NO_PARTS", message, line=1, column=1))
     return model, found
+
+
+def _faults_of_conditions(
+    parts: SmhParts, source: SourceText, vocabulary: Vocabulary
+) -> Iterator[Finding]:
+    """Yield what is wrong in conditions, each at its character in the file."""
+    for own in parts.conditions:
+        for fault in check(own.condition, vocabulary):
+            place = source.place(own.place, own.shift + fault.column - 1)
+            message = f"{own.where}: {fault.message}"
+            yield finding_at(place, fault.code, message, own.part, fault.severity)
+
+
+def _has_errors(findings: Iterable[Finding]) -> bool:
+    return any(finding.severity == "error" for finding in findings)
+
+
+def _each_once(findings: Iterable[Finding]) -> list[Finding]:
+    """Return the findings, of one code at one place the first: modes share what `__ALL__` says."""
+    first = {(f.code, f.line, f.column): f for f in reversed(list(findings))}
+    return list(first.values())[::-1]
 
 
 def _limited(findings: list[Finding]) -> tuple[Finding, ...]:
@@ -130,27 +187,40 @@ class _Places:
         self._indices: dict[int, dict[str, tuple[Scalar, Node | None]]] = {}
 
     def placed(self, finding: Finding) -> Finding:
-        """Return the finding with line and column of its path, as far as the path exists."""
-        if not finding.path:
-            return finding
-        source = self._sources[finding.path[0]]
-        key = self._find(source.tree, finding.path[1:]) or source.key
-        return replace(finding, line=key.line, column=key.column)
+        """Return the finding with line and column of its path, as far as the path exists.
 
-    def _find(self, tree: Mapping, path: tuple[str, ...]) -> Scalar | None:
-        """Return the key at a path, or the last one on the way there; None: there is none.
-
-        A key may hold several steps of the path, separated by dots.
+        What a mode does not say about itself may be said for all modes.
         """
+        path = finding.path
+        if not path or finding.line is not None:
+            return finding
+        source = self._sources[path[0]]
+        place, is_found = self._find(source.tree, path[1:])
+        if not is_found and path[1:2] == (MODE_SETTINGS,):
+            of_all, is_found = self._find(source.tree, (MODE_SETTINGS, EVERY_MODE, *path[3:]))
+            place = of_all if is_found else place
+        place = place or source.key
+        return replace(finding, line=place.line, column=place.column)
+
+    def _find(self, tree: Node | None, path: tuple[str, ...]) -> tuple[Scalar | None, bool]:
+        """Return the place of a path, or the last one on the way there, and whether it is found.
+
+        A key may hold several steps of the path, separated by dots. The last step may be the text
+        of a value, alone or in a list.
+        """
+        if not path:
+            return None, True
+        if not isinstance(tree, Mapping):
+            return _text_in(tree, path)
         index = self._index(tree)
         for length in range(1, len(path) + 1):
             found = index.get(".".join(path[:length]))
             if found is not None:
                 key, value = found
-                below = self._find(value, path[length:]) if isinstance(value, Mapping) else None
-                return below or key
+                below, is_found = self._find(value, path[length:])
+                return below or key, is_found
         _, hidden = index.get(PARAMETERS_KEY, (None, None))
-        return self._find(hidden, path) if path and isinstance(hidden, Mapping) else None
+        return self._find(hidden, path) if isinstance(hidden, Mapping) else (None, False)
 
     def _index(self, tree: Mapping) -> dict[str, tuple[Scalar, Node | None]]:
         if id(tree) not in self._indices:
@@ -158,3 +228,12 @@ class _Places:
                 key.text.removeprefix("/"): (key, value) for key, value in tree.entries
             }
         return self._indices[id(tree)]
+
+
+def _text_in(node: Node | None, path: tuple[str, ...]) -> tuple[Scalar | None, bool]:
+    """Return the scalar of a text."""
+    items = node.items if isinstance(node, Sequence) else [node]
+    for item in items:
+        if isinstance(item, Scalar) and item.text.strip() == path[0]:
+            return item, len(path) == 1
+    return None, False

@@ -8,6 +8,7 @@ Source: ROS 2 `rcl_yaml_param_parser`, `parse.c` (`parse_file_events`, `get_valu
 """
 
 import re
+from collections.abc import Collection
 from collections.abc import Sequence as Values
 from dataclasses import dataclass, field
 from functools import lru_cache
@@ -56,6 +57,8 @@ class NodeParameters:
     key: Scalar
     tree: Mapping
     parameters: list[Parameter] = field(default_factory=list)
+    extensions: list[tuple[Scalar, Node | None]] = field(default_factory=list)
+    """The keys that no ROS program reads, with what is below them."""
 
 
 @dataclass(slots=True)
@@ -66,9 +69,17 @@ class ParameterFile:
     findings: list[Finding] = field(default_factory=list)
 
 
-def read_parameter_file(documents: Values[Node | None]) -> ParameterFile:
-    """Read the nodes of all documents."""
-    reader = _Reader()
+def read_parameter_file(
+    documents: Values[Node | None], names: Collection[str] | None = None
+) -> ParameterFile:
+    """Read the nodes of all documents.
+
+    Args:
+        documents: The trees of the file.
+        names: First words of the names of parameters; other keys are extensions. None: there are
+            no extensions.
+    """
+    reader = _Reader(names)
     for document in documents:
         if isinstance(document, Mapping):
             reader.read_namespace(document, None)
@@ -128,8 +139,9 @@ def _double(text: str) -> float | str:
 class _Reader:
     """Traverses the trees, whose depth is limited."""
 
-    def __init__(self) -> None:
+    def __init__(self, names: Collection[str] | None) -> None:
         self.file = ParameterFile()
+        self._names = names
 
     def complain(self, place: Node, code: str, message: str) -> None:
         """Add an error."""
@@ -195,6 +207,9 @@ class _Reader:
         """Add the parameters below `tree`, each name once."""
         for key, value in tree.entries:
             name = prefix + key.text
+            if not prefix and self._is_extension(key):
+                node.extensions.append((key, value))
+                continue
             if isinstance(value, Mapping):
                 if value.entries:
                     self._flatten(node, f"{name}.", value, known)
@@ -211,6 +226,9 @@ class _Reader:
             known[name] = key
             taken = self._value(key, value)
             node.parameters.append(Parameter(name, key, taken, value or key))
+
+    def _is_extension(self, key: Scalar) -> bool:
+        return self._names is not None and key.text.partition(".")[0] not in self._names
 
     def _value(self, key: Scalar, value: Scalar | Sequence | None) -> ParameterValue | None:
         if isinstance(value, Scalar):

@@ -12,8 +12,8 @@ from pydantic import BaseModel, ConfigDict, Field, model_validator
 
 from domain.health.signals import (
     STALE_DATA,
+    Bound,
     Comparison,
-    Condition,
     Recovery,
     SignalKind,
     SignalSettings,
@@ -72,14 +72,14 @@ class AnySignal(SettingsBlock):
         """
         return replace(
             settings,
-            conditions=tuple(self._condition(condition) for condition in settings.conditions),
+            bounds=tuple(self._bound(bound) for bound in settings.bounds),
             stale_after=_duration(self.stale_after_s, settings.stale_after),
             min_on=_duration(self.min_on_s, settings.min_on),
             recovery=Recovery(self.recovery) if self.recovery else settings.recovery,
         )
 
-    def _condition(self, condition: Condition) -> Condition:
-        return condition
+    def _bound(self, bound: Bound) -> Bound:
+        return bound
 
 
 class NumberSignal(AnySignal):
@@ -93,13 +93,13 @@ class NumberSignal(AnySignal):
     """Time in seconds until the error is raised: for `gps_accuracy` after the last good reading,
     else after the first bad one."""
 
-    def _condition(self, condition: Condition) -> Condition:
-        threshold = condition.threshold if self.threshold is None else self.threshold
+    def _bound(self, bound: Bound) -> Bound:
+        threshold = bound.threshold if self.threshold is None else self.threshold
         return replace(
-            condition,
+            bound,
             threshold=threshold,
             clear_threshold=self.clear_threshold,
-            for_=_duration(self.for_s, condition.for_),
+            for_=_duration(self.for_s, bound.for_),
         )
 
 
@@ -113,11 +113,11 @@ class StrengthSignal(AnySignal):
     for_s: Seconds | None = None
     """Default of `lost_for_s` and `low_for_s`, in seconds."""
 
-    def _condition(self, condition: Condition) -> Condition:
-        own = self.lost_for_s if condition.key == "lost" else self.low_for_s
+    def _bound(self, bound: Bound) -> Bound:
+        own = self.lost_for_s if bound.key == "lost" else self.low_for_s
         if own is None:
             own = self.for_s
-        return replace(condition, for_=_duration(own, condition.for_))
+        return replace(bound, for_=_duration(own, bound.for_))
 
 
 class DeclaredSignal(AnySignal):
@@ -169,15 +169,15 @@ class DeclaredSignal(AnySignal):
         spec = SignalSpec(
             name, SignalKind.NUMBER, self.unit, self.label, self.minimum, self.maximum
         )
-        settings = SignalSettings(spec, tuple(self._conditions()))
+        settings = SignalSettings(spec, tuple(self._bounds()))
         return self.applied_to(general.applied_to(settings))
 
-    def _conditions(self) -> Iterator[Condition]:
+    def _bounds(self) -> Iterator[Bound]:
         comparison = Comparison.BELOW if self.above is None else Comparison.ABOVE
         threshold = self.below if self.above is None else self.above
         if self.error is not None and threshold is not None:
             for_ = seconds(self.for_s)
-            yield Condition(self.error, comparison, threshold, self.clear_threshold, for_)
+            yield Bound(self.error, comparison, threshold, self.clear_threshold, for_)
 
 
 class SignalsBlock(SettingsBlock):
@@ -222,7 +222,7 @@ class SignalsBlock(SettingsBlock):
 
     @model_validator(mode="after")
     def _errors_have_names_of_their_own(self) -> Self:
-        taken = {STALE_DATA} | {c.error for s in default_signals() for c in s.conditions}
+        taken = {STALE_DATA} | {c.error for s in default_signals() for c in s.bounds}
         for name, signal in self.further.items():
             if signal.error in taken:
                 raise ValueError(f"{signal.error} of {name} is already the name of another error")

@@ -1,17 +1,41 @@
 """The parameters of one part of an SMH file, sorted by subject."""
 
 from collections import defaultdict
+from dataclasses import dataclass
+from itertools import chain
 
+from domain.conditions.condition import Condition
 from domain.findings import Finding
-from domain.state_and_mode import ModeName, PartName
+from domain.state_and_mode import DEFAULT_MODE, ModeName, PartName, part_name
+from service.files.extension import Setting, read_extensions
 from service.files.parameter_file import PARAMETERS_KEY, NodeParameters, Parameter
-from service.files.yaml_tree import Node, finding_at
+from service.files.yaml_tree import Node, Scalar, finding_at
+
+MODE_SETTINGS = "mode_settings"
+"""The block about guards and order of modes."""
 
 _RESERVED_NAMES = frozenset(("state", "states", "mode", "modes", "parameters"))
 
 
+@dataclass(frozen=True, slots=True)
+class WrittenCondition:
+    """A condition with its place in the file."""
+
+    part: PartName
+    """The part whose block it stands in."""
+    where: str
+    """The place in words, for messages."""
+    condition: Condition
+    place: Scalar
+    shift: int
+    """Characters of the scalar before the condition."""
+
+
 class SmhBlock:
-    """The block of one part: its `type`, `parts`, `modes` and `rules`; other keys are ignored."""
+    """The block of one part: its `type`, `parts`, `modes` and `rules`, and `mode_settings`.
+
+    Other keys are ignored.
+    """
 
     def __init__(self, source: NodeParameters) -> None:
         self.name = PartName(source.name)
@@ -21,10 +45,18 @@ class SmhBlock:
         self.parts: list[Parameter] = []
         self.modes: dict[ModeName, list[tuple[str, Parameter]]] = {}
         """The lines of each mode: name below the mode, and the parameter."""
+        self.conditions: list[WrittenCondition] = []
         self.rules: dict[str, dict[str, Parameter]] = defaultdict(dict)
+        self._misread: set[str] = set()
+        extensions, findings = read_extensions(source)
+        self.findings.extend(findings)
+        self.settings: list[Setting] = [s for s in extensions if s.path[0] == MODE_SETTINGS]
+        """The lines of `mode_settings`."""
         for parameter in source.parameters:
             self._sort(parameter)
         self.is_node = self._tell_kind()
+        self.parts_of_system: dict[PartName, None] = {} if self.is_node else self._named_parts()
+        """The parts that its modes name, in the order of the file, those of `__DEFAULT__` first."""
         if self.name.rpartition("/")[2] in _RESERVED_NAMES:
             message = (
                 f"{self.name}: the last segment of a name must not be one of "
@@ -47,6 +79,7 @@ class SmhBlock:
         elif first == "parts":
             self.parts.append(parameter)
         elif first == "modes":
+            self._compare_names(parameter, rest, "rules")
             mode, _, below = rest.partition(".")
             if below:
                 self.modes.setdefault(ModeName(mode), []).append((below, parameter))
@@ -54,12 +87,30 @@ class SmhBlock:
                 what = f"mode {rest} of {self.name}" if rest else f"modes of {self.name}"
                 self._complain_of_block(parameter, what)
         elif first == "rules":
+            self._compare_names(parameter, rest, "modes")
             rule, _, below = rest.partition(".")
             if below:
                 self.rules[rule][below] = parameter
             else:
                 what = f"rule {rest} of {self.name}" if rest else f"rules of {self.name}"
                 self._complain_of_block(parameter, what)
+
+    def _compare_names(self, parameter: Parameter, below: str, misread: str) -> None:
+        """Warn of a name in which system_modes finds another block; once for each such name."""
+        before, found, _ = below.partition(f"{misread}.")
+        if not found or before in self._misread:
+            return
+        self._misread.add(before)
+        message = (
+            f"{self.name}: system_modes takes {before}{misread} for {misread} of the part, since "
+            f"the name ends in {misread!r}; use another name"
+        )
+        self.warn(parameter.key, "NOT_FOR_CPP", message)
+
+    def _named_parts(self) -> dict[PartName, None]:
+        default = self.modes.get(DEFAULT_MODE, [])
+        lines = chain(default, *self.modes.values())
+        return dict.fromkeys(part_name(below) for below, _ in lines)
 
     def _complain_of_block(self, parameter: Parameter, what: str) -> None:
         self.complain(parameter.key, "NOT_A_BLOCK", f"{what}: expected keys below")

@@ -11,11 +11,14 @@ from dataclasses import dataclass, field
 
 from domain.findings import Finding
 from domain.parameters import ParameterValue
+from domain.parts.mode_settings import ModeSettings
 from domain.parts.system_model import NodeModel, SystemModel
 from domain.state_and_mode import DEFAULT_MODE, ModeName, PartName, StateAndMode, part_name
 from service.files.parameter_file import PARAMETERS_KEY, NodeParameters, Parameter
-from service.files.smh_block import SmhBlock
+from service.files.smh_block import SmhBlock, WrittenCondition
+from service.files.smh_settings import read_mode_settings
 from service.files.smh_values import fitted, read_part_name, read_rule, read_want
+from service.files.source_text import SourceText
 
 MAX_LINES = 2_000_000
 """Lines of all modes, including inherited ones; a model of 10,000 nodes has 100,000."""
@@ -29,12 +32,20 @@ class SmhParts:
 
     nodes: dict[PartName, NodeModel] = field(default_factory=dict)
     systems: dict[PartName, SystemModel] = field(default_factory=dict)
+    mode_settings: dict[PartName, Mapping[ModeName, ModeSettings]] = field(default_factory=dict)
+    conditions: list[WrittenCondition] = field(default_factory=list)
     findings: list[Finding] = field(default_factory=list)
 
 
-def read_parts(sources: Mapping[str, NodeParameters]) -> SmhParts:
-    """Read all parts; one with errors is included as far as it can be read."""
+def read_parts(sources: Mapping[str, NodeParameters], source: SourceText) -> SmhParts:
+    """Read all parts; one with errors is included as far as it can be read.
+
+    Args:
+        sources: Parameters by part.
+        source: Text of the file.
+    """
     blocks = [SmhBlock(source) for source in sources.values()]
+    known = frozenset(block.name for block in blocks)
     with_modes = frozenset(block.name for block in blocks if block.modes)
     parts = SmhParts()
     lines = 0
@@ -50,6 +61,10 @@ def read_parts(sources: Mapping[str, NodeParameters]) -> SmhParts:
             parts.nodes[block.name] = _read_node(block)
         else:
             parts.systems[block.name] = _read_system(block, with_modes)
+        settings = read_mode_settings(block, known, source)
+        if settings:
+            parts.mode_settings[block.name] = settings
+        parts.conditions.extend(block.conditions)
         parts.findings.extend(block.findings)
     return parts
 

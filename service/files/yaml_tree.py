@@ -1,8 +1,9 @@
 """YAML as a tree with line and column of every node.
 
 Read event by event: the libyaml parser is in C and fast, but its composer recurses, so that some
-ten thousand open brackets crash the process. Tags never construct objects, and aliases are not
-supported, so that a small file cannot expand to a large one.
+ten thousand open brackets crash the process. Tags never construct objects. Aliases are errors but
+where the caller takes them; there, who walks the tree meets the same node repeatedly, and has to
+bound what a small file can expand to.
 """
 
 import re
@@ -89,20 +90,36 @@ def finding_at(
     return Finding(severity, code, message, part, (), place.line, place.column)
 
 
+def lines_of_yaml(text: str) -> list[str]:
+    """Return the lines of a text as libyaml counts them."""
+    return _LINE_BREAK.split(text)
+
+
 def in_order(text: str, findings: Iterable[Finding]) -> list[Finding]:
     """Sort findings by place; places that libyaml reports after the last line move to its end."""
-    lines = _LINE_BREAK.split(text)
+    lines = lines_of_yaml(text)
     last, end = len(lines), len(lines[-1]) + 1
     inside = (replace(f, line=last, column=end) if (f.line or 0) > last else f for f in findings)
     return sorted(inside, key=lambda finding: (finding.line or 0, finding.column or 0))
 
 
-def read_tree(text: str) -> YamlTree:
-    """Read YAML; reading stops at a syntax error."""
+def no_alias(_keys: list[str]) -> bool:
+    """Take aliases nowhere."""
+    return False
+
+
+def read_tree(text: str, takes_alias: Callable[[list[str]], bool] = no_alias) -> YamlTree:
+    """Read YAML; reading stops at a syntax error.
+
+    Args:
+        text: The text of the file.
+        takes_alias: Tells whether an alias below these keys is only a warning, and stands for the
+            node that it names. The last key is empty where the alias is itself a key.
+    """
     if text.count("%TAG") > MAX_TAG_DIRECTIVES:
         message = f"more than {MAX_TAG_DIRECTIVES} %TAG directives"
         return YamlTree(findings=[Finding("error", "TOO_LARGE", message, line=1, column=1)])
-    builder = _Builder()
+    builder = _Builder(takes_alias)
     try:
         builder.build(yaml.CSafeLoader(text).get_event)
     except UnicodeEncodeError as error:
@@ -117,7 +134,7 @@ def read_tree(text: str) -> YamlTree:
 
 def _bad_character(text: str, character: str | int, index: int) -> Finding:
     code = ord(character) if isinstance(character, str) else character
-    lines = _LINE_BREAK.split(text[:index])
+    lines = lines_of_yaml(text[:index])
     message = f"the character U+{code:04X} is not allowed in YAML; is this a text file?"
     return Finding(
         "error", "YAML_SYNTAX", message, line=len(lines), column=len(lines[-1].lstrip("\ufeff")) + 1
@@ -141,6 +158,7 @@ class _Open:
     """A mapping or list that is still open."""
 
     node: Sequence | Mapping
+    anchor: str | None
     key: Scalar | None = None
     """The key whose value comes next; None: it is invalid and left out."""
     expects_value: bool = False
@@ -151,9 +169,12 @@ class _Open:
 class _Builder:
     """Builds the tree from the events of the parser."""
 
-    def __init__(self) -> None:
+    def __init__(self, takes_alias: Callable[[list[str]], bool]) -> None:
         self.tree = YamlTree()
+        self._takes_alias = takes_alias
         self._open: list[_Open] = []
+        self._anchors: dict[str, Node] = {}
+        """The finished nodes of the document that have an anchor."""
 
     def build(self, next_event: Callable[[], Any]) -> None:
         """Process all events; the tree is complete unless it is too large.
@@ -168,24 +189,54 @@ class _Builder:
             if kind is yaml.ScalarEvent:
                 mark = event.start_mark
                 is_quoted = event.style in _QUOTES
-                self._add(Scalar(mark.line + 1, mark.column + 1, event.value, is_quoted, event.tag))
+                scalar = Scalar(mark.line + 1, mark.column + 1, event.value, is_quoted, event.tag)
+                self._finish(scalar, event.anchor)
             elif kind is yaml.MappingEndEvent or kind is yaml.SequenceEndEvent:
-                self._add(self._open.pop().node)
+                ended = self._open.pop()
+                self._finish(ended.node, ended.anchor)
             elif event is None:
                 self.tree.is_complete = True
                 return
             elif kind is yaml.AliasEvent:
-                message = f"*{event.anchor}: aliases are not supported; repeat the value"
-                self._complain(event, "ALIAS", message)
-                self._add(None)
+                self._add(self._aliased(event))
             elif kind is yaml.MappingStartEvent or kind is yaml.SequenceStartEvent:
                 if len(self._open) == MAX_DEPTH:
                     message = f"more than {MAX_DEPTH} levels of nested maps and lists"
                     self._complain(event, "TOO_DEEP", message)
                     return
                 begin = Mapping if kind is yaml.MappingStartEvent else Sequence
-                self._open.append(_Open(begin(*_position(event))))
+                self._open.append(_Open(begin(*_position(event)), event.anchor))
+            elif kind is yaml.DocumentStartEvent:
+                self._anchors.clear()
         self._complain(event, "TOO_LARGE", f"more than {MAX_EVENTS:,} keys, values and ends")
+
+    def _finish(self, node: Node, anchor: str | None) -> None:
+        """Add a finished node, and remember it by its anchor."""
+        if anchor is not None:
+            self._anchors[anchor] = node
+        self._add(node)
+
+    def _aliased(self, event: yaml.AliasEvent) -> Node | None:
+        """Return the node that an alias stands for; None: it stands for none, or must not."""
+        keys = [
+            level.key.text if level.key is not None and level.expects_value else ""
+            for level in self._open
+            if isinstance(level.node, Mapping)
+        ]
+        if not self._takes_alias(keys):
+            message = f"*{event.anchor}: aliases are not supported; repeat the value"
+            self._complain(event, "ALIAS", message)
+            return None
+        node = self._anchors.get(event.anchor or "")
+        if node is None:
+            self._complain(event, "ALIAS", f"*{event.anchor}: no value before it has that anchor")
+            return None
+        message = f"*{event.anchor}: the YAML reader of ROS 2 rejects aliases; repeat the value"
+        line, column = _position(event)
+        self.tree.findings.append(
+            Finding("warning", "NOT_FOR_CPP", message, line=line, column=column)
+        )
+        return node
 
     def _add(self, node: Node | None) -> None:
         """Add a finished node to its parent."""

@@ -1,7 +1,7 @@
 """A slow model of health that is easy to believe: it looks again at every single instant.
 
 It knows neither timers nor wake-up times. At each nanosecond it asks the whole history what holds.
-Only for signals of which a value meets one condition at most, as those of smart_polaris.
+Only for signals of which a value meets one bound at most, as those of smart_polaris.
 """
 
 from collections.abc import Mapping, Sequence
@@ -10,8 +10,8 @@ from itertools import zip_longest
 
 from domain.health.signals import (
     STALE_DATA,
+    Bound,
     Comparison,
-    Condition,
     CountsFrom,
     Recovery,
     SignalSettings,
@@ -47,7 +47,7 @@ class _Signal:
     start: Instant
     arrived: list[_Arrived] = field(default_factory=list)
     engaged: bool = False
-    cause: Condition | None = None
+    cause: Bound | None = None
     on: str | None = None
     on_since: Instant = 0
     acknowledged: bool = False
@@ -71,23 +71,23 @@ class _Signal:
         last_of_each = {a.source: a.reading.value for a in self.arrived}
         return any(last_of_each.values()) if last_of_each else None
 
-    def bad(self) -> Condition | None:
-        """Return the condition that the value read meets."""
+    def bad(self) -> Bound | None:
+        """Return the bound that the value read meets."""
         value = self.value()
-        for condition in self.settings.conditions:
-            limit = condition.threshold
-            if condition is self.cause and condition.clear_threshold is not None:
-                limit = condition.clear_threshold
+        for bound in self.settings.bounds:
+            limit = bound.threshold
+            if bound is self.cause and bound.clear_threshold is not None:
+                limit = bound.clear_threshold
             if value is None:
                 continue
-            if condition.comparison is Comparison.EQUAL:
+            if bound.comparison is Comparison.EQUAL:
                 is_met = value == limit
-            elif condition.comparison is Comparison.ABOVE:
+            elif bound.comparison is Comparison.ABOVE:
                 is_met = float(str(value)) > float(limit)
             else:
                 is_met = float(str(value)) < float(limit)
             if is_met:
-                return condition
+                return bound
         return None
 
     def counts_since(self, now: Instant) -> Instant | None:
@@ -106,7 +106,7 @@ class _Signal:
         return first_bad
 
     def look(self, now: Instant) -> None:
-        bad = self.settings.conditions[0] if self.engaged else self.bad()
+        bad = self.settings.bounds[0] if self.engaged else self.bad()
         had_cause = self.cause
         self.counting = since = self.counts_since(now)
         is_due = bad is not None and since is not None and now - since >= bad.for_
@@ -218,6 +218,6 @@ class HealthReference:
         if signal.settings.spec.members:
             order = signal.settings.spec.members
             return order.index(str(value)) > order.index(str(held))
-        if signal.settings.conditions[0].comparison is Comparison.BELOW:
+        if signal.settings.bounds[0].comparison is Comparison.BELOW:
             return float(str(value)) < float(str(held))
         return float(str(value)) > float(str(held))

@@ -26,16 +26,22 @@ _NEVER_TOLD = (
 _SHUTDOWN = "an unconfigured node can be shut down: `unconfigured_shutdown` of ROS 2 has the id 5"
 
 
+_NO_RACE = "no rule acts while a change of its system runs: what was requested is reached and stays"
+
+
 def _overruled(case: str, step: int, *facts: str, because: str) -> dict[tuple[str, int, str], str]:
     return {(case, step, fact): because for fact in facts}
 
 
 _MIXED, _REDUNDANT = "launch_two_mixed_nodes", "launch_redundant_mode_changes"
-_PARTS = ("actual of actuation", "actual of drive_base", "actual of manipulator")
+_ACTUATION = ("actuation", "drive_base", "manipulator")
+_PARTS = tuple(f"actual of {part}" for part in _ACTUATION)
 _ARM = "actual of manipulator"
 _STATES = ("state of drive_base", "state of manipulator")
 _A_ASKED, _A_HAS, _B_HAS = "parameters asked of A", "parameters of A", "parameters of B"
 _A_MOVED = "transitions asked of A"
+_RACE, _UNDONE = "rules_race_degrades_wanted_change", "issue94_rule_undoes_user_request"
+_COMPROMISED = ("camera", "guard", "manipulator", "nav2")
 
 OVERRULED: Mapping[tuple[str, int, str], str] = {
     **_overruled("annex4_full", 0, *_PARTS, because=_TOLD_AT_ONCE),
@@ -52,14 +58,19 @@ OVERRULED: Mapping[tuple[str, int, str], str] = {
     **_overruled(_REDUNDANT, 7, _A_ASKED, _A_HAS, _B_HAS, because=_NEVER_TOLD),
     **_overruled(_REDUNDANT, 10, _A_HAS, _B_HAS, because=_NEVER_TOLD),
     **_overruled(_REDUNDANT, 13, _A_ASKED, _A_HAS, _B_HAS, because=_NEVER_TOLD),
+    **_overruled(_RACE, 5, *(f"target of {part}" for part in _ACTUATION), because=_NO_RACE),
+    **_overruled(_RACE, 5, "parameters of drive_base", _STATES[1], because=_NO_RACE),
+    **_overruled(_RACE, 8, "actual of actuation", _ARM, because=_NO_RACE),
+    **_overruled(_UNDONE, 6, "target of safety", "state of camera", because=_NO_RACE),
+    **_overruled(_UNDONE, 6, *(f"target of {part}" for part in _COMPROMISED), because=_NO_RACE),
+    **_overruled(
+        _UNDONE, 6, *(f"parameters of {part}" for part in _COMPROMISED[1:]), because=_NO_RACE
+    ),
 }
 """Single facts by case, number of the step and what is asserted, with the reason."""
 
 TRANSITION_OF_ID: Mapping[int, str] = {rule.id: str(rule.transition) for rule in TRANSITIONS}
 """Labels by the ids of `lifecycle_msgs/msg/Transition`; shutdown has three."""
-
-LATER = ("rules", "issue94")
-"""Cases whose names hold one of these are about rules."""
 
 
 class Managing(Protocol):
@@ -87,7 +98,7 @@ class Managing(Protocol):
         """Return state, mode ("" for none) and undecidable of every part."""
 
     def targets(self) -> dict[str, Pair | None]:
-        """Return state and mode ("" for none) that were asked of every part."""
+        """Return state and mode ("" for none) that are in force for every part."""
 
     def node(self, name: str) -> tuple[str, Mapping[str, Any]]:
         """Return what a node really is in, and the parameters that the model knows of it."""

@@ -4,7 +4,7 @@ from collections.abc import Iterable
 
 import numpy as np
 
-from domain.health.signals import Comparison, Condition, SignalKind, SignalSettings, SignalSpec
+from domain.health.signals import Bound, Comparison, SignalKind, SignalSettings, SignalSpec
 from domain.timebase import Duration, Instant, seconds
 from service.storage.trends.rows import NO_ERROR, Rows
 from service.storage.trends.tiers import Tier
@@ -25,11 +25,11 @@ def load(name: str = "load", unit: str = "kg") -> SignalSettings:
     """Return a number with two errors: OVERLOAD is worse than HEAVY."""
     spec = SignalSpec(name, SignalKind.NUMBER, unit)
     above = Comparison.ABOVE
-    conditions = (
-        Condition(f"{name.upper()}_OVERLOAD", above, 1500.0, key="overload"),
-        Condition(f"{name.upper()}_HEAVY", above, 1000.0, key="heavy"),
+    bounds = (
+        Bound(f"{name.upper()}_OVERLOAD", above, 1500.0, key="overload"),
+        Bound(f"{name.upper()}_HEAVY", above, 1000.0, key="heavy"),
     )
-    return SignalSettings(spec, conditions)
+    return SignalSettings(spec, bounds)
 
 
 def readings(

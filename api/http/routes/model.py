@@ -19,9 +19,16 @@ _YAML_TYPES = (_YAML, "application/x-yaml", "text/yaml")
 def encode_model(supervisor: Supervisor) -> bytes:
     """Return the loaded model as JSON; done at the start, since it is slow for 10,000 nodes."""
     model = supervisor.model
+    settings = model.mode_settings
     shown = ModelJson(
-        systems={name: SystemModelJson.of(system) for name, system in model.systems.items()},
-        nodes={name: NodeModelJson.of(node) for name, node in model.nodes.items()},
+        systems={
+            name: SystemModelJson.of(system, settings.get(name, {}))
+            for name, system in model.systems.items()
+        },
+        nodes={
+            name: NodeModelJson.of(node, settings.get(name, {}))
+            for name, node in model.nodes.items()
+        },
         warnings=[FindingJson.of(finding) for finding in supervisor.warnings],
     )
     return shown.model_dump_json().encode()

@@ -26,6 +26,7 @@ from api.http.schemas.parts import (
     StateJson,
     StatesJson,
     TransitionBody,
+    WhyJson,
 )
 from domain.errors import UnknownModeError
 from domain.inputs import ModeRequest, TransitionRequest
@@ -117,6 +118,16 @@ async def list_modes(part: PartDep, supervisor: SupervisorDep) -> ModesJson:
         items.append(EnterableModeJson.of(supervisor.core.mode(part, mode), supervisor.clock))
         await asyncio.sleep(0)
     return ModesJson(items=items)
+
+
+@router.get("/{part:path}/why")
+@policy(Permission.OBSERVE)
+async def get_why(part: PartDep, supervisor: SupervisorDep) -> WhyJson:
+    """Show why the part is not where it should be; no reasons: it is."""
+    # A request would find that what is due has passed.
+    supervisor.let_pass()
+    core = supervisor.core
+    return WhyJson.of(core.part(part), core.why(part), supervisor.clock)
 
 
 # Last, since its path matches those of all others.

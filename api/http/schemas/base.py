@@ -12,7 +12,7 @@ from pydantic import BaseModel, ConfigDict, Field
 from domain.findings import Blocker, Fact, Finding
 from domain.lifecycle import LifecycleState
 from domain.state_and_mode import StateAndMode
-from domain.timebase import Instant
+from domain.timebase import Duration, Instant, to_seconds
 from service.clock import Clock
 
 Timestamp = Annotated[
@@ -56,6 +56,11 @@ def timestamp_or_none(clock: Clock, at: Instant | None) -> str | None:
     return None if at is None else rfc3339(clock.wall_time(at))
 
 
+def seconds_or_none(duration: Duration | None) -> float | None:
+    """Return a duration in seconds; None stays None."""
+    return None if duration is None else to_seconds(duration)
+
+
 class StateAndModeJson(Json):
     """A lifecycle state and, if any, a mode."""
 
@@ -83,6 +88,10 @@ class BlockerJson(Json):
     refuses: bool = Field(
         description="Whether a request is rejected because of it; false: it is only shown"
     )
+    causes: "list[BlockerJson]" = Field(description="What it follows from; empty: it is a cause")
+    condition: str | None = Field(
+        description="Text of the condition that is not true, if it is one"
+    )
 
     @classmethod
     def of(cls, blocker: Blocker, clock: Clock) -> "BlockerJson":
@@ -96,6 +105,8 @@ class BlockerJson(Json):
             since_at=timestamp_or_none(clock, blocker.since),
             root_cause=blocker.root_cause,
             refuses=blocker.refuses,
+            causes=[cls.of(cause, clock) for cause in blocker.causes],
+            condition=blocker.condition,
         )
 
 

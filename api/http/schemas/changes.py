@@ -4,12 +4,18 @@ from typing import Literal
 
 from pydantic import Field
 
-from api.http.schemas.base import Json, Timestamp, timestamp, timestamp_or_none
+from api.http.schemas.base import (
+    Json,
+    Timestamp,
+    seconds_or_none,
+    timestamp,
+    timestamp_or_none,
+)
 from api.http.schemas.parts import ParameterJson, shown
 from domain.changes.request_check import describe_request
 from domain.inputs import ChangeRequest, ParametersRequest
 from domain.lifecycle import Transition
-from domain.snapshot import ChangeStatus, ChangeView, StepStatus, StepView
+from domain.snapshot import ChangeStatus, ChangeView, Rollback, StepStatus, StepView
 from service.clock import Clock
 
 RequestJson = dict[str, str | dict[str, ParameterJson]]
@@ -25,6 +31,14 @@ class StepJson(Json):
     started_at: Timestamp | None
     ended_at: Timestamp | None
     error: str | None
+    stage: int = Field(description="From 0; the nodes of one stage may run side by side")
+    after: list[str] = Field(
+        description="The nodes that its node waits for, without those that these wait for"
+    )
+    expected_s: float | None = Field(
+        description="Median of the last 20 times of this node and action, s; null: never done"
+    )
+    rollback: bool = Field(description="Takes its node back to where it was before the change")
 
     @classmethod
     def of(cls, view: StepView, clock: Clock) -> "StepJson":
@@ -36,6 +50,10 @@ class StepJson(Json):
             started_at=timestamp_or_none(clock, view.started_at),
             ended_at=timestamp_or_none(clock, view.ended_at),
             error=view.error,
+            stage=view.stage,
+            after=list(view.after),
+            expected_s=seconds_or_none(view.expected),
+            rollback=view.rollback,
         )
 
 
@@ -51,6 +69,11 @@ class ChangeJson(Json):
     started_at: Timestamp
     ended_at: Timestamp | None
     cause: int = Field(description="Id of the event that recorded the request")
+    stage: int = Field(description="The highest stage of which a node has begun")
+    deadline_at: Timestamp | None = Field(description="When the change as a whole times out")
+    rollback: Rollback | None = Field(
+        description="Whether all parts are back where they were; null: nothing was taken back"
+    )
 
     @classmethod
     def of(cls, view: ChangeView, clock: Clock) -> "ChangeJson":
@@ -65,6 +88,9 @@ class ChangeJson(Json):
             started_at=timestamp(clock, view.started_at),
             ended_at=timestamp_or_none(clock, view.ended_at),
             cause=view.cause,
+            stage=view.stage,
+            deadline_at=timestamp_or_none(clock, view.deadline_at),
+            rollback=view.rollback,
         )
 
 
@@ -80,6 +106,10 @@ class PlanJson(Json):
     part: str
     request: RequestJson
     steps: list[StepJson]
+    stages: int
+    expected_s: float | None = Field(
+        description="The longest way through all steps, s; null: a step was never done before"
+    )
 
 
 def shown_request(request: ChangeRequest) -> RequestJson:

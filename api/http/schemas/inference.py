@@ -1,5 +1,6 @@
 """Posted models and facts, and the inferred states."""
 
+from collections.abc import Mapping
 from typing import Any
 
 from pydantic import ConfigDict, Field, model_validator
@@ -8,7 +9,10 @@ from api.http.schemas.base import MAX_MODEL_BYTES, Body, FindingJson, Json, Stat
 from api.http.schemas.parts import ActualJson
 from api.http.schemas.sent_values import SentParameter, split_label
 from domain.findings import Finding
+from domain.parts.mode_settings import ModeSettings, OnFailure
 from domain.parts.system_model import NodeModel, SystemModel
+from domain.state_and_mode import ModeName
+from domain.timebase import to_seconds
 
 
 def _or_label(schema: dict[str, Any]) -> None:
@@ -95,6 +99,47 @@ class RuleJson(Json):
     new_target: str
 
 
+class TransitionSettingsJson(Json):
+    """How the parts of a system enter a mode."""
+
+    after: dict[str, tuple[str, ...]] = Field(
+        description="Parts that must be done before each part begins"
+    )
+    deadline_s: float | None = Field(description="Of the whole change")
+    on_failure: OnFailure
+
+
+class ModeSettingsJson(Json):
+    """Settings of one mode, filled in from those of `__ALL__`."""
+
+    requires: tuple[str, ...] = Field(description="Conditions of entering the mode")
+    invariants: tuple[str, ...] = Field(description="Conditions of entering and staying")
+    grace_s: float = Field(description="How long an invariant may be broken")
+    fallback: str | None = Field(description="Mode that replaces this one when one is broken")
+    transition: TransitionSettingsJson
+
+    @classmethod
+    def of(cls, settings: ModeSettings) -> "ModeSettingsJson":
+        """Show `settings`."""
+        transition = settings.transition
+        deadline = transition.deadline
+        return cls(
+            requires=tuple(condition.text for condition in settings.requires),
+            invariants=tuple(condition.text for condition in settings.invariants),
+            grace_s=to_seconds(settings.grace),
+            fallback=settings.fallback,
+            transition=TransitionSettingsJson(
+                after={part: tuple(before) for part, before in transition.after.items()},
+                deadline_s=None if deadline is None else to_seconds(deadline),
+                on_failure=transition.on_failure,
+            ),
+        )
+
+
+def _settings_json(settings: Mapping[ModeName, ModeSettings]) -> dict[str, ModeSettingsJson]:
+    return {mode: ModeSettingsJson.of(of_mode) for mode, of_mode in settings.items()}
+
+
 class SystemModelJson(Json):
     """A system of the model."""
 
@@ -103,10 +148,13 @@ class SystemModelJson(Json):
         description="State and mode that each mode requires of its parts"
     )
     rules: list[RuleJson]
+    mode_settings: dict[str, ModeSettingsJson]
 
     @classmethod
-    def of(cls, system: SystemModel) -> "SystemModelJson":
-        """Show `system`."""
+    def of(
+        cls, system: SystemModel, settings: Mapping[ModeName, ModeSettings]
+    ) -> "SystemModelJson":
+        """Show `system` with the settings of its modes."""
         return cls(
             parts=system.parts,
             modes={
@@ -122,6 +170,7 @@ class SystemModelJson(Json):
                 )
                 for rule in system.rules
             ],
+            mode_settings=_settings_json(settings),
         )
 
 
@@ -129,11 +178,15 @@ class NodeModelJson(Json):
     """A node of the model."""
 
     modes: dict[str, dict[str, Any]] = Field(description="Parameters that each mode sets")
+    mode_settings: dict[str, ModeSettingsJson]
 
     @classmethod
-    def of(cls, node: NodeModel) -> "NodeModelJson":
-        """Show `node`."""
-        return cls(modes={mode: dict(values) for mode, values in node.modes.items()})
+    def of(cls, node: NodeModel, settings: Mapping[ModeName, ModeSettings]) -> "NodeModelJson":
+        """Show `node` with the settings of its modes."""
+        return cls(
+            modes={mode: dict(values) for mode, values in node.modes.items()},
+            mode_settings=_settings_json(settings),
+        )
 
 
 class ModelJson(Json):

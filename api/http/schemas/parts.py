@@ -1,5 +1,6 @@
 """Systems and nodes as clients see them, and requests to them."""
 
+from collections.abc import Iterable
 from typing import Annotated, Literal, TypeAlias, cast
 
 from pydantic import Field
@@ -13,9 +14,10 @@ from api.http.schemas.base import (
     timestamp_or_none,
 )
 from api.http.schemas.sent_values import SentParameter
+from domain.findings import Blocker
 from domain.lifecycle import LifecycleState, Transition
 from domain.parameters import ParameterValue, value_type
-from domain.snapshot import Actual, EffectiveTarget, ModeView, ParameterView, PartView
+from domain.snapshot import Actual, Because, EffectiveTarget, ModeView, ParameterView, PartView
 from service.clock import Clock
 
 ParameterType: TypeAlias = Literal[
@@ -64,12 +66,26 @@ class EffectiveTargetJson(Json):
 
     state: LifecycleState
     mode: str | None
-    because: str
+    because: Because = Field(description="Who set it; each prevails over those before it")
+    rule: str | None = Field(description="Name of the rule that set it")
+    cause: int | None = Field(
+        description="Id of the event that recorded why it differs from the requested one"
+    )
+    blockers: tuple[BlockerJson, ...] = Field(
+        description="Why the requested target is not in force; empty: it is"
+    )
 
     @classmethod
-    def of(cls, target: EffectiveTarget) -> "EffectiveTargetJson":
+    def of(cls, target: EffectiveTarget, clock: Clock) -> "EffectiveTargetJson":
         """Show `target`."""
-        return cls(state=target.state, mode=target.mode, because=target.because)
+        return cls(
+            state=target.state,
+            mode=target.mode,
+            because=target.because,
+            rule=target.rule,
+            cause=target.cause,
+            blockers=tuple(BlockerJson.of(blocker, clock) for blocker in target.blockers),
+        )
 
 
 class PartJson(Json):
@@ -100,7 +116,7 @@ class PartJson(Json):
             kind=view.kind,
             parts=view.parts,
             target=StateAndModeJson.of(view.target) if view.target else None,
-            effective_target=EffectiveTargetJson.of(effective) if effective else None,
+            effective_target=EffectiveTargetJson.of(effective, clock) if effective else None,
             actual=ActualJson.of(view.actual),
             converged=view.converged,
             deviation_since_at=timestamp_or_none(clock, view.deviation_since),
@@ -168,20 +184,56 @@ class EnterableModeJson(Json):
     """One mode of a part, and what blocks it now."""
 
     mode: str
-    can_enter: bool
+    can_enter: bool = Field(description="Whether a request for it would be accepted now")
+    can_stay: bool | None = Field(
+        description="Whether all its invariants hold; null: it is not the mode in force"
+    )
     blockers: list[BlockerJson]
+    requires: tuple[str, ...] = Field(description="Conditions of entering it")
+    invariants: tuple[str, ...] = Field(
+        description="Conditions of entering it and of staying in it"
+    )
 
     @classmethod
     def of(cls, view: ModeView, clock: Clock) -> "EnterableModeJson":
         """Show `view`."""
         blockers = [BlockerJson.of(blocker, clock) for blocker in view.blockers]
-        return cls(mode=view.mode, can_enter=view.can_enter, blockers=blockers)
+        return cls(
+            mode=view.mode,
+            can_enter=view.can_enter,
+            can_stay=view.can_stay,
+            blockers=blockers,
+            requires=view.requires,
+            invariants=view.invariants,
+        )
 
 
 class ModesJson(Json):
     """All modes of a part."""
 
     items: list[EnterableModeJson]
+
+
+class WhyJson(Json):
+    """Where a part is, where it should be, and why it is not there."""
+
+    actual: ActualJson
+    target: StateAndModeJson | None = Field(description="Target that was requested")
+    effective_target: EffectiveTargetJson | None = Field(description="Target in force")
+    converged: bool
+    blockers: list[BlockerJson] = Field(description="The nearest to the part first")
+
+    @classmethod
+    def of(cls, view: PartView, blockers: Iterable[Blocker], clock: Clock) -> "WhyJson":
+        """Show why `view` is not where it should be."""
+        shown = PartJson.of(view, clock)
+        return cls(
+            actual=shown.actual,
+            target=shown.target,
+            effective_target=shown.effective_target,
+            converged=shown.converged,
+            blockers=[BlockerJson.of(blocker, clock) for blocker in blockers],
+        )
 
 
 class ParameterRowJson(Json):

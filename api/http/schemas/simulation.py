@@ -2,13 +2,24 @@
 
 from typing import Annotated, Any, Literal, Self, TypeAlias
 
-from pydantic import AfterValidator, ConfigDict, Discriminator, Field, Tag, model_validator
+from pydantic import (
+    AfterValidator,
+    ConfigDict,
+    Discriminator,
+    Field,
+    Tag,
+    field_validator,
+    model_validator,
+)
+from pydantic_core import PydanticCustomError
 
-from api.http.schemas.base import MAX_MODEL_BYTES, Body, Json
+from api.http.schemas.base import MAX_MODEL_BYTES, BlockerJson, Body, Json
 from api.http.schemas.health import MAX_SOURCE
 from api.http.schemas.problem import Problem
 from api.http.schemas.sent_values import SentParameter, SentSignalValue
 from api.http.schemas.tasks import TaskBody
+from domain.conditions.condition import Condition
+from domain.conditions.lexer import MAX_LENGTH, ConditionSyntaxError
 
 MAX_UNTIL_S = 86_400.0
 MAX_SAMPLES = 20_000
@@ -168,16 +179,50 @@ class ExpectStep(TimedStep):
         return self
 
 
+class ConditionStep(TimedStep):
+    """A condition that must be true at this time, after the preceding steps."""
+
+    expect: str = Field(
+        min_length=1,
+        max_length=MAX_LENGTH,
+        description="A condition, as guards of modes are written",
+        examples=["battery_level >= 0.3 and not error.ESTOP"],
+    )
+
+    @field_validator("expect")
+    @classmethod
+    def _is_condition(cls, text: str) -> str:
+        try:
+            Condition.parse(text)
+        except ConditionSyntaxError as error:
+            told = {"column": error.column, "message": error.message}
+            raise PydanticCustomError(
+                "condition_syntax", "column {column}: {message}", told
+            ) from error
+        return text
+
+
 _KINDS = ("reading", "task", "change", "node", "vehicle", "request", "expect")
 
 
 def _kind_of(step: object) -> str | None:
     names = step if isinstance(step, dict) else getattr(type(step), "model_fields", {})
-    return next((kind for kind in _KINDS if kind in names), None)
+    kind = next((kind for kind in _KINDS if kind in names), None)
+    if kind != "expect":
+        return kind
+    expected = step["expect"] if isinstance(step, dict) else getattr(step, "expect", None)
+    return "condition" if isinstance(expected, str) else kind
 
 
 AnyStep: TypeAlias = (
-    ReadingStep | TaskStep | ChangeStep | NodeStep | VehicleStep | RequestStep | ExpectStep
+    ReadingStep
+    | TaskStep
+    | ChangeStep
+    | NodeStep
+    | VehicleStep
+    | RequestStep
+    | ExpectStep
+    | ConditionStep
 )
 Step = Annotated[
     Annotated[ReadingStep, Tag("reading")]
@@ -186,7 +231,8 @@ Step = Annotated[
     | Annotated[NodeStep, Tag("node")]
     | Annotated[VehicleStep, Tag("vehicle")]
     | Annotated[RequestStep, Tag("request")]
-    | Annotated[ExpectStep, Tag("expect")],
+    | Annotated[ExpectStep, Tag("expect")]
+    | Annotated[ConditionStep, Tag("condition")],
     Discriminator(
         _kind_of,
         custom_error_type="unknown_step",
@@ -265,6 +311,9 @@ class ExpectationJson(Json):
     step: int = Field(description="Its index in `steps`")
     t_s: float
     differences: list[DifferenceJson] = Field(description="Empty: everything is as expected")
+    blockers: list[BlockerJson] = Field(
+        default_factory=list, description="Why the expected condition is not true"
+    )
 
 
 class SampleJson(Json):

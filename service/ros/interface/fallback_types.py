@@ -43,7 +43,7 @@ class TopicFallback:
 _ACTIVE = f"{LifecycleState.ACTIVE}."
 _NO_STATE: Mapping[str, object] = {"id": 0, "label": ""}
 _ERRORS = {
-    **{c.bit: c.error for signal in default_signals() for c in signal.conditions},
+    **{c.bit: c.error for signal in default_signals() for c in signal.bounds},
     STALE_DATA_BIT: STALE_DATA,
     DECLARED_BIT: "DECLARED",
 }

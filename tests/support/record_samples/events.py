@@ -72,9 +72,15 @@ from domain.events.service import (
     TimeWasDue,
     WriteAnswered,
 )
+from domain.events.targets import (
+    DisplacementBegan,
+    DisplacementEnded,
+    DisplacementStays,
+    RuleNotApplied,
+)
 from domain.identifiers import ChangeId, GoalId, TaskId
 from domain.lifecycle import LifecycleState, Transition
-from domain.snapshot import StepStatus, SystemState
+from domain.snapshot import Because, StepStatus, SystemState
 from domain.state_and_mode import ModeName, PartName, StateAndMode
 from tests.support.record_samples.pieces import PARAMETERS
 
@@ -131,10 +137,23 @@ EVENTS: Mapping[str, tuple[object, ...]] = {
     "emergency_stop.engaged": (EmergencyStopEngaged(reason='Größe ≤ 3 — "gripper\\jam"'),),
     "emergency_stop.released": (EmergencyStopReleased(reason='Größe ≤ 3 — "gripper\\jam"'),),
     "emergency_stop.standstill": (EmergencyStopStandstill(),),
-    "error.acknowledged": (ErrorAcknowledged(error="LOW_BATTERY"),),
-    "error.cleared": (ErrorCleared(error="LOW_BATTERY"),),
+    "error.acknowledged": (
+        ErrorAcknowledged(error="LOW_BATTERY"),
+        ErrorAcknowledged(error="DEVIATES", part=PartName("arm")),
+    ),
+    "error.cleared": (
+        ErrorCleared(error="LOW_BATTERY"),
+        ErrorCleared(error="DEVIATES", part=PartName("arm")),
+    ),
     "error.raised": (
         ErrorRaised(error="LOW_BATTERY", message="12.5 % < 20 %", value=12.5, threshold=12.5),
+        ErrorRaised(
+            error="DEVIATES",
+            message="arm is inactive, target active.FAST",
+            value="inactive",
+            threshold="active.FAST",
+            part=PartName("arm"),
+        ),
     ),
     "goal.ended": (GoalEnded(goal=GoalId(5), succeeded=True, reason='Größe ≤ 3 — "gripper\\jam"'),),
     "goal.feedback": (GoalProgressed(goal=GoalId(5)),),
@@ -226,6 +245,43 @@ EVENTS: Mapping[str, tuple[object, ...]] = {
     ),
     "signal.settled": (SignalSettled(signal="battery_level", error="LOW_BATTERY", stale=True),),
     "signal.skewed": (SignalSkewed(signal="battery_level"),),
+    "rule.not_applied": (
+        RuleNotApplied(
+            part=PartName("left/arm"),
+            rule="slow_down",
+            target=StateAndMode(state=LifecycleState.ACTIVE, mode=ModeName("SLOW")),
+            reason='Größe ≤ 3 — "gripper\\jam"',
+        ),
+    ),
+    "target.displacement_began": (
+        DisplacementBegan(
+            part=PartName("left/arm"),
+            target=StateAndMode(state=LifecycleState.ACTIVE, mode=ModeName("SLOW")),
+            was=StateAndMode(state=LifecycleState.ACTIVE, mode=ModeName("FAST")),
+            because=Because.RULE,
+            rule="slow_down",
+            reason='Größe ≤ 3 — "gripper\\jam"',
+        ),
+    ),
+    "target.displacement_ended": (
+        DisplacementEnded(
+            part=PartName("left/arm"),
+            target=StateAndMode(state=LifecycleState.ACTIVE, mode=ModeName("FAST")),
+            was=StateAndMode(state=LifecycleState.ACTIVE, mode=ModeName("SLOW")),
+            because=Because.RULE,
+            rule="slow_down",
+            reason='Größe ≤ 3 — "gripper\\jam"',
+        ),
+    ),
+    "target.displacement_stays": (
+        DisplacementStays(
+            part=PartName("left/arm"),
+            target=StateAndMode(state=LifecycleState.ACTIVE, mode=ModeName("SLOW")),
+            because=Because.RULE,
+            rule="slow_down",
+            reason='Größe ≤ 3 — "gripper\\jam"',
+        ),
+    ),
     "system_state.changed": (
         SystemStateChanged(
             state=SystemState.ERROR,

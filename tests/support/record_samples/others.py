@@ -12,8 +12,10 @@ from domain.inputs import TimePassed
 from domain.kept import (
     Keeping,
     KeptChange,
+    KeptEffectiveTarget,
     KeptEmergencyStop,
     KeptError,
+    KeptFailedChange,
     KeptHold,
     KeptProgress,
     KeptTarget,
@@ -115,6 +117,27 @@ OTHERS: Mapping[str, tuple[object, ...]] = {
             staying={},
         ),
     ),
+    "kept_effective_target": (
+        KeptEffectiveTarget(
+            part=PartName("arm"),
+            target=StateAndMode(state=LifecycleState.INACTIVE),
+            rule="slow_down",
+            order=2,
+            after=9,
+            cause=40,
+            since=1764420000123456789,
+            staying={PartName("left/arm"): LifecycleState.UNCONFIGURED},
+        ),
+        KeptEffectiveTarget(
+            part=PartName("arm"),
+            target=StateAndMode(state=LifecycleState.INACTIVE),
+            rule="slow_down",
+            order=2,
+            after=9,
+            cause=40,
+            since=1764420000123456789,
+        ),
+    ),
     "kept_change": (
         KeptChange(
             id=ChangeId("3"),
@@ -146,6 +169,15 @@ OTHERS: Mapping[str, tuple[object, ...]] = {
             error="LOW_BATTERY",
             since=1764420000123456789,
             message="12.5 % < 20 %",
+        ),
+    ),
+    "kept_failed_change": (
+        KeptFailedChange(
+            part=PartName("arm"),
+            change=ChangeId("3"),
+            message="change 3 failed: 12.5 % < 20 %",
+            status="failed",
+            since=1764420000123456789,
         ),
     ),
     "kept_hold": (

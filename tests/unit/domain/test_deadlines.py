@@ -1,9 +1,10 @@
 """Many deadlines, one of which is next."""
 
 import hypothesis.strategies as st
+from hypothesis import given
 from hypothesis.stateful import RuleBasedStateMachine, invariant, rule
 
-from domain.deadlines import Deadlines
+from domain.deadlines import Deadlines, SharedDeadlines
 
 
 def test_without_a_deadline_nothing_is_next_and_nothing_is_due() -> None:
@@ -88,3 +89,41 @@ class AgainstASortedList(RuleBasedStateMachine):
 
 
 TestAgainstASortedList = AgainstASortedList.TestCase
+
+
+# --- shared by many keys -------------------------------------------------------------------------
+
+
+def test_keys_with_the_same_deadline_are_due_together_in_the_order_in_which_they_were_set() -> None:
+    deadlines: SharedDeadlines[str] = SharedDeadlines()
+    for key in ("lidar", "arm", "base"):
+        deadlines.set(key, 10)
+    deadlines.clear("arm")
+    assert deadlines.pop_due(9) == ()
+    assert deadlines.pop_due(10) == ("lidar", "base")
+    assert deadlines.pop_due(10) == ()
+    assert deadlines.next() is None
+
+
+@given(
+    st.lists(
+        st.tuples(st.sampled_from("abcde"), st.one_of(st.none(), st.integers(0, 9))), max_size=40
+    )
+)
+def test_shared_deadlines_agree_with_a_plain_table(steps: list[tuple[str, int | None]]) -> None:
+    """A step sets or, with None, removes a deadline."""
+    deadlines: SharedDeadlines[str] = SharedDeadlines()
+    table: dict[str, int] = {}
+    for key, at in steps:
+        table.pop(key, None)
+        if at is None:
+            deadlines.clear(key)
+        else:
+            deadlines.set(key, at)
+            table[key] = at
+        assert deadlines.next() == min(table.values(), default=None)
+        assert {key for key in "abcde" if key in deadlines} == table.keys()
+    for now in range(10):
+        due = deadlines.pop_due(now)
+        assert due == tuple(key for key, at in table.items() if at == now)
+        assert not deadlines.pop_due(now)

@@ -12,8 +12,8 @@ from domain.errors import OutdatedReadingError
 from domain.findings import Blocker
 from domain.health.signals import (
     STALE_DATA,
+    Bound,
     Comparison,
-    Condition,
     Recovery,
     SignalKind,
     SignalSettings,
@@ -40,7 +40,7 @@ VALUES: Mapping[str, Sequence[SignalValue]] = {
 
 LOAD = SignalSettings(
     SignalSpec("load", SignalKind.NUMBER, "kg"),
-    (Condition("OVERLOAD", Comparison.ABOVE, 1500.0),),
+    (Bound("OVERLOAD", Comparison.ABOVE, 1500.0),),
 )
 
 Seen: TypeAlias = tuple[tuple[str, ...], tuple[Blocker, ...], Mapping[str, SignalView]]
@@ -73,18 +73,18 @@ def signal_settings(draw: st.DrawFn) -> tuple[SignalSettings, ...]:
     clear = draw(st.sampled_from([{}, hysteresis]))
     made = []
     for item in (*default_signals(), LOAD):
-        conditions = tuple(
+        bounds = tuple(
             replace(
-                condition,
-                for_=durations.get(condition.error, 0),
-                clear_threshold=clear.get(condition.error),
+                bound,
+                for_=durations.get(bound.error, 0),
+                clear_threshold=clear.get(bound.error),
             )
-            for condition in item.conditions
+            for bound in item.bounds
         )
         made.append(
             replace(
                 item,
-                conditions=conditions,
+                bounds=bounds,
                 stale_after=draw(stale_afters),
                 min_on=draw(min_ons),
                 recovery=draw(recoveries),
@@ -289,8 +289,8 @@ def test_a_message_tells_only_what_was_measured(
     pieces: list[tuple[float, float]], for_s: float, stale_after_s: float
 ) -> None:
     """Whenever OVERLOAD is on, all readings of the time that is told were bad, and none too old."""
-    condition = replace(LOAD.conditions[0], for_=seconds(for_s))
-    load = replace(LOAD, conditions=(condition,), stale_after=seconds(stale_after_s), min_on=0)
+    bound = replace(LOAD.bounds[0], for_=seconds(for_s))
+    load = replace(LOAD, bounds=(bound,), stale_after=seconds(stale_after_s), min_on=0)
     health, now = StateManager((*default_signals(), load), START), START
     read: list[tuple[Instant, float]] = []
     for after_s, value in pieces:

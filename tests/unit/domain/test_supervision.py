@@ -180,7 +180,7 @@ def test_without_readings_or_changes_nothing_is_due() -> None:
 def test_deadlines_pass_in_order_each_at_its_own_time_however_late_the_call(
     robot: CoreRobot,
 ) -> None:
-    """The arm is silent after its change; GPS is bad, and then all is silent."""
+    """The arm is silent after its change, which fails; it deviates, and GPS is bad."""
     robot.core.handle(_readings(gps_accuracy=300.0), 0)
     robot.core.handle(TransitionRequest(ARM, T.CONFIGURE), 0)
     outputs = robot.core.handle(TimePassed(), seconds(3600))
@@ -189,6 +189,8 @@ def test_deadlines_pass_in_order_each_at_its_own_time_however_late_the_call(
         (seconds(2) + 1, "error.raised"),
         (seconds(11), "change.step_ended"),
         (seconds(11), "change.timed_out"),
+        (seconds(11), "error.raised"),
+        (seconds(12), "error.raised"),
         (seconds(15), "error.raised"),
     ]
     stop = Drive(DriveCommand(0.0, 0.0))
@@ -605,7 +607,7 @@ def test_a_dry_run_shows_the_steps_that_the_change_takes_and_changes_nothing(
     robot: CoreRobot, request_: ModeRequest | TransitionRequest | ParametersRequest
 ) -> None:
     before = _seen(robot.core)
-    planned = [(step.node, str(step.action)) for step in robot.core.plan(request_)]
+    planned = [(step.node, str(step.action)) for step in robot.core.plan(request_).steps]
     assert _seen(robot.core) == before
     change = robot.give(request_).change
     assert change is not None
@@ -622,7 +624,7 @@ def test_a_dry_run_is_refused_as_the_request_would_be(robot: CoreRobot) -> None:
 
 
 def test_of_a_node_that_is_not_heard_of_the_last_step_is_shown() -> None:
-    steps = _core().plan(TransitionRequest(BASE, T.ACTIVATE))
+    steps = _core().plan(TransitionRequest(BASE, T.ACTIVATE)).steps
     assert [(step.node, step.action) for step in steps] == [(BASE, T.ACTIVATE)]
 
 
@@ -811,7 +813,7 @@ def test_acknowledging_what_is_on_is_recorded_with_who_did_it() -> None:
         ("error.acknowledged", "alice"),
         ("error.cleared", "alice"),
     ]
-    assert dict(events[0].data) == {"error": "BATTERY_LOW"}
+    assert dict(events[0].data) == {"error": "BATTERY_LOW", "part": None}
 
 
 def test_a_deviation_counts_from_the_input_that_began_it(robot: CoreRobot) -> None:

@@ -8,15 +8,25 @@ import numpy as np
 import pytest
 
 from domain.commands import Drive
+from domain.conditions.condition import Condition
 from domain.inputs import EmergencyStopRequest, HoldRequest, Input, TaskRequest, TimePassed
 from domain.onboard import Onboard
 from domain.outbox import Outbox
+from domain.parts.mode_settings import ModeSettings, OnFailure, TransitionSettings
+from domain.parts.system_model import EVERY_MODE, SmhModel
 from domain.paths.path import Path
 from domain.timebase import seconds
 from service.checkpoint import CheckpointError, checkpoint_of, core_of_checkpoint
 from tests.support.core_robot import CoreRobot
 from tests.support.good import GOOD
-from tests.support.models import nested_model
+from tests.support.models import (
+    ACTUATION,
+    ARM,
+    BASE,
+    PERFORMANCE,
+    actuation_model,
+    nested_model,
+)
 
 HEAD = b"pilothouse checkpoint 1.2\n"
 
@@ -44,6 +54,18 @@ def test_a_copy_goes_on_as_the_core_does() -> None:
         assert copy.handle(given, at) == outputs
         assert copy.wake_at() == robot.onboard.wake_at()
     assert any(isinstance(command, Drive) for command in outputs.commands)
+
+
+def test_a_copy_has_the_settings_of_modes() -> None:
+    model = actuation_model()
+    transition = TransitionSettings({BASE: (ARM,)}, seconds(20), OnFailure.ROLLBACK)
+    guarded = ModeSettings((Condition("battery_level > 0.3"),), transition=transition)
+    settings = {ACTUATION: {PERFORMANCE: guarded, EVERY_MODE: ModeSettings()}}
+    robot = CoreRobot(SmhModel(model.nodes, model.systems, settings))
+
+    copy = core_of_checkpoint(checkpoint_of(robot.onboard, "1.2"), "1.2")
+
+    assert copy.core.model.mode_settings == settings
 
 
 def test_a_copy_shares_nothing_with_the_core() -> None:

@@ -66,6 +66,31 @@ def test_a_failed_expectation_is_told_with_line_and_difference(story: Path, caps
     ]
 
 
+def test_a_condition_that_is_not_true_is_told_with_its_reasons(story: Path, capsys: Output) -> None:
+    expected = "robot.state == IDLE and not (error.BATTERY_LOW or battery_level > 0.9)"
+    text = STORY[: STORY.index("    expect:")] + f'    expect: "{expected}"\n'
+    assert run(story, text) == FAILED
+
+    lines = capsys.readouterr().out.splitlines()
+    begin = lines.index(f"{story}:6: false at 2 s: {expected}")
+    assert lines[begin + 1 : begin + 3] == [
+        "    the robot is ERROR, needs IDLE",
+        "        battery 40 % is below 50 %",
+    ]
+    assert "    BATTERY_LOW is active" in lines
+    assert lines[-1].startswith(f"{story}: 1 not as expected")
+
+
+def test_a_condition_about_one_thing_is_told_in_one_line(story: Path, capsys: Output) -> None:
+    text = STORY[: STORY.index("    expect:")] + "    expect: battery_level >= 0.5\n"
+    assert run(story, text) == FAILED
+
+    assert capsys.readouterr().out.splitlines()[-3:-1] == [
+        f"{story}:6: false at 2 s: battery_level >= 0.5",
+        "    battery_level is 0.4, needs >= 0.5",
+    ]
+
+
 def test_a_member_that_is_not_there_is_told_as_such(story: Path, capsys: Output) -> None:
     assert run(story, STORY.replace("state: ERROR", "stat: ERROR")) == FAILED
 
@@ -136,8 +161,8 @@ def test_an_invalid_file_is_told_with_line_and_column_and_ends_with_two(
     told, complaints = capsys.readouterr()
     assert told == ""
     assert complaints.splitlines() == [
-        f"{story}:2:1: error INVALID_VALUE wings: unknown key",
-        f"{story}:3:1: error INVALID_VALUE legs: unknown key",
+        f"{story}:2:1: error[INVALID_VALUE]: wings: unknown key",
+        f"{story}:3:1: error[INVALID_VALUE]: legs: unknown key",
     ]
 
 

@@ -94,6 +94,8 @@ def test_what_stands_against_a_change_is_told_with_every_field() -> None:
             "since_at": "2026-01-01T00:00:00.000Z",
             "root_cause": True,
             "refuses": True,
+            "causes": [],
+            "condition": None,
         }
     ]
 

@@ -7,9 +7,7 @@ from tests.support.profiled_robot import SETTINGS
 
 
 def test_every_error_of_the_default_signals_has_a_trigger() -> None:
-    errors = {
-        condition.error for signal in default_signals() for condition in signal.conditions
-    } | {STALE_DATA}
+    errors = {bound.error for signal in default_signals() for bound in signal.bounds} | {STALE_DATA}
 
     assert set(TRIGGERS) == errors
     assert set(GOOD) == {signal.spec.name for signal in default_signals()}
@@ -24,15 +22,15 @@ def test_the_command_knows_the_triggers_without_loading_them() -> None:
     assert ", ".join(TRIGGERS) in " ".join(parser.format_help().split())
 
 
-def test_the_bad_reading_meets_the_condition_and_the_good_one_none() -> None:
+def test_the_bad_reading_meets_the_bound_and_the_good_one_none() -> None:
     signals = {signal.spec.name: signal for signal in default_signals()}
     for trigger in TRIGGERS.values():
         signal = signals[trigger.signal]
-        conditions = {condition.error: condition for condition in signal.conditions}
+        bounds = {bound.error: bound for bound in signal.bounds}
         good = signal.spec.checked(GOOD[trigger.signal])
-        assert not any(condition.is_met_by(good) for condition in conditions.values())
+        assert not any(bound.is_met_by(good) for bound in bounds.values())
         if trigger.bad is not None:
-            assert conditions[trigger.error].is_met_by(signal.spec.checked(trigger.bad))
+            assert bounds[trigger.error].is_met_by(signal.spec.checked(trigger.bad))
             assert trigger.counts_from is signal.counts_from
 
 

@@ -73,3 +73,22 @@ def test_what_is_null_is_left_out_and_what_may_be_anything_is_text() -> None:
     }
     assert jsonschema_rs.is_valid(schema, message)
     assert schema["required"] == ["items", "facts"]
+
+
+class Tree(BaseModel):
+    name: str
+    below: "list[Tree]"
+
+
+def test_what_a_tree_has_below_its_top_is_text() -> None:
+    schema = plain_schema(Tree)
+    leaf = Tree(name="b", below=[Tree(name="a", below=[])])
+
+    message = fitted(Tree(name="c", below=[leaf]).model_dump(), schema)
+
+    assert list(faults_of(schema)) == []
+    assert message == {
+        "name": "c",
+        "below": ['{"name": "b", "below": [{"name": "a", "below": []}]}'],
+    }
+    assert jsonschema_rs.is_valid(schema, message)

@@ -221,6 +221,14 @@ def test_what_is_wrong_is_told_with_its_place(text: str, told: str, folder: Fold
         ("{t_s: 0, task: {file: a.csv, heading: up}}", "s.yaml:3:34: INVALID_VALUE heading: one"),
         ("{t_s: 0, task: {file: a.csv, columns: 3}}", "s.yaml:3:34: INVALID_VALUE columns: names"),
         ("{t_s: 0, task: {file: a.csv, columns: s}}", "s.yaml:3:34: INVALID_VALUE columns: no col"),
+        (
+            "{t_s: 0, expect: 'battery >= '}",
+            "s.yaml:3:14: INVALID_VALUE steps.0.expect: column 11: expected a name or a value",
+        ),
+        (
+            "{t_s: 0, expect: 'estop or batery_level >= 0.3'}",
+            "s.yaml:3:14: INVALID_VALUE steps.0.expect: column 10: unknown signal 'batery_level'",
+        ),
         ("{t_s: 0, task: {heading: deg}}", "s.yaml:3:21: INVALID_VALUE steps.0.task.heading"),
     ],
 )

@@ -237,3 +237,54 @@ def test_refusals_without_end_are_told_up_to_a_limit(monkeypatch: pytest.MonkeyP
 
     assert len(simulation.unexpected_refusals()) == 3
     assert [item.step for item in simulation.refusals] == [0, 0, 0, 1]
+
+
+# --- conditions ----------------------------------------------------------------------------------
+
+
+def test_a_condition_is_expected_at_its_time() -> None:
+    simulation = happened(
+        ALL_GOOD,
+        {"t_s": 1, "expect": "battery_level == 1 and not error.BATTERY_LOW"},
+        {"t_s": 2, "reading": {"battery_level": 0.4}},
+        {"t_s": 2, "expect": "error.BATTERY_LOW and robot.state == ERROR and hold.error"},
+    )
+
+    assert [item.step for item in simulation.expectations] == [1, 3]
+    assert simulation.failed_expectations() == []
+
+
+def test_a_condition_that_is_not_true_comes_with_the_tree_of_its_reasons() -> None:
+    told = answer(
+        happened(
+            ALL_GOOD,
+            {"t_s": 1, "reading": {"battery_level": 0.4}},
+            {"t_s": 2, "expect": "battery_level < 0.5 and not error.BATTERY_LOW"},
+            {"t_s": 2, "expect": "vehicle.speed_mps > 1 or actuation.state == active"},
+        )
+    )
+
+    failed, other = told["expectations"]
+    assert failed["differences"] == [
+        {
+            "path": "",
+            "expected": "battery_level < 0.5 and not error.BATTERY_LOW",
+            "seen": "false",
+        }
+    ]
+    (root,) = failed["blockers"]
+    (leaf,) = root["causes"]
+    assert (leaf["condition"], leaf["message"]) == (
+        "not error.BATTERY_LOW",
+        "BATTERY_LOW is active",
+    )
+    assert leaf["since_at"] == "2000-01-01T00:00:01.000Z"
+    assert [cause["code"] for cause in leaf["causes"]] == ["BATTERY_LOW"]
+    assert len(other["blockers"][0]["causes"]) == 2
+
+
+def test_what_is_not_known_is_not_as_expected() -> None:
+    (failed,) = happened({"t_s": 1, "expect": "battery_level < 2"}).failed_expectations()
+
+    assert failed.differences[0].seen == "unknown"
+    assert failed.blockers[0].message == "battery_level was never seen, needs < 2"

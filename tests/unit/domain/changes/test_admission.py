@@ -12,6 +12,7 @@ from domain.parts.node_facts import NodeFacts
 from domain.parts.system_model import SmhModel, SystemModel
 from domain.state_and_mode import ModeName, PartName
 from tests.support.big_model import big_model
+from tests.support.guards import unguarded
 from tests.support.models import ACTUATION, ARM, BASE, actuation_model, inactive, nested_model
 
 S, T = LifecycleState, Transition
@@ -36,7 +37,8 @@ def _admission(
     facts = {PartName("lidar"): _node(S.INACTIVE)}
     for name, given in ((BASE, base), (ARM, arm)):
         facts[name] = given if isinstance(given, NodeFacts) else _node(given)
-    return ChangeAdmission(model or actuation_model(), facts)
+    model = model or actuation_model()
+    return ChangeAdmission(model, facts, unguarded(model))
 
 
 def _codes(admission: ChangeAdmission, request: ChangeRequest) -> list[str]:
@@ -357,7 +359,8 @@ def test_of_many_blockers_what_refuses_comes_first_and_the_rest_is_cut() -> None
     last = list(model.nodes)[-1]
     facts[last] = _node(S.FINALIZED)
 
-    blockers = ChangeAdmission(model, facts).blockers(ModeRequest(model.parts[0], "FAST"), ())
+    admission = ChangeAdmission(model, facts, unguarded(model))
+    blockers = admission.blockers(ModeRequest(model.parts[0], "FAST"), ())
 
     assert (len(blockers), blockers[0].code, blockers[0].path[-1]) == (100, "FINALIZED", last)
     assert {blocker.code for blocker in blockers[1:]} == {"UNKNOWN_STATE"}

@@ -6,12 +6,14 @@ import pytest
 
 from domain.changes.changes import KEPT_CHANGES
 from domain.errors import InvalidValueError, UnknownChangeError
+from domain.health.part_errors import DEVIATES_AFTER
 from domain.identifiers import ChangeId
 from domain.inputs import (
     CancelRequest,
     ModeRequest,
     NodeAnswer,
     NodeReport,
+    TimePassed,
     TransitionRequest,
 )
 from domain.lifecycle import LifecycleState, Transition
@@ -438,6 +440,7 @@ def test_a_canceled_change_ends_now_and_says_why() -> None:
 
 
 def test_what_a_newer_change_takes_over_is_superseded_and_has_no_deadline_left() -> None:
+    """Once that is canceled, too, nothing is due but that its parts deviate for too long."""
     core = Supervision(actuation_model(), SupervisionSettings(), 0)
     core.handle(TransitionRequest(BASE, Transition.CONFIGURE), 0)
     core.handle(TransitionRequest(ACTUATION, Transition.CONFIGURE), seconds(4))
@@ -447,6 +450,8 @@ def test_what_a_newer_change_takes_over_is_superseded_and_has_no_deadline_left()
         (StepStatus.SUPERSEDED, seconds(4))
     ]
     core.handle(CancelRequest(ChangeId("c2")), seconds(5))
+    assert core.wake_at() == seconds(5) + DEVIATES_AFTER
+    core.handle(TimePassed(), seconds(7))
     assert core.wake_at() is None
 
 

@@ -6,6 +6,7 @@ from domain.changes.changing import Changing
 from domain.changes.settings import ChangeSettings
 from domain.errors import BackendUnavailableError
 from domain.health.health import Health
+from domain.health.part_errors import PartErrors
 from domain.health.signals import default_signals
 from domain.inputs import BackendStatus, Input, ModeRequest, NodeReport
 from domain.lifecycle import LifecycleState
@@ -13,6 +14,7 @@ from domain.outbox import Outbox, Outputs
 from domain.parts.parts import Parts
 from domain.snapshot import ModeView
 from domain.state_and_mode import PartName
+from tests.support.guards import unguarded
 from tests.support.models import ARM, BASE, FAST, actuation_model
 
 
@@ -23,8 +25,10 @@ class Robot:
         self.outbox = Outbox()
         self.parts = Parts(actuation_model(), self.outbox)
         health = Health(default_signals(), self.outbox, 0)
+        part_errors = PartErrors(self.parts, health.error_list, self.outbox, 0)
         settings = ChangeSettings(restored_nodes=frozenset({BASE}))
-        self.changing = Changing(self.parts, health, settings, self.outbox)
+        guards = unguarded(self.parts.model)
+        self.changing = Changing(self.parts, health, part_errors, settings, self.outbox, guards)
 
     def hand_in(self, given: Input, now: int = 0) -> Outputs:
         for concern in (self.parts, self.changing):

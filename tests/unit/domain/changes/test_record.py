@@ -9,6 +9,8 @@ from domain.changes.settings import ChangeSettings
 from domain.identifiers import ChangeId
 from domain.inputs import ModeRequest
 from domain.lifecycle import LifecycleState, Transition
+from domain.plans.durations import Durations
+from domain.plans.order import Order
 from domain.snapshot import ChangeStatus, ChangeView, StepStatus, StepView
 from domain.timebase import seconds
 from tests.support.models import ACTUATION, ARM, BASE
@@ -37,11 +39,11 @@ def test_the_deadlines_of_the_brief_are_the_defaults() -> None:
 )
 def test_a_step_is_shown_with_its_action_its_times_and_its_end(action: Action, name: str) -> None:
     step = Step(C1, BASE, action)
-    (before,) = StepTable([step])
+    (before,) = StepTable([step], Order(), Durations())
     assert before == StepView(BASE, name, StepStatus.PENDING, None, None, None)  # type: ignore[arg-type]
     step.status, step.started_at = StepStatus.RUNNING, 5
     step.end(StepStatus.FAILED, 7, "refused")
-    (after,) = StepTable([step])
+    (after,) = StepTable([step], Order(), Durations())
     assert after == StepView(BASE, name, StepStatus.FAILED, 5, 7, "refused")  # type: ignore[arg-type]
     assert step.action_name == name
 
@@ -107,7 +109,7 @@ def test_a_change_is_shown_with_the_steps_of_all_nodes_in_their_order() -> None:
 
 def test_a_table_of_steps_is_read_as_any_sequence() -> None:
     steps = [Step(C1, node, action) for node in (BASE, ARM) for action in (CONFIGURE, ACTIVATE)]
-    table = StepTable(steps)
+    table = StepTable(steps, Order(), Durations())
     assert (len(table), table[-1].node, table[1].action) == (4, ARM, ACTIVATE)
     assert [step.node for step in table[1:3]] == [BASE, ARM]
     assert table == tuple(table)

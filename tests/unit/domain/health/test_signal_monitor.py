@@ -6,8 +6,8 @@ from domain.findings import Blocker
 from domain.health.signal_monitor import SignalMonitor
 from domain.health.signals import (
     STALE_DATA,
+    Bound,
     Comparison,
-    Condition,
     Recovery,
     SignalKind,
     SignalSettings,
@@ -76,7 +76,7 @@ def test_one_good_reading_starts_the_time_again() -> None:
 
 LOAD = SignalSettings(
     SignalSpec("load", SignalKind.NUMBER, "kg"),
-    (Condition("OVERLOAD", Comparison.ABOVE, 1500.0, for_=seconds(3)),),
+    (Bound("OVERLOAD", Comparison.ABOVE, 1500.0, for_=seconds(3)),),
 )
 
 
@@ -210,8 +210,8 @@ def test_a_weak_signal_after_a_connected_one_has_its_time_even_while_the_old_err
 
 
 def test_an_error_that_is_on_ends_at_the_clear_threshold() -> None:
-    low = Condition("BATTERY_LOW", Comparison.BELOW, 0.5, clear_threshold=0.55)
-    battery = Story(replace(DEFAULTS["battery_level"], conditions=(low,)))
+    low = Bound("BATTERY_LOW", Comparison.BELOW, 0.5, clear_threshold=0.55)
+    battery = Story(replace(DEFAULTS["battery_level"], bounds=(low,)))
     errors = []
     for at_s, value in enumerate((0.52, 0.49, 0.54, 0.55, 0.52)):
         battery.read(at_s, value)
@@ -221,8 +221,8 @@ def test_an_error_that_is_on_ends_at_the_clear_threshold() -> None:
 
 
 def test_the_time_begins_again_between_the_thresholds_only_while_the_error_is_off() -> None:
-    lost = Condition("GPS_LOST", Comparison.ABOVE, 200.0, clear_threshold=150.0, for_=seconds(15))
-    gps = Story(replace(DEFAULTS["gps_accuracy"], conditions=(lost,)))
+    lost = Bound("GPS_LOST", Comparison.ABOVE, 200.0, clear_threshold=150.0, for_=seconds(15))
+    gps = Story(replace(DEFAULTS["gps_accuracy"], bounds=(lost,)))
     gps.read(0, 201.0)
     gps.read(10, 180.0)
     gps.read(11, 201.0)
@@ -235,8 +235,8 @@ def test_the_time_begins_again_between_the_thresholds_only_while_the_error_is_of
 
 def test_a_graver_error_of_the_same_signal_has_its_own_time() -> None:
     spec = SignalSpec("motor_temperature", SignalKind.NUMBER)
-    severe = Condition("MOTOR_BURNING", Comparison.ABOVE, 90.0, for_=seconds(5), key="burning")
-    mild = Condition("MOTOR_HOT", Comparison.ABOVE, 70.0, key="hot")
+    severe = Bound("MOTOR_BURNING", Comparison.ABOVE, 90.0, for_=seconds(5), key="burning")
+    mild = Bound("MOTOR_HOT", Comparison.ABOVE, 70.0, key="hot")
     motor = Story(SignalSettings(spec, (severe, mild)))
     motor.read(0, 20.0)
     motor.read(1, 95.0)
@@ -249,8 +249,8 @@ def test_a_graver_error_of_the_same_signal_has_its_own_time() -> None:
 
 
 def test_an_engaged_stop_is_not_delayed_by_what_delays_its_readings() -> None:
-    pressed = Condition("ESTOP", Comparison.EQUAL, threshold=True, for_=seconds(1))
-    stop = Story(replace(DEFAULTS["estop"], conditions=(pressed,)))
+    pressed = Bound("ESTOP", Comparison.EQUAL, threshold=True, for_=seconds(1))
+    stop = Story(replace(DEFAULTS["estop"], bounds=(pressed,)))
     stop.read(0, False)
     stop.read(0.5, True)
     assert stop.monitor.view.error is None
@@ -260,8 +260,8 @@ def test_an_engaged_stop_is_not_delayed_by_what_delays_its_readings() -> None:
 
 
 def test_readings_go_on_being_judged_while_the_stop_is_engaged() -> None:
-    pressed = Condition("ESTOP", Comparison.EQUAL, threshold=True, for_=seconds(1))
-    stop = Story(replace(DEFAULTS["estop"], conditions=(pressed,)))
+    pressed = Bound("ESTOP", Comparison.EQUAL, threshold=True, for_=seconds(1))
+    stop = Story(replace(DEFAULTS["estop"], bounds=(pressed,)))
     stop.monitor.set_engaged(START, START)
     stop.read(9, False)
     stop.monitor.set_engaged(None, START + seconds(9.1))

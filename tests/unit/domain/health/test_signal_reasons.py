@@ -12,8 +12,8 @@ from domain.health.signal_reasons import (
     value_reason,
 )
 from domain.health.signals import (
+    Bound,
     Comparison,
-    Condition,
     Recovery,
     SignalKind,
     SignalSettings,
@@ -34,7 +34,7 @@ class Judged(NamedTuple):
     value: SignalValue
     words: str
     bad_for_s: float = 0.0
-    condition: int = 0
+    bound: int = 0
 
 
 @table(
@@ -66,9 +66,9 @@ class Judged(NamedTuple):
             bad_for_s=10,
             words="signal strength is NOT_CONNECTED, no CONNECTED reading for 10 s",
         ),
-        "a weak connection, by its second condition": Judged(
+        "a weak connection, by its second bound": Judged(
             signal="signal_strength",
-            condition=1,
+            bound=1,
             value="LOW_SIGNAL",
             bad_for_s=10,
             words="signal strength is LOW_SIGNAL, no CONNECTED reading for 10 s",
@@ -77,26 +77,26 @@ class Judged(NamedTuple):
 )
 def test_a_value_is_told_with_its_limit_and_unit(row: Judged) -> None:
     settings = DEFAULTS[row.signal]
-    condition = settings.conditions[row.condition]
+    bound = settings.bounds[row.bound]
 
-    assert value_reason(settings, condition, row.value, seconds(row.bad_for_s)) == row.words
+    assert value_reason(settings, bound, row.value, seconds(row.bad_for_s)) == row.words
 
 
 def test_a_value_between_the_two_thresholds_is_told_with_the_one_it_has_to_reach() -> None:
-    condition = Condition("BATTERY_LOW", Comparison.BELOW, 0.5, clear_threshold=0.55)
-    settings = SignalSettings(DEFAULTS["battery_level"].spec, (condition,))
+    bound = Bound("BATTERY_LOW", Comparison.BELOW, 0.5, clear_threshold=0.55)
+    settings = SignalSettings(DEFAULTS["battery_level"].spec, (bound,))
 
-    assert value_reason(settings, condition, 0.52, 0) == "battery 52 % is still below 55 %"
+    assert value_reason(settings, bound, 0.52, 0) == "battery 52 % is still below 55 %"
 
 
 @pytest.mark.parametrize(
     ("for_s", "words"), [(0, "bumper is true"), (3, "bumper has been true for 3 s")]
 )
 def test_a_declared_boolean_is_told_by_its_name(for_s: float, words: str) -> None:
-    condition = Condition("BUMPED", Comparison.EQUAL, threshold=True, for_=seconds(for_s))
-    settings = SignalSettings(SignalSpec("bumper", SignalKind.BOOLEAN), (condition,))
+    bound = Bound("BUMPED", Comparison.EQUAL, threshold=True, for_=seconds(for_s))
+    settings = SignalSettings(SignalSpec("bumper", SignalKind.BOOLEAN), (bound,))
 
-    assert value_reason(settings, condition, True, condition.for_) == words
+    assert value_reason(settings, bound, True, bound.for_) == words
 
 
 @pytest.mark.parametrize(
@@ -111,29 +111,27 @@ def test_a_declared_boolean_is_told_by_its_name(for_s: float, words: str) -> Non
     ],
 )
 def test_a_time_is_never_told_longer_than_it_was(for_s: float, counted_s: float, time: str) -> None:
-    condition = Condition("OVERLOAD", Comparison.ABOVE, 1500.0, for_=seconds(for_s))
-    settings = SignalSettings(SignalSpec("load", SignalKind.NUMBER, "kg"), (condition,))
-    told = value_reason(settings, condition, 1800.0, seconds(counted_s))
+    bound = Bound("OVERLOAD", Comparison.ABOVE, 1500.0, for_=seconds(for_s))
+    settings = SignalSettings(SignalSpec("load", SignalKind.NUMBER, "kg"), (bound,))
+    told = value_reason(settings, bound, 1800.0, seconds(counted_s))
 
     assert told == f"load 1800 kg has been above 1500 kg for {time}"
 
 
 def test_no_time_is_told_of_an_error_that_did_not_have_to_wait() -> None:
-    condition = Condition("SLOW", Comparison.EQUAL, "LOW", for_=seconds(20))
+    bound = Bound("SLOW", Comparison.EQUAL, "LOW", for_=seconds(20))
     spec = SignalSpec("radio", SignalKind.ENUMERATION, members=("GOOD", "LOW"))
-    settings = SignalSettings(spec, (condition,))
+    settings = SignalSettings(spec, (bound,))
 
-    assert value_reason(settings, condition, "LOW", seconds(0.05)) == "radio is LOW"
-    assert (
-        value_reason(settings, condition, "LOW", seconds(20)) == "radio is LOW, not GOOD for 20 s"
-    )
+    assert value_reason(settings, bound, "LOW", seconds(0.05)) == "radio is LOW"
+    assert value_reason(settings, bound, "LOW", seconds(20)) == "radio is LOW, not GOOD for 20 s"
 
 
 def test_an_enumeration_that_is_an_error_at_once_is_told_without_a_time() -> None:
-    condition = Condition("GEAR_LOST", Comparison.EQUAL, "N")
+    bound = Bound("GEAR_LOST", Comparison.EQUAL, "N")
     spec = SignalSpec("gear", SignalKind.ENUMERATION, members=("D", "N"))
 
-    assert value_reason(SignalSettings(spec, (condition,)), condition, "N", 0) == "gear is N"
+    assert value_reason(SignalSettings(spec, (bound,)), bound, "N", 0) == "gear is N"
 
 
 @pytest.mark.parametrize(
@@ -196,27 +194,27 @@ def test_an_error_without_a_cause_is_told_with_what_keeps_it_on(
 def test_a_value_has_as_many_digits_as_tell_it_from_its_limit(value: float, words: str) -> None:
     settings = DEFAULTS["battery_level"]
 
-    assert value_reason(settings, settings.conditions[0], value, 0) == words
+    assert value_reason(settings, settings.bounds[0], value, 0) == words
 
 
 def test_a_number_without_a_unit_is_told_without_a_space() -> None:
-    condition = Condition("TOO_MANY", Comparison.ABOVE, 3.0)
-    settings = SignalSettings(SignalSpec("people", SignalKind.NUMBER), (condition,))
+    bound = Bound("TOO_MANY", Comparison.ABOVE, 3.0)
+    settings = SignalSettings(SignalSpec("people", SignalKind.NUMBER), (bound,))
 
-    assert value_reason(settings, condition, 7.0, 0) == "people 7 is above 3"
+    assert value_reason(settings, bound, 7.0, 0) == "people 7 is above 3"
 
 
 def test_a_value_beyond_the_threshold_is_told_with_that_and_not_with_the_clear_threshold() -> None:
-    condition = Condition("BATTERY_LOW", Comparison.BELOW, 0.5, clear_threshold=0.55)
-    settings = SignalSettings(DEFAULTS["battery_level"].spec, (condition,))
+    bound = Bound("BATTERY_LOW", Comparison.BELOW, 0.5, clear_threshold=0.55)
+    settings = SignalSettings(DEFAULTS["battery_level"].spec, (bound,))
 
-    assert value_reason(settings, condition, 0.42, 0) == "battery 42 % is below 50 %"
+    assert value_reason(settings, bound, 0.42, 0) == "battery 42 % is below 50 %"
 
 
 def test_all_good_members_are_told() -> None:
-    condition = Condition("GEAR_LOST", Comparison.EQUAL, "N", for_=seconds(3))
+    bound = Bound("GEAR_LOST", Comparison.EQUAL, "N", for_=seconds(3))
     spec = SignalSpec("gear", SignalKind.ENUMERATION, members=("D", "R", "N"))
-    words = value_reason(SignalSettings(spec, (condition,)), condition, "N", seconds(3))
+    words = value_reason(SignalSettings(spec, (bound,)), bound, "N", seconds(3))
 
     assert words == "gear is N, not D or R for 3 s"
 

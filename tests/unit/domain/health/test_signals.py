@@ -8,8 +8,8 @@ from hypothesis import strategies as st
 from domain.errors import InvalidValueError
 from domain.health.signals import (
     DECLARED_BIT,
+    Bound,
     Comparison,
-    Condition,
     Recovery,
     SignalKind,
     SignalSettings,
@@ -38,7 +38,7 @@ def test_the_defaults_are_the_table_of_smart_polaris() -> None:
     rows = [
         (item.spec.name, c.error, c.bit, c.comparison.value, c.threshold, c.for_ / seconds(1))
         for item in default_signals()
-        for c in item.conditions
+        for c in item.bounds
     ]
 
     assert sorted(rows, key=lambda row: row[2]) == TABLE
@@ -110,7 +110,7 @@ def test_a_refusal_does_not_repeat_a_page_of_text() -> None:
 
 
 VOLTAGE = SignalSpec("voltage", SignalKind.NUMBER, "V", minimum=0.0, maximum=60.0)
-LOW = Condition("VOLTAGE_LOW", Comparison.BELOW, 20.0)
+LOW = Bound("VOLTAGE_LOW", Comparison.BELOW, 20.0)
 
 
 @text_table("""
@@ -123,11 +123,11 @@ LOW = Condition("VOLTAGE_LOW", Comparison.BELOW, 20.0)
 def test_an_error_that_is_on_ends_only_at_the_clear_threshold(
     voltage: str, an_error_that_is_off: str, an_error_that_is_on: str
 ) -> None:
-    condition = Condition("VOLTAGE_LOW", Comparison.BELOW, 20.0, clear_threshold=22.0)
+    bound = Bound("VOLTAGE_LOW", Comparison.BELOW, 20.0, clear_threshold=22.0)
     begins, stays = an_error_that_is_off == "begins", an_error_that_is_on == "stays on"
 
-    assert condition.is_met_by(float(voltage)) is begins
-    assert condition.is_met_by(float(voltage), error_is_on=True) is stays
+    assert bound.is_met_by(float(voltage)) is begins
+    assert bound.is_met_by(float(voltage), error_is_on=True) is stays
 
 
 def test_a_declared_error_has_the_bit_that_all_declared_ones_share() -> None:
@@ -135,7 +135,7 @@ def test_a_declared_error_has_the_bit_that_all_declared_ones_share() -> None:
 
 
 def test_worse_is_judged_on_both_sides_where_both_are_errors() -> None:
-    high = Condition("VOLTAGE_HIGH", Comparison.ABOVE, 30.0, key="high")
+    high = Bound("VOLTAGE_HIGH", Comparison.ABOVE, 30.0, key="high")
     settings = SignalSettings(VOLTAGE, (LOW, high))
 
     assert settings.is_worse(31.0, 25.0)
@@ -171,12 +171,12 @@ def test_settings_can_be_shown_as_plain_values(signal: str) -> None:
     assert DEFAULTS[signal].facts() == FACTS[signal]
 
 
-def declare(*conditions: Condition, spec: SignalSpec = VOLTAGE) -> SignalSettings:
-    return SignalSettings(spec, conditions)
+def declare(*bounds: Bound, spec: SignalSpec = VOLTAGE) -> SignalSettings:
+    return SignalSettings(spec, bounds)
 
 
-def low(threshold: SignalValue = 20.0, clear: float | None = None, for_: int = 0) -> Condition:
-    return Condition("LOW", Comparison.BELOW, threshold, clear, for_)
+def low(threshold: SignalValue = 20.0, clear: float | None = None, for_: int = 0) -> Bound:
+    return Bound("LOW", Comparison.BELOW, threshold, clear, for_)
 
 
 RELAY = SignalSpec("relay", SignalKind.BOOLEAN)
@@ -188,26 +188,26 @@ UNFIT = [
     (VOLTAGE, low(clear=61.0), "voltage/clear_threshold"),
     (VOLTAGE, low(clear=19.0), "voltage/clear_threshold"),
     (VOLTAGE, low(for_=-1), "voltage/for_s"),
-    (VOLTAGE, Condition("ODD", Comparison.EQUAL, 20.0), "voltage/threshold"),
-    (RELAY, Condition("ODD", Comparison.ABOVE, threshold=True), "relay/threshold"),
-    (RELAY, Condition("ODD", Comparison.EQUAL, 1.0), "relay/threshold"),
-    (RELAY, Condition("ODD", Comparison.EQUAL, threshold=True, clear_threshold=0.5), "relay/clear"),
-    (DEFAULTS["signal_strength"].spec, Condition("ODD", Comparison.EQUAL, "GONE"), "strength/thr"),
+    (VOLTAGE, Bound("ODD", Comparison.EQUAL, 20.0), "voltage/threshold"),
+    (RELAY, Bound("ODD", Comparison.ABOVE, threshold=True), "relay/threshold"),
+    (RELAY, Bound("ODD", Comparison.EQUAL, 1.0), "relay/threshold"),
+    (RELAY, Bound("ODD", Comparison.EQUAL, threshold=True, clear_threshold=0.5), "relay/clear"),
+    (DEFAULTS["signal_strength"].spec, Bound("ODD", Comparison.EQUAL, "GONE"), "strength/thr"),
 ]
 
 
-@pytest.mark.parametrize(("spec", "condition", "pointer"), UNFIT)
+@pytest.mark.parametrize(("spec", "bound", "pointer"), UNFIT)
 def test_a_condition_that_does_not_fit_its_signal_is_refused(
-    spec: SignalSpec, condition: Condition, pointer: str
+    spec: SignalSpec, bound: Bound, pointer: str
 ) -> None:
     with pytest.raises(InvalidValueError) as refusal:
-        declare(condition, spec=spec)
+        declare(bound, spec=spec)
 
     assert pointer in refusal.value.pointer
 
 
 @pytest.mark.parametrize(
-    ("spec", "condition", "message"),
+    ("spec", "bound", "message"),
     [
         (VOLTAGE, low(for_=-1), "for_s of voltage must not be negative"),
         (
@@ -222,18 +222,18 @@ def test_a_condition_that_does_not_fit_its_signal_is_refused(
         ),
         (
             RELAY,
-            Condition("ODD", Comparison.EQUAL, threshold=True, clear_threshold=0.5),
+            Bound("ODD", Comparison.EQUAL, threshold=True, clear_threshold=0.5),
             "clear_threshold of relay is for numbers only",
         ),
-        (VOLTAGE, Condition("ODD", Comparison.EQUAL, 20.0), KIND.format("voltage")),
-        (RELAY, Condition("ODD", Comparison.ABOVE, threshold=True), KIND.format("relay")),
+        (VOLTAGE, Bound("ODD", Comparison.EQUAL, 20.0), KIND.format("voltage")),
+        (RELAY, Bound("ODD", Comparison.ABOVE, threshold=True), KIND.format("relay")),
     ],
 )
 def test_a_condition_that_does_not_fit_is_refused_in_words(
-    spec: SignalSpec, condition: Condition, message: str
+    spec: SignalSpec, bound: Bound, message: str
 ) -> None:
     with pytest.raises(InvalidValueError) as refusal:
-        declare(condition, spec=spec)
+        declare(bound, spec=spec)
 
     assert refusal.value.message == message
 
@@ -256,9 +256,9 @@ def test_a_time_is_not_negative(stale_after: int, min_on: int, pointer: str) -> 
 
 def test_two_conditions_are_told_apart_by_their_keys() -> None:
     with pytest.raises(InvalidValueError) as refusal:
-        declare(low(), Condition("HIGH", Comparison.ABOVE, 30.0))
+        declare(low(), Bound("HIGH", Comparison.ABOVE, 30.0))
 
-    assert refusal.value.message == "key of voltage must differ between conditions"
+    assert refusal.value.message == "key of voltage must differ between bounds"
     assert refusal.value.pointer == "voltage/key"
 
 
@@ -331,7 +331,7 @@ def test_of_a_number_without_conditions_no_value_is_worse() -> None:
 
 
 def test_a_value_equal_to_that_of_the_condition_meets_it() -> None:
-    lost = DEFAULTS["signal_strength"].conditions[0]
+    lost = DEFAULTS["signal_strength"].bounds[0]
 
     assert lost.is_met_by("NOT_CONNECTED")
     assert not lost.is_met_by("CONNECTED")

@@ -12,8 +12,8 @@ from domain.errors import (
 )
 from domain.health.signals import (
     STALE_DATA,
+    Bound,
     Comparison,
-    Condition,
     Recovery,
     SignalKind,
     SignalSettings,
@@ -332,8 +332,8 @@ def test_a_signal_that_does_not_exist_cannot_be_seen(robot: Robot) -> None:
 
 
 def bumper(name: str = "bumper", error: str = "BUMPED") -> SignalSettings:
-    condition = Condition(error, Comparison.EQUAL, threshold=True)
-    return SignalSettings(SignalSpec(name, SignalKind.BOOLEAN), (condition,), stale_after=0)
+    bound = Bound(error, Comparison.EQUAL, threshold=True)
+    return SignalSettings(SignalSpec(name, SignalKind.BOOLEAN), (bound,), stale_after=0)
 
 
 def test_declared_errors_share_a_bit_and_keep_their_names() -> None:

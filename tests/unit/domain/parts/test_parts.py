@@ -10,7 +10,7 @@ from domain.lifecycle import LifecycleState
 from domain.outbox import Outbox
 from domain.parts.parts import LOOKS_AT_ONCE, Parts
 from domain.parts.system_model import NodeModel, SmhModel, SystemModel
-from domain.snapshot import EffectiveTarget, ParameterView
+from domain.snapshot import Because, EffectiveTarget, ParameterView
 from domain.state_and_mode import DEFAULT_MODE, ModeName, PartName, StateAndMode
 from tests.support.big_model import big_model
 from tests.support.models import ACTUATION, ARM, BASE, active, inactive, nested_model
@@ -64,7 +64,7 @@ def test_what_is_asked_is_what_is_pursued(robot: Robot) -> None:
     robot.ask(BASE, active("FAST"))
     view = robot.parts.view(BASE)
     assert view.target == active("FAST")
-    assert view.effective_target == EffectiveTarget(S.ACTIVE, ModeName("FAST"), "requested")
+    assert view.effective_target == EffectiveTarget(S.ACTIVE, ModeName("FAST"), Because.REQUESTED)
 
 
 def test_a_part_that_nothing_was_asked_of_has_no_target(robot: Robot) -> None:
@@ -362,13 +362,27 @@ class LargeRobot(Robot):
         return [data["part"] for data in _told(tuple(self.told), "part.deviation_began")]
 
 
-def test_the_deviations_of_a_large_robot_are_told_in_several_turns_and_in_order() -> None:
+def test_what_a_request_changes_of_a_large_robot_is_told_in_later_turns_and_in_order() -> None:
     robot = LargeRobot()
     robot.ask_all(now=7)
-    assert len(robot.began()) == LOOKS_AT_ONCE
+    assert not robot.began()
     while robot.parts.has_more:
-        assert len(robot.go_on(now=9)) <= LOOKS_AT_ONCE
+        robot.go_on(now=9)
+        assert len(robot.began()) % LOOKS_AT_ONCE == 0 or not robot.parts.has_more
     assert robot.began() == sorted(BIG.parts)
+
+
+def test_the_state_of_a_system_is_told_before_its_deviation() -> None:
+    robot = LargeRobot()
+    for node in BIG.nodes:
+        robot.report(NodeReport(node, state=S.INACTIVE), now=1)
+    robot.ask_all(now=7)
+    while robot.parts.has_more:
+        robot.go_on(now=9)
+    assert [event.kind for event in robot.told[1:] if event.data.get("part") == ROOT] == [
+        "part.actual_changed",
+        "part.deviation_began",
+    ]
 
 
 def test_deviations_that_are_told_later_began_with_the_request() -> None:

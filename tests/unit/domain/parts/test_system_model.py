@@ -310,3 +310,13 @@ def test_a_mode_has_its_own_settings_else_those_of_every_mode_else_the_defaults(
     assert robot.settings_of(PartName("base"), DEFAULT_MODE) is every
     assert robot.settings_of(PartName("base"), None) is every
     assert robot.settings_of(PartName("arm"), FAST) == ModeSettings()
+
+
+def test_settings_that_lead_back_to_themselves_make_no_model() -> None:
+    parts = {PartName("base"): node("base")}
+    settings = {PartName("base"): {DEFAULT_MODE: ModeSettings(fallback=DEFAULT_MODE)}}
+
+    with pytest.raises(InvalidModelError) as caught:
+        SmhModel(parts, {}, settings)
+
+    assert [finding.code for finding in caught.value.findings] == ["FALLBACK_CIRCLE"]

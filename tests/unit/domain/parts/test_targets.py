@@ -1,7 +1,7 @@
 from domain.lifecycle import LifecycleState
 from domain.parts.mode_inference import ModeInference
 from domain.parts.targets import Targets
-from domain.snapshot import EffectiveTarget
+from domain.snapshot import Because, EffectiveTarget
 from domain.state_and_mode import ModeName
 from tests.support.models import ACTUATION, ARM, BASE, active, actuation_model
 
@@ -20,7 +20,7 @@ def test_what_somebody_asks_is_pursued_because_it_was_requested() -> None:
     changed = targets.ask({ACTUATION: active("PERFORMANCE"), BASE: active("FAST")})
 
     assert targets.asked(BASE) == active("FAST")
-    pursued = EffectiveTarget(LifecycleState.ACTIVE, ModeName("FAST"), "requested")
+    pursued = EffectiveTarget(LifecycleState.ACTIVE, ModeName("FAST"), Because.REQUESTED)
     assert targets.effective(BASE) == pursued
     assert inference.target(BASE) == active("FAST")
     assert targets.asked(ARM) is None

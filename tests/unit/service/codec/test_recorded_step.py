@@ -3,6 +3,7 @@ import pytest
 from domain.identifiers import ChangeId, TaskId
 from domain.inputs import TimePassed
 from domain.outbox import NOTHING, Outputs
+from domain.snapshot import ErrorKey
 from domain.state_and_mode import PartName
 from service.codec.recorded_step import recorded_step
 
@@ -24,6 +25,8 @@ def test_each_changed_view_has_its_own_checksum() -> None:
         Outputs(parts=frozenset({ARM})),
         Outputs(signals=frozenset({"arm"})),
         Outputs(parts=frozenset({ARM, BASE})),
+        Outputs(errors=frozenset({ErrorKey(ARM, "DEVIATES")})),
+        Outputs(errors=frozenset({ErrorKey(None, "ESTOP")})),
         Outputs(system_state=True),
         Outputs(task_changed=True),
         Outputs(vehicle_changed=True),

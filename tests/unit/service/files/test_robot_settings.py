@@ -93,27 +93,25 @@ def test_a_further_signal_can_be_declared_with_an_error_of_its_own() -> None:
             }
         }
     )["motor_current"]
-    (condition,) = motor.conditions
+    (bound,) = motor.bounds
 
     assert (motor.spec.label, motor.spec.unit) == ("motor current", "A")
-    assert (condition.error, condition.bit) == ("MOTOR_OVERLOAD", 128)
-    assert condition.is_met_by(251.0)
-    assert not condition.is_met_by(250.0)
-    assert condition.is_met_by(230.0, error_is_on=True)
+    assert (bound.error, bound.bit) == ("MOTOR_OVERLOAD", 128)
+    assert bound.is_met_by(251.0)
+    assert not bound.is_met_by(250.0)
+    assert bound.is_met_by(230.0, error_is_on=True)
     assert motor.facts()["for_s"] == 3.0
 
 
 def test_the_error_of_a_declared_signal_may_be_at_its_low_end() -> None:
-    (condition,) = signals({"oil_pressure": {"below": 1.2, "error": "OIL_LOW"}})[
-        "oil_pressure"
-    ].conditions
+    (bound,) = signals({"oil_pressure": {"below": 1.2, "error": "OIL_LOW"}})["oil_pressure"].bounds
 
-    assert condition.is_met_by(1.1)
-    assert not condition.is_met_by(1.2)
+    assert bound.is_met_by(1.1)
+    assert not bound.is_met_by(1.2)
 
 
 def test_a_declared_signal_may_be_there_to_be_looked_at() -> None:
-    assert signals({"fuel": {"unit": "l"}})["fuel"].conditions == ()
+    assert signals({"fuel": {"unit": "l"}})["fuel"].bounds == ()
 
 
 @pytest.mark.parametrize(

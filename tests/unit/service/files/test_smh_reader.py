@@ -5,6 +5,7 @@ from domain.lifecycle import LifecycleState
 from domain.state_and_mode import DEFAULT_MODE, PartName, StateAndMode
 from service.files.parameter_file import read_parameter_file
 from service.files.smh_reader import SmhParts, read_parts
+from service.files.source_text import SourceText
 from service.files.yaml_tree import read_tree
 
 NODES = """
@@ -22,7 +23,8 @@ NODE_LINES = NODES.count("\n")
 
 
 def read(text: str) -> SmhParts:
-    return read_parts(read_parameter_file(read_tree(text).documents).nodes)
+    nodes = read_parameter_file(read_tree(text).documents).nodes
+    return read_parts(nodes, SourceText(text))
 
 
 def system(*lines: str) -> SmhParts:

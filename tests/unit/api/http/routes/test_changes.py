@@ -16,6 +16,9 @@ CHANGE_FIELDS = {
     "started_at",
     "ended_at",
     "cause",
+    "stage",
+    "deadline_at",
+    "rollback",
 }
 
 
@@ -35,6 +38,10 @@ async def test_a_change_is_shown_with_its_steps_and_their_times(robot: HttpRobot
             "started_at": "2026-01-01T00:00:00.000Z",
             "ended_at": "2026-01-01T00:00:00.300Z",
             "error": None,
+            "stage": 0,
+            "after": [],
+            "expected_s": 0.3,
+            "rollback": False,
         }
     ]
     assert change["ended_at"] == "2026-01-01T00:00:00.300Z"

@@ -160,6 +160,8 @@ async def test_a_mode_with_a_node_that_is_gone_names_the_node_and_can_be_asked_f
         "since_at",
         "root_cause",
         "refuses",
+        "causes",
+        "condition",
     }
     assert blocker["code"].startswith("UNREACHABLE")
     assert blocker["path"] == ["actuation", "manipulator"]
@@ -296,7 +298,8 @@ async def test_a_dry_run_tells_the_steps_and_changes_nothing(robot: HttpRobot) -
 
     plan = answer.json()
     assert answer.status_code == 200
-    assert set(plan) == {"part", "request", "steps"}
+    assert set(plan) == {"part", "request", "steps", "stages", "expected_s"}
+    assert (plan["stages"], plan["expected_s"]) == (1, None)
     assert {(step["node"], step["action"]) for step in plan["steps"]} == {
         (node, action)
         for node in ("drive_base", "manipulator")

@@ -41,6 +41,17 @@ def test_a_blocker_keeps_the_type_of_its_value() -> None:
     assert shown.since_at == "2026-01-01T00:00:01.000Z"
 
 
+def test_a_blocker_shows_the_tree_of_its_causes() -> None:
+    leaf = Blocker("UNKNOWN_VALUE", "gps was never seen", ("gps",), condition="gps < 1")
+    root = Blocker("CONDITION", "not met", (), causes=(leaf,), condition="gps < 1 and estop")
+
+    shown = BlockerJson.of(root, CLOCK)
+
+    assert shown.condition == "gps < 1 and estop"
+    (cause,) = shown.causes
+    assert (cause.code, cause.condition, cause.causes) == ("UNKNOWN_VALUE", "gps < 1", [])
+
+
 def test_a_finding_without_a_place_says_so() -> None:
     shown = FindingJson.of(Finding("warning", "ODD", "odd"))
 

@@ -5,7 +5,7 @@ import pytest
 from api.http.schemas.parts import ModeJson, ParameterRowJson, PartJson, StateJson, type_of
 from domain.lifecycle import LifecycleState, Transition
 from domain.parameters import ParameterValue
-from domain.snapshot import Actual, EffectiveTarget, ParameterView, PartView
+from domain.snapshot import Actual, Because, EffectiveTarget, ParameterView, PartView
 from domain.state_and_mode import ModeName, PartName, StateAndMode
 from domain.timebase import seconds
 from tests.support.manual_clock import ManualClock
@@ -16,7 +16,9 @@ VIEW = PartView(
     kind="node",
     parts=(),
     target=FAST,
-    effective_target=EffectiveTarget(LifecycleState.ACTIVE, ModeName("SLOW"), "rule slow_down"),
+    effective_target=EffectiveTarget(
+        LifecycleState.ACTIVE, ModeName("SLOW"), Because.RULE, "slow_down"
+    ),
     actual=Actual(LifecycleState.ACTIVE, ModeName("SLOW"), mode_inferred=True),
     converged=False,
     deviation_since=seconds(2),
@@ -30,7 +32,7 @@ def test_a_part_tells_what_was_asked_what_is_pursued_and_what_is() -> None:
     shown = PartJson.of(VIEW, ManualClock())
 
     assert (shown.target and shown.target.mode) == "FAST"
-    assert (shown.effective_target and shown.effective_target.because) == "rule slow_down"
+    assert (shown.effective_target and shown.effective_target.because) == Because.RULE, "slow_down"
     assert shown.actual.mode == "SLOW"
     assert shown.deviation_since_at == "2026-01-01T00:00:02.000Z"
     assert shown.deviation_reason == "drive_base is active.SLOW, target active.FAST"

@@ -6,6 +6,7 @@ from pydantic import ValidationError
 from api.http.schemas.simulation import (
     MAX_DEPTH,
     ChangeStep,
+    ConditionStep,
     ExpectStep,
     NodeStep,
     ReadingStep,
@@ -51,6 +52,7 @@ def test_what_is_left_out_is_usual() -> None:
         ({"vehicle": "silent"}, VehicleStep),
         ({"request": {"method": "GET", "path": "/tasks"}}, RequestStep),
         ({"expect": {"task": None}}, ExpectStep),
+        ({"expect": "battery_level >= 0.3"}, ConditionStep),
     ],
 )
 def test_a_step_is_told_by_what_it_names(step: dict[str, Any], kind: type) -> None:
@@ -156,6 +158,19 @@ def test_readings_are_counted_with_all_their_repetitions() -> None:
 )
 def test_repetitions_go_up_to_and_with_their_end(step: dict[str, Any], count: int) -> None:
     assert ReadingStep.model_validate({"t_s": 0, **READING, **step}).count(10) == count
+
+
+@pytest.mark.parametrize(
+    ("text", "told"),
+    [
+        ("battery_level >=", "column 17: expected a name or a value, found the end"),
+        ("", "at least 1 character"),
+        ("x" * 501, "at most 500 characters"),
+    ],
+)
+def test_a_condition_that_cannot_be_read_is_invalid(text: str, told: str) -> None:
+    with pytest.raises(ValidationError, match=told):
+        body({"expect": text})
 
 
 @pytest.mark.parametrize(

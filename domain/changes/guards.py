@@ -1,0 +1,129 @@
+"""The guards of modes: what must be true for a part to enter a mode, and to stay in it."""
+
+from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import replace
+
+from domain.conditions.condition import Condition
+from domain.conditions.watched import WatchedConditions
+from domain.findings import Blocker
+from domain.lifecycle import LifecycleState
+from domain.parts.mode_settings import ModeSettings
+from domain.parts.system_model import SmhModel
+from domain.state_and_mode import ModeName, PartName, StateAndMode
+from domain.timebase import Instant
+
+INVARIANT = "INVARIANT"
+
+
+class Guards:
+    """Judges guards by the facts of now: a guard holds only when it is true."""
+
+    def __init__(self, model: SmhModel, watched: WatchedConditions, now: Instant) -> None:
+        """Watch the guards of all modes.
+
+        Args:
+            model: Its modes have the guards.
+            watched: Keeps conditions up to date.
+            now: The current time.
+        """
+        self._model = model
+        self._watched = watched
+        settings = [each for own in model.mode_settings.values() for each in own.values()]
+        watched.watch((g for each in settings for g in (*each.requires, *each.invariants)), now)
+
+    def of(self, targets: Mapping[PartName, StateAndMode]) -> tuple[PartName, ...]:
+        """Return the parts whose target mode has guards, in the order of the model file."""
+        return tuple(
+            part
+            for part in self._model.mode_settings
+            if (target := targets.get(part)) is not None and _guarded(self._settings(part, target))
+        )
+
+    def blockers(
+        self, parts: Iterable[PartName], targets: Mapping[PartName, StateAndMode]
+    ) -> Iterator[Blocker]:
+        """Return why parts cannot enter their target modes; their paths begin with the part.
+
+        Args:
+            parts: Parts that have a target.
+            targets: State and mode of each.
+        """
+        for part in parts:
+            settings = self._settings(part, targets[part])
+            for condition in settings.requires:
+                for blocker in self._watched.explain(condition):
+                    yield replace(blocker, path=(part, *blocker.path))
+            for condition in settings.invariants:
+                yield from self._broken_invariant(part, targets[part].mode, condition)
+
+    def blockers_of_step(
+        self, parts: Iterable[PartName], targets: Mapping[PartName, StateAndMode]
+    ) -> Iterator[Blocker]:
+        """Return why parts cannot go on to their target modes: of invariants, without grace."""
+        for part in parts:
+            has_grace = self._settings(part, targets[part]).grace > 0
+            for blocker in self.blockers((part,), targets):
+                if not (has_grace and blocker.code == INVARIANT):
+                    yield blocker
+
+    def can_stay(self, part: PartName, mode: ModeName) -> bool:
+        """Tell whether all invariants of a mode hold."""
+        invariants = self._model.settings_of(part, mode).invariants
+        return not any(self._watched.explain(condition) for condition in invariants)
+
+    @property
+    def revision(self) -> int:
+        """Return a number that rises whenever a guard begins or ceases to hold."""
+        return self._watched.revision
+
+    def broken_for_too_long(
+        self, parts: Iterable[PartName], targets: Mapping[PartName, StateAndMode], now: Instant
+    ) -> tuple[Blocker | None, Instant | None]:
+        """Look for an invariant of the target modes that is broken for longer than its grace.
+
+        Returns:
+            Why one is; None: none is. And when the next one will be, if nothing changes.
+        """
+        due: Instant | None = None
+        for part in parts:
+            settings = self._settings(part, targets[part])
+            for condition in settings.invariants:
+                since = self._watched.broken_since(condition)
+                if since is None:
+                    continue
+                at = since + settings.grace
+                if at > now:
+                    due = at if due is None else min(due, at)
+                    continue
+                for blocker in self._broken_invariant(part, targets[part].mode, condition):
+                    return blocker, None
+        return None, due
+
+    def _settings(self, part: PartName, target: StateAndMode) -> ModeSettings:
+        """Return the settings of the mode that a target enters; of none, the defaults."""
+        if target.state is not LifecycleState.ACTIVE:
+            return _UNGUARDED
+        return self._model.settings_of(part, target.mode)
+
+    def _broken_invariant(
+        self, part: PartName, mode: ModeName | None, condition: Condition
+    ) -> Iterator[Blocker]:
+        causes = self._watched.explain(condition)
+        if causes:
+            message = f"{part} cannot stay {mode or 'active'}: {causes[0].message}"
+            yield Blocker(
+                INVARIANT,
+                message,
+                (part,),
+                since=causes[0].since,
+                root_cause=False,
+                causes=causes,
+                condition=condition.text,
+            )
+
+
+_UNGUARDED = ModeSettings()
+
+
+def _guarded(settings: ModeSettings) -> bool:
+    return bool(settings.requires or settings.invariants)

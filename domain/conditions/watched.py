@@ -1,0 +1,143 @@
+"""Conditions that are kept up to date: a change touches only those that name what changed."""
+
+from collections.abc import Collection, Iterable
+from dataclasses import dataclass, field
+
+from domain.conditions.condition import Condition
+from domain.conditions.evaluation import Truth, compare, truth_of
+from domain.conditions.explanation import explain
+from domain.conditions.facts import Facts
+from domain.conditions.tree import Comparison, Subject, Topic, comparisons
+from domain.findings import Blocker
+from domain.timebase import Instant
+
+
+@dataclass(slots=True)
+class _Watched:
+    """A condition with its value."""
+
+    condition: Condition
+    truth: Truth
+    since: Instant
+    broken_since: Instant | None
+    """Since when it is false or unknown; None: it is true."""
+
+
+@dataclass(slots=True)
+class _Leaf:
+    """A comparison with its value, shared by all conditions that have it."""
+
+    comparison: Comparison
+    truth: Truth
+    since: Instant
+    conditions: list[_Watched] = field(default_factory=list)
+
+
+class WatchedConditions:
+    """Conditions with their values, and since when they have them.
+
+    Whoever changes a fact touches its topic; `renew` evaluates what names it. A comparison that
+    several conditions have is evaluated once, and a condition only if one of its comparisons
+    changed. Nothing is explained before it is asked for.
+    """
+
+    def __init__(self, facts: Facts) -> None:
+        self._facts = facts
+        self._watched: dict[str, _Watched] = {}
+        """By text, in the order in which they were added."""
+        self._leaves: dict[str, _Leaf] = {}
+        self._by_topic: dict[Topic, dict[Subject, list[_Leaf]]] = {}
+        self._touched: dict[Topic, None] = {}
+        """In the order in which they were touched."""
+        self.revision = 0
+        """Rises whenever a condition gets another value."""
+
+    @property
+    def topics(self) -> Collection[Topic]:
+        """Return what the conditions name."""
+        return self._by_topic.keys()
+
+    def watch(self, conditions: Iterable[Condition], now: Instant) -> None:
+        """Add conditions, and evaluate them; those that are watched already stay as they are.
+
+        Args:
+            conditions: In an order that is the same in each run.
+            now: The current time; from here on, `since` counts.
+        """
+        for condition in conditions:
+            if condition.text in self._watched:
+                continue
+            leaves = {leaf.text: self._leaf(leaf, now) for leaf in comparisons(condition.root)}
+            truth = self._truth_of(condition)
+            broken_since = None if truth is Truth.TRUE else now
+            watched = _Watched(condition, truth, now, broken_since)
+            self._watched[condition.text] = watched
+            for leaf in leaves.values():
+                leaf.conditions.append(watched)
+
+    def touch(self, topic: Topic) -> None:
+        """Note that something about a topic changed."""
+        if topic in self._by_topic:
+            self._touched[topic] = None
+
+    def renew(self, now: Instant) -> tuple[Condition, ...]:
+        """Evaluate what was touched; return the conditions whose value changed.
+
+        They come in the order in which they were touched, and then in which they were added.
+        """
+        doubtful: dict[str, _Watched] = {}
+        touched, self._touched = self._touched, {}
+        for topic in touched:
+            for subject, leaves in self._by_topic[topic].items():
+                observed = self._facts.observe(subject)
+                for leaf in leaves:
+                    truth = compare(leaf.comparison, observed)
+                    if truth is not leaf.truth:
+                        leaf.truth, leaf.since = truth, now
+                        doubtful.update((each.condition.text, each) for each in leaf.conditions)
+        changed = []
+        for watched in doubtful.values():
+            truth = self._truth_of(watched.condition)
+            if truth is not watched.truth:
+                watched.truth, watched.since = truth, now
+                if truth is Truth.TRUE:
+                    watched.broken_since = None
+                elif watched.broken_since is None:
+                    watched.broken_since = now
+                changed.append(watched.condition)
+        self.revision += len(changed)
+        return tuple(changed)
+
+    def truth(self, condition: Condition) -> Truth:
+        """Return the value of a condition that is watched, as of the last `renew`."""
+        return self._watched[condition.text].truth
+
+    def since(self, condition: Condition) -> Instant:
+        """Return since when a condition that is watched has its value."""
+        return self._watched[condition.text].since
+
+    def broken_since(self, condition: Condition) -> Instant | None:
+        """Return since when a condition that is watched is false or unknown; None: it is true."""
+        return self._watched[condition.text].broken_since
+
+    def explain(self, condition: Condition) -> tuple[Blocker, ...]:
+        """Return why a condition that is watched is not true; empty: it is."""
+        return explain(condition, self._facts, self._since_of_leaf)
+
+    # --- inside ----------------------------------------------------------------------------------
+
+    def _leaf(self, comparison: Comparison, now: Instant) -> _Leaf:
+        leaf = self._leaves.get(comparison.text)
+        if leaf is None:
+            subject = comparison.subject
+            truth = compare(comparison, self._facts.observe(subject))
+            leaf = self._leaves[comparison.text] = _Leaf(comparison, truth, now)
+            by_subject = self._by_topic.setdefault(subject.topic, {})
+            by_subject.setdefault(subject, []).append(leaf)
+        return leaf
+
+    def _truth_of(self, condition: Condition) -> Truth:
+        return truth_of(condition.root, lambda leaf: self._leaves[leaf.text].truth)
+
+    def _since_of_leaf(self, leaf: Comparison) -> Instant:
+        return self._leaves[leaf.text].since

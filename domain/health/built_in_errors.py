@@ -1,0 +1,32 @@
+"""The errors that parts have without a word in the model file."""
+
+from collections.abc import Mapping
+from types import MappingProxyType
+
+from domain.snapshot import ErrorKey, Severity
+
+UNREACHABLE = "UNREACHABLE"
+ERROR_PROCESSING = "ERROR_PROCESSING"
+PARAMETERS_DRIFTED = "PARAMETERS_DRIFTED"
+DEVIATES = "DEVIATES"
+CHANGE_FAILED = "CHANGE_FAILED"
+
+OF_EVERY_PART: Mapping[str, Severity] = MappingProxyType(
+    {DEVIATES: Severity.WARNING, CHANGE_FAILED: Severity.WARNING}
+)
+"""The errors of systems, with their severities; nodes have them as well."""
+
+OF_NODES: Mapping[str, Severity] = MappingProxyType(
+    {
+        UNREACHABLE: Severity.URGENT,
+        ERROR_PROCESSING: Severity.URGENT,
+        PARAMETERS_DRIFTED: Severity.WARNING,
+        **OF_EVERY_PART,
+    }
+)
+"""The errors of nodes, in the order in which they are shown."""
+
+
+def severity_of(key: ErrorKey) -> Severity:
+    """Return the severity of an error; each of the robot itself sets a bit, and so ERROR."""
+    return Severity.CRITICAL if key.part is None else OF_NODES[key.error]

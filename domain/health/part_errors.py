@@ -1,0 +1,331 @@
+"""The built-in errors of parts as a concern: found from facts, from targets and from changes."""
+
+from collections.abc import Container, Iterable, Iterator
+from dataclasses import dataclass
+from itertools import islice
+
+from domain.actor import NOBODY, Actor
+from domain.concern import Concern, Takers
+from domain.deadlines import SharedDeadlines
+from domain.errors import shortened
+from domain.events.changes import ChangeEnded
+from domain.events.event import because
+from domain.events.health import ErrorCleared, ErrorRaised
+from domain.events.service import NotRestored
+from domain.findings import Blocker
+from domain.health.built_in_errors import (
+    CHANGE_FAILED,
+    DEVIATES,
+    ERROR_PROCESSING,
+    OF_EVERY_PART,
+    OF_NODES,
+    PARAMETERS_DRIFTED,
+    UNREACHABLE,
+)
+from domain.health.drift import drifted_parameter
+from domain.health.error_list import NORMAL, ErrorList, Found
+from domain.inputs import NodeReport, Restored
+from domain.kept import KeptFailedChange
+from domain.lifecycle import LifecycleState
+from domain.outbox import Outbox
+from domain.parts.node_facts import NodeFacts
+from domain.parts.parts import Parts
+from domain.snapshot import ChangeStatus, ErrorKey, ErrorState, ErrorView
+from domain.state_and_mode import PartName
+from domain.timebase import Instant, seconds
+
+DEVIATES_AFTER = seconds(1)
+"""How long a part may deviate from its target, with no change under way, before it is an error."""
+
+LOOKS_AT_ONCE = 100
+"""Parts that one turn looks at, or whose errors it raises; the others follow in later turns."""
+
+MAX_MESSAGE = 500
+"""Characters of a message; a change of many nodes may fail for many reasons."""
+
+_ACTIVE = ErrorState.ACTIVE
+_FAILURES = (ChangeStatus.FAILED, ChangeStatus.TIMED_OUT)
+
+
+@dataclass(frozen=True, slots=True)
+class _Origin:
+    """The input because of which a part is looked at, or began to deviate."""
+
+    event: int
+    actor: Actor
+    at: Instant
+
+
+class PartErrors(Concern):
+    """Raises and clears the built-in errors; one of a part never raises one of another part.
+
+    A node is UNREACHABLE until it is first heard of. That is neither told as raised nor as cleared:
+    it is how each node of each robot begins.
+    """
+
+    def __init__(self, parts: Parts, errors: ErrorList, outbox: Outbox, start: Instant) -> None:
+        self._parts = parts
+        self._errors = errors
+        self._outbox = outbox
+        self._rank = {part: number for number, part in enumerate(parts.model.parts)}
+        """Order of the model file: of several errors at once, the first is the first out."""
+        self._unheard = set(parts.model.nodes)
+        """Nodes that are unreachable since the start."""
+        self._reported: set[PartName] = set()
+        """Nodes that reported parameters since the last `settle`."""
+        self._to_look: dict[PartName, _Origin] = {}
+        """Parts that later turns look at."""
+        self._in_order = True
+        """Whether those are in the order of the file."""
+        self._deviating: dict[PartName, _Origin] = {}
+        """Parts that deviate with no change under way, and what began it."""
+        self._deadlines = SharedDeadlines[PartName]()
+        self._due: dict[PartName, Instant] = {}
+        """Parts whose time is up, and when it was; later turns raise their errors."""
+        self._drifted: set[PartName] = set()
+        self._failed: set[PartName] = set()
+        for node in parts.model.nodes:
+            unheard = Found(_ACTIVE, f"{node} was never heard of")
+            self._errors.note(ErrorKey(node, UNREACHABLE), unheard, start)
+
+    # --- what happens ----------------------------------------------------------------------------
+
+    @property
+    def takes(self) -> Takers:
+        """Return the handler of each class of input."""
+        return {Restored: self.take_restored, NodeReport: self.take_report}
+
+    def take_restored(self, restored: Restored, now: Instant) -> None:
+        """Raise CHANGE_FAILED again; the other errors are found again from facts."""
+        for kept in restored.kept:
+            if not isinstance(kept, KeptFailedChange):
+                continue
+            if kept.part not in self._parts.model:
+                self._outbox.forget(KeptFailedChange, kept.name)
+                why = f"there is no part {kept.part} any more"
+                self._outbox.emit(NotRestored(f"the failed change of {kept.part}", why))
+                continue
+            self._failed.add(kept.part)
+            found = Found(_ACTIVE, kept.message, kept.status)
+            self._raise(kept.part, CHANGE_FAILED, found, min(kept.since, now))
+
+    def take_report(self, report: NodeReport, now: Instant) -> None:
+        """Note that parameters may have drifted; all else of a report changes a view."""
+        if report.parameters or report.node in self._unheard:
+            self._reported.add(report.node)
+
+    def note_end(
+        self, ended: ChangeEnded, event: int, driven: Iterable[Container[PartName]], now: Instant
+    ) -> None:
+        """Note how a change ended: CHANGE_FAILED stands until one that drove the part succeeds.
+
+        Args:
+            ended: How it ended; superseded and canceled ones say nothing about a part.
+            event: The id under which that was recorded.
+            driven: Parts that it drove besides the requested one.
+            now: The current time.
+        """
+        part, status = ended.part, ended.status
+        if status is ChangeStatus.SUCCEEDED:
+            for failed in self._sorted(self._failed):
+                if failed == part or any(failed in parts for parts in driven):
+                    self._failed.discard(failed)
+                    self._outbox.forget(KeptFailedChange, failed)
+                    self._clear(failed, CHANGE_FAILED, event)
+        elif status in _FAILURES and part in self._rank:
+            how = f"change {ended.change} {status.replace('_', ' ')}"
+            message = shortened(because(how, ended.reason), MAX_MESSAGE)
+            self._failed.add(part)
+            self._raise(part, CHANGE_FAILED, Found(_ACTIVE, message, str(status)), now, event)
+            since = self._view(part, CHANGE_FAILED).since or now
+            self._outbox.keep(KeptFailedChange(part, ended.change, message, str(status), since))
+
+    def wake_at(self) -> Instant | None:
+        """Return when a deviation becomes an error; None: none will."""
+        return self._deadlines.next()
+
+    def pass_time(self, now: Instant) -> None:
+        """Raise the errors that are due; those of many parts in later turns."""
+        while parts := self._deadlines.pop_due(now):
+            for part in parts:
+                self._due[part] = self._deviating[part].at + DEVIATES_AFTER
+        if len(self._due) <= LOOKS_AT_ONCE:
+            self._raise_due()
+
+    def settle(self, now: Instant) -> bool:
+        """Look at the parts that changed, or let later turns do so; return whether there are any.
+
+        Of many that changed at once, those that a change drives can have no new error.
+        """
+        changed, self._reported = self._parts.take_changed() | self._reported, set()
+        if not changed:
+            return False
+        if len(changed) > LOOKS_AT_ONCE:
+            changed = {part for part in changed if self._may_matter(part)}
+        if len(changed) > LOOKS_AT_ONCE:
+            origin = _Origin(self._outbox.record_input(), self._outbox.actor, now)
+            self._to_look.update(dict.fromkeys(changed, origin))
+            self._in_order = False
+            return True
+        for part in self._sorted(changed):
+            postponed = self._to_look.pop(part, None)
+            self._look(part, now if postponed is None else postponed.at)
+        return True
+
+    @property
+    def has_more(self) -> bool:
+        """Tell whether parts are still to be looked at, or errors to be raised."""
+        return bool(self._due or self._to_look)
+
+    def go_on(self, now: Instant) -> None:
+        """Raise some more errors that are due, or else look at some more parts."""
+        if self._due:
+            part = next(iter(self._due))
+            self._outbox.resume(now, self._deviating[part].event, NOBODY)
+            self._raise_due()
+            return
+        if not self._in_order:
+            self._to_look = {part: self._to_look[part] for part in self._sorted(self._to_look)}
+            self._in_order = True
+        for part in list(islice(self._to_look, LOOKS_AT_ONCE)):
+            origin = self._to_look.pop(part)
+            self._outbox.resume(now, origin.event, origin.actor)
+            self._look(part, origin.at)
+
+    # --- what can be seen ------------------------------------------------------------------------
+
+    def names_of(self, part: PartName) -> Iterable[str]:
+        """Return the errors that a part can have."""
+        return OF_NODES if part in self._parts.model.nodes else OF_EVERY_PART
+
+    def views_of(self, part: PartName) -> Iterator[ErrorView]:
+        """Yield the errors of a part, also those that were never raised."""
+        for error in self.names_of(part):
+            yield self._view(part, error)
+
+    def reason(self, part: PartName, error: str) -> Blocker | None:
+        """Return why an error of a part is active; None: it is not, or the part has none such."""
+        if not self._errors.is_on(ErrorKey(part, error)):
+            return None
+        view = self._view(part, error)
+        return Blocker(error, view.message, (part,), view.value, view.threshold, view.since)
+
+    # --- inside ----------------------------------------------------------------------------------
+
+    def _view(self, part: PartName, error: str) -> ErrorView:
+        return self._errors.view(ErrorKey(part, error))
+
+    def _sorted(self, parts: Iterable[PartName]) -> list[PartName]:
+        return sorted(parts, key=self._rank.__getitem__)
+
+    def _may_matter(self, part: PartName) -> bool:
+        return (
+            self._parts.change_of(part) is None
+            or part in self._deviating
+            or part in self._drifted
+            or part in self._reported
+        )
+
+    def _look(self, part: PartName, since: Instant) -> None:
+        """Judge a part by what is known of it now.
+
+        Args:
+            part: The part.
+            since: When it came to be so.
+        """
+        facts = self._parts.facts.get(part)
+        if facts is not None:
+            self._look_at_node(part, facts, since)
+        self._look_at_deviation(part, since)
+
+    def _look_at_node(self, node: PartName, facts: NodeFacts, since: Instant) -> None:
+        if facts.reachable and node in self._unheard:
+            self._unheard.discard(node)
+            self._errors.forget(ErrorKey(node, UNREACHABLE))
+        elif node not in self._unheard:
+            words = "" if facts.reachable else f"{node} is unreachable"
+            self._set(node, UNREACHABLE, words, since)
+        is_bad = facts.known_state is LifecycleState.ERROR_PROCESSING
+        self._set(node, ERROR_PROCESSING, f"{node} is in errorprocessing" if is_bad else "", since)
+        self._look_at_drift(node, facts, since)
+
+    def _look_at_drift(self, node: PartName, facts: NodeFacts, since: Instant) -> None:
+        drift = None
+        if facts.known_state is LifecycleState.ACTIVE and self._parts.change_of(node) is None:
+            drift = drifted_parameter(self._parts, node)
+        if drift is not None:
+            self._drifted.add(node)
+            found = Found(_ACTIVE, drift.message, drift.value, drift.wanted)
+            self._raise(node, PARAMETERS_DRIFTED, found, since)
+        elif node in self._drifted:
+            self._drifted.discard(node)
+            self._clear(node, PARAMETERS_DRIFTED)
+
+    def _look_at_deviation(self, part: PartName, since: Instant) -> None:
+        """Judge whether a part deviates, and those above it, which may do so because of it."""
+        if not self._deviates(part):
+            if part not in self._deviating:
+                return
+            del self._deviating[part]
+            self._due.pop(part, None)
+            self._deadlines.clear(part)
+            self._clear(part, DEVIATES)
+        elif part not in self._deviating:
+            event, actor = self._outbox.record_input(), self._outbox.actor
+            self._deviating[part] = _Origin(event, actor, since)
+            self._deadlines.set(part, since + DEVIATES_AFTER)
+            self._note(part, DEVIATES, self._deviation(part, ErrorState.PENDING), since)
+        else:
+            if self._errors.is_on(ErrorKey(part, DEVIATES)):
+                self._note(part, DEVIATES, self._deviation(part, _ACTIVE), since)
+            return
+        for system in self._parts.model.ancestors[part]:
+            self._look_at_deviation(system, since)
+
+    def _deviates(self, part: PartName) -> bool:
+        """Tell whether a part is not where its target says, and no change works on that."""
+        cause = self._parts.inference.deviation_cause(part)
+        if cause is None or self._parts.target(part) is None:
+            return False
+        return self._parts.change_of(part) is None and self._parts.change_of(cause) is None
+
+    def _deviation(self, part: PartName, state: ErrorState) -> Found:
+        actual, target = self._parts.inference.actual(part), self._parts.target(part)
+        why = self._parts.inference.deviation_reason(part) or ""
+        label = None if target is None else target.label
+        return Found(state, why, actual.state_and_mode.label, label)
+
+    def _raise_due(self) -> None:
+        """Raise DEVIATES of some parts whose time is up."""
+        for part in list(islice(self._due, LOOKS_AT_ONCE)):
+            since, origin = self._due.pop(part), self._deviating[part]
+            self._raise(part, DEVIATES, self._deviation(part, _ACTIVE), since, origin.event)
+
+    def _set(self, part: PartName, error: str, words: str, since: Instant) -> None:
+        """Raise an error with a message, or clear it if that is empty."""
+        if words:
+            self._raise(part, error, Found(_ACTIVE, words), since)
+        else:
+            self._clear(part, error)
+
+    def _raise(
+        self, part: PartName, error: str, found: Found, since: Instant, cause: int | None = None
+    ) -> None:
+        """Raise an error, or note what is found of one that is on already."""
+        was_on = self._errors.is_on(ErrorKey(part, error))
+        self._note(part, error, found, since)
+        if not was_on:
+            raised = ErrorRaised(error, found.message, found.value, found.threshold, part)
+            self._outbox.emit(raised, cause)
+
+    def _clear(self, part: PartName, error: str, cause: int | None = None) -> None:
+        """Clear an error if it is on, or pending."""
+        key = ErrorKey(part, error)
+        was_on = self._errors.is_on(key)
+        if was_on or error == DEVIATES:
+            self._errors.note(key, NORMAL, 0)
+        if was_on:
+            self._outbox.emit(ErrorCleared(error, part), cause)
+
+    def _note(self, part: PartName, error: str, found: Found, since: Instant) -> None:
+        self._errors.note(ErrorKey(part, error), found, since)

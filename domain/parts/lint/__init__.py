@@ -1,0 +1,1 @@
+"""Warnings about valid models: constructs that the author probably did not intend."""

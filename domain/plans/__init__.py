@@ -1,0 +1,1 @@
+"""Plans: in which order the parts of a system change, and how long that takes."""

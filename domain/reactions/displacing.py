@@ -1,0 +1,197 @@
+"""Puts the targets of rules in force, and takes them back: events, changes, and what is kept."""
+
+from collections.abc import Mapping
+
+from domain.actor import Actor
+from domain.changes.changing import Changing
+from domain.changes.plan import ChangeGoal
+from domain.changes.pursuit import request_towards
+from domain.events.targets import (
+    DisplacementBegan,
+    DisplacementEnded,
+    DisplacementStays,
+    RuleNotApplied,
+)
+from domain.findings import Blocker
+from domain.inputs import ChangeRequest, Restored
+from domain.outbox import Outbox
+from domain.parts.parts import Parts
+from domain.parts.targets import Displacement
+from domain.reactions.kept_rules import KeptRules
+from domain.reactions.rule_watch import RuleWatch
+from domain.reactions.waits import Wait
+from domain.snapshot import Because
+from domain.state_and_mode import PartName, StateAndMode
+from domain.timebase import Instant
+
+RULE = "RULE"
+"""Code of the blocker that names the cause of a displacement."""
+
+
+class Displacing:
+    """What each rule displaces; decides nothing."""
+
+    def __init__(self, parts: Parts, changing: Changing, outbox: Outbox) -> None:
+        """Begin without a displacement.
+
+        Args:
+            parts: Holds the targets.
+            changing: Begins the changes that lead to them.
+            outbox: Receives events.
+        """
+        self._parts = parts
+        self._changing = changing
+        self._outbox = outbox
+        self._kept = KeptRules(parts.model, changing.requests, outbox)
+        self._of_rule: dict[RuleWatch, Displacement] = {}
+
+    def acts(self, watch: RuleWatch) -> bool:
+        """Tell whether a rule displaces something, or did until the current request."""
+        return watch in self._of_rule
+
+    def is_ended(self, watch: RuleWatch) -> bool:
+        """Tell whether a request has ended what a rule displaced."""
+        return self._of_rule[watch] not in self._parts.displacements
+
+    def restore(
+        self, restored: Restored, rules: Mapping[tuple[PartName, str], RuleWatch], now: Instant
+    ) -> None:
+        """Displace again what an earlier run had displaced.
+
+        Args:
+            restored: What it left.
+            rules: By system and name.
+            now: The current time.
+        """
+        for displaced, watch in self._kept.restore(restored.kept, rules):
+            displaced.blockers = (_cause(watch, min(self._kept.since(displaced), now)),)
+            self._of_rule[watch] = displaced
+            self._parts.displace(displaced)
+
+    # --- what a rule does ------------------------------------------------------------------------
+
+    def would_activate(self, watch: RuleWatch) -> bool:
+        """Tell whether the target of a rule would activate a node, or might."""
+        admission = self._changing.admission
+        return admission.would_activate(admission.goal(self._request(watch)))
+
+    def displace(self, watch: RuleWatch, wait: Wait, now: Instant) -> None:
+        """Put the target of a rule in force, and begin the change that leads there.
+
+        Args:
+            watch: The rule.
+            wait: For how long it has matched.
+            now: The current time.
+        """
+        system, rule = watch.system, watch.rule
+        was, request = self._parts.target(system), self._request(watch)
+        assert was is not None, "it is the target that the rule replaces"
+        goal = self._changing.admission.goal(request)
+        began = DisplacementBegan(
+            system, rule.new_target, was, Because.RULE, rule.name, watch.reason
+        )
+        self._outbox.begin(now, began, request.actor, wait.cause)
+        targets = {system: rule.new_target, **goal.targets}
+        recorded = self._outbox.record_input()
+        displaced = Displacement(system, targets, Because.RULE, rule.name, recorded)
+        displaced.blockers = (_cause(watch, wait.since),)
+        self._of_rule[watch] = displaced
+        self._kept.begin(displaced, wait.since)
+        self._parts.displace(displaced)
+        self._changing.drive(system, request, goal, now)
+
+    def refuse(self, watch: RuleWatch, why: str, cause: int, now: Instant) -> None:
+        """Tell that a rule is not applied, and why."""
+        told = RuleNotApplied(watch.system, watch.rule.name, watch.rule.new_target, why)
+        self._outbox.begin(now, told, _actor(watch), cause)
+        self._outbox.record_input()
+
+    # --- and how that ends -----------------------------------------------------------------------
+
+    def is_seen(self, watch: RuleWatch) -> bool:
+        """Tell whether the end of a displacement would put another target in force anywhere."""
+        return bool(self._parts.targets_without(self._of_rule[watch]))
+
+    def obstacles(self, watch: RuleWatch) -> tuple[Blocker, ...]:
+        """Return why a request for what a rule displaces would be rejected, besides ESTOP."""
+        request = self._request_back(watch)
+        goal = self._goal_back(watch)
+        if request is None:
+            return ()
+        blockers = self._changing.admission.blockers_of(request, goal)
+        return tuple(blocker for blocker in blockers if blocker.refuses)
+
+    def take_back(self, watch: RuleWatch, cause: int, now: Instant) -> None:
+        """Put what a rule displaces in force again, and begin the change that leads there.
+
+        Args:
+            watch: The rule.
+            cause: Id of the event with which its cause was gone.
+            now: The current time.
+        """
+        request, goal = self._request_back(watch), self._goal_back(watch)
+        displaced = self._of_rule[watch]
+        ended = self._ended(watch, f"no longer true that {watch.reason}")
+        self._outbox.begin(now, ended, _actor(watch), cause)
+        self._outbox.record_input()
+        self._parts.end_displacement(displaced)
+        self._forget(watch)
+        if request is not None and goal.targets:
+            self._changing.drive(watch.system, request, goal, now)
+
+    def end_by_request(self, watch: RuleWatch) -> None:
+        """Tell that the current input, a request, ended what a rule displaced."""
+        self._outbox.emit(self._ended(watch, "a newer request"))
+        self._forget(watch)
+
+    def let_stay(self, watch: RuleWatch, why: Blocker, cause: int, now: Instant) -> None:
+        """Tell that only a request ends what a rule displaces, and why."""
+        displaced = self._of_rule[watch]
+        name, target = watch.rule.name, displaced.target
+        stays = DisplacementStays(watch.system, target, Because.RULE, name, why.message)
+        self._outbox.begin(now, stays, _actor(watch), cause)
+        self._outbox.record_input()
+        self._parts.explain(displaced, (why,))
+
+    def explain(self, watch: RuleWatch, obstacles: tuple[Blocker, ...]) -> bool:
+        """Show why a rule displaces something; return whether something else was shown before."""
+        return self._parts.explain(self._of_rule[watch], obstacles)
+
+    # --- inside ----------------------------------------------------------------------------------
+
+    def _ended(self, watch: RuleWatch, reason: str) -> DisplacementEnded:
+        displaced, system = self._of_rule[watch], watch.system
+        then = {} if self.is_ended(watch) else self._parts.targets_without(displaced)
+        target = then.get(system, self._parts.target(system))
+        name = watch.rule.name
+        return DisplacementEnded(system, target, displaced.target, Because.RULE, name, reason)
+
+    def _forget(self, watch: RuleWatch) -> None:
+        self._kept.forget(self._of_rule.pop(watch))
+
+    def _goal_back(self, watch: RuleWatch) -> ChangeGoal:
+        targets = self._parts.targets_without(self._of_rule[watch])
+        return self._changing.admission.goal_of_targets(targets)
+
+    def _request_back(self, watch: RuleWatch) -> ChangeRequest | None:
+        """Return what leads to the target that the end would put in force; None: there is none."""
+        then = self._parts.targets_without(self._of_rule[watch])
+        target = then.get(watch.system, self._parts.target(watch.system))
+        return None if target is None else self._towards(watch, target)
+
+    def _request(self, watch: RuleWatch) -> ChangeRequest:
+        return self._towards(watch, watch.rule.new_target)
+
+    def _towards(self, watch: RuleWatch, target: StateAndMode) -> ChangeRequest:
+        parts = self._parts
+        return request_towards(parts.model, parts.facts, watch.system, target, _actor(watch))
+
+
+def _actor(watch: RuleWatch) -> Actor:
+    return Actor(f"rule:{watch.rule.name}")
+
+
+def _cause(watch: RuleWatch, since: Instant) -> Blocker:
+    part, pair = watch.rule.if_part
+    path = (watch.system, part)
+    return Blocker(RULE, watch.reason, path, pair.label, since=since, refuses=False)

@@ -1,0 +1,229 @@
+"""Rules of the model: what replaces the target of a system while a part is not where it should be.
+
+A rule acts once a deviation has lasted for a time in which no change of its system ran. The system
+returns to what was displaced once the cause has been gone for as long: never under ESTOP or because
+of its end, never by itself after a restart, and not too often.
+
+Source: micro-ROS system_modes, README ("Error Handling and Rules"), and its issue #94, where rules
+undo what was requested.
+"""
+
+from collections.abc import Iterable, Mapping
+
+from domain.changes.changing import Changing
+from domain.concern import Concern, Takers
+from domain.findings import Blocker
+from domain.health.health import Health
+from domain.health.signals import ESTOP
+from domain.inputs import BackendStatus, Restored
+from domain.outbox import Outbox
+from domain.parts.convergence import bottom_up
+from domain.parts.parts import Parts
+from domain.reactions.bound import Bound
+from domain.reactions.displacing import Displacing
+from domain.reactions.rule_watch import RuleWatch
+from domain.reactions.settings import MAX_FIRINGS, MAX_RETURNS, WINDOW, RuleSettings
+from domain.reactions.waits import Wait, Waits
+from domain.state_and_mode import PartName
+from domain.timebase import Instant, to_seconds
+
+RESTART = "RESTART"
+"""Code of the blocker that says that a restart keeps a system from returning."""
+TOO_OFTEN = "TOO_OFTEN"
+"""Code of the blocker that says that a system has returned too often."""
+
+_UNTIL = "until a change of it is requested"
+_RESTARTED = f"the service was restarted: nothing is activated or returns {_UNTIL}"
+_STOPPED = f"ESTOP was active: nothing is made up for {_UNTIL}"
+_WITHIN = f"within {to_seconds(WINDOW):g} s"
+
+
+class Rules(Concern):
+    """Watches the rules of all systems, and decides when they act and when a system returns."""
+
+    def __init__(
+        self,
+        parts: Parts,
+        changing: Changing,
+        health: Health,
+        settings: RuleSettings,
+        outbox: Outbox,
+    ) -> None:
+        """Begin without a rule that acts.
+
+        Args:
+            parts: Facts, inferred states and targets of all parts.
+            changing: Begins the changes that lead to new targets.
+            health: Tells whether ESTOP is active.
+            settings: How long conditions must last.
+            outbox: Receives events.
+        """
+        self._parts = parts
+        self._changing = changing
+        self._health = health
+        self._outbox = outbox
+        self._displacing = Displacing(parts, changing, outbox)
+        self._rules = _rules_of(parts)
+        self._about = _by_part(self._rules)
+        self._matching = Waits(settings.grace)
+        """Rules that match, and do not act yet."""
+        self._relieved = Waits(settings.grace)
+        """Rules that act, and whose cause is gone."""
+        self._firings = {rule: Bound(MAX_FIRINGS, WINDOW) for rule in self._rules}
+        self._returns = {rule.system: Bound(MAX_RETURNS, WINDOW) for rule in self._rules}
+        self._staying: set[RuleWatch] = set()
+        """Rules whose effect nothing but a request ends."""
+
+    # --- what happens ----------------------------------------------------------------------------
+
+    @property
+    def takes(self) -> Takers:
+        """Return the handler of each class of input."""
+        return {Restored: self.restore, BackendStatus: self._follow_backend}
+
+    def restore(self, restored: Restored, now: Instant) -> None:
+        """Displace what an earlier run had displaced."""
+        rules = {(rule.system, rule.name): rule for rule in self._rules}
+        self._displacing.restore(restored, rules, now)
+
+    def _follow_backend(self, status: BackendStatus, now: Instant) -> None:
+        self._review(self._rules, now)
+
+    def wake_at(self) -> Instant | None:
+        """Return when the next condition has lasted long enough."""
+        times = (self._matching.wake_at(), self._relieved.wake_at())
+        return min((at for at in times if at is not None), default=None)
+
+    def pass_time(self, now: Instant) -> None:
+        """Note which conditions have lasted long enough."""
+        self._matching.pass_time(now)
+        self._relieved.pass_time(now)
+
+    def settle(self, now: Instant) -> bool:
+        """Let one rule act, or one system return; return whether one did."""
+        if not self._rules:
+            return False
+        touched = self._about.keys() & self._outbox.parts
+        if touched:
+            rules = {rule for part in touched for rule in self._about[part]}
+            self._review(sorted(rules, key=_number), now)
+        if self._health.is_stopped:
+            self._matching.stop()
+            self._relieved.stop()
+        return self._act(now)
+
+    # --- what holds ------------------------------------------------------------------------------
+
+    def _review(self, rules: Iterable[RuleWatch], now: Instant) -> None:
+        """Note which conditions begin or cease to hold."""
+        record = self._outbox.record_input
+        for rule in rules:
+            if not self._displacing.acts(rule):
+                holds = rule.may_act and self._is_free(rule) and rule.matches()
+                self._matching.note(rule, now, holds=holds, record=record)
+            elif self._displacing.is_ended(rule):
+                self._displacing.end_by_request(rule)
+                self._relieved.end(rule)
+                self._staying.discard(rule)
+            else:
+                holds = rule not in self._staying and self._is_free(rule) and rule.is_cause_gone()
+                self._relieved.note(rule, now, holds=holds, record=record)
+                self._relieved.reconsider(rule)
+
+    def _is_free(self, rule: RuleWatch) -> bool:
+        """Tell whether no change of the system or the part is running, and one could begin."""
+        parts = self._parts
+        is_changing = parts.change_of(rule.system) or parts.change_of(rule.part)
+        return not is_changing and self._changing.is_available
+
+    # --- what follows ----------------------------------------------------------------------------
+
+    def _act(self, now: Instant) -> bool:
+        """Let the first system return that may, or else the first rule act."""
+        for rule, wait in self._relieved.over():
+            if self._return(rule, wait, now):
+                return True
+        due = dict(self._matching.over())
+        if due:
+            rule = min(due, key=_number)
+            self._fire(rule, due[rule], now)
+        return bool(due)
+
+    def _fire(self, rule: RuleWatch, wait: Wait, now: Instant) -> None:
+        """Let a rule act, or say why it does not."""
+        bound = self._firings[rule]
+        free_at = bound.free_at(now)
+        if free_at > now:
+            often = f"it was applied {MAX_FIRINGS} times {_WITHIN}"
+            self._displacing.refuse(rule, often, wait.cause, now)
+            self._matching.postpone(rule, free_at)
+            return
+        why = self._why_not(rule, wait)
+        if why and self._displacing.would_activate(rule):
+            self._displacing.refuse(rule, why, wait.cause, now)
+            wait.is_idle = True
+            return
+        self._matching.end(rule)
+        bound.note(now)
+        self._displacing.displace(rule, wait, now)
+
+    def _why_not(self, rule: RuleWatch, wait: Wait) -> str | None:
+        """Return why nothing may be activated; None: it may."""
+        if wait.was_stopped:
+            return _STOPPED
+        return _RESTARTED if self._parts.waits_for_operator(rule.system) else None
+
+    def _return(self, rule: RuleWatch, wait: Wait, now: Instant) -> bool:
+        """Let a system return, or say why it stays; return whether that is something new."""
+        if not self._displacing.is_seen(rule):
+            self._displacing.take_back(rule, wait.cause, now)
+            self._relieved.end(rule)
+            return True
+        if (stays := self._why_staying(rule, wait, now)) is not None:
+            self._relieved.end(rule)
+            self._staying.add(rule)
+            self._displacing.let_stay(rule, stays, wait.cause, now)
+            return True
+        if obstacles := self._displacing.obstacles(rule):
+            wait.is_idle = True
+            return self._displacing.explain(rule, obstacles)
+        self._relieved.end(rule)
+        self._returns[rule.system].note(now)
+        self._displacing.take_back(rule, wait.cause, now)
+        return True
+
+    def _why_staying(self, rule: RuleWatch, wait: Wait, now: Instant) -> Blocker | None:
+        """Return what keeps a system from returning until a request; None: nothing does."""
+        often = f"it has returned {MAX_RETURNS} times {_WITHIN}: it stays {_UNTIL}"
+        if wait.was_stopped:
+            code, why = ESTOP, _STOPPED
+        elif self._parts.waits_for_operator(rule.system):
+            code, why = RESTART, _RESTARTED
+        elif self._returns[rule.system].free_at(now) > now:
+            code, why = TOO_OFTEN, often
+        else:
+            return None
+        return Blocker(code, why, (rule.system,), since=now, refuses=False)
+
+
+def _rules_of(parts: Parts) -> list[RuleWatch]:
+    """Return the rules of all systems: bottom-up, those of one system in the order of the file."""
+    model = parts.model
+    own = ((system, rule) for system in bottom_up(model) for rule in model.systems[system].rules)
+    return [
+        RuleWatch(system, rule, number, parts.inference)
+        for number, (system, rule) in enumerate(own)
+    ]
+
+
+def _number(rule: RuleWatch) -> int:
+    return rule.number
+
+
+def _by_part(rules: Iterable[RuleWatch]) -> Mapping[PartName, list[RuleWatch]]:
+    """Return the rules that something about a part may concern."""
+    about: dict[PartName, list[RuleWatch]] = {}
+    for rule in rules:
+        for part in {rule.system, rule.part}:
+            about.setdefault(part, []).append(rule)
+    return about

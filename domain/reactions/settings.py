@@ -1,0 +1,22 @@
+"""Settings of rules, and the bounds that keep them from fighting."""
+
+from dataclasses import dataclass
+
+from domain.timebase import Duration, seconds
+
+WINDOW = seconds(60)
+"""Time within which the bounds hold."""
+MAX_RETURNS = 3
+"""Largest number of times that a system returns to its requested target by itself."""
+MAX_FIRINGS = MAX_RETURNS + 1
+"""Largest number of times that one rule sets a target: once more than the system may return, so
+that a part that keeps failing leaves its system degraded."""
+
+
+@dataclass(frozen=True, slots=True)
+class RuleSettings:
+    """When rules of the model act."""
+
+    grace: Duration = seconds(1)
+    """How long a deviation must last before a rule acts on it, and how long its cause must be gone
+    before the system returns to its requested target."""

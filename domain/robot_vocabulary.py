@@ -1,0 +1,87 @@
+"""What conditions can name on a robot: the parts of its model, its signals and their errors."""
+
+from collections.abc import Iterable, Mapping
+from typing import Protocol
+
+from domain.conditions.vocabulary import Kind, PartTerms, Terms, Vocabulary
+from domain.health.built_in_errors import OF_EVERY_PART, OF_NODES
+from domain.health.signals import STALE_DATA, SignalKind, SignalSettings, SignalSpec
+from domain.parameters import ParameterValue
+from domain.parts.system_model import NodeModel, SystemModel
+from domain.state_and_mode import PartName
+
+_OF_EVERY_PART = (*OF_EVERY_PART, "INVARIANT_BROKEN")
+_OF_NODES = (*OF_NODES, "INVARIANT_BROKEN")
+
+
+class PartsOfRobot(Protocol):
+    """The parts of a model, which may have errors."""
+
+    @property
+    def nodes(self) -> Mapping[PartName, NodeModel]:
+        """Return the nodes by name."""
+        ...
+
+    @property
+    def systems(self) -> Mapping[PartName, SystemModel]:
+        """Return the systems by name."""
+        ...
+
+
+def vocabulary_of(
+    model: PartsOfRobot, signals: Iterable[SignalSettings], *, is_complete: bool
+) -> Vocabulary:
+    """Return what conditions can name.
+
+    Args:
+        model: Its systems and nodes.
+        signals: Those that are known.
+        is_complete: All signals are known; False: a robot file may declare more.
+    """
+    known = tuple(signals)
+    parts = {str(name): _terms_of_node(node) for name, node in model.nodes.items()}
+    for name, system in model.systems.items():
+        modes = tuple(map(str, system.modes))
+        parts[str(name)] = PartTerms(is_node=False, modes=modes, errors=_OF_EVERY_PART)
+    errors = [bound.error for signal in known for bound in signal.bounds]
+    return Vocabulary(
+        parts,
+        {signal.spec.name: _terms_of_signal(signal.spec) for signal in known},
+        (*dict.fromkeys(errors), STALE_DATA),
+        is_complete,
+    )
+
+
+def _terms_of_node(node: NodeModel) -> PartTerms:
+    parameters: dict[str, Terms | None] = {}
+    for values in node.modes.values():
+        for name, value in values.items():
+            parameters.setdefault(name, _terms_of_value(value))
+    return PartTerms(
+        is_node=True,
+        modes=tuple(map(str, node.modes)),
+        parameters=parameters,
+        errors=_OF_NODES,
+    )
+
+
+def _terms_of_value(value: ParameterValue) -> Terms | None:
+    match value:
+        case bool():
+            return Terms(Kind.BOOLEAN)
+        case int() | float():
+            return Terms(Kind.NUMBER)
+        case str():
+            return Terms(Kind.WORD)
+        case _:
+            return None
+
+
+def _terms_of_signal(spec: SignalSpec) -> Terms:
+    match spec.kind:
+        case SignalKind.NUMBER:
+            return Terms(Kind.NUMBER, spec.minimum, spec.maximum)
+        case SignalKind.BOOLEAN:
+            return Terms(Kind.BOOLEAN)
+        case SignalKind.ENUMERATION:
+            return Terms(Kind.WORD, words=spec.members)

@@ -1,0 +1,1 @@
+"""What each code of a finding means, and how to mend what it is about."""

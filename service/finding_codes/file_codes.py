@@ -1,0 +1,163 @@
+"""Codes of robot files and waypoint files."""
+
+from service.finding_codes.finding_code import EITHER, ERROR, WARNING, FindingCode
+
+ROBOT_FILES = (
+    FindingCode(
+        "UNKNOWN_NODE",
+        ERROR,
+        "`nodes` names a node that is not in the model.",
+        "Correct the name.",
+    ),
+)
+
+WAYPOINT_FILES = (
+    FindingCode(
+        "EMPTY_FILE",
+        ERROR,
+        "The file has no lines, or only comments.",
+        "Send a recording.",
+    ),
+    FindingCode(
+        "NOT_TEXT",
+        ERROR,
+        "The file contains null characters.",
+        "Save it as CSV in UTF-8.",
+    ),
+    FindingCode(
+        "NO_NUMBERS",
+        ERROR,
+        "There are lines of text and none of numbers.",
+        "Send the rows, too.",
+    ),
+    FindingCode(
+        "EMPTY_LINE",
+        ERROR,
+        "A line between waypoints is empty.",
+        "Remove it.",
+    ),
+    FindingCode(
+        "HEADER",
+        ERROR,
+        "A line of text before the numbers does not name as many columns as the first row has, "
+        "or none of them is x or y.",
+        "Name the columns: `?columns=x,y,yaw`.",
+    ),
+    FindingCode(
+        "UNKNOWN_COLUMNS",
+        ERROR,
+        "No column is named x, or none y.",
+        "Name the columns: `?columns=x,y,yaw`.",
+    ),
+    FindingCode(
+        "AMBIGUOUS_COLUMNS",
+        ERROR,
+        "Several columns could be x, or y, such as `left_x` and `right_x`.",
+        "Name the columns: `?columns=_,_,x,y`.",
+    ),
+    FindingCode(
+        "LATITUDE_LONGITUDE",
+        ERROR,
+        "The columns are latitude and longitude.",
+        "Project them, such as to UTM.",
+    ),
+    FindingCode(
+        "WRONG_UNIT",
+        ERROR,
+        "x or y is not in m, such as `x_km`.",
+        "Convert it.",
+    ),
+    FindingCode(
+        "TOO_FEW_COLUMNS",
+        ERROR,
+        "A line has fewer columns than the first one, or there is only one.",
+        "Add the missing values.",
+    ),
+    FindingCode(
+        "TOO_MANY_COLUMNS",
+        ERROR,
+        "A line has more columns than the first one, or more than 1,000.",
+        "Remove them.",
+    ),
+    FindingCode(
+        "NOT_A_NUMBER",
+        ERROR,
+        "A cell that is read is empty or not a number.",
+        "Write a number.",
+    ),
+    FindingCode(
+        "DECIMAL_MARKS",
+        ERROR,
+        "The file has decimal commas and decimal points.",
+        "Write decimal points.",
+    ),
+    FindingCode(
+        "NOT_FINITE",
+        ERROR,
+        "`nan`, `inf`, or a number that overflows.",
+        "Remove the line.",
+    ),
+    FindingCode(
+        "TOO_FAR",
+        ERROR,
+        "x or y is further than 10,000 km from the origin.",
+        "Use m.",
+    ),
+    FindingCode(
+        "NO_ROTATION",
+        ERROR,
+        "A quaternion is 0.",
+        "Leave the quaternions out: `?columns=x,y`.",
+    ),
+    FindingCode(
+        "TOO_FEW_POINTS",
+        ERROR,
+        "One waypoint; a path needs at least 2.",
+        "Record a longer path.",
+    ),
+    FindingCode(
+        "TOO_MANY_POINTS",
+        ERROR,
+        "More than 100,000 waypoints, or 200,000 lines.",
+        "Leave points out; one every 0.1 m is enough.",
+    ),
+    FindingCode(
+        "NOT_A_PATH",
+        ERROR,
+        "Without names, the first two columns are taken as x and y, and are not: they begin "
+        "with a time, a count of rows or the distance along the path, or are latitude and "
+        "longitude, or pose matrices.",
+        "Name the columns: `?columns=s,x,y`.",
+    ),
+    FindingCode(
+        "HEADINGS_MISFIT",
+        EITHER,
+        "Headings differ from the direction of the path by more than 30 degrees in any unit "
+        "(median). The third column of a file without names may be something else, such as a "
+        "width or a speed.",
+        "Leave the column out: `?columns=x,y`. Or say that it is a heading, and its unit: "
+        "`?heading=deg`.",
+    ),
+    FindingCode(
+        "HEADINGS_REVERSED",
+        WARNING,
+        "Headings point backwards along the path: the recording vehicle reversed. The path is "
+        "driven forwards.",
+        "None is needed.",
+    ),
+    FindingCode(
+        "HEADINGS_ZERO",
+        WARNING,
+        "All headings are 0, and do not fit the path. They are not used.",
+        "None is needed.",
+    ),
+)
+
+ALL_FILES = (
+    FindingCode(
+        "MORE_FINDINGS",
+        EITHER,
+        "There are more than 1,000 findings; this one counts the rest.",
+        "Mend those that are listed.",
+    ),
+)

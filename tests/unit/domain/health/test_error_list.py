@@ -1,0 +1,119 @@
+"""What is known of each error: since when, how often, and which was first."""
+
+import pytest
+
+from domain.health.error_list import NORMAL, ErrorList, Found
+from domain.outbox import Outbox
+from domain.snapshot import ErrorKey, ErrorState, Severity
+from domain.state_and_mode import PartName
+
+LOST = ErrorKey(PartName("arm"), "UNREACHABLE")
+OFF = ErrorKey(PartName("base"), "DEVIATES")
+LOW = ErrorKey(None, "BATTERY_LOW")
+S = ErrorState
+
+
+def on(message: str = "it is so", state: ErrorState = S.ACTIVE) -> Found:
+    return Found(state, message)
+
+
+@pytest.fixture
+def errors() -> ErrorList:
+    return ErrorList(Outbox())
+
+
+def test_an_error_that_was_never_raised_is_normal_with_its_severity(errors: ErrorList) -> None:
+    view = errors.view(LOST)
+    assert (view.state, view.severity, view.since, view.count) == (S.NORMAL, "urgent", None, 0)
+    assert errors.view(OFF).severity is Severity.WARNING
+    assert errors.view(LOW).severity is Severity.CRITICAL
+    assert not errors.open_ones()
+
+
+def test_an_error_keeps_since_when_it_is_on_while_what_was_found_changes(errors: ErrorList) -> None:
+    errors.note(LOST, on("gone"), 5)
+    errors.note(LOST, on("still gone"), 9)
+    view = errors.view(LOST)
+    assert (view.since, view.message, view.count) == (5, "still gone", 1)
+
+
+def test_an_error_counts_how_often_it_was_raised_and_pending_does_not_count(
+    errors: ErrorList,
+) -> None:
+    for at in (10, 20):
+        errors.note(OFF, on(state=S.PENDING), at)
+        assert errors.view(OFF).since == at
+        assert not errors.is_on(OFF)
+        errors.note(OFF, on(), at + 1)
+        assert errors.view(OFF).since == at + 1
+        errors.note(OFF, NORMAL, at + 2)
+    assert (errors.view(OFF).count, errors.view(OFF).since) == (2, None)
+
+
+def test_acknowledging_raises_nothing_anew(errors: ErrorList) -> None:
+    errors.note(LOW, on(), 5)
+    errors.note(LOW, on(state=S.ACKNOWLEDGED), 8)
+    errors.note(LOW, on(state=S.LATCHED), 9)
+    assert (errors.view(LOW).since, errors.view(LOW).count) == (5, 1)
+    assert errors.is_on(LOW)
+
+
+def test_the_first_error_since_none_was_on_is_first_out_even_after_its_end(
+    errors: ErrorList,
+) -> None:
+    errors.note(LOST, on(), 5)
+    errors.note(OFF, on(), 6)
+    errors.note(LOST, NORMAL, 7)
+    assert errors.view(LOST).first_out
+    assert not errors.view(OFF).first_out
+
+
+def test_when_all_errors_have_ended_the_next_one_is_first_out(errors: ErrorList) -> None:
+    errors.note(LOST, on(), 5)
+    errors.note(LOST, NORMAL, 7)
+    assert not errors.view(LOST).first_out
+    errors.note(OFF, on(), 8)
+    assert errors.view(OFF).first_out
+
+
+def test_a_pending_error_is_not_first_out(errors: ErrorList) -> None:
+    errors.note(OFF, on(state=S.PENDING), 4)
+    errors.note(LOST, on(), 5)
+    assert errors.view(LOST).first_out
+
+
+def test_only_a_difference_is_a_change() -> None:
+    outbox = Outbox()
+    errors = ErrorList(outbox)
+    errors.note(LOST, NORMAL, 1)
+    assert not outbox.errors
+    errors.note(LOST, on(), 1)
+    assert outbox.take().errors == {LOST}
+    view = errors.view(LOST)
+    errors.note(LOST, on(), 3)
+    assert not outbox.errors
+    assert errors.view(LOST) is view
+
+
+def test_what_is_forgotten_was_never_raised(errors: ErrorList) -> None:
+    errors.note(LOST, on(), 0)
+    errors.forget(LOST)
+    assert errors.view(LOST).count == 0
+    assert not errors.open_ones()
+    errors.note(OFF, on(), 3)
+    assert errors.view(OFF).first_out
+
+
+def test_open_errors_have_the_names_by_which_clients_know_them(errors: ErrorList) -> None:
+    errors.note(LOW, on(), 1)
+    errors.note(LOST, on(), 2)
+    errors.note(OFF, on(state=S.PENDING), 3)
+    assert list(errors.open_ones()) == ["BATTERY_LOW", "arm.UNREACHABLE", "base.DEVIATES"]
+
+
+def test_errors_of_parts_are_counted_by_name_while_they_are_on(errors: ErrorList) -> None:
+    errors.note(LOW, on(), 1)
+    errors.note(LOST, on(), 1)
+    errors.note(ErrorKey(PartName("base"), "UNREACHABLE"), on(), 1)
+    errors.note(LOST, NORMAL, 2)
+    assert errors.parts_with == {"UNREACHABLE": 1}
