@@ -1,7 +1,7 @@
 """Keeps what must not be forgotten: notes each step of the core, and answers for requests.
 
-What starts or loosens something is carried out only once a note of it is on disk, which shows that
-storage works. What makes the robot safer is carried out at once. Either is answered when
+What starts or loosens something is carried out only once its announcement is on disk, which shows
+that storage works. What makes the robot safer is carried out at once. Either is answered when
 its outcome is on disk, or when that takes too long.
 """
 
@@ -168,18 +168,18 @@ class Keeper:
 
         Args:
             given: A request.
-            first: Store a note of it first: it may start or loosen something.
+            first: Announce it first: it may start or loosen something.
 
         Raises:
-            StorageDegradedError: The note cannot be stored; nothing was done.
+            StorageDegradedError: It cannot be announced; nothing was done.
             PilothouseError: The core rejects it; nothing was done.
         """
         if first:
-            await self._store_first(given)
+            await self._announce(given)
         outputs = self._submit(given)
         return Taken(outputs, await self._is_stored(OUTCOME_S if first else SAFER_S))
 
-    async def _store_first(self, given: Input) -> None:
+    async def _announce(self, given: Input) -> None:
         self._requests += 1
         what: Plain = [self._requests, type(given).__name__]
         if not await self._journal.announce(what, BARRIER_S):

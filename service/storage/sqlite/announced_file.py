@@ -13,6 +13,7 @@ from pathlib import Path
 
 from service.storage.sqlite.connection import PRIVATE_FILE, sync_folder
 
+_FLAGS = os.O_RDWR | os.O_CREAT | os.O_CLOEXEC | os.O_DSYNC
 _PLACE_BYTES = 4_096
 _PLACES = 2
 _HEAD = struct.Struct("<QHI")
@@ -46,7 +47,7 @@ class AnnouncedFile:
         with self._lock:
             self._close()
             self._next = max((number for number, _ in _records(self._path)), default=0) + 1
-            fd = os.open(self._path, os.O_RDWR | os.O_CREAT | os.O_CLOEXEC, PRIVATE_FILE)
+            fd = os.open(self._path, _FLAGS, PRIVATE_FILE)
             self._fd = fd
             if os.fstat(fd).st_size < _PLACES * _PLACE_BYTES:
                 # Later writes take no space, and change nothing but what is in it.
@@ -81,7 +82,8 @@ class AnnouncedFile:
             # Writing to a file that somebody deleted succeeds.
             raise FileNotFoundError(errno.ENOENT, "the folder was deleted")
         disk = os.fstatvfs(fd)
-        if disk.f_bavail * disk.f_frsize < _SPARE_BYTES:
+        # Some network file systems do not say how large they are.
+        if disk.f_blocks and disk.f_bavail * disk.f_frsize < _SPARE_BYTES:
             raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
 
     def _close(self) -> None:
@@ -115,6 +117,6 @@ def _checksum(number: int, text: bytes) -> int:
 
 
 def write_synced(fd: int, content: bytes, offset: int) -> None:
-    """Write bytes and wait until the disk has them, in one call."""
-    if os.pwritev(fd, [content], offset, os.RWF_DSYNC) < len(content):
+    """Write bytes to a file that was opened for synced writes: the disk has them afterwards."""
+    if os.pwrite(fd, content, offset) < len(content):
         raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))

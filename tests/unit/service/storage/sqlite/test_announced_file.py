@@ -105,9 +105,22 @@ def test_nothing_is_announced_where_its_outcome_would_not_fit(
     file.close()
 
 
+def test_a_disk_that_does_not_say_its_size_has_room(
+    path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    unknown = os.statvfs_result((4_096, 4_096, 0, 0, 0, 0, 0, 0, 0, 255))
+    monkeypatch.setattr(os, "fstatvfs", lambda _: unknown)
+
+    file = opened(path)
+    file.write(b"release")
+
+    assert last_text(path) == b"release"
+    file.close()
+
+
 def test_a_write_that_is_short_fails(path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     file = opened(path)
-    monkeypatch.setattr(os, "pwritev", lambda _, parts, *__: len(parts[0]) - 1)
+    monkeypatch.setattr(os, "pwrite", lambda _, content, __: len(content) - 1)
 
     with pytest.raises(OSError, match="space"):
         file.write(b"release")
