@@ -29,6 +29,8 @@ from domain.loosening import may_loosen
 from domain.outbox import Outbox, Outputs
 from domain.parts.parts import Parts
 from domain.parts.system_model import SmhModel
+from domain.reactions.displacing import Displacing
+from domain.reactions.fallbacks import Fallbacks
 from domain.reactions.rules import Rules
 from domain.reactions.settings import RuleSettings
 from domain.restart import Restart
@@ -101,6 +103,7 @@ class Supervision:
         self._changing = Changing(
             self._parts, self._health, self._part_errors, settings.changes, self._outbox, guards
         )
+        displacing = Displacing(self._parts, self._changing, self._outbox)
         # Driving stops the vehicle before the state is published and changes continue.
         self._concerns: tuple[Concern, ...] = (
             Restart(self._outbox),
@@ -114,7 +117,18 @@ class Supervision:
             self._part_errors,
             FactChanges(self.conditions, self.driving, self._outbox),
             self._changing,
-            Rules(self._parts, self._changing, self._health, settings.rules, self._outbox),
+            Fallbacks(
+                self._parts,
+                self._changing,
+                self._health,
+                self._part_errors,
+                guards,
+                displacing,
+                self._outbox,
+            ),
+            Rules(
+                self._parts, self._changing, self._health, settings.rules, displacing, self._outbox
+            ),
             Audit(self._outbox),
             Stalls(self._outbox),
         )

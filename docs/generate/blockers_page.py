@@ -20,8 +20,8 @@ from domain.health.signals import (
     SignalSettings,
     default_signals,
 )
-from domain.reactions.displacing import RULE
-from domain.reactions.rules import RESTART, TOO_OFTEN
+from domain.reactions.returns import RESTART, TOO_OFTEN
+from domain.reactions.rule_watch import RULE
 from domain.tasks.standstill import STANDSTILL_UNKNOWN, STILL_MOVING
 from domain.timebase import to_seconds
 

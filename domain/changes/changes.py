@@ -4,7 +4,7 @@ What a change wants of its nodes is the work of `node_steps.py`.
 """
 
 from collections import defaultdict
-from collections.abc import Iterable, Mapping, Set
+from collections.abc import Collection, Iterable, Mapping, Set
 from itertools import islice
 
 from domain.changes.change_log import ChangeLog
@@ -141,6 +141,7 @@ class Changes:
         *,
         is_asked: bool = True,
         waited: Change | None = None,
+        unguarded: Collection[PartName] = (),
     ) -> ChangeId:
         """Begin an admitted change; it may already have ended when this returns.
 
@@ -152,6 +153,7 @@ class Changes:
             is_asked: Whether its targets are requested. Otherwise they are in force already, and a
                 failure does not lead back.
             waited: The same change, if it waited until now.
+            unguarded: Parts of which the guards do not count.
         """
         if waited is None:
             identity, started_at, cause = self._log.next_id(), now, self._outbox.record_input()
@@ -163,7 +165,7 @@ class Changes:
         change = Change(
             identity, part, request, targets, started_at, cause, schedule, self._steps.durations
         )
-        change.guarded = frozenset(self._guarded.parts_of(targets))
+        change.guarded = frozenset(self._guarded.parts_of(targets)).difference(unguarded)
         if self._running or not self._steps.is_idle:
             self._supersede(goal.targets.keys() | goal.nodes.keys(), change, now)
         self._log.add(change)
