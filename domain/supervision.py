@@ -83,17 +83,12 @@ class Supervision:
         """
         self.model = model
         self._now = start
-        self._outbox = Outbox()
+        outbox = self._outbox = Outbox()
         self._parts = Parts(model, self._outbox)
         self._health = Health(settings.signals, self._outbox, start)
         self._emergency_stop = EmergencyStop(self._health, self._outbox)
         self.driving = Driving(
-            settings.tasks,
-            settings.vehicle,
-            self._health,
-            self._emergency_stop,
-            self._outbox,
-            start,
+            settings.tasks, settings.vehicle, self._health, self._emergency_stop, outbox, start
         )
         storage = Storage(self._outbox)
         self._robot_state = RobotState(self._health, self.driving, storage, self._outbox)
@@ -102,13 +97,9 @@ class Supervision:
         """What conditions are evaluated over."""
         self.conditions = WatchedConditions(self.facts)
         """The conditions of the model, kept up to date; read only."""
+        guards = Guards(model, self.conditions, start)
         self._changing = Changing(
-            self._parts,
-            self._health,
-            self._part_errors,
-            settings.changes,
-            self._outbox,
-            Guards(model, self.conditions, start),
+            self._parts, self._health, self._part_errors, settings.changes, self._outbox, guards
         )
         # Driving stops the vehicle before the state is published and changes continue.
         self._concerns: tuple[Concern, ...] = (

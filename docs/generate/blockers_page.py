@@ -7,6 +7,8 @@ from docs.generate.source_scan import codes_given_to, codes_in, require_describe
 from domain.changes.admission import ADVISORY
 from domain.conditions.explanation import CONDITION, UNKNOWN_VALUE
 from domain.errors import BackendUnavailableError
+from domain.health.built_in_errors import OF_NODES
+from domain.health.part_errors import DEVIATES_AFTER
 from domain.health.signals import (
     DECLARED_BIT,
     ESTOP,
@@ -49,6 +51,16 @@ _OF_TARGETS = {
     RESTART: "The service was restarted, and nothing has been requested since.",
     TOO_OFTEN: "The system has returned too often within a minute.",
 }
+_OF_PARTS = {
+    "UNREACHABLE": "The node cannot be reached, or was never heard of.",
+    "ERROR_PROCESSING": "The node is in `errorprocessing`.",
+    "PARAMETERS_DRIFTED": "The node is active, no change drives it, and a parameter that it "
+    "reported differs from what the mode of its effective target requires.",
+    "DEVIATES": f"The part or one below it has not been where its effective target says for "
+    f"{to_seconds(DEVIATES_AFTER):g} s, and no change drives it or the part that is why.",
+    "CHANGE_FAILED": "The last change that was requested of the part failed or timed out; until a "
+    "change that drives the part succeeds, also over a restart.",
+}
 _WARNINGS = {
     "CLOCK_SKEW": "The stamps of a signal differ from the local clock by more than a second.",
     "LATE_TICKS": "Ticks were skipped: the machine is overloaded.",
@@ -80,6 +92,12 @@ task is held or the robot is in ERROR. A reason that says that it does not is th
 `GET /system_state`, also without an error; it is `still_moving` of `GET /vehicle`, too. It ends
 when the vehicle stands, or when a task drives it again."""
 
+_PARTS = """\
+Parts have these errors without a word in the model file; systems have the last two. `GET /errors`
+lists them beside those of signals, and so does the topic `errors` of the stream. None of them puts
+the robot into ERROR: an error does so by its severity, which is `critical` for those of signals.
+A node that was not yet heard of since the start is UNREACHABLE; no event tells that."""
+
 _SIGNALS = """\
 `error_code` is the sum of the bits of all active errors. An error clears when its cause does, but
 stays active for at least 0.2 s. All numbers are [settings](settings.md).
@@ -97,6 +115,7 @@ def blockers_page() -> str:
     require_described("blockers", of_changes, set(_OF_CHANGES))
     of_conditions = codes_in("domain/robot_reasons.py") | {CONDITION, UNKNOWN_VALUE}
     require_described("conditions", of_conditions, set(_OF_CONDITIONS))
+    require_described("errors of parts", set(OF_NODES), set(_OF_PARTS))
     require_described("warnings", codes_given_to("WarningJson"), set(_WARNINGS))
     changes = (
         (code(name), "no" if name in ADVISORY else "yes", about)
@@ -122,6 +141,12 @@ def blockers_page() -> str:
         "## Signal errors",
         _SIGNALS,
         table(("error", "bit", "signal", "when"), _errors()),
+        "## Errors of parts",
+        _PARTS,
+        table(
+            ("error", "severity", "when"),
+            ((code(name), OF_NODES[name], about) for name, about in _OF_PARTS.items()),
+        ),
         "## Standstill",
         _VEHICLE,
         table(("code", "when"), ((code(name), about) for name, about in _OF_THE_VEHICLE.items())),

@@ -1,7 +1,8 @@
 """All errors, of the robot and of its parts: which are on, since when, and how often."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import replace
+from typing import NamedTuple
 
 from domain.findings import Fact
 from domain.health.built_in_errors import severity_of
@@ -10,8 +11,7 @@ from domain.snapshot import ErrorKey, ErrorState, ErrorView
 from domain.timebase import Instant
 
 
-@dataclass(frozen=True, slots=True)
-class Found:
+class Found(NamedTuple):
     """What was found of an error."""
 
     state: ErrorState
@@ -52,6 +52,11 @@ class ErrorList:
             since: When it was raised, or began to be pending; it stays as it was noted first.
         """
         known = self._open.get(key) or self._ended.get(key)
+        if known is None:
+            if found.state is ErrorState.NORMAL:
+                return
+        elif found == (known.state, known.message, known.value, known.threshold):
+            return
         was_on = known is not None and known.state.is_on
         if known is None or was_on is not found.state.is_on or known.state is ErrorState.NORMAL:
             began = since
@@ -69,8 +74,6 @@ class ErrorList:
             None if found.state is ErrorState.NORMAL else began,
             (0 if known is None else known.count) + raised,
         )
-        if view == known or (known is None and found.state is ErrorState.NORMAL):
-            return
         self._put(view)
         if found.state.is_on is not was_on:
             self._count(key, 1 if raised else -1)

@@ -237,6 +237,8 @@ class PartErrors(Concern):
         if facts is not None:
             self._look_at_node(part, facts, since)
         self._look_at_deviation(part, since)
+        if part in self._deviating and self._errors.is_on(ErrorKey(part, DEVIATES)):
+            self._note(part, DEVIATES, self._deviation(part, _ACTIVE), since)
 
     def _look_at_node(self, node: PartName, facts: NodeFacts, since: Instant) -> None:
         if facts.reachable and node in self._unheard:
@@ -276,8 +278,6 @@ class PartErrors(Concern):
             self._deadlines.set(part, since + DEVIATES_AFTER)
             self._note(part, DEVIATES, self._deviation(part, ErrorState.PENDING), since)
         else:
-            if self._errors.is_on(ErrorKey(part, DEVIATES)):
-                self._note(part, DEVIATES, self._deviation(part, _ACTIVE), since)
             return
         for system in self._parts.model.ancestors[part]:
             self._look_at_deviation(system, since)

@@ -55,6 +55,20 @@ def frame(at: str = AT, **members: object) -> dict[str, Any]:
     return {"type": "state", "at": at, "seq": 1, "skipped": 0, **members}
 
 
+def test_an_error_of_a_part_is_known_until_it_is_told_to_be_normal(page: Page) -> None:
+    lost = {"error": "UNREACHABLE", "part": "arm", "state": "active", "since_at": AT}
+    low = {"error": "BATTERY_LOW", "part": None, "state": "active", "since_at": AT}
+    told = frame(errors={"arm.UNREACHABLE": lost, "BATTERY_LOW": low})
+
+    known = fold(page, told, frame(LATER))
+    ended = fold(page, told, frame(LATER, errors={"arm.UNREACHABLE": {**lost, "state": "normal"}}))
+
+    script = 'async (state) => (await import("/web/js/store.js")).errorsOf(state, "arm")'
+    assert page.evaluate(script, known) == [lost]
+    assert page.evaluate(script, ended) == []
+    assert list(ended["errors"]) == ["BATTERY_LOW"]
+
+
 def task(identity: str, **members: object) -> dict[str, Any]:
     return {"id": identity, "status": "RUNNING", "ended_at": None, **members}
 

@@ -144,12 +144,14 @@ class Story:
         # A restart begins the list anew.
         self._seen = min(self._seen, len(self.robot.events))
         events = self.robot.events[self._seen :]
+        begun_by = {change.cause for change in self.robot.core.changes()}
         self._seen = len(self.robot.events)
         for event in events:
             if event.kind == "target.displacement_began":
                 self.began[event.data["part"], event.data["rule"]].append(event.at)
-            if event.kind == "target.displacement_ended":
-                self._note_end(event.data, event.at)
+            if event.kind == "target.displacement_ended" and event.id in begun_by:
+                # Without a change, something else is in force: nothing returns.
+                self.returned[event.data["part"]].append(event.at)
         if self.robot.core.emergency_stop().engaged:
             activated = [
                 command
@@ -158,11 +160,6 @@ class Story:
             ]
             assert activated == [], "nothing is activated under ESTOP"
         self.robot.commands.clear()
-
-    def _note_end(self, data: "dict[str, object] | object", at: Instant) -> None:
-        assert isinstance(data, dict)
-        if data["reason"] != "a newer request" and data["target"] != data["was"]:
-            self.returned[data["part"]].append(at)
 
     def _check_targets(self) -> None:
         for part in self.robot.core.parts().values():

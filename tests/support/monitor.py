@@ -73,6 +73,11 @@ def signal(name: str, value: object = 1.0, unit: str = "", **more: object) -> Js
     }
 
 
+def error(name: str, part: str | None = None, state: str = "active") -> Json:
+    """Return an error that was raised at `AT`."""
+    return {"error": name, "part": part, "state": state, "message": "it is so", "since_at": AT}
+
+
 def task(status: str = "RUNNING", **more: object) -> Json:
     """Return a task in its middle."""
     return {

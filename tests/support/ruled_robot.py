@@ -7,6 +7,7 @@ from domain.lifecycle import Transition
 from domain.parts.system_model import NodeModel, Rule, SmhModel, SystemModel
 from domain.snapshot import EffectiveTarget
 from domain.state_and_mode import DEFAULT_MODE, ModeName, PartName, StateAndMode
+from domain.supervision import SupervisionSettings
 from domain.timebase import Instant
 from tests.support.good import GOOD
 from tests.support.models import (
@@ -70,8 +71,8 @@ def guarded_model() -> SmhModel:
 class RuledRobot(RestartingRobot):
     """A robot that others than the service command too."""
 
-    def __init__(self, model: SmhModel) -> None:
-        super().__init__(model)
+    def __init__(self, model: SmhModel, settings: SupervisionSettings | None = None) -> None:
+        super().__init__(model, settings)
         self.read(**GOOD)
 
     def come_back(self) -> None:

@@ -20,6 +20,7 @@ import "/web/js/elements/task_panel.js";
 import "/web/js/elements/part_tree.js";
 import "/web/js/elements/mode_switcher.js";
 import "/web/js/elements/change.js";
+import "/web/js/elements/error_list.js";
 import "/web/js/elements/part_panel.js";
 import "/web/js/elements/mock_control.js";
 import "/web/js/elements/signal_list.js";

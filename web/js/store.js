@@ -19,6 +19,7 @@ export function emptyState() {
     systemState: null,
     parts: {},
     signals: {},
+    errors: {},
     task: null,
     path: null,
     vehicle: null,
@@ -41,6 +42,12 @@ export function fold(state, message) {
 /** The task that has not ended, or null; `state.task` may also be the last one that ended. */
 export function currentTask({ task }) {
   return task && !task.ended_at ? task : null;
+}
+
+/** The errors of a part that are on, in the order in which they were told. */
+export function errorsOf({ errors }, part) {
+  const isOn = ({ state }) => state !== "pending";
+  return Object.values(errors).filter((error) => error.part === part && isOn(error));
 }
 
 /** Id of the oldest known event, or null: there is none, or its run is not kept. */
@@ -84,6 +91,7 @@ const FOLDERS = {
       systemState: frame.system_state ?? state.systemState,
       parts: frame.parts ? { ...state.parts, ...frame.parts } : state.parts,
       signals: frame.signals ? { ...state.signals, ...frame.signals } : state.signals,
+      errors: frame.errors ? withoutEnded({ ...state.errors, ...frame.errors }) : state.errors,
       task: frame.task === undefined ? state.task : frame.task,
       vehicle: frame.vehicle ?? state.vehicle,
       holds: frame.holds ?? state.holds,
@@ -130,6 +138,11 @@ const FOLDERS = {
     return { ...state, path: { task, items, indices } };
   },
 };
+
+/** An error that ended is told once more, as normal. */
+function withoutEnded(errors) {
+  return Object.fromEntries(Object.entries(errors).filter(([, { state }]) => state !== "normal"));
+}
 
 /** A frame that was sent before the answer to STOP holds the earlier state. */
 function newerStop(known, { at, emergency_stop }) {

@@ -152,7 +152,7 @@ def change(
     while True:
         for line in _news(view["steps"], told):
             say(line)
-        if view["status"] != "running":
+        if view["status"] not in ("running", "waiting"):
             break
         if time.monotonic() >= deadline:
             say(f"not ended within {wait_s:g} s; see {client.address.url}/changes/{view['id']}")

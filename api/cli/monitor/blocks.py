@@ -34,6 +34,8 @@ _MARK_STYLES = {UNREACHABLE: "bold red", WRONG: "bold yellow", CHANGES: "cyan", 
 _LEVEL_STYLES = {"calm": "bold", "attention": "bold yellow", "error": "bold red"}
 _DRIVING = "bold green"
 _TITLES = "underline"
+_NAMED = 20
+"""Most errors that are named; no line has room for more."""
 _LEAST_LINES = 2
 """Of a table: the titles, and how many rows there would be."""
 
@@ -224,6 +226,20 @@ def _when(at: str) -> str:
 def _rows_in(room: int | None) -> int | None:
     """Return how many lines there are below the titles."""
     return None if room is None else room - 1
+
+
+def errors(view: View) -> list[Text]:
+    """Return how many errors of parts are on, and which came last; nothing if there is none."""
+    on = [
+        name
+        for name, error in view.robot.errors.items()
+        if error["part"] is not None and error["state"] != "pending"
+    ]
+    if not on:
+        return []
+    count = f"{len(on)} error{'s' if len(on) > 1 else ''} of parts"
+    newest = ", ".join(on[: -_NAMED - 1 : -1])
+    return [Text(printable(f"{count}: {newest}"), style=_MARK_STYLES[WRONG])]
 
 
 def _counted(chosen: Chosen[RowType], what: str) -> list[Text]:

@@ -37,7 +37,7 @@ def _joined(view: View, console: Console, top: list[Text], height: int | None) -
     task = blocks.task(view, console)
     parts = part_rows(view.robot.parts or {})
     signals = [SignalRow(signal) for signal in (view.robot.signals or {}).values()]
-    legend = [Text(blocks.LEGEND)]
+    legend = [*blocks.errors(view), Text(blocks.LEGEND)]
     if height is None:
         return _spaced(
             top,
@@ -59,7 +59,7 @@ def _joined(view: View, console: Console, top: list[Text], height: int | None) -
         return [*top, *tables[0], *tables[1], *task, *legend[:spare]]
     # With another gap in front of each.
     notes = blocks.notes(view, min(_NOTES, spare - gaps - 1 - len(legend) - 1))
-    return _spaced(top, *tables, task, notes, legend if spare > gaps + 1 else [])
+    return _spaced(top, *tables, task, notes, legend if spare > gaps + len(legend) else [])
 
 
 def _shares(parts: int, signals: int, left: int) -> tuple[int, int]:

@@ -1,7 +1,7 @@
 """The known state of the robot, as a pure fold of the frames of the stream."""
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 Json = Mapping[str, Any]
@@ -38,6 +38,8 @@ class Robot:
     vehicle: Json | None = None
     holds: Mapping[str, Json] | None = None
     """By owner, the oldest first."""
+    errors: Mapping[str, Json] = field(default_factory=dict)
+    """By name, those that are not normal."""
     emergency_stop: Json | None = None
     last_event_id: int = 0
     notes: tuple[Note, ...] = ()
@@ -65,6 +67,7 @@ class Robot:
             "vehicle": self.vehicle,
             "emergency_stop": self.emergency_stop,
             "holds": list((self.holds or {}).values()),
+            "errors": list(self.errors.values()),
         }
 
 
@@ -101,6 +104,7 @@ def _state(robot: Robot, frame: Json) -> Robot:
         task=frame.get("task", robot.task),
         vehicle=frame.get("vehicle", robot.vehicle),
         holds=frame.get("holds", robot.holds),
+        errors=_open_ones(robot.errors, frame.get("errors", {})),
         emergency_stop=frame.get("emergency_stop", robot.emergency_stop),
     )
 
@@ -110,6 +114,14 @@ def _merged(
 ) -> Mapping[str, Json] | None:
     """Merge the changed members of a frame; the first frame has all members, in order."""
     return known if changed is None else {**(known or {}), **changed}
+
+
+def _open_ones(known: Mapping[str, Json], changed: Mapping[str, Json]) -> Mapping[str, Json]:
+    """Merge changed errors; one that ended is told once more, as normal."""
+    if not changed:
+        return known
+    merged = {**known, **changed}
+    return {name: error for name, error in merged.items() if error["state"] != "normal"}
 
 
 def _event(robot: Robot, event: Json) -> Robot:

@@ -20,6 +20,8 @@ from domain.parameters import ParameterValue, value_type
 from domain.snapshot import Actual, Because, EffectiveTarget, ModeView, ParameterView, PartView
 from service.clock import Clock
 
+MAX_WAIT_FOR_S = 3_600.0
+
 ParameterType: TypeAlias = Literal[
     "bool",
     "integer",
@@ -264,17 +266,30 @@ class ParametersJson(Json):
     items: list[ParameterRowJson]
 
 
+WaitFor: TypeAlias = Annotated[
+    float | None,
+    Field(
+        ge=0,
+        le=MAX_WAIT_FOR_S,
+        allow_inf_nan=False,
+        description="How long it may wait for what its modes require, s; null: it is rejected then",
+    ),
+]
+
+
 class ModeBody(Body):
     """Bring a part into a mode."""
 
     # No maximum but that of the body: a mode of a model may have a name of any length.
     mode: str = Field(min_length=1, examples=["PERFORMANCE"])
+    wait_for_s: WaitFor = None
 
 
 class TransitionBody(Body):
     """Request a lifecycle transition of a part."""
 
     transition: Literal["configure", "activate", "deactivate", "cleanup", "shutdown"]
+    wait_for_s: WaitFor = None
 
 
 ParametersBody: TypeAlias = Annotated[

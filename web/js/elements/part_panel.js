@@ -2,6 +2,7 @@
 
 import { el, setAttribute, setText } from "/web/js/dom.js";
 import { PartWatch } from "/web/js/part_watch.js";
+import { errorsOf } from "/web/js/store.js";
 
 const SPACE_PX = 12;
 
@@ -17,6 +18,7 @@ class PartPanel extends HTMLElement {
     this.kind = el("span", { class: "kind" });
     this.pills = el("ph-pills");
     this.reason = el("p", { class: "note" });
+    this.errors = el("ph-error-list", { hidden: true });
     this.commands = el("ph-mode-switcher");
     this.result = el("ph-change");
     this.empty = el("p", { class: "quiet" }, "Select a part to see and change its mode.");
@@ -26,6 +28,7 @@ class PartPanel extends HTMLElement {
       el("div", { class: "panel-head" }, this.heading, this.kind, this.back),
       this.pills,
       this.reason,
+      this.errors,
       this.commands,
       this.result,
     );
@@ -75,6 +78,7 @@ class PartPanel extends HTMLElement {
     setText(this.kind, part.kind ?? "");
     this.pills.show(part);
     setText(this.reason, part.actual.reason ?? "");
+    this.errors.show({ errors: errorsOf(view.state, part.name), knownAt: view.knownAt });
     this.#show();
   }
 
@@ -107,7 +111,7 @@ class PartPanel extends HTMLElement {
  *
  * Parts that a frame leaves out stay the same objects, so this is cheap to compare.
  */
-function whatDecides(part, { parts, systemState, emergencyStop }) {
+function whatDecides(part, { parts, systemState, errors, emergencyStop }) {
   const reasons = (systemState?.reasons ?? []).map(({ code, message }) => `${code}: ${message}`);
   const below = new Set();
   const add = (one) => {
@@ -116,7 +120,7 @@ function whatDecides(part, { parts, systemState, emergencyStop }) {
     for (const name of one.parts ?? []) add(parts[name]);
   };
   add(part);
-  return [...below, reasons.join("\n"), Boolean(emergencyStop?.engaged)];
+  return [...below, errors, reasons.join("\n"), Boolean(emergencyStop?.engaged)];
 }
 
 function isSame(one, other) {

@@ -1,17 +1,20 @@
 """Rules of a model, told as what an operator sees of a robot that loses a part."""
 
+from dataclasses import replace
+
 import pytest
 
-from domain.actor import Actor
+from domain.conditions.condition import Condition
 from domain.inputs import BackendStatus
 from domain.kept import KeptEffectiveTarget
+from domain.lifecycle import LifecycleState
+from domain.parts.mode_settings import ModeSettings
 from domain.parts.system_model import Rule
 from domain.simulation.node_settings import Fault
 from domain.snapshot import Because, ChangeStatus
-from domain.state_and_mode import PartName
+from domain.state_and_mode import DEFAULT_MODE, PartName
 from tests.support.models import ACTUATION, ARM, BASE, active, actuation_model, inactive
 from tests.support.ruled_robot import (
-    DEGRADE,
     RuledRobot,
     degrading_model,
     guarded_model,
@@ -19,6 +22,7 @@ from tests.support.ruled_robot import (
     with_rules,
 )
 
+S = LifecycleState
 DEFAULT = "active.__DEFAULT__"
 BEGAN, ENDED = "target.displacement_began", "target.displacement_ended"
 STAYS, NOT_APPLIED = "target.displacement_stays", "rule.not_applied"
@@ -49,51 +53,6 @@ def test_a_part_that_is_back_within_a_second_leaves_everything_as_it_is() -> Non
 
     assert robot.actual("actuation") == "active.PERFORMANCE"
     assert robot.happened(BEGAN) == []
-
-
-def test_the_rest_of_the_system_follows_and_what_was_requested_is_not_forgotten() -> None:
-    robot = degrading().degraded()
-
-    assert robot.actual("drive_base") == DEFAULT
-    assert robot.core.part(ACTUATION).converged
-    assert (robot.asked("actuation"), robot.asked("drive_base")) == (
-        "active.PERFORMANCE",
-        "active.FAST",
-    )
-    assert robot.target("drive_base") == f"{DEFAULT} by degrade", "inherited"
-    assert robot.target("manipulator") == "inactive by degrade"
-
-
-def test_who_set_a_target_and_why_is_shown_with_the_event_that_tells_it() -> None:
-    robot = degrading().degraded()
-
-    pursued = robot.pursued("drive_base")
-    (began,) = (event for event in robot.events if event.kind == BEGAN)
-    assert (pursued.because, pursued.rule, pursued.cause) == (Because.RULE, DEGRADE, began.id)
-    assert began.actor == Actor("rule:degrade")
-    assert began.data == {
-        "part": "actuation",
-        "target": DEFAULT,
-        "was": "active.PERFORMANCE",
-        "because": "rule",
-        "rule": "degrade",
-        "reason": "manipulator is inactive",
-    }
-    (blocker,) = pursued.blockers
-    assert (blocker.code, blocker.path) == ("RULE", (ACTUATION, ARM))
-    assert (blocker.message, blocker.refuses) == ("manipulator is inactive", False)
-    reported = next(event for event in robot.events if event.id == began.cause)
-    assert (reported.kind, reported.data["node"]) == ("node.reported", "manipulator")
-    assert blocker.since == reported.at
-
-
-def test_a_change_in_the_name_of_the_rule_leads_there() -> None:
-    robot = degrading().degraded()
-
-    change = robot.core.changes()[0]
-    (began,) = (event for event in robot.events if event.kind == BEGAN)
-    assert (change.part, change.request.actor.label) == (ACTUATION, "rule:degrade")
-    assert (change.status, change.cause) == (ChangeStatus.SUCCEEDED, began.id)
 
 
 def test_nothing_is_acted_on_while_the_requested_change_runs() -> None:
@@ -196,17 +155,6 @@ def test_while_the_backend_is_down_nothing_is_acted_on_and_afterwards_it_is() ->
     assert robot.target("actuation") == f"{DEFAULT} by degrade"
 
 
-def test_a_node_that_cannot_follow_does_not_keep_the_others_from_it() -> None:
-    robot = degrading().in_performance()
-    robot.fault("drive_base", Fault.REFUSE)
-    robot.somebody_asks("manipulator", "deactivate")
-    robot.advance(5)
-
-    assert robot.core.changes()[0].status is ChangeStatus.FAILED
-    assert robot.target("actuation") == f"{DEFAULT} by degrade"
-    assert not robot.core.part(ACTUATION).converged
-
-
 # --- it returns ----------------------------------------------------------------------------------
 
 
@@ -241,23 +189,6 @@ def test_a_part_that_falls_silent_is_not_back() -> None:
     robot.advance(20)
 
     assert robot.target("actuation") == f"{DEFAULT} by degrade"
-
-
-def test_what_keeps_a_system_from_returning_is_shown_until_it_is_gone() -> None:
-    robot = degrading().degraded()
-    robot.somebody_asks("drive_base", "shutdown")
-    robot.somebody_asks("manipulator", "activate")
-    robot.advance(5)
-    assert robot.why("actuation") == [
-        ("FINALIZED", "drive_base is finalized: its process must be restarted")
-    ]
-    assert robot.happened(ENDED) == []
-
-    robot.fault("drive_base", Fault.DIE)
-    robot.fault("drive_base", None)
-    robot.advance(5)
-
-    assert robot.actual("actuation") == "active.PERFORMANCE"
 
 
 def test_a_newer_request_is_never_undone() -> None:
@@ -570,7 +501,22 @@ def test_what_a_rule_set_that_the_model_no_longer_has_is_left_out_and_told() -> 
     assert told["what"] == f"the target {DEFAULT} of actuation that a rule set"
 
 
-# --- nodes that return ---------------------------------------------------------------------------
+# --- and others ----------------------------------------------------------------------------------
+
+
+def test_a_rule_waits_for_the_guards_of_what_it_sets() -> None:
+    charged = ModeSettings(requires=(Condition("battery_level > 0.5"),))
+    settings = {ACTUATION: {DEFAULT_MODE: charged}}
+    robot = RuledRobot(replace(degrading_model(), mode_settings=settings)).in_performance()
+    robot.read(battery_level=0.3)
+    robot.somebody_asks("manipulator", "deactivate")
+    robot.advance(1.5)
+    assert robot.happened(BEGAN) == []
+    assert len(robot.happened(NOT_APPLIED)) == 1
+
+    robot.read(battery_level=0.9)
+    robot.advance(1)
+    assert robot.target("actuation") == f"{DEFAULT} by degrade"
 
 
 def test_a_model_without_rules_has_nothing_to_act_on() -> None:

@@ -9,6 +9,7 @@ from tests.support.monitor import (
     AT,
     after,
     console,
+    error,
     event,
     frame,
     hold,
@@ -288,3 +289,24 @@ def test_of_what_happened_the_newest_is_told(room: int, told: list[str]) -> None
     lines = plain(blocks.notes(view(robot(*starts)), room))
 
     assert [line[len("12:00:00  task ") :] for line in lines] == told
+
+
+# --- errors of parts -----------------------------------------------------------------------------
+
+
+def drawn_errors(*errors: Json) -> list[str]:
+    told = {f"{item['part']}.{item['error']}": item for item in errors}
+    return plain(blocks.errors(view(robot(frame(errors=told)))))
+
+
+def test_without_errors_of_parts_nothing_is_said_of_them() -> None:
+    assert drawn_errors() == []
+    assert drawn_errors(error("BATTERY_LOW"), error("DEVIATES", "arm", "pending")) == []
+
+
+def test_errors_of_parts_are_counted_and_named_the_newest_first() -> None:
+    assert drawn_errors(error("UNREACHABLE", "arm")) == ["1 error of parts: arm.UNREACHABLE"]
+    many = [error("DEVIATES", f"n{number}") for number in range(100)]
+    (line,) = drawn_errors(*many)
+    assert line.startswith("100 errors of parts: n99.DEVIATES, n98.DEVIATES, ")
+    assert line.endswith(" n80.DEVIATES")

@@ -4,6 +4,7 @@ from api.cli.monitor.store import Note, Robot, fold
 from tests.support.monitor import (
     AT,
     after,
+    error,
     event,
     frame,
     hello,
@@ -139,6 +140,7 @@ def test_as_json_it_has_each_member_as_an_answer_to_a_request_has_it() -> None:
         "vehicle",
         "emergency_stop",
         "holds",
+        "errors",
     ]
     assert shown["parts"] == {"arm": part("arm")}
     assert shown["emergency_stop"] == stop()
@@ -147,3 +149,14 @@ def test_as_json_it_has_each_member_as_an_answer_to_a_request_has_it() -> None:
 
 def test_a_frame_of_an_unknown_type_tells_nothing() -> None:
     assert fold(robot(), {"type": "weather"}) == robot()
+
+
+def test_errors_are_known_until_they_are_told_to_be_normal() -> None:
+    low, lost = error("BATTERY_LOW"), error("UNREACHABLE", "arm")
+    known = fold(robot(), frame(errors={"BATTERY_LOW": low, "arm.UNREACHABLE": lost}))
+    known = fold(known, frame(after(1)))
+    assert known.errors == {"BATTERY_LOW": low, "arm.UNREACHABLE": lost}
+    assert known.as_json()["errors"] == [low, lost]
+
+    known = fold(known, frame(after(2), errors={"BATTERY_LOW": {**low, "state": "normal"}}))
+    assert known.errors == {"arm.UNREACHABLE": lost}
