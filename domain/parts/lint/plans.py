@@ -2,6 +2,7 @@
 
 from collections import defaultdict
 from collections.abc import Iterable, Iterator, Mapping
+from itertools import chain
 from typing import TypeAlias
 
 from domain.conditions.tree import Node, Subject, comparisons
@@ -42,6 +43,7 @@ class PlanLint:
             **{name: system.modes for name, system in model.systems.items()},
             **{name: node.modes for name, node in model.nodes.items()},
         }
+        self._guards: dict[_Place, tuple[Node, ...]] = {}
         self._reached: set[_Place] = set()
         self._seen: dict[PartName, set[ModeName]] = defaultdict(set)
         """The modes of each part that a guard can see."""
@@ -98,7 +100,7 @@ class PlanLint:
 
     def _named(self, place: _Place) -> Iterator[PartName]:
         """Yield the parts whose mode the guards of a mode name."""
-        for root in self._roots(place):
+        for root in self._all_roots(place):
             for leaf in comparisons(root):
                 name = PartName(leaf.subject.topic.name)
                 if leaf.subject.attribute == "mode" and name in self._modes:
@@ -146,9 +148,10 @@ class PlanLint:
         return place[0] in self._model.systems and not self._unseen[place]
 
     def _can_be_reached(self, place: _Place) -> bool:
+        """Tell whether a request can be taken: all guards of what it demands hold at once."""
         if self._unreached[place]:
             return False
-        roots = self._roots(place)
+        roots = self._all_roots(place)
         return not roots or self._can_be_true(place, roots)
 
     def _can_be_true(self, place: _Place, roots: Iterable[Node]) -> bool:
@@ -174,6 +177,16 @@ class PlanLint:
         settings = self._model.settings_of(*place)
         return [condition.root for condition in (*settings.requires, *settings.invariants)]
 
+    def _all_roots(self, place: _Place) -> tuple[Node, ...]:
+        """Return the guards of a mode and of all modes that it demands; effort as its result."""
+        known = self._guards.get(place)
+        if known is None:
+            below = (self._all_roots(other) for other in self._demanded(place))
+            known = tuple(dict.fromkeys((*self._roots(place), *chain.from_iterable(below))))
+            self._budget.spend(len(known))
+            self._guards[place] = known if not self._budget.is_spent else ()
+        return known
+
     def _why_not(self, place: _Place) -> str | None:
         """Return why no plan reaches a mode; None: one does, or another finding says it."""
         if place in self._reached or self._is_transitional(place):
@@ -185,4 +198,6 @@ class PlanLint:
         possible, search = self._possible, self._satisfiability.can_be_true
         if not search(self._roots(place), possible.of, possible.follows):
             return None
+        if not search(self._all_roots(place), possible.of, possible.follows):
+            return "its guards and those of the modes that it requires contradict each other"
         return "its guards name modes that cannot be entered before it"
