@@ -2,9 +2,10 @@
 
 from collections.abc import Iterable, Mapping, Set
 
-from domain.concern import Concern
+from domain.concern import Concern, Takers
 from domain.conditions.tree import Topic, TopicKind
 from domain.conditions.watched import WatchedConditions
+from domain.inputs import NodeReport
 from domain.outbox import Outbox
 from domain.tasks.driving import Driving
 from domain.timebase import Instant
@@ -34,6 +35,17 @@ class FactChanges(Concern):
         self._holds = [topic for topic in topics if topic.kind is TopicKind.HOLD]
         self._seen: object = None
         """The holds as they were evaluated last."""
+
+    @property
+    def takes(self) -> Takers:
+        """Return the handler of each class of input."""
+        return {NodeReport: self._take_report}
+
+    def _take_report(self, report: NodeReport, now: Instant) -> None:
+        """Touch a node that reports parameters: they may change nothing else about it."""
+        topic = self._parts.get(report.node) if report.parameters else None
+        if topic is not None:
+            self._watched.touch(topic)
 
     def settle(self, now: Instant) -> bool:
         """Evaluate the conditions that name what changed; return whether one has another value."""

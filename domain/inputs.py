@@ -162,6 +162,8 @@ class ModeRequest:
     part: PartName
     mode: str
     actor: Actor = NOBODY
+    wait_for: Duration | None = None
+    """How long it may wait for what its modes require; None: it is rejected then."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -171,6 +173,8 @@ class TransitionRequest:
     part: PartName
     transition: Transition
     actor: Actor = NOBODY
+    wait_for: Duration | None = None
+    """How long it may wait for what its modes require; None: it is rejected then."""
 
 
 @dataclass(frozen=True, slots=True)

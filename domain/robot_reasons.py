@@ -1,12 +1,13 @@
 """Explains a comparison further: the error, the node or the hold that it comes from."""
 
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Iterator
 from itertools import islice
 
-from domain.conditions.tree import Comparison, TopicKind
+from domain.conditions.tree import Comparison, Operator, TopicKind
 from domain.findings import Blocker
 from domain.health.health import Health
-from domain.parts.node_doubts import doubt_of
+from domain.lifecycle import LifecycleState
+from domain.parts.node_doubts import IN_DOUBT, doubt_of
 from domain.parts.parts import Parts
 from domain.snapshot import HoldView, TaskStatus
 from domain.state_and_mode import PartName
@@ -42,7 +43,7 @@ class RobotReasons:
             case TopicKind.ERROR:
                 found = (reason for reason in self._health.reasons if reason.code == name)
             case TopicKind.PART if name in self._parts.model.parts:
-                found = self._of_part(PartName(name), leaf.subject.attribute)
+                found = self._of_part(PartName(name), leaf)
             case TopicKind.ROBOT:
                 found = self._health.reasons
             case TopicKind.TASK:
@@ -54,29 +55,33 @@ class RobotReasons:
                 found = ()
         return tuple(islice(found, MAX_CAUSES))
 
-    def _of_part(self, part: PartName, attribute: str) -> Iterable[Blocker]:
+    def _of_part(self, part: PartName, leaf: Comparison) -> Iterable[Blocker]:
         """Return the nodes that keep a part from being where it is needed, or else what deviates.
 
-        A node is not explained by itself: the comparison says already that it is unreachable.
+        A node is not explained by itself: the comparison says already that it is unreachable. A
+        part that should not be where it is has no further reason, unless it is unknown.
         """
-        if attribute == "parameters":
+        attribute, view = leaf.subject.attribute, self._parts.view(part)
+        is_unknown = view.actual.state is LifecycleState.UNKNOWN
+        should_not = leaf.operator in (Operator.NOT_EQUAL, Operator.NOT_IN)
+        if attribute == "parameters" or (should_not and not is_unknown):
             return ()
-        model = self._parts.model
-        below = [node for node in model.nodes_below(part) if node != part]
-        found = [doubt for node in below if (doubt := self._of_node(part, node, attribute))]
-        if found or attribute == "reachable":
+        found = list(islice(self._doubts_below(part, attribute), MAX_CAUSES))
+        if found or attribute == "reachable" or view.deviation_reason is None:
             return found
-        view = self._parts.view(part)
-        if view.deviation_reason is None:
-            return ()
         message, since = view.deviation_reason, view.deviation_since
         return (Blocker("DEVIATES", message, (part,), since=since),)
 
-    def _of_node(self, part: PartName, node: PartName, attribute: str) -> Blocker | None:
-        facts = self._parts.facts[node]
-        if attribute == "reachable" and facts.reachable:
-            return None
-        return doubt_of(node, facts, self._path(part, node))
+    def _doubts_below(self, part: PartName, attribute: str) -> Iterator[Blocker]:
+        for node in self._parts.model.nodes_below(part):
+            facts = self._parts.facts[node]
+            if node == part or facts.known_state not in IN_DOUBT:
+                continue
+            if attribute == "reachable" and facts.reachable:
+                continue
+            doubt = doubt_of(node, facts, self._path(part, node))
+            if doubt is not None:
+                yield doubt
 
     def _path(self, part: PartName, node: PartName) -> tuple[str, ...]:
         """Return one path down from a system to a node below it."""

@@ -4,15 +4,14 @@ from collections.abc import Iterable, Mapping
 from typing import Protocol
 
 from domain.conditions.vocabulary import Kind, PartTerms, Terms, Vocabulary
+from domain.health.built_in_errors import OF_EVERY_PART, OF_NODES
 from domain.health.signals import STALE_DATA, SignalKind, SignalSettings, SignalSpec
 from domain.parameters import ParameterValue
 from domain.parts.system_model import NodeModel, SystemModel
 from domain.state_and_mode import PartName
 
-ERRORS_OF_PARTS = ("DEVIATES", "CHANGE_FAILED", "INVARIANT_BROKEN")
-"""Errors that every part has."""
-ERRORS_OF_NODES = ("UNREACHABLE", "ERROR_PROCESSING", "PARAMETERS_DRIFTED", *ERRORS_OF_PARTS)
-"""Errors that every node has."""
+_OF_EVERY_PART = (*OF_EVERY_PART, "INVARIANT_BROKEN")
+_OF_NODES = (*OF_NODES, "INVARIANT_BROKEN")
 
 
 class PartsOfRobot(Protocol):
@@ -43,7 +42,7 @@ def vocabulary_of(
     parts = {str(name): _terms_of_node(node) for name, node in model.nodes.items()}
     for name, system in model.systems.items():
         modes = tuple(map(str, system.modes))
-        parts[str(name)] = PartTerms(is_node=False, modes=modes, errors=ERRORS_OF_PARTS)
+        parts[str(name)] = PartTerms(is_node=False, modes=modes, errors=_OF_EVERY_PART)
     errors = [bound.error for signal in known for bound in signal.bounds]
     return Vocabulary(
         parts,
@@ -62,7 +61,7 @@ def _terms_of_node(node: NodeModel) -> PartTerms:
         is_node=True,
         modes=tuple(map(str, node.modes)),
         parameters=parameters,
-        errors=ERRORS_OF_NODES,
+        errors=_OF_NODES,
     )
 
 

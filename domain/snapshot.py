@@ -107,6 +107,12 @@ class ModeView:
     mode: ModeName
     can_enter: bool
     blockers: tuple[Blocker, ...]
+    can_stay: bool | None = None
+    """Whether all its invariants hold; None: it is not the mode in force."""
+    requires: tuple[str, ...] = ()
+    """Conditions of entering it."""
+    invariants: tuple[str, ...] = ()
+    """Conditions of entering it and of staying in it."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -133,14 +139,21 @@ class StepStatus(StrEnum):
 
 
 class ChangeStatus(StrEnum):
-    """Status of a change; all but `running` are final."""
+    """Status of a change; all but `waiting` and `running` are final."""
 
+    WAITING = "waiting"
+    """It begins once what its modes require is true."""
     RUNNING = "running"
     SUCCEEDED = "succeeded"
     FAILED = "failed"
     TIMED_OUT = "timed_out"
     SUPERSEDED = "superseded"
     CANCELED = "canceled"
+
+    @property
+    def is_final(self) -> bool:
+        """Tell whether nothing turns it into another one."""
+        return self not in (ChangeStatus.WAITING, ChangeStatus.RUNNING)
 
 
 class Rollback(StrEnum):

@@ -18,6 +18,7 @@ from domain.concern import Concern, settle
 from domain.conditions.watched import WatchedConditions
 from domain.events.service import TimeWasDue
 from domain.fact_changes import FactChanges
+from domain.findings import Blocker
 from domain.health.emergency_stop import EmergencyStop
 from domain.health.health import Health
 from domain.health.part_errors import PartErrors
@@ -82,31 +83,23 @@ class Supervision:
         """
         self.model = model
         self._now = start
-        self._outbox = Outbox()
+        outbox = self._outbox = Outbox()
         self._parts = Parts(model, self._outbox)
         self._health = Health(settings.signals, self._outbox, start)
         self._emergency_stop = EmergencyStop(self._health, self._outbox)
         self.driving = Driving(
-            settings.tasks,
-            settings.vehicle,
-            self._health,
-            self._emergency_stop,
-            self._outbox,
-            start,
+            settings.tasks, settings.vehicle, self._health, self._emergency_stop, outbox, start
         )
         storage = Storage(self._outbox)
         self._robot_state = RobotState(self._health, self.driving, storage, self._outbox)
         self._part_errors = PartErrors(self._parts, self._health.error_list, self._outbox, start)
         self.facts = RobotFacts(self._parts, self._health, self.driving, self._part_errors.reason)
         """What conditions are evaluated over."""
-        watched = WatchedConditions(self.facts)
+        self.conditions = WatchedConditions(self.facts)
+        """The conditions of the model, kept up to date; read only."""
+        guards = Guards(model, self.conditions, start)
         self._changing = Changing(
-            self._parts,
-            self._health,
-            self._part_errors,
-            settings.changes,
-            self._outbox,
-            Guards(model, watched, start),
+            self._parts, self._health, self._part_errors, settings.changes, self._outbox, guards
         )
         # Driving stops the vehicle before the state is published and changes continue.
         self._concerns: tuple[Concern, ...] = (
@@ -119,19 +112,23 @@ class Supervision:
             storage,
             self._robot_state,
             self._part_errors,
-            FactChanges(watched, self.driving, self._outbox),
+            FactChanges(self.conditions, self.driving, self._outbox),
             self._changing,
             Rules(self._parts, self._changing, self._health, settings.rules, self._outbox),
             Audit(self._outbox),
             Stalls(self._outbox),
         )
         self._outbox.errors.clear()  # What is on from the start is no change.
+        self._arrange()
+
+    def _arrange(self) -> None:
+        """Note which concerns have to be asked when; most have nothing to do most of the time."""
         self._takers = _takers(self._concerns)
         self._clocked = [c for c in self._concerns if _overrides(c, "wake_at")]
         self._settling = [c for c in self._concerns if _overrides(c, "settle")]
         self._portioned = [c for c in self._concerns if _overrides(c, "go_on")]
         self._has_more = False
-        self._max_rounds = _SPARE_ROUNDS + len(model.parts)
+        self._max_rounds = _SPARE_ROUNDS + len(self.model.parts)
         self._wake_at = self._next_wake()
         """Cached: it is read several times per input, and only inputs and time change it."""
 
@@ -243,6 +240,10 @@ class Supervision:
     def mode(self, part: PartName, mode: ModeName) -> ModeView:
         """Return a mode of a part, with its blockers."""
         return self._changing.mode(part, mode)
+
+    def why(self, part: PartName) -> tuple[Blocker, ...]:
+        """Return why a part is not where it should be, the reasons nearest to it first."""
+        return self._changing.why(part)
 
     def parameters(self, node: PartName) -> tuple[ParameterView, ...]:
         """Return the parameters of a node."""

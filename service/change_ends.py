@@ -8,7 +8,7 @@ from contextlib import suppress
 from domain.events.changes import ChangeEnded
 from domain.events.event import RecordedEvent
 from domain.identifiers import ChangeId
-from domain.snapshot import ChangeStatus, ChangeView
+from domain.snapshot import ChangeView
 from domain.supervision import Supervision
 from domain.timebase import Instant, seconds
 from service.clock import Clock
@@ -50,7 +50,7 @@ class ChangeEnds:
             UnknownChangeError: There is no such change.
         """
         view = self._core.change(change)
-        if view.status is not ChangeStatus.RUNNING or timeout_s <= 0 or self._stopped:
+        if view.status.is_final or timeout_s <= 0 or self._stopped:
             return view
         ended: asyncio.Future[None] = asyncio.get_running_loop().create_future()
         waiting = self._waiting.setdefault(change, set())

@@ -1,7 +1,7 @@
 """Keeps what must not be forgotten: notes each step of the core, and answers for requests.
 
-What starts or loosens something is carried out only once a note of it is on disk, which shows that
-storage works. What makes the robot safer is carried out at once. Either is answered when
+What starts or loosens something is carried out only once its announcement is on disk, which shows
+that storage works. What makes the robot safer is carried out at once. Either is answered when
 its outcome is on disk, or when that takes too long.
 """
 
@@ -31,8 +31,6 @@ LOOK_EVERY = seconds(0.25)
 WORKS_FOR = seconds(3.0)
 """Storage that failed works again if it has worked for so long."""
 RETRY_CHECKPOINT = seconds(60.0)
-LAST_REQUEST = "last_request"
-"""Under this name the journal has number and kind of the last request that was stored first."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -170,21 +168,21 @@ class Keeper:
 
         Args:
             given: A request.
-            first: Store a note of it first: it may start or loosen something.
+            first: Announce it first: it may start or loosen something.
 
         Raises:
-            StorageDegradedError: The note cannot be stored; nothing was done.
+            StorageDegradedError: It cannot be announced; nothing was done.
             PilothouseError: The core rejects it; nothing was done.
         """
         if first:
-            await self._store_first(given)
+            await self._announce(given)
         outputs = self._submit(given)
         return Taken(outputs, await self._is_stored(OUTCOME_S if first else SAFER_S))
 
-    async def _store_first(self, given: Input) -> None:
+    async def _announce(self, given: Input) -> None:
         self._requests += 1
-        self._journal.keep(LAST_REQUEST, [self._requests, type(given).__name__])
-        if not await self._journal.commit(BARRIER_S):
+        what: Plain = [self._requests, type(given).__name__]
+        if not await self._journal.announce(what, BARRIER_S):
             raise StorageDegradedError(f"the disk takes more than {BARRIER_S:g} s")
 
     async def _is_stored(self, patience_s: float) -> bool:

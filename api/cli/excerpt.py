@@ -2,14 +2,19 @@
 
 import unicodedata
 from collections.abc import Iterable, Iterator, Sequence
+from itertools import chain
+
+from api.terminal_text import escape, is_hidden
+
+WHOLE = 100
+"""Columns of a line that is shown whole."""
 
 BEFORE, AFTER = 60, 40
-"""Columns shown before and after the caret at most."""
+"""Columns shown before and after the caret of a longer one, at most."""
 
 _GUTTER = 5
 _TAB = 4
 _CUT = "..."
-_UNPRINTABLE = frozenset(("Cc", "Cf", "Cn", "Co", "Cs", "Zl", "Zp"))
 _NO_WIDTH = frozenset(("Mn", "Me"))
 
 
@@ -28,13 +33,11 @@ def excerpt(lines: Sequence[str], line: int, column: int) -> Iterator[str]:
     yield f"{'':>{_GUTTER}} | {' ' * caret}^"
 
 
-def visible(text: str) -> str:
-    """Return a text with escapes for characters that steer a terminal or hide others."""
-    return "".join(_escape(character) if _is_hidden(character) else character for character in text)
-
-
 def _window(text: str, index: int) -> tuple[str, int]:
     """Return the part of a line around a character, and the column where that begins, from 0."""
+    whole = list(_cells(text[: WHOLE + 1]))
+    if len(whole) <= WHOLE and sum(map(_width, chain.from_iterable(whole))) <= WHOLE:
+        return "".join(whole), sum(map(_width, chain.from_iterable(whole[:index])))
     # No more characters than columns fit but for those without width, of which few are shown.
     first = max(0, index - BEFORE * 2)
     before = list(_cells(text[first:index]))
@@ -64,15 +67,7 @@ def _cells(text: str) -> Iterator[str]:
         if character == "\t":
             yield " " * _TAB
         else:
-            yield _escape(character) if _is_hidden(character) else character
-
-
-def _is_hidden(character: str) -> bool:
-    return unicodedata.category(character) in _UNPRINTABLE
-
-
-def _escape(character: str) -> str:
-    return character.encode("unicode_escape").decode("ascii")
+            yield escape(character) if is_hidden(character) else character
 
 
 def _width(character: str) -> int:

@@ -20,6 +20,7 @@ from service.supervisor import Supervisor
 MAX_WAIT_S = 60.0
 
 _STATUS_OF_END = {
+    ChangeStatus.WAITING: HTTPStatus.ACCEPTED,
     ChangeStatus.RUNNING: HTTPStatus.ACCEPTED,
     ChangeStatus.SUCCEEDED: HTTPStatus.OK,
     ChangeStatus.FAILED: HTTPStatus.CONFLICT,

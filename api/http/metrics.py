@@ -17,7 +17,7 @@ from service.supervisor import Supervisor
 _MAX_PARTS = 1_000
 """Limits the size of a scrape."""
 
-_ENDS = tuple(str(status) for status in ChangeStatus if status != ChangeStatus.RUNNING)
+_ENDS = tuple(str(status) for status in ChangeStatus if status.is_final)
 
 _PERIODS_S = (0.025, 0.045, 0.049, 0.05, 0.051, 0.055, 0.075, 0.1, 0.2, 1.0)
 """Close together about the 50 ms of the tick."""

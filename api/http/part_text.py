@@ -7,7 +7,8 @@ from collections.abc import Callable
 
 from pydantic_core import to_json
 
-from domain.snapshot import PartView
+from domain.findings import Blocker
+from domain.snapshot import EffectiveTarget, PartView
 from domain.timebase import Instant
 
 
@@ -29,12 +30,7 @@ def part_text(view: PartView, show: Callable[[Instant], str]) -> str:
         "kind": view.kind,
         "parts": view.parts,
         "target": target and {"state": str(target.state), "mode": target.mode},
-        "effective_target": effective
-        and {
-            "state": str(effective.state),
-            "mode": effective.mode,
-            "because": effective.because,
-        },
+        "effective_target": effective and _effective(effective, show),
         "actual": {
             "state": str(actual.state),
             "mode": actual.mode,
@@ -50,3 +46,29 @@ def part_text(view: PartView, show: Callable[[Instant], str]) -> str:
         "change": view.change,
     }
     return to_json(shown).decode()
+
+
+def _effective(target: EffectiveTarget, show: Callable[[Instant], str]) -> dict[str, object]:
+    return {
+        "state": str(target.state),
+        "mode": target.mode,
+        "because": str(target.because),
+        "rule": target.rule,
+        "cause": target.cause,
+        "blockers": [_blocker(blocker, show) for blocker in target.blockers],
+    }
+
+
+def _blocker(blocker: Blocker, show: Callable[[Instant], str]) -> dict[str, object]:
+    return {
+        "code": blocker.code,
+        "message": blocker.message,
+        "path": blocker.path,
+        "value": blocker.value,
+        "threshold": blocker.threshold,
+        "since_at": None if blocker.since is None else show(blocker.since),
+        "root_cause": blocker.root_cause,
+        "refuses": blocker.refuses,
+        "causes": [_blocker(cause, show) for cause in blocker.causes],
+        "condition": blocker.condition,
+    }

@@ -15,7 +15,7 @@ from api.simulation.simulation_job import SimulatedParts
 from domain.simulation.mock_signals import MockSignals
 from service.clock import Clock
 from service.composite import CompositeRobot
-from service.files.model_file import LoadedModel, load_model
+from service.files.model_file import LoadedModel, load_model, with_signals
 from service.files.robot_file import RobotSettings, read_robot_file
 from service.files.ros2_block import Ros2Block
 from service.files.text_file import read_text_file
@@ -107,8 +107,11 @@ def read_files(options: ServeOptions) -> RobotFiles:
     """
     model = options.model or EXAMPLE
     loaded = load_model(model)
-    text = read_text_file(options.robot) if options.robot else ""
-    settings = read_robot_file(text, loaded.model) if options.robot else RobotSettings()
+    text, settings = "", RobotSettings()
+    if options.robot:
+        text = read_text_file(options.robot)
+        settings = read_robot_file(text, loaded.model)
+        loaded = with_signals(loaded, settings.to_signal_settings())
     return RobotFiles(robot_name(settings.name, model), loaded, settings, text)
 
 

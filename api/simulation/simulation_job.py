@@ -23,7 +23,7 @@ from domain.simulation.robot import SimulatedRobot
 from domain.timebase import Instant
 from service.checkpoint import CorePickler
 from service.event_log import EventLog
-from service.files.model_file import LoadedModel, read_model
+from service.files.model_file import LoadedModel, read_model, with_signals
 from service.files.robot_file import RobotSettings, robot_settings_of
 from service.onboard_parts import make_onboard
 from service.simulation.from_settings import make_simulated_robot
@@ -109,6 +109,8 @@ def robot_for(body: SimulationBody, model_text: str, live: LiveCopy | None) -> V
         robot = robot_settings_of(body.robot or {}, loaded.model)
     except InvalidValueError as error:
         raise InvalidBodyError.at(f"/robot{error.pointer}", error) from error
+    if body.robot is not None:
+        loaded = with_signals(loaded, robot.to_signal_settings())
     if faults := list(_faults_of_conditions(body, loaded.model, robot)):
         raise InvalidBodyError(faults)
     return _new(loaded, robot)

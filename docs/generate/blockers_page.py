@@ -20,6 +20,8 @@ from domain.health.signals import (
     SignalSettings,
     default_signals,
 )
+from domain.reactions.displacing import RULE
+from domain.reactions.rules import RESTART, TOO_OFTEN
 from domain.tasks.standstill import STANDSTILL_UNKNOWN, STILL_MOVING
 from domain.timebase import to_seconds
 
@@ -42,6 +44,12 @@ _OF_CONDITIONS = {
     "known: a signal that was never seen or is stale, a silent node, an old pose.",
     "DEVIATES": "A part is not where its target says; the message names the part below it.",
     "HOLD": "A hold keeps the task paused.",
+}
+_OF_TARGETS = {
+    RULE: "A part is as a rule of the model says.",
+    ESTOP: "ESTOP was active when the system would have returned.",
+    RESTART: "The service was restarted, and nothing has been requested since.",
+    TOO_OFTEN: "The system has returned too often within a minute.",
 }
 _OF_PARTS = {
     "UNREACHABLE": "The node cannot be reached, or was never heard of.",
@@ -125,6 +133,11 @@ def blockers_page() -> str:
         "A condition that is not true is shown as a tree: below an `and` what is not true, below an"
         "\n`or` everything, and below each comparison what it comes from.",
         table(("code", "meaning"), ((code(name), about) for name, about in _OF_CONDITIONS.items())),
+        "## Effective targets",
+        "Blockers of an `effective_target` say why the requested one is not in force: what caused"
+        "\nthat, and why the system stays there although the cause is gone, which may also be what"
+        "\nwould reject a request.",
+        table(("code", "meaning"), ((code(name), about) for name, about in _OF_TARGETS.items())),
         "## Signal errors",
         _SIGNALS,
         table(("error", "bit", "signal", "when"), _errors()),

@@ -3,7 +3,7 @@
 `GET .../modes` shows the same blockers that a request would meet.
 """
 
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import replace
 from itertools import islice
 
@@ -153,20 +153,22 @@ class ChangeAdmission:
             key=lambda item: item[0] in ADVISORY,
         )
         blockers = [self._blocker(part, node, code) for code, node in found[:MAX_BLOCKERS]]
+        blockers = [*self.guard_blockers(part, goal), *blockers]
         if estop and self.would_activate(goal):
             blockers = [replace(why, path=(part, *why.path)) for why in estop] + blockers
-        if guarded := self._guards.of(goal.targets):
-            of_guards = self._guard_blockers(part, guarded, goal)
-            blockers = [*islice(of_guards, MAX_BLOCKERS), *blockers]
         return tuple(blockers[:MAX_BLOCKERS])
 
-    def _guard_blockers(
-        self, part: PartName, guarded: Sequence[PartName], goal: ChangeGoal
-    ) -> Iterator[Blocker]:
-        """Find the guards that do not hold, of the requested part first."""
-        for blocker in self._guards.blockers(guarded, goal.targets):
-            owner, *below = blocker.path
-            yield replace(blocker, path=(*self._path(part, PartName(owner)), *below))
+    def guard_blockers(self, part: PartName, goal: ChangeGoal) -> list[Blocker]:
+        """Return the guards that do not hold, of the requested part first."""
+        guarded = self._guards.of(goal.targets)
+        if not guarded:
+            return []
+        found = islice(self._guards.blockers(guarded, goal.targets), MAX_BLOCKERS)
+        return [replace(blocker, path=self._path_of_guard(part, blocker)) for blocker in found]
+
+    def _path_of_guard(self, part: PartName, blocker: Blocker) -> tuple[str, ...]:
+        owner, *below = blocker.path
+        return (*self.path(part, PartName(owner)), *below)
 
     def _activates(self, node: PartName, goal: NodeGoal) -> bool:
         """Tell whether a node would, or in an unknown state might, be activated."""
@@ -192,7 +194,7 @@ class ChangeAdmission:
         known = facts.known_state
         value = None if code in ADVISORY else str(known)
         words = facts.why_unknown if code in ADVISORY else _WORDS[known]
-        path = self._path(part, node)
+        path = self.path(part, node)
         return Blocker(
             code,
             f"{node} {words}",
@@ -202,7 +204,7 @@ class ChangeAdmission:
             refuses=code not in ADVISORY,
         )
 
-    def _path(self, part: PartName, node: PartName) -> tuple[str, ...]:
+    def path(self, part: PartName, node: PartName) -> tuple[str, ...]:
         """Return one path down from the requested part to the node."""
         if part == node:
             return (part,)
@@ -210,7 +212,7 @@ class ChangeAdmission:
             if child == node or (
                 child in self._model.systems and child in self._model.ancestors[node]
             ):
-                return (part, *self._path(child, node))
+                return (part, *self.path(child, node))
         return (part, node)
 
 

@@ -7,6 +7,7 @@ from collections import defaultdict
 from collections.abc import Iterable, Mapping, Set
 from itertools import islice
 
+from domain.changes.change_log import ChangeLog
 from domain.changes.guarded_changes import GuardedChanges
 from domain.changes.guards import Guards
 from domain.changes.kept_changes import ended_by_restart, kept_of
@@ -19,8 +20,7 @@ from domain.changes.rollback import goals_before
 from domain.changes.schedule import Schedule, schedule_of
 from domain.changes.settings import ChangeSettings
 from domain.deadlines import Deadlines
-from domain.errors import UnknownChangeError
-from domain.events.changes import CHANGE_ENDS
+from domain.events.changes import CHANGE_ENDS, ChangeWaiting
 from domain.health.health import Health
 from domain.health.part_errors import PartErrors
 from domain.identifiers import ChangeId
@@ -35,9 +35,6 @@ from domain.snapshot import ChangeStatus, Rollback, StepStatus
 from domain.state_and_mode import PartName, StateAndMode
 from domain.timebase import Instant, to_seconds
 
-KEPT_CHANGES = 1_000
-KEPT_PURSUITS = 50_000
-"""Pursuits of all changes together; bounds the memory of large changes."""
 STARTS_AT_ONCE = 100
 """Nodes that one turn starts. A large change goes on in later ones, and others come in between."""
 MAX_IN_FLIGHT = 2_500
@@ -71,13 +68,11 @@ class Changes:
             self._take_loose_end,
             self._forbidden,
         )
-        self._changes: dict[ChangeId, Change] = {}
+        self._log = ChangeLog()
         self._running: dict[ChangeId, Change] = {}
         self._kept_targets = KeptTargets(parts.model, outbox)
-        self._to_pack: dict[ChangeId, Change] = {}
         self._deadlines: Deadlines[ChangeId] = Deadlines()
         self._guarded = GuardedChanges(guards, self._inference.model)
-        self._count = 0
 
     # --- what can be seen ------------------------------------------------------------------------
 
@@ -87,15 +82,11 @@ class Changes:
         Raises:
             UnknownChangeError: The id is unknown, or the change is no longer kept.
         """
-        found = self._changes.get(ChangeId(change))
-        if found is None:
-            hint = f"the last {KEPT_CHANGES} changes are kept; see GET /changes"
-            raise UnknownChangeError("change", change, (), hint)
-        return found
+        return self._log.get(change)
 
     def all(self) -> tuple[Change, ...]:
         """Return the changes that are kept, the newest first."""
-        return tuple(reversed(self._changes.values()))
+        return self._log.all()
 
     def schedule(self, request: ChangeRequest, goal: ChangeGoal) -> Schedule:
         """Return how the change that an admitted request begins would proceed."""
@@ -119,7 +110,7 @@ class Changes:
     @property
     def has_more(self) -> bool:
         """Tell whether nodes are still to be started, and may be, or something is to be packed."""
-        return self._may_start or bool(self._to_pack)
+        return self._may_start or self._log.has_more
 
     def step_in_flight(self, node: PartName) -> Step | None:
         """Return the step that a node is executing."""
@@ -129,10 +120,10 @@ class Changes:
 
     def restore(self, restored: Restored, now: Instant) -> None:
         """Set the targets that were kept, and end the changes that the restart interrupted."""
-        self._count = restored.next_change - 1
+        self._log.count_from(restored.next_change)
         self._parts.ask(self._kept_targets.restore(restored.kept))
         for change in ended_by_restart(restored.kept, now):
-            self._changes[change.id] = change
+            self._log.add(change)
             self._outbox.forget(KeptChange, change.id)
             self._tell_end(change, now)
 
@@ -149,6 +140,7 @@ class Changes:
         now: Instant,
         *,
         is_asked: bool = True,
+        waited: Change | None = None,
     ) -> ChangeId:
         """Begin an admitted change; it may already have ended when this returns.
 
@@ -159,20 +151,23 @@ class Changes:
             now: The current time.
             is_asked: Whether its targets are requested. Otherwise they are in force already, and a
                 failure does not lead back.
+            waited: The same change, if it waited until now.
         """
-        self._count += 1
-        identity = ChangeId(f"c{self._count}")
-        cause = self._outbox.record_input()
+        if waited is None:
+            identity, started_at, cause = self._log.next_id(), now, self._outbox.record_input()
+        else:
+            identity, started_at, cause = waited.id, waited.started_at, waited.cause
         schedule, targets = self.schedule(request, goal), dict(goal.targets)
         if not is_asked:
             schedule = schedule.without_rollback()
         change = Change(
-            identity, part, request, targets, now, cause, schedule, self._steps.durations
+            identity, part, request, targets, started_at, cause, schedule, self._steps.durations
         )
         change.guarded = frozenset(self._guarded.parts_of(targets))
         if self._running or not self._steps.is_idle:
             self._supersede(goal.targets.keys() | goal.nodes.keys(), change, now)
-        self._changes[identity] = self._running[identity] = change
+        self._log.add(change)
+        self._running[identity] = change
         self._parts.put_under(identity, (part, *goal.targets, *goal.nodes))
         if is_asked:
             self._ask(change)
@@ -184,8 +179,30 @@ class Changes:
         self._guarded.add(change)
         self._set_out(change, now)
         self._conclude(change, now)
-        self._forget_old()
+        self._log.forget_old()
         return identity
+
+    def let_wait(self, part: PartName, request: ChangeRequest, now: Instant, why: str) -> Change:
+        """Record a change that waits; `begin` begins it, or `end_waiting` ends it.
+
+        Args:
+            part: The requested part.
+            request: What was requested.
+            now: The current time.
+            why: What it waits for.
+        """
+        cause, identity = self._outbox.record_input(), self._log.next_id()
+        status = ChangeStatus.WAITING
+        change = Change(identity, part, request, {}, now, cause, status=status, reason=why)
+        self._log.add(change)
+        self._outbox.keep(kept_of(change))
+        self._outbox.emit(ChangeWaiting(identity, part, why))
+        self._log.forget_old()
+        return change
+
+    def end_waiting(self, change: Change, status: ChangeStatus, why: str, now: Instant) -> None:
+        """End a change that waits."""
+        self._end(change, status, why, now)
 
     def _ask(self, change: Change) -> None:
         """Set the targets that a change is to reach, and keep them over a restart."""
@@ -204,11 +221,11 @@ class Changes:
             UnknownChangeError: The id is unknown.
         """
         found = self.get(change)
-        if found.open:
+        if found.open or found.status is ChangeStatus.WAITING:
             self._outbox.record_input()
         self._drop(found.open.copy(), StepStatus.CANCELED, now)
         found.leave(list(found.open), StepStatus.CANCELED, now)
-        if found.status is ChangeStatus.RUNNING:
+        if not found.status.is_final:
             self._end_by(found, ChangeStatus.CANCELED, "canceled on request", now)
 
     def report(self, report: NodeReport, now: Instant) -> None:
@@ -228,13 +245,12 @@ class Changes:
         self._steps.pass_time(now)
         until = self._steps.judged_until(now)
         while (identity := self._deadlines.pop_due(until)) is not None:
-            self._is_late(self._changes[identity], now)
+            self._is_late(self._log[identity], now)
 
     def go_on(self, now: Instant) -> None:
         """Start some more nodes of the change that began first."""
         if not self._may_start:
-            if self._to_pack:
-                self._to_pack.pop(next(iter(self._to_pack))).pack()
+            self._log.pack_next()
             return
         change = next(iter(self._steps.waiting.values()))
         self._outbox.resume(now, change.cause, change.request.actor)
@@ -258,7 +274,7 @@ class Changes:
 
     def _forbidden(self, pursuit: Pursuit) -> str | None:
         """Return which guard keeps a node from its next step; None: none does."""
-        change = self._changes[pursuit.change]
+        change = self._log[pursuit.change]
         if pursuit.rollback or not change.guarded:
             return None
         broken = self._guarded.forbids(change, pursuit.node)
@@ -352,38 +368,29 @@ class Changes:
             let_go[identity].append(node)
         for node in sorted(self._steps.on_their_way(parts)):
             identity, is_in_flight = self._steps.drop(node, status, now)
-            self._changes[identity].loose += is_in_flight
+            self._log[identity].loose += is_in_flight
             let_go[identity].append(node)
         for identity, nodes in let_go.items():
-            change = self._changes[identity]
+            change = self._log[identity]
             change.open.difference_update(nodes)
             self._let_go(change, nodes)
-            self._pack(change)
+            self._log.pack(change)
 
     def _take_loose_end(self, identity: ChangeId) -> None:
         """Note that a step has ended whose node is no longer on its way."""
-        change = self._changes[identity]
+        change = self._log[identity]
         change.loose -= 1
-        self._pack(change)
-
-    def _pack(self, change: Change) -> None:
-        """Pack a change that is over; a large one in a turn of its own."""
-        if not change.is_over or change.packed is not None:
-            return
-        if change.node_count <= STARTS_AT_ONCE:
-            change.pack()
-        else:
-            self._to_pack[change.id] = change
+        self._log.pack(change)
 
     def _take_end(self, pursuit: Pursuit, now: Instant) -> None:
         """Note that a node has ended its part of a change, and end the change with the last."""
-        change = self._changes[pursuit.change]
+        change = self._log[pursuit.change]
         change.open.discard(pursuit.node)
         self._let_stay(change, pursuit)
         self._follow(change, pursuit, now)
         self._conclude(change, now)
         self._let_go(change, {pursuit.node})
-        self._pack(change)
+        self._log.pack(change)
 
     def _let_stay(self, change: Change, pursuit: Pursuit) -> None:
         """Leave a node that turned out to be unconfigured so; deactivating its system asks no more.
@@ -442,13 +449,13 @@ class Changes:
 
     def _end(self, change: Change, status: ChangeStatus, reason: str | None, now: Instant) -> None:
         change.status, change.reason, change.ended_at = status, reason, now
-        del self._running[change.id]
+        self._running.pop(change.id, None)
         self._deadlines.clear(change.id)
         self._guarded.drop(change)
         self._outbox.forget(KeptChange, change.id)
         self._let_go(change, {change.part, *change.targets, *change.pursuits})
         self._tell_end(change, now)
-        self._pack(change)
+        self._log.pack(change)
 
     def _tell_end(self, change: Change, now: Instant) -> None:
         ended = CHANGE_ENDS[change.status](change.id, change.part, change.reason)
@@ -459,18 +466,6 @@ class Changes:
         """Release the parts of an ended change, except nodes that it is still driving."""
         if change.status is not ChangeStatus.RUNNING:
             self._parts.let_go(change.id, set(parts) - change.open)
-
-    def _forget_old(self) -> None:
-        """Keep the newest changes, and all that are still running or driving a node."""
-        excess = len(self._changes) - KEPT_CHANGES
-        kept = sum(change.node_count for change in self._changes.values())
-        for identity, change in list(self._changes.items())[:-1]:
-            if excess <= 0 and kept <= KEPT_PURSUITS:
-                return
-            if change.is_over:
-                del self._changes[identity]
-                excess -= 1
-                kept -= change.node_count
 
 
 _UNHAPPY_ENDS: Mapping[StepStatus, ChangeStatus] = {

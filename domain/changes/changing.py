@@ -12,8 +12,10 @@ from domain.changes.record import Step, StepTable
 from domain.changes.request_check import check_request
 from domain.changes.restoring import Restoring
 from domain.changes.settings import ChangeSettings
+from domain.changes.waiting import Waiting, may_wait
+from domain.changes.why import Whys
 from domain.concern import Concern, Takers
-from domain.errors import BackendUnavailableError
+from domain.errors import BackendUnavailableError, BlockedError
 from domain.events.changes import (
     BackendAvailable,
     BackendUnavailable,
@@ -42,7 +44,7 @@ from domain.outbox import Outbox
 from domain.parts.parts import Parts
 from domain.plans.durations import Durations
 from domain.snapshot import ChangeView, ModeView, PlanView
-from domain.state_and_mode import ModeName, PartName
+from domain.state_and_mode import DEFAULT_MODE, ModeName, PartName
 from domain.timebase import Duration, Instant
 
 
@@ -64,6 +66,8 @@ class Changing(Concern):
         self._guards = guards
         self._admission = ChangeAdmission(parts.model, parts.facts, guards)
         self._changes = Changes(parts, settings, outbox, health, guards, part_errors)
+        self._whys = Whys(parts, self._admission, health)
+        self._waiting = Waiting(parts, self._changes, self._admission, guards, health, outbox)
         self._restoring = Restoring(parts, self._changes, settings, outbox, self._admit)
         self._backend = BackendStatus(available=True)
         self._backend_since: Instant | None = None
@@ -87,12 +91,14 @@ class Changing(Concern):
         }
 
     def wake_at(self) -> Instant | None:
-        """Return the next deadline of a step."""
-        return self._changes.wake_at()
+        """Return the next deadline."""
+        due = (self._changes.wake_at(), self._waiting.wake_at())
+        return min((at for at in due if at is not None), default=None)
 
     def pass_time(self, now: Instant) -> None:
         """Handle all deadlines up to `now`."""
         self._changes.pass_time(now)
+        self._waiting.pass_time(now)
 
     @property
     def has_more(self) -> bool:
@@ -105,15 +111,24 @@ class Changing(Concern):
 
     def settle(self, now: Instant) -> bool:
         """End changes whose guards broke, and begin the next one that restores a node."""
-        has_ended = self._changes.judge_guards(now)
-        return self._restoring.begin_next(now) or has_ended
+        has_moved = self._changes.judge_guards(now)
+        has_moved |= self._waiting.settle(now)
+        return self._restoring.begin_next(now) or has_moved
 
     def _take_request(self, request: ChangeRequest, now: Instant) -> None:
         part = check_request(self._parts.model, self._parts.facts, request)
-        goal = self._admit(request)
+        try:
+            goal = self._admit(request)
+        except BlockedError as refusal:
+            if isinstance(request, ParametersRequest) or not may_wait(request, refusal.blockers):
+                raise
+            self._outbox.begin(now, _described(part, request), request.actor)
+            self._outbox.change = self._waiting.add(request, refusal.blockers, now)
+            return
         self._outbox.begin(now, _described(part, request), request.actor)
         self._parts.note_request(part)
-        self._outbox.change = self._changes.begin(part, request, goal, now)
+        self._outbox.change = change = self._changes.begin(part, request, goal, now)
+        self._waiting.give_way(change, part, now)
         self._restoring.forget(goal.targets)
 
     def _admit(self, request: ChangeRequest) -> ChangeGoal:
@@ -125,11 +140,13 @@ class Changing(Concern):
         self._outbox.begin(now, ChangeCancelRequested(request.change), request.actor)
         self._restoring.cancel(request.change)
         self._changes.cancel(request.change, now)
+        self._waiting.drop(request.change)
 
     def _follow_report(self, report: NodeReport, now: Instant) -> None:
         """Judge the step in flight by the node's new facts."""
         step = self._changes.step_in_flight(report.node)
         self._changes.report(report, now)
+        self._waiting.note_report(report.node)
         self._restoring.take_report(report, step)
 
     def _take_answer(self, answer: NodeAnswer, now: Instant) -> None:
@@ -186,7 +203,29 @@ class Changing(Concern):
             *self._backend_blockers(part),
             *self._admission.blockers(ModeRequest(part, mode), self._health.stop_reasons),
         )
-        return ModeView(mode, not refuse(blockers), blockers)
+        settings = self._parts.model.settings_of(part, mode)
+        is_in_force = mode == self._mode_in_force(part)
+        return ModeView(
+            mode,
+            not refuse(blockers),
+            blockers,
+            self._guards.can_stay(part, mode) if is_in_force else None,
+            tuple(condition.text for condition in settings.requires),
+            tuple(condition.text for condition in settings.invariants),
+        )
+
+    def _mode_in_force(self, part: PartName) -> ModeName | None:
+        """Return the mode of the target in force, else the actual one; None: there is none."""
+        target = self._parts.target(part)
+        if target is None:
+            return self._parts.inference.actual(part).mode
+        if target.state is not LifecycleState.ACTIVE:
+            return None
+        return target.mode or DEFAULT_MODE
+
+    def why(self, part: PartName) -> tuple[Blocker, ...]:
+        """Return why a part is not where it should be, the reasons nearest to it first."""
+        return (*self._backend_blockers(part), *self._whys.of(part))
 
     def _backend_error(self) -> BackendUnavailableError | None:
         return None if self._backend.available else BackendUnavailableError(self._backend.reason)

@@ -269,7 +269,7 @@ class Change:
     @property
     def is_over(self) -> bool:
         """Tell whether nothing about this change changes any more."""
-        return self.status is not ChangeStatus.RUNNING and not self.open and not self.loose
+        return self.status.is_final and not self.open and not self.loose
 
     def errors_of(self, outcome: StepStatus) -> list[str]:
         """Return why nodes ended with `outcome`, in the order of the nodes."""

@@ -1,7 +1,7 @@
 """Conditions that are kept up to date: a change touches only those that name what changed."""
 
 from collections.abc import Collection, Iterable
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 from domain.conditions.condition import Condition
 from domain.conditions.evaluation import Truth, compare, truth_of
@@ -122,7 +122,9 @@ class WatchedConditions:
 
     def explain(self, condition: Condition) -> tuple[Blocker, ...]:
         """Return why a condition that is watched is not true; empty: it is."""
-        return explain(condition, self._facts, self._since_of_leaf)
+        since = self._watched[condition.text].broken_since
+        found = explain(condition, self._facts, self._since_of_leaf)
+        return tuple(replace(b, since=since) if b.since is None else b for b in found)
 
     # --- inside ----------------------------------------------------------------------------------
 

@@ -97,6 +97,20 @@ class NodeAnswered(Event):
 
 
 @dataclass(frozen=True, slots=True)
+class ChangeWaiting(Event):
+    """A change waits until what its modes require is true."""
+
+    kind = "change.waiting"
+
+    change: ChangeId
+    part: PartName
+    reason: str
+
+    def _words(self) -> str:
+        return because(f"{self.part}: change waits", self.reason)
+
+
+@dataclass(frozen=True, slots=True)
 class ChangeEnded(Event):
     """A change ended; each status has its own kind."""
 

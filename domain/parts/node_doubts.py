@@ -15,6 +15,9 @@ _STUCK = {
     LifecycleState.ERROR_PROCESSING: (ERROR_PROCESSING, "is processing an error"),
 }
 
+IN_DOUBT = frozenset({LifecycleState.UNKNOWN, *_STUCK})
+"""Known states of a node that cannot go anywhere, or is not known to."""
+
 
 def doubt_of(node: PartName, facts: NodeFacts, path: Sequence[str]) -> Blocker | None:
     """Return why a node cannot go anywhere, or is not known to; None: it can.

@@ -9,11 +9,11 @@ README.
 
 from collections.abc import Collection, Iterable, Mapping
 from dataclasses import dataclass, field, replace
-from itertools import chain
+from itertools import chain, islice
 from types import MappingProxyType
 
 from domain.circles import in_words
-from domain.errors import InvalidModelError, UnknownModeError, UnknownPartError
+from domain.errors import InvalidModelError, UnknownModeError, UnknownPartError, near_match
 from domain.findings import Finding
 from domain.lifecycle import LifecycleState
 from domain.parameters import Parameters
@@ -33,6 +33,8 @@ MAX_ANCESTORS = 1_000_000
 """Ancestors of all parts together; a balanced model of 10,000 nodes has less than 50,000."""
 
 _MAX_CYCLES_TOLD = 100
+_MOST_COMPARED = 200
+"""Names that one may be a slip of, for each name that is not known."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -278,12 +280,17 @@ def _check_pair(
     """
     modes = modes_of.get(part)
     if modes is None:
-        message = f"{where}: there is no part {part!r}"
+        message = f"{where}: there is no part {part!r}{_hint(part, modes_of)}"
         yield Finding("error", "UNKNOWN_PART", message, owner, place)
     elif pair.state is LifecycleState.ACTIVE and pair.mode is not None and pair.mode not in modes:
         known = f"it has {', '.join(modes)}" if modes else "it has no modes"
-        message = f"{where}: {part} has no mode {pair.mode!r}; {known}"
+        message = f"{where}: {part} has no mode {pair.mode!r}; {known}{_hint(pair.mode, modes)}"
         yield Finding("error", "UNKNOWN_MODE", message, owner, place)
+
+
+def _hint(name: str, known: Iterable[str]) -> str:
+    near = near_match(name, tuple(islice(known, _MOST_COMPARED)))
+    return f"; did you mean {near}?" if near else ""
 
 
 def _cycle(systems: Mapping[PartName, SystemModel], cycle: tuple[PartName, ...]) -> Finding:

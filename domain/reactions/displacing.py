@@ -1,6 +1,7 @@
 """Puts the targets of rules in force, and takes them back: events, changes, and what is kept."""
 
 from collections.abc import Mapping
+from dataclasses import dataclass
 
 from domain.actor import Actor
 from domain.changes.changing import Changing
@@ -26,6 +27,15 @@ from domain.timebase import Instant
 
 RULE = "RULE"
 """Code of the blocker that names the cause of a displacement."""
+
+
+@dataclass(frozen=True, slots=True)
+class Way:
+    """What leads a system, and the parts below that inherit, to their targets."""
+
+    request: ChangeRequest
+    """What it would be as a request."""
+    goal: ChangeGoal
 
 
 class Displacing:
@@ -70,88 +80,108 @@ class Displacing:
 
     # --- what a rule does ------------------------------------------------------------------------
 
-    def would_activate(self, watch: RuleWatch) -> bool:
-        """Tell whether the target of a rule would activate a node, or might."""
-        admission = self._changing.admission
-        return admission.would_activate(admission.goal(self._request(watch)))
+    def way_ahead(self, watch: RuleWatch) -> Way:
+        """Return what leads to the target of a rule."""
+        request = self._towards(watch, watch.rule.new_target)
+        return Way(request, self._changing.admission.goal(request))
 
-    def displace(self, watch: RuleWatch, wait: Wait, now: Instant) -> None:
+    def would_activate(self, way: Way) -> bool:
+        """Tell whether a way would activate a node, or might."""
+        return self._changing.admission.would_activate(way.goal)
+
+    def guard_ahead(self, watch: RuleWatch, way: Way) -> Blocker | None:
+        """Return a guard on a way that does not hold; None: all do."""
+        blockers = self._changing.admission.guard_blockers(watch.system, way.goal)
+        return blockers[0] if blockers else None
+
+    def displace(self, watch: RuleWatch, way: Way, wait: Wait, now: Instant) -> None:
         """Put the target of a rule in force, and begin the change that leads there.
 
         Args:
             watch: The rule.
-            wait: For how long it has matched.
+            way: Leads there.
+            wait: For how long the rule has matched.
             now: The current time.
         """
         system, rule = watch.system, watch.rule
-        was, request = self._parts.target(system), self._request(watch)
+        was = self._parts.target(system)
         assert was is not None, "it is the target that the rule replaces"
-        goal = self._changing.admission.goal(request)
         began = DisplacementBegan(
             system, rule.new_target, was, Because.RULE, rule.name, watch.reason
         )
-        self._outbox.begin(now, began, request.actor, wait.cause)
-        targets = {system: rule.new_target, **goal.targets}
+        self._outbox.begin(now, began, _actor(watch), wait.cause)
+        targets = {system: rule.new_target, **way.goal.targets}
         recorded = self._outbox.record_input()
         displaced = Displacement(system, targets, Because.RULE, rule.name, recorded)
         displaced.blockers = (_cause(watch, wait.since),)
         self._of_rule[watch] = displaced
         self._kept.begin(displaced, wait.since)
         self._parts.displace(displaced)
-        self._changing.drive(system, request, goal, now)
+        self._changing.drive(system, way.request, way.goal, now)
 
-    def refuse(self, watch: RuleWatch, why: str, cause: int, now: Instant) -> None:
-        """Tell that a rule is not applied, and why."""
+    def refuse(self, watch: RuleWatch, why: str, wait: Wait, now: Instant) -> None:
+        """Tell once that a rule is not applied, and why."""
+        if wait.is_told:
+            return
+        wait.is_told = True
         told = RuleNotApplied(watch.system, watch.rule.name, watch.rule.new_target, why)
-        self._outbox.begin(now, told, _actor(watch), cause)
+        self._outbox.begin(now, told, _actor(watch), wait.cause)
         self._outbox.record_input()
 
     # --- and how that ends -----------------------------------------------------------------------
 
-    def is_seen(self, watch: RuleWatch) -> bool:
-        """Tell whether the end of a displacement would put another target in force anywhere."""
-        return bool(self._parts.targets_without(self._of_rule[watch]))
+    def way_back(self, watch: RuleWatch) -> Way | None:
+        """Return what leads to the targets that the end of a displacement would put in force.
 
-    def obstacles(self, watch: RuleWatch) -> tuple[Blocker, ...]:
-        """Return why a request for what a rule displaces would be rejected, besides ESTOP."""
-        request = self._request_back(watch)
-        goal = self._goal_back(watch)
-        if request is None:
-            return ()
-        blockers = self._changing.admission.blockers_of(request, goal)
+        None: others are in force, or none was requested.
+        """
+        targets = self._parts.targets_without(self._of_rule[watch])
+        target = targets.get(watch.system, self._parts.target(watch.system))
+        if not targets or target is None:
+            return None
+        goal = self._changing.admission.goal_of_targets(targets)
+        return Way(self._towards(watch, target), goal)
+
+    def obstacles(self, way: Way) -> tuple[Blocker, ...]:
+        """Return why a request for where a way leads would be rejected, besides ESTOP."""
+        blockers = self._changing.admission.blockers_of(way.request, way.goal)
         return tuple(blocker for blocker in blockers if blocker.refuses)
 
-    def take_back(self, watch: RuleWatch, cause: int, now: Instant) -> None:
+    def take_back(self, watch: RuleWatch, way: Way | None, wait: Wait, now: Instant) -> None:
         """Put what a rule displaces in force again, and begin the change that leads there.
 
         Args:
             watch: The rule.
-            cause: Id of the event with which its cause was gone.
+            way: Leads there; None: nothing has to move.
+            wait: For how long its cause has been gone.
             now: The current time.
         """
-        request, goal = self._request_back(watch), self._goal_back(watch)
         displaced = self._of_rule[watch]
-        ended = self._ended(watch, f"no longer true that {watch.reason}")
-        self._outbox.begin(now, ended, _actor(watch), cause)
+        ended = self._ended(watch, f"no longer true that {watch.reason}", way)
+        self._outbox.begin(now, ended, _actor(watch), wait.cause)
         self._outbox.record_input()
         self._parts.end_displacement(displaced)
         self._forget(watch)
-        if request is not None and goal.targets:
-            self._changing.drive(watch.system, request, goal, now)
+        if way is not None:
+            self._changing.drive(watch.system, way.request, way.goal, now)
 
     def end_by_request(self, watch: RuleWatch) -> None:
         """Tell that the current input, a request, ended what a rule displaced."""
         self._outbox.emit(self._ended(watch, "a newer request"))
         self._forget(watch)
 
-    def let_stay(self, watch: RuleWatch, why: Blocker, cause: int, now: Instant) -> None:
+    def let_stay(self, watch: RuleWatch, why: Blocker, wait: Wait, now: Instant) -> None:
         """Tell that only a request ends what a rule displaces, and why."""
         displaced = self._of_rule[watch]
         name, target = watch.rule.name, displaced.target
         stays = DisplacementStays(watch.system, target, Because.RULE, name, why.message)
-        self._outbox.begin(now, stays, _actor(watch), cause)
+        self._outbox.begin(now, stays, _actor(watch), wait.cause)
         self._outbox.record_input()
         self._parts.explain(displaced, (why,))
+
+    def keep(self, watch: RuleWatch) -> None:
+        """Keep which nodes turned out to be elsewhere than where a rule led them."""
+        self._kept.renew(self._of_rule[watch])
 
     def explain(self, watch: RuleWatch, obstacles: tuple[Blocker, ...]) -> bool:
         """Show why a rule displaces something; return whether something else was shown before."""
@@ -159,28 +189,16 @@ class Displacing:
 
     # --- inside ----------------------------------------------------------------------------------
 
-    def _ended(self, watch: RuleWatch, reason: str) -> DisplacementEnded:
+    def _ended(self, watch: RuleWatch, reason: str, way: Way | None = None) -> DisplacementEnded:
         displaced, system = self._of_rule[watch], watch.system
-        then = {} if self.is_ended(watch) else self._parts.targets_without(displaced)
-        target = then.get(system, self._parts.target(system))
+        target = self._parts.target(system)
+        if way is not None:
+            target = way.goal.targets.get(system, target)
         name = watch.rule.name
         return DisplacementEnded(system, target, displaced.target, Because.RULE, name, reason)
 
     def _forget(self, watch: RuleWatch) -> None:
         self._kept.forget(self._of_rule.pop(watch))
-
-    def _goal_back(self, watch: RuleWatch) -> ChangeGoal:
-        targets = self._parts.targets_without(self._of_rule[watch])
-        return self._changing.admission.goal_of_targets(targets)
-
-    def _request_back(self, watch: RuleWatch) -> ChangeRequest | None:
-        """Return what leads to the target that the end would put in force; None: there is none."""
-        then = self._parts.targets_without(self._of_rule[watch])
-        target = then.get(watch.system, self._parts.target(watch.system))
-        return None if target is None else self._towards(watch, target)
-
-    def _request(self, watch: RuleWatch) -> ChangeRequest:
-        return self._towards(watch, watch.rule.new_target)
 
     def _towards(self, watch: RuleWatch, target: StateAndMode) -> ChangeRequest:
         parts = self._parts

@@ -1,6 +1,7 @@
 """The displacements of rules that survive a restart."""
 
 from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import replace
 
 from domain.changes.kept_targets import RequestOrder, staying_in
 from domain.changes.plan import targets_of
@@ -47,6 +48,13 @@ class KeptRules:
                 staying_in(target, displaced.targets),
             ),
         )
+
+    def renew(self, displaced: Displacement) -> None:
+        """Keep anew which nodes a displacement leaves as they are, if that changed."""
+        kept = self._kept[displaced]
+        staying = staying_in(displaced.target, displaced.targets)
+        if staying != kept.staying:
+            self._keep(displaced, replace(kept, staying=staying))
 
     def forget(self, displaced: Displacement) -> None:
         """Keep a displacement no longer."""

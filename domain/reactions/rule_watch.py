@@ -24,7 +24,8 @@ class RuleWatch:
     rule: Rule
     number: int
     """In the order in which rules act that are due at the same time."""
-    _inference: ModeInference
+    inference: ModeInference
+    """Read only."""
 
     @property
     def name(self) -> str:
@@ -50,7 +51,7 @@ class RuleWatch:
 
     def matches(self) -> bool:
         """Tell whether the target of the system is that of the rule, and its part deviates."""
-        target = self._inference.target(self.system)
+        target = self.inference.target(self.system)
         if target is None or not self.rule.if_target.agrees_with(target):
             return False
         return self.has_cause() and self._deviates()
@@ -62,7 +63,7 @@ class RuleWatch:
             return False
         if pair.state is not LifecycleState.ACTIVE:
             return True
-        has_modes = bool(self._inference.model.modes_of(self.part))
+        has_modes = bool(self.inference.model.modes_of(self.part))
         return not has_modes or actual.mode == (pair.mode or DEFAULT_MODE)
 
     def is_cause_gone(self) -> bool:
@@ -71,7 +72,7 @@ class RuleWatch:
 
     @property
     def _actual(self) -> Actual:
-        return self._inference.actual(self.part)
+        return self.inference.actual(self.part)
 
     def _deviates(self) -> bool:
         """Tell whether the part is not where the target of the system wants it.
@@ -80,11 +81,11 @@ class RuleWatch:
         itself deviates.
         """
         if self._wanted is None:
-            return not self._inference.converged(self.system)
+            return not self.inference.converged(self.system)
         return not is_there(self._actual, self._wanted)
 
     @cached_property
     def _wanted(self) -> StateAndMode | None:
         """Return what the target of the rule wants of its part; looked up once it is needed."""
-        wanted = targets_of(self._inference.model, self.system, self.rule.if_target)
+        wanted = targets_of(self.inference.model, self.system, self.rule.if_target)
         return wanted.get(self.part)

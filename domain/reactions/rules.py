@@ -62,6 +62,7 @@ class Rules(Concern):
         self._changing = changing
         self._health = health
         self._outbox = outbox
+        self._grace = settings.grace
         self._displacing = Displacing(parts, changing, outbox)
         self._rules = _rules_of(parts)
         self._about = _by_part(self._rules)
@@ -128,7 +129,7 @@ class Rules(Concern):
             else:
                 holds = rule not in self._staying and self._is_free(rule) and rule.is_cause_gone()
                 self._relieved.note(rule, now, holds=holds, record=record)
-                self._relieved.reconsider(rule)
+                self._displacing.keep(rule)
 
     def _is_free(self, rule: RuleWatch) -> bool:
         """Tell whether no change of the system or the part is running, and one could begin."""
@@ -151,21 +152,28 @@ class Rules(Concern):
 
     def _fire(self, rule: RuleWatch, wait: Wait, now: Instant) -> None:
         """Let a rule act, or say why it does not."""
-        bound = self._firings[rule]
-        free_at = bound.free_at(now)
-        if free_at > now:
-            often = f"it was applied {MAX_FIRINGS} times {_WITHIN}"
-            self._displacing.refuse(rule, often, wait.cause, now)
-            self._matching.postpone(rule, free_at)
-            return
+        way = self._displacing.way_ahead(rule)
         why = self._why_not(rule, wait)
-        if why and self._displacing.would_activate(rule):
-            self._displacing.refuse(rule, why, wait.cause, now)
+        if why and self._displacing.would_activate(way):
+            self._displacing.refuse(rule, why, wait, now)
             wait.is_idle = True
             return
-        self._matching.end(rule)
-        bound.note(now)
-        self._displacing.displace(rule, wait, now)
+        free_at = self._firings[rule].free_at(now)
+        if free_at > now:
+            often = f"it was applied {MAX_FIRINGS} times {_WITHIN}"
+            self._postpone(rule, often, wait, free_at, now)
+        elif guard := self._displacing.guard_ahead(rule, way):
+            self._postpone(rule, guard.message, wait, now + self._grace, now)
+        else:
+            self._matching.end(rule)
+            self._firings[rule].note(now)
+            self._displacing.displace(rule, way, wait, now)
+
+    def _postpone(
+        self, rule: RuleWatch, why: str, wait: Wait, until: Instant, now: Instant
+    ) -> None:
+        self._displacing.refuse(rule, why, wait, now)
+        self._matching.postpone(rule, until)
 
     def _why_not(self, rule: RuleWatch, wait: Wait) -> str | None:
         """Return why nothing may be activated; None: it may."""
@@ -175,21 +183,22 @@ class Rules(Concern):
 
     def _return(self, rule: RuleWatch, wait: Wait, now: Instant) -> bool:
         """Let a system return, or say why it stays; return whether that is something new."""
-        if not self._displacing.is_seen(rule):
-            self._displacing.take_back(rule, wait.cause, now)
+        way = self._displacing.way_back(rule)
+        if way is None:
             self._relieved.end(rule)
+            self._displacing.take_back(rule, way, wait, now)
             return True
         if (stays := self._why_staying(rule, wait, now)) is not None:
             self._relieved.end(rule)
             self._staying.add(rule)
-            self._displacing.let_stay(rule, stays, wait.cause, now)
+            self._displacing.let_stay(rule, stays, wait, now)
             return True
-        if obstacles := self._displacing.obstacles(rule):
-            wait.is_idle = True
+        if obstacles := self._displacing.obstacles(way):
+            self._relieved.postpone(rule, now + self._grace)
             return self._displacing.explain(rule, obstacles)
         self._relieved.end(rule)
         self._returns[rule.system].note(now)
-        self._displacing.take_back(rule, wait.cause, now)
+        self._displacing.take_back(rule, way, wait, now)
         return True
 
     def _why_staying(self, rule: RuleWatch, wait: Wait, now: Instant) -> Blocker | None:

@@ -18,7 +18,9 @@ class Wait:
     is_over: bool = False
     """It has lasted long enough."""
     is_idle: bool = False
-    """Nothing follows from it as things are now."""
+    """Nothing follows from it any more."""
+    is_told: bool = False
+    """What keeps something from following was told."""
     was_stopped: bool = False
     """ESTOP was active meanwhile."""
 
@@ -71,12 +73,6 @@ class Waits:
         """Note which waits are over."""
         while (rule := self._deadlines.pop_due(now)) is not None:
             self._waits[rule].is_over = True
-
-    def reconsider(self, rule: RuleWatch) -> None:
-        """Let something follow from a wait again, if there is one."""
-        wait = self._waits.get(rule)
-        if wait is not None:
-            wait.is_idle = False
 
     def over(self) -> list[tuple[RuleWatch, Wait]]:
         """Return the waits that are over and from which something may follow, with their rules."""

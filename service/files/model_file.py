@@ -68,6 +68,15 @@ def read_model(text: str, signals: Collection[SignalSettings] | None = None) -> 
     return LoadedModel(model, findings, text)
 
 
+def with_signals(loaded: LoadedModel, signals: Collection[SignalSettings]) -> LoadedModel:
+    """Return a model whose conditions were checked against all signals of the robot.
+
+    Raises:
+        InvalidModelError: A condition names another one.
+    """
+    return read_model(loaded.text, signals) if loaded.model.has_conditions else loaded
+
+
 def check_model(
     text: str, signals: Collection[SignalSettings] | None = None
 ) -> tuple[Finding, ...]:

@@ -121,7 +121,7 @@ class StrengthSignal(AnySignal):
 
 
 class DeclaredSignal(AnySignal):
-    """A further numeric signal and its error bound."""
+    """A further numeric signal and its error condition."""
 
     unit: str = Field(default="", max_length=32)
     """Unit of its values, for display."""

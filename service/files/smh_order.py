@@ -3,7 +3,7 @@
 from collections import Counter
 from collections.abc import Collection, Mapping
 from dataclasses import dataclass
-from itertools import pairwise
+from itertools import islice, pairwise
 
 from domain.errors import near_match, shortened
 from domain.state_and_mode import PartName
@@ -18,6 +18,9 @@ ORDER_KEYS = ("order", "sequence", "after")
 _ORDERS = ("simultaneous", SEQUENTIAL)
 _MAX_PARTS = 10_000
 """Parts in one list."""
+
+_MOST_COMPARED = 200
+"""Names that one may be a slip of."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -156,7 +159,7 @@ class OrderReader:
         parts = self._block.parts_of_system
         if part in parts:
             return part
-        near = near_match(part, tuple(parts))
+        near = near_match(part, tuple(islice(parts, _MOST_COMPARED)))
         hint = f"; did you mean {near}?" if near else ""
         what = "is not a part of" if part in self._known else "is no part, and none of"
         message = f"{where}: {shortened(part)} {what} {self._block.name}{hint}"

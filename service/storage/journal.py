@@ -92,6 +92,9 @@ class StorageStatus:
     """What this run could not write down."""
 
 
+ANNOUNCED = "announced"
+"""Under this name `Found.own` has the last announcements: a list."""
+
 NOTHING_KEPT = StorageStatus(":memory:", 0, None, None, "", 1, {})
 """Status where nothing is kept, as in a simulation."""
 
@@ -166,6 +169,16 @@ class Journal(Protocol):
 
     def keep(self, name: str, value: Plain) -> None:
         """Keep a value of the service itself, such as the state of a simulated robot."""
+        ...
+
+    async def announce(self, what: Plain, patience_s: float) -> bool:
+        """Put on disk what is about to be done; return whether it is there, in that time.
+
+        It proves that storage works now. It waits for nothing that was noted or kept.
+
+        Raises:
+            StorageDegradedError: Storage fails: it will not be, until it works again.
+        """
         ...
 
     @property

@@ -14,6 +14,7 @@ from service.clock import Clock, since_epoch, to_datetime
 from service.storage.event_rows import EventRow, event_row, stored_event
 from service.storage.id_blocks import BOOT, CHANGE, EVENT, TASK, IdBlocks, IdKind
 from service.storage.journal import (
+    ANNOUNCED,
     Boot,
     EventQuery,
     Found,
@@ -111,6 +112,13 @@ class MemoryJournal:
         """Keep a value of the service itself."""
         if not self._is_closed:
             self._store.own[name] = value
+
+    async def announce(self, what: Plain, patience_s: float) -> bool:
+        """Return True: what is announced is there."""
+        if self._is_closed:
+            raise StorageDegradedError("storage is closed")
+        self._store.own[ANNOUNCED] = [what]
+        return True
 
     @property
     def last_step(self) -> int:

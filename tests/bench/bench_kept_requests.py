@@ -65,7 +65,7 @@ async def test_what_keeping_costs_those_who_ask(tmp_path: Path) -> None:
         "with a folder, whose service is then killed with SIGKILL; what was answered is compared "
         f"with its log. From sending a request to the head of its response. And {ALONE} requests "
         "over one connection, each beside a bare fsync in the same folder. A hold is set first and "
-        "then stored; a release is stored, carried out, and stored again.",
+        "then stored; a release is announced on disk, carried out, and stored.",
         rows,
         asked="p99 in a folder at most 1.5 times that in memory, none lost; one alone: p99 of "
         "setting a hold at most 5 ms more than a bare fsync.",

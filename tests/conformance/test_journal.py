@@ -9,7 +9,7 @@ import pytest
 from domain.errors import StorageDegradedError
 from domain.kept import KeptHold
 from domain.state_and_mode import PartName
-from service.storage.journal import EventQuery, Journal
+from service.storage.journal import ANNOUNCED, EventQuery, Journal
 from service.storage.memory import MemoryJournal, MemoryStore
 from service.storage.sqlite.journal import SqliteJournal
 from service.storage.sqlite.opening import StoreSettings
@@ -124,6 +124,20 @@ async def test_the_service_keeps_values_of_its_own(service: Service) -> None:
     own = (await restarted(service, robot)).journal.found.own
 
     assert own == {"simulation": {"pose": [3.0, 2.5, 0.0], "nodes": {}}, "page": None}
+
+
+async def test_what_was_announced_last_is_known_after_a_restart(service: Service) -> None:
+    robot = await service.start()
+    assert (robot.journal.found.own or {}).get(ANNOUNCED) is None
+    for number in (1, 2, 3):
+        assert await robot.journal.announce([number, "ReleaseRequest"], ENOUGH_S)
+
+    robot = await restarted(service, robot)
+
+    assert (robot.journal.found.own or {})[ANNOUNCED] == [[3, "ReleaseRequest"]]
+    await robot.journal.close()
+    with pytest.raises(StorageDegradedError):
+        await robot.journal.announce([4, "ReleaseRequest"], ENOUGH_S)
 
 
 async def test_ids_go_on_where_a_run_ended(service: Service) -> None:

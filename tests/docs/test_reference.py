@@ -31,11 +31,13 @@ from domain.inputs import (
 )
 from domain.kept import KeptHold, KeptTarget
 from domain.lifecycle import LifecycleState
+from domain.parts.system_model import Rule
 from domain.state_and_mode import PartName, StateAndMode
 from domain.supervision import Supervision, SupervisionSettings
 from tests.support.good import GOOD
 from tests.support.http_robot import ACTUATION
-from tests.support.models import actuation_model
+from tests.support.models import BASE, active, actuation_model
+from tests.support.ruled_robot import RuledRobot, degrading_model
 from tests.support.shared import PROJECT
 
 STRAIGHT = [{"x_m": float(x), "y_m": 0.0, "yaw_rad": 0.0} for x in range(31)]
@@ -222,6 +224,25 @@ def a_restart() -> list[RecordedEvent]:
     return told(Restored(kept, boot=2))
 
 
+def a_lost_arm() -> list[RecordedEvent]:
+    """A rule degrades the robot until it stays so; one that would activate does not act."""
+    up = Rule("up", active(), (BASE, active("SLOW")), active("MODERATE"))
+    robot = RuledRobot(degrading_model(up))
+    robot.ask_mode("actuation", "__DEFAULT__")
+    robot.advance(2)
+    robot.stop()
+    robot.somebody_sets("drive_base", "SLOW")
+    robot.advance(2)
+    robot.release_stop()
+    robot.degraded().somebody_asks("manipulator", "activate")
+    robot.advance(2)
+    robot.degraded()
+    robot.stop()
+    robot.somebody_asks("manipulator", "activate")
+    robot.advance(2)
+    return robot.events
+
+
 def told(*inputs: Input) -> list[RecordedEvent]:
     """Return the events of a core that is given what no scenario holds."""
     core = Supervision(actuation_model(), SupervisionSettings(), 0)
@@ -258,6 +279,7 @@ def test_events_that_happen_are_listed_with_what_they_carry() -> None:
         a_stall,
         a_restart,
         a_full_disk,
+        a_lost_arm,
         the_examples,
     )
     for event in (event for story in stories for event in story()):

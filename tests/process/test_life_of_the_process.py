@@ -199,7 +199,7 @@ def test_an_invalid_model_is_told_with_its_places_and_nothing_is_started(
     code, output, errors = run("serve", str(model), "--port", "0")
 
     assert (code, output) == (1, "")
-    assert errors.startswith(f"{model}:6:9: error UNKNOWN_PART ")
+    assert errors.startswith(f"{model}:6:9: error[UNKNOWN_PART]: ")
 
 
 def test_a_model_that_is_not_there_is_told_in_one_line(tmp_path: Path) -> None:

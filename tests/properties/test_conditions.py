@@ -13,16 +13,18 @@ from collections.abc import Iterator, Mapping
 
 import pytest
 
+from domain.conditions.check import check
 from domain.conditions.condition import Condition
 from domain.conditions.evaluation import Truth, evaluate
 from domain.conditions.explanation import explain
 from domain.conditions.facts import Observation
 from domain.conditions.tree import comparisons
+from domain.conditions.vocabulary import Kind, Terms, Vocabulary
 from domain.conditions.watched import WatchedConditions
 from domain.findings import Blocker
 from tests.support.told_facts import ToldFacts
 
-ROUNDS = 3_000
+ROUNDS = 2_000
 WORDS = ("SLOW", "FAST", "IDLE")
 
 
@@ -152,3 +154,57 @@ def test_what_is_watched_has_the_value_that_it_has_anew(seed: int) -> None:
                 assert (watched.since(condition) == now) is (condition in changed)
                 assert (watched.explain(condition) == ()) is (truth is Truth.TRUE)
                 before[condition] = truth
+
+
+# --- what the check says, and what then happens --------------------------------------------------
+
+TERMS = {
+    "n": Terms(Kind.NUMBER, 0.0, 2.0),
+    "b": Terms(Kind.BOOLEAN),
+    "w": Terms(Kind.WORD, words=WORDS),
+}
+VOCABULARY = Vocabulary({}, {f"{kind}{n}": TERMS[kind] for kind in "nbw" for n in range(3)}, ())
+
+
+def _any_leaf(rng: random.Random) -> str:
+    """Return a comparison that may make no sense."""
+    name = f"{rng.choice('nbwx')}{rng.randint(0, 2)}"
+    values = ["0", "0.5", "2", "7", "-1", "true", "false", "SLOW", "'FAST'", "OTHER"]
+    how = rng.random()
+    if how < 0.15:
+        return name
+    if how < 0.35:
+        some = rng.sample(values, rng.randint(0, 3))
+        return f"{name} {rng.choice(['in', 'not in'])} [{', '.join(some)}]"
+    return f"{name} {rng.choice(['<', '<=', '>', '>=', '==', '!='])} {rng.choice(values)}"
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_what_passes_the_check_is_known_as_soon_as_the_facts_are(seed: int) -> None:
+    rng = random.Random(seed)
+    passed = dict.fromkeys(("error", "ALWAYS_TRUE", "NEVER_TRUE", ""), 0)
+    for _ in range(ROUNDS):
+        condition = Condition(_any_leaf(rng))
+        faults = check(condition, VOCABULARY)
+        codes = {fault.code for fault in faults}
+        assert all(1 <= fault.column <= len(condition.text) for fault in faults)
+        truths = set()
+        for _ in range(12):
+            values: dict[str, bool | float | str] = {
+                "n": rng.choice([0.0, 0.5, 1, 2.0]),
+                "b": rng.random() < 0.5,
+                "w": rng.choice(WORDS),
+            }
+            told = ToldFacts({name: values[name[0]] for name in VOCABULARY.signals})
+            truths.add(evaluate(condition, told))
+        if any(fault.severity == "error" for fault in faults):
+            passed["error"] += 1
+            continue
+        assert Truth.UNKNOWN not in truths, condition.text
+        (leaf,) = comparisons(condition.root)
+        if len(leaf.values) == 1 and codes:
+            (code,) = codes
+            assert truths == {Truth.TRUE if code == "ALWAYS_TRUE" else Truth.FALSE}, condition.text
+            passed[code] += 1
+        passed[""] += not codes
+    assert min(passed.values()) > ROUNDS // 100, passed

@@ -21,6 +21,8 @@ IN_MEMORY = Path("/dev/shm")
 @pytest.fixture
 def folder(monkeypatch: pytest.MonkeyPatch) -> Iterator[Path]:
     monkeypatch.setattr(sqlite_journal, "RETRY_S", 0.005)
+    # Each commit is followed by all that can wait, so that each of its operations fails as well.
+    monkeypatch.setattr(sqlite_journal, "FOLLOW_EVERY_S", 0.0)
     # What a sync does is up to the faults; a real one would only take time.
     base = tempfile.mkdtemp(dir=IN_MEMORY if IN_MEMORY.is_dir() else None)
     yield Path(base) / "robot"

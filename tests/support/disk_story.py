@@ -4,15 +4,19 @@ import shutil
 from dataclasses import dataclass, field
 from pathlib import Path
 
+from pydantic_core import from_json
+
 from domain.errors import StorageDegradedError
 from domain.events.event import RecordedEvent
 from domain.inputs import Restored
 from domain.kept import KeptHold
 from service.codec.codec import STEPS
 from service.storage.journal import EventQuery
+from service.storage.sqlite.announced_file import last_text
 from service.storage.sqlite.folder import Retention
 from service.storage.sqlite.journal import SqliteJournal
 from service.storage.sqlite.opening import StoreSettings
+from service.storage.sqlite.places import Places
 from service.storage.sqlite.recorded_log import RecordedLog
 from tests.support.faulty_disk import FaultyDisk, faulty
 from tests.support.manual_clock import ManualClock
@@ -33,6 +37,10 @@ class Told:
     """How many steps were answered as durable."""
     events: list[int] = field(default_factory=list)
     """Ids of the events that were published."""
+    announced: int = 0
+    """How many steps were tried to be announced, before they were done."""
+    promised: int = 0
+    """Number of the last one of which that was known to be on disk; 0: none."""
 
 
 async def tell(disk: FaultyDisk) -> Told:
@@ -53,6 +61,12 @@ async def _run(disk: FaultyDisk, number: int, told: Told) -> None:
             # Whoever is dead tells nobody anything.
             break
         reason = f"{number}.{step}"
+        told.announced += 1
+        try:
+            if await journal.announce(told.announced, 5.0):
+                told.promised = told.announced
+        except StorageDegradedError:
+            pass
         robot.holds("operator", reason)
         told.reasons.append(reason)
         told.events.append(robot.next_event - 1)
@@ -71,7 +85,10 @@ async def check(folder: Path, told: Told) -> None:
     """Start twice on a disk that works, and look whether all is there that must be."""
     settings = StoreSettings(folder, "robot", SMALL)
     first, second = [await _restored(settings, number) for number in (8, 9)]
+    last = last_text(Places(folder).announced)
+    announced = 0 if last is None else from_json(last)[-1]
 
+    assert told.promised <= announced <= told.announced, (announced, told)
     assert first.stop_because == "", first.stop_because
     assert _reason(first) in told.reasons[told.durable :], (first, told)
     assert _reason(second) == _reason(first)

@@ -1,18 +1,24 @@
-"""A disk that fails at a chosen operation: SQLite's default file system while a test lasts.
+"""A disk that fails at a chosen operation while a test lasts: for SQLite, its default file system.
 
-Operations are counted over all files: opening, writing, truncating, syncing and deleting. Reads and
-locks work.
+Operations are counted over all files: opening, writing, truncating, syncing and deleting, and the
+synced writes of announcements. Reads and locks work.
 """
 
+import errno
+import os
 import shutil
 import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass, field
+from functools import partial
 from pathlib import Path
 from typing import Literal, TypeAlias
+from unittest.mock import patch
 
 import apsw
+
+from service.storage.sqlite import announced_file
 
 _BELOW = "unix"
 Fault: TypeAlias = Literal["none", "fails", "full", "is short", "is slow", "dies", "loses power"]
@@ -71,7 +77,7 @@ class FaultyDisk:
         self.left = self.folder.with_name(f"{self.folder.name}-left")
         shutil.copytree(self.folder, self.left, ignore=shutil.ignore_patterns("*-shm"))
         if self.fault == "loses power":
-            for path in self.folder.rglob("*.db*"):
+            for path in (*self.folder.rglob("*.db*"), *self.folder.glob("announced")):
                 if not path.name.endswith("-shm"):
                     on_disk = self._synced.get(path.stat().st_ino, b"")
                     (self.left / path.relative_to(self.folder)).write_bytes(on_disk)
@@ -124,12 +130,23 @@ class _Files(apsw.VFS):
         self._disk.does(lambda: below(filename, syncdir))
 
 
+def _write_all(disk: FaultyDisk, fd: int, content: bytes, offset: int) -> None:
+    """Write to a file that is not SQLite's, and sync it."""
+    half = content[: len(content) // 2]
+    try:
+        disk.does(lambda: os.pwrite(fd, content, offset), lambda: os.pwrite(fd, half, offset))
+    except apsw.Error as error:
+        raise OSError(errno.EIO, str(error)) from error
+    disk.synced(Path(os.readlink(f"/proc/self/fd/{fd}")))
+
+
 @contextmanager
 def faulty(disk: FaultyDisk) -> Iterator[FaultyDisk]:
-    """Let SQLite use a disk for all connections that are opened meanwhile."""
+    """Let storage use a disk for all files that are opened meanwhile."""
     files = _Files(disk)
     try:
-        yield disk
+        with patch.object(announced_file, "write_synced", partial(_write_all, disk)):
+            yield disk
     finally:
         files.unregister()
         apsw.set_default_vfs(_BELOW)

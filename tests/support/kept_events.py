@@ -118,6 +118,10 @@ class EventJournal:
         """Forget what was noted, as a full queue does."""
         self._noted.clear()
 
+    async def announce(self, what: Plain, patience_s: float) -> bool:
+        """Return whether it can be written down."""
+        return await self.commit(patience_s)
+
     async def commit(self, patience_s: float) -> bool:
         """Write down what was noted."""
         del patience_s

@@ -1,69 +1,106 @@
 """`pilothouse check`: errors and warnings of a model, with places that editors can jump to."""
 
 import argparse
-from collections.abc import Sequence
+import io
+import sys
 from pathlib import Path
-from typing import TYPE_CHECKING, Literal
+from typing import TYPE_CHECKING, Literal, TypeAlias
 
 from api.cli.commands.command import Command
-from api.terminal_text import complain, counted, finding_line
+from api.terminal_text import complain
 
 if TYPE_CHECKING:
-    from domain.findings import Finding
+    from api.cli.checked_file import CheckedFile
 
 VALID, INVALID, UNREADABLE = 0, 1, 2
+
+Form: TypeAlias = Literal["text", "json", "sarif"]
 
 _STANDARD_INPUT = Path("/dev/stdin")
 _TEXT = """\
 Check a model file: report all errors and warnings, with line and column.
 
+With --robot, check the robot file too, and the conditions of the model
+against its signals: an unknown signal is an error then, and a warning
+without.
+
 exit code: 0 valid, possibly with warnings; 1 invalid;
-           2 the file cannot be read
+           2 a file cannot be read
 """
 
 
 def _add_options(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("model", metavar="MODEL", help="model file; - reads standard input")
-    parser.add_argument("--format", default="text", choices=("text", "json"))
+    parser.add_argument(
+        "--robot", metavar="FILE", help="robot file, whose signals conditions may name"
+    )
+    parser.add_argument(
+        "--format",
+        default="text",
+        choices=("text", "json", "sarif"),
+        help="text for people and editors; json and sarif (2.1.0) for programs",
+    )
 
 
 def _run(options: argparse.Namespace) -> int:
-    return check(options.model, options.format)
+    return check(options.model, options.format, options.robot)
 
 
-def check(name: str, form: Literal["text", "json"]) -> int:
+def check(name: str, form: Form, robot: str | None = None) -> int:
     """Print the findings of a model file; return the exit code.
 
     Args:
         name: Path of the file; `-` is the standard input.
-        form: `text` for people and editors, `json` for programs.
+        form: `text` for people and editors, `json` and `sarif` for programs.
+        robot: Path of a robot file, or None.
     """
-    from api.http.schemas.inference import ModelCheckJson
-    from service.files.model_file import check_model
-    from service.files.text_file import UnreadableFileError, read_text_file
+    from api.cli.checked_file import as_json, as_text
+    from api.cli.sarif import as_sarif
+    from service.files.text_file import UnreadableFileError
 
     try:
-        text = read_text_file(_STANDARD_INPUT if name == "-" else Path(name))
+        files = _checked(name, robot)
     except UnreadableFileError as error:
         complain(str(error))
         return UNREADABLE
-    findings = check_model(text)
-    shown = ModelCheckJson.of(findings)
+    if isinstance(sys.stdout, io.TextIOWrapper):
+        # Lines of the file may hold what the encoding of the terminal cannot show.
+        sys.stdout.reconfigure(errors="replace")
     if form == "json":
-        print(shown.model_dump_json(indent=2))
+        print(as_json(files))
+    elif form == "sarif":
+        print(as_sarif(files))
     else:
-        for finding in findings:
-            print(finding_line(name, finding))
-        print(f"{name}: {_verdict(findings)}")
-    return VALID if shown.valid else INVALID
+        for line in as_text(files):
+            print(line)
+    return VALID if all(file.is_valid for file in files) else INVALID
 
 
-def _verdict(findings: Sequence["Finding"]) -> str:
-    errors = sum(finding.severity == "error" for finding in findings)
-    warnings = len(findings) - errors
-    counts = [counted(errors, "error"), counted(warnings, "warning")]
-    told = ", ".join(count for count in counts if not count.startswith("0 "))
-    return f"{'invalid' if errors else 'valid'}{f' ({told})' if told else ''}"
+def _checked(name: str, robot: str | None) -> "list[CheckedFile]":
+    """Check a model, and the robot file with it; without a valid model the latter is not checked.
+
+    Raises:
+        UnreadableFileError: A file cannot be read.
+    """
+    from api.cli.checked_file import CheckedFile
+    from domain.errors import InvalidModelError
+    from service.files.model_file import check_model, read_model
+    from service.files.robot_file import InvalidRobotFileError, read_robot_file
+    from service.files.text_file import read_text_file
+
+    text = read_text_file(_STANDARD_INPUT if name == "-" else Path(name))
+    if robot is None:
+        return [CheckedFile(name, text, check_model(text))]
+    settings_text = read_text_file(Path(robot))
+    try:
+        settings = read_robot_file(settings_text, read_model(text).model)
+    except InvalidModelError as error:
+        return [CheckedFile(name, text, tuple(error.findings))]
+    except InvalidRobotFileError as error:
+        of_robot = CheckedFile(robot, settings_text, tuple(error.findings))
+        return [CheckedFile(name, text, check_model(text)), of_robot]
+    findings = check_model(text, settings.to_signal_settings())
+    return [CheckedFile(name, text, findings), CheckedFile(robot, settings_text, ())]
 
 
 COMMAND = Command("check", "check a model file", _TEXT, _add_options, _run)

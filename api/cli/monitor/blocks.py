@@ -134,6 +134,11 @@ def _part_cells(view: View, row: PartRow) -> tuple[str, ...]:
 
 
 def _part_note(view: View, row: PartRow) -> str:
+    said = (_part_state(view, row), words.setter(row.part["effective_target"]))
+    return ", ".join(filter(None, said))
+
+
+def _part_state(view: View, row: PartRow) -> str:
     part, since = row.part, row.part["deviation_since_at"]
     if row.mark == UNREACHABLE:
         return "unreachable"

@@ -7,6 +7,7 @@ from typing import Literal, TextIO
 
 from rich.console import Console
 
+from api.cli.monitor import words
 from api.cli.monitor.picture import picture
 from api.cli.monitor.sentence import alarm_of
 from api.cli.monitor.store import Json, Robot
@@ -83,4 +84,5 @@ def what_stands(robot: Robot) -> Hashable:
 def _part(part: Json) -> Hashable:
     pairs = (part["target"], part["effective_target"], part["actual"])
     labels = tuple(None if pair is None else (pair["state"], pair["mode"]) for pair in pairs)
-    return (part["name"], labels, part["converged"], part.get("reachable"))
+    setter = words.setter(part["effective_target"])
+    return (part["name"], labels, setter, part["converged"], part.get("reachable"))

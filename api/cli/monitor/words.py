@@ -77,6 +77,17 @@ def figure(value: float) -> str:
     return whole if abs(value) >= _FIVE_DIGITS else f"{value:.5g}"
 
 
+def setter(target: Json | None) -> str:
+    """Return who set a target in force, such as "rule slow_down"; empty: it was requested.
+
+    Args:
+        target: As in frames; None: there is none.
+    """
+    if target is None or target["because"] == "requested":
+        return ""
+    return f"{target['because']} {target['rule'] or ''}".rstrip()
+
+
 def verdict_words(signal: Json, pending_s: float | None, *, is_live: bool = True) -> str:
     """Return the errors of a signal, or "ok"; nothing is ok that was never received.
 

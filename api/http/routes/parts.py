@@ -5,8 +5,9 @@ Both kinds have the same routes, below `/systems` and `/nodes`. A name may conta
 
 import asyncio
 from functools import partial
+from typing import Annotated
 
-from fastapi import APIRouter, Request, Response
+from fastapi import APIRouter, Query, Request, Response
 
 from api.http.body_parsing import InvalidBodyError
 from api.http.change_answers import CHANGE_RESPONSES, ChangeOptionsDep, answer_change
@@ -26,6 +27,7 @@ from api.http.route_policy import AuditClass, Permission, policy
 from api.http.schemas.base import timestamp
 from api.http.schemas.errors import ErrorsJson
 from api.http.schemas.parts import (
+    MAX_WAIT_FOR_S,
     EnterableModeJson,
     ModeBody,
     ModeJson,
@@ -35,13 +37,20 @@ from api.http.schemas.parts import (
     StateJson,
     StatesJson,
     TransitionBody,
+    WhyJson,
 )
 from domain.errors import UnknownModeError
 from domain.inputs import ModeRequest, TransitionRequest
 from domain.lifecycle import PRIMARY_STATES, LifecycleState, Transition
 from domain.state_and_mode import part_name
+from domain.timebase import Duration, seconds
 
 router = APIRouter(route_class=JsonRoute)
+
+WaitForQuery = Annotated[
+    float | None,
+    Query(ge=0, le=MAX_WAIT_FOR_S, allow_inf_nan=False, description="As in the body"),
+]
 
 
 @router.get("", response_model=PartsJson)
@@ -73,13 +82,15 @@ async def change_state(
     supervisor: SupervisorDep,
     actor: ActorDep,
     request: Request,
+    wait_for_s: WaitForQuery = None,
 ) -> Response:
     """Request a lifecycle transition of the part.
 
     Intermediate transitions are done as needed: activate configures first, cleanup deactivates
     first. Activating a system means its mode `__DEFAULT__`.
     """
-    asked = TransitionRequest(part, Transition(body.transition), actor)
+    wait_for = _wait_for(body.wait_for_s, wait_for_s)
+    asked = TransitionRequest(part, Transition(body.transition), actor, wait_for)
     return await answer_change(supervisor, asked, options, request)
 
 
@@ -106,10 +117,11 @@ async def change_mode(
     supervisor: SupervisorDep,
     actor: ActorDep,
     request: Request,
+    wait_for_s: WaitForQuery = None,
 ) -> Response:
     """Request a mode of the part; it is configured and activated first if needed."""
     try:
-        asked = ModeRequest(part, body.mode, actor)
+        asked = ModeRequest(part, body.mode, actor, _wait_for(body.wait_for_s, wait_for_s))
         return await answer_change(supervisor, asked, options, request)
     except UnknownModeError as error:
         raise InvalidBodyError.at("mode", error) from error
@@ -129,22 +141,47 @@ async def list_modes(part: PartDep, supervisor: SupervisorDep) -> ModesJson:
     return ModesJson(items=items)
 
 
+@router.get("/{part:path}/why", response_model=WhyJson)
+@policy(Permission.OBSERVE)
+async def get_why(part: PartPath, supervisor: SupervisorDep, request: Request) -> Response:
+    """Show why the part is not where it should be; no reasons: it is."""
+    if (whole := _longer_name(f"{part}/why", request, supervisor)) is not None:
+        return whole
+    name = known_part(part, request, supervisor)
+    # A request would find that what is due has passed.
+    supervisor.let_pass()
+    core = supervisor.core
+    shown = WhyJson.of(core.part(name), core.why(name), supervisor.clock)
+    return Response(shown.model_dump_json(), media_type="application/json")
+
+
 @router.get("/{part:path}/errors", response_model=ErrorsJson)
 @policy(Permission.OBSERVE)
 async def list_part_errors(
     part: PartPath, supervisor: SupervisorDep, request: Request, *, active: ActiveQuery = None
 ) -> Response:
     """List the errors of the part, also those that are normal."""
-    whole = part_name(f"{part}/errors")
-    if whole in known_of_kind(request, supervisor):
-        # The longest known part wins.
-        view = supervisor.core.part(whole)
-        text = part_text(view, partial(timestamp, supervisor.clock))
-        return Response(text, media_type="application/json")
+    if (whole := _longer_name(f"{part}/errors", request, supervisor)) is not None:
+        return whole
     name = known_part(part, request, supervisor)
     # What is due by now is an error by now.
     supervisor.let_pass()
     return await answer_errors(supervisor, supervisor.core.errors_of(name), active)
+
+
+def _longer_name(path: str, request: Request, supervisor: SupervisorDep) -> Response | None:
+    """Return the part that a whole path names; None: there is none. The longest name wins."""
+    whole = part_name(path)
+    if whole not in known_of_kind(request, supervisor):
+        return None
+    text = part_text(supervisor.core.part(whole), partial(timestamp, supervisor.clock))
+    return Response(text, media_type="application/json")
+
+
+def _wait_for(in_body: float | None, in_query: float | None) -> Duration | None:
+    """Return how long a request may wait for what its modes require; the body counts first."""
+    wait_s = in_query if in_body is None else in_body
+    return None if wait_s is None else seconds(wait_s)
 
 
 # Last, since its path matches those of all others.

@@ -1,5 +1,6 @@
 """Systems and nodes as clients see them, and requests to them."""
 
+from collections.abc import Iterable
 from typing import Annotated, Literal, TypeAlias, cast
 
 from pydantic import Field
@@ -13,10 +14,13 @@ from api.http.schemas.base import (
     timestamp_or_none,
 )
 from api.http.schemas.sent_values import SentParameter
+from domain.findings import Blocker
 from domain.lifecycle import LifecycleState, Transition
 from domain.parameters import ParameterValue, value_type
 from domain.snapshot import Actual, Because, EffectiveTarget, ModeView, ParameterView, PartView
 from service.clock import Clock
+
+MAX_WAIT_FOR_S = 3_600.0
 
 ParameterType: TypeAlias = Literal[
     "bool",
@@ -182,20 +186,56 @@ class EnterableModeJson(Json):
     """One mode of a part, and what blocks it now."""
 
     mode: str
-    can_enter: bool
+    can_enter: bool = Field(description="Whether a request for it would be accepted now")
+    can_stay: bool | None = Field(
+        description="Whether all its invariants hold; null: it is not the mode in force"
+    )
     blockers: list[BlockerJson]
+    requires: tuple[str, ...] = Field(description="Conditions of entering it")
+    invariants: tuple[str, ...] = Field(
+        description="Conditions of entering it and of staying in it"
+    )
 
     @classmethod
     def of(cls, view: ModeView, clock: Clock) -> "EnterableModeJson":
         """Show `view`."""
         blockers = [BlockerJson.of(blocker, clock) for blocker in view.blockers]
-        return cls(mode=view.mode, can_enter=view.can_enter, blockers=blockers)
+        return cls(
+            mode=view.mode,
+            can_enter=view.can_enter,
+            can_stay=view.can_stay,
+            blockers=blockers,
+            requires=view.requires,
+            invariants=view.invariants,
+        )
 
 
 class ModesJson(Json):
     """All modes of a part."""
 
     items: list[EnterableModeJson]
+
+
+class WhyJson(Json):
+    """Where a part is, where it should be, and why it is not there."""
+
+    actual: ActualJson
+    target: StateAndModeJson | None = Field(description="Target that was requested")
+    effective_target: EffectiveTargetJson | None = Field(description="Target in force")
+    converged: bool
+    blockers: list[BlockerJson] = Field(description="The nearest to the part first")
+
+    @classmethod
+    def of(cls, view: PartView, blockers: Iterable[Blocker], clock: Clock) -> "WhyJson":
+        """Show why `view` is not where it should be."""
+        shown = PartJson.of(view, clock)
+        return cls(
+            actual=shown.actual,
+            target=shown.target,
+            effective_target=shown.effective_target,
+            converged=shown.converged,
+            blockers=[BlockerJson.of(blocker, clock) for blocker in blockers],
+        )
 
 
 class ParameterRowJson(Json):
@@ -226,17 +266,30 @@ class ParametersJson(Json):
     items: list[ParameterRowJson]
 
 
+WaitFor: TypeAlias = Annotated[
+    float | None,
+    Field(
+        ge=0,
+        le=MAX_WAIT_FOR_S,
+        allow_inf_nan=False,
+        description="How long it may wait for what its modes require, s; null: it is rejected then",
+    ),
+]
+
+
 class ModeBody(Body):
     """Bring a part into a mode."""
 
     # No maximum but that of the body: a mode of a model may have a name of any length.
     mode: str = Field(min_length=1, examples=["PERFORMANCE"])
+    wait_for_s: WaitFor = None
 
 
 class TransitionBody(Body):
     """Request a lifecycle transition of a part."""
 
     transition: Literal["configure", "activate", "deactivate", "cleanup", "shutdown"]
+    wait_for_s: WaitFor = None
 
 
 ParametersBody: TypeAlias = Annotated[

@@ -11,6 +11,7 @@ from pydantic import (
     field_validator,
     model_validator,
 )
+from pydantic_core import PydanticCustomError
 
 from api.http.schemas.base import MAX_MODEL_BYTES, BlockerJson, Body, Json
 from api.http.schemas.health import MAX_SOURCE
@@ -194,7 +195,10 @@ class ConditionStep(TimedStep):
         try:
             Condition.parse(text)
         except ConditionSyntaxError as error:
-            raise ValueError(f"column {error.column}: {error.message}") from error
+            told = {"column": error.column, "message": error.message}
+            raise PydanticCustomError(
+                "condition_syntax", "column {column}: {message}", told
+            ) from error
         return text
 
 

@@ -9,7 +9,7 @@ from domain.findings import Finding
 from domain.lifecycle import LifecycleState
 from domain.parts.lint.demands import Demands, contradict
 from domain.parts.lint.possible import PossibleValues
-from domain.parts.lint.satisfiable import can_be_true, equals, negated
+from domain.parts.lint.satisfiable import Satisfiability, equals, negated
 from domain.parts.lint.warning import warning
 from domain.parts.mode_settings import ModeSettings
 from domain.parts.system_model import SmhModel
@@ -30,8 +30,15 @@ class _Guard:
 class GuardLint:
     """Looks at the guards of the modes of one model."""
 
-    def __init__(self, model: SmhModel, possible: PossibleValues, demands: Demands) -> None:
+    def __init__(
+        self,
+        model: SmhModel,
+        possible: PossibleValues,
+        demands: Demands,
+        satisfiability: Satisfiability,
+    ) -> None:
         self._model = model
+        self._satisfiability = satisfiability
         self._possible = possible
         self._demands = demands
 
@@ -41,7 +48,7 @@ class GuardLint:
         guards = [_Guard("requires", condition) for condition in settings.requires]
         guards += [_Guard("invariants", condition) for condition in settings.invariants]
         held: list[_Guard] = []
-        for guard in guards:
+        for guard in [] if self._all_can_hold(part, mode, guards) else guards:
             if self._is_told_by_the_check(guard.condition.root):
                 continue
             why = self._why_never(part, mode, guard, held)
@@ -52,6 +59,16 @@ class GuardLint:
                 place = (part, "mode_settings", mode, guard.kind, guard.condition.text)
                 yield warning("GUARD_NEVER_HOLDS", message, *place)
         yield from self._fallback(part, mode, settings)
+
+    def _all_can_hold(self, part: PartName, mode: ModeName, guards: Iterable[_Guard]) -> bool:
+        """Tell whether nothing is wrong with the guards of a mode, as is usual."""
+        roots: list[Node] = []
+        for guard in guards:
+            roots.append(guard.condition.root)
+            if guard.kind == "invariants":
+                for below, pair in self._demanded(part, mode, guard.condition):
+                    roots.extend(self._possible.facts_of(below, pair))
+        return self._can_be_true(roots)
 
     def _why_never(
         self, part: PartName, mode: ModeName, guard: _Guard, held: list[_Guard]
@@ -121,14 +138,12 @@ class GuardLint:
     def _implies(self, needs: Iterable[Node], broken: Node) -> bool:
         """Tell whether nothing can meet the needs while a condition is false."""
         needs, against, of = list(needs), negated(broken), self._possible.of
-        return (
-            can_be_true(needs, of)
-            and can_be_true([against], of)
-            and not can_be_true([*needs, against], of)
-        )
+        search = self._satisfiability.can_be_true
+        return not search([*needs, against], of) and search(needs, of) and search([against], of)
 
     def _can_be_true(self, conditions: Iterable[Node]) -> bool:
-        return can_be_true(conditions, self._possible.of, self._possible.follows)
+        possible = self._possible
+        return self._satisfiability.can_be_true(conditions, possible.of, possible.follows)
 
 
 def _parts_named(condition: Condition) -> Iterator[PartName]:

@@ -6,13 +6,15 @@ Source: reports of users of micro-ROS system_modes (issues #43, #94).
 from domain.conditions.vocabulary import Vocabulary
 from domain.findings import Finding
 from domain.parts.lint.alike import modes_alike
-from domain.parts.lint.demands import Demands
+from domain.parts.lint.budget import Budget
+from domain.parts.lint.demands import Demands, conflicting_demands
 from domain.parts.lint.guards import GuardLint
 from domain.parts.lint.names import reserved_words
 from domain.parts.lint.parameters import never_inferred, types_that_differ
 from domain.parts.lint.plans import PlanLint
 from domain.parts.lint.possible import PossibleValues
 from domain.parts.lint.rules import rules_in_a_circle, rules_that_undo_a_request
+from domain.parts.lint.satisfiable import Satisfiability
 from domain.parts.lint.shared_parts import conflicting_systems
 from domain.parts.system_model import SmhModel
 
@@ -24,8 +26,9 @@ def lint(model: SmhModel, vocabulary: Vocabulary) -> list[Finding]:
         model: The model.
         vocabulary: What its conditions can name.
     """
-    demands = Demands(model)
-    possible = PossibleValues(model, vocabulary)
+    budget = Budget()
+    demands, possible = Demands(model, budget), PossibleValues(model, vocabulary)
+    satisfiability = Satisfiability(budget)
     findings = list(modes_alike(model))
     for node in model.nodes.values():
         findings.extend(types_that_differ(node))
@@ -34,8 +37,9 @@ def lint(model: SmhModel, vocabulary: Vocabulary) -> list[Finding]:
         findings.extend(rules_that_undo_a_request(system, demands))
         findings.extend(rules_in_a_circle(system))
     findings.extend(conflicting_systems(model))
-    findings.extend(PlanLint(model, possible, demands).findings())
-    guards = GuardLint(model, possible, demands)
+    conflicts = conflicting_demands(model, demands, budget)
+    findings.extend(PlanLint(model, possible, satisfiability, budget).findings(conflicts))
+    guards = GuardLint(model, possible, demands, satisfiability)
     for part in model.mode_settings:
         for mode in model.modes_of(part):
             findings.extend(guards.findings(part, mode))

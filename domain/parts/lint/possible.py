@@ -26,9 +26,16 @@ class PossibleValues:
     def __init__(self, model: SmhModel, vocabulary: Vocabulary) -> None:
         self._model = model
         self._vocabulary = vocabulary
+        self._known: dict[Subject, Values] = {}
 
     def of(self, subject: Subject) -> Values:
         """Return all values that a fact can have; anything where it is not known."""
+        known = self._known.get(subject)
+        if known is None:
+            known = self._known[subject] = self._values_of(subject)
+        return known
+
+    def _values_of(self, subject: Subject) -> Values:
         terms = terms_of(subject, self._vocabulary)
         if isinstance(terms, Fault):
             return _ANYTHING

@@ -16,9 +16,12 @@ from domain.conditions.tree import (
     Operator,
     Subject,
 )
+from domain.parts.lint.budget import Budget
 from domain.parts.lint.values import Values
 
 MAX_STEPS = 5_000
+"""Comparisons of one search."""
+
 MAX_CHOICES = 200
 """Operands of `or` that are chosen at the same time."""
 
@@ -54,31 +57,41 @@ def negated(node: Node) -> Node:
             return Comparison(node.subject, node.operator.opposite, node.values, node.columns)
 
 
-def can_be_true(
-    conditions: Iterable[Node], domain: Domain, follows: Consequences = nothing_follows
-) -> bool:
-    """Tell whether all conditions can be true at the same time.
+class Satisfiability:
+    """Searches for values that make conditions true, within a budget for all searches."""
 
-    Args:
-        conditions: Roots of conditions.
-        domain: Returns the values that a fact can have.
-        follows: Returns what else is true if a comparison is.
-    """
-    return _Search(domain, follows).can_hold(list(conditions), {}, 0)
+    def __init__(self, budget: Budget) -> None:
+        self._budget = budget
+
+    def can_be_true(
+        self, conditions: Iterable[Node], domain: Domain, follows: Consequences = nothing_follows
+    ) -> bool:
+        """Tell whether all conditions can be true at the same time.
+
+        Args:
+            conditions: Roots of conditions.
+            domain: Returns the values that a fact can have.
+            follows: Returns what else is true if a comparison is.
+        """
+        search = _Search(domain, follows)
+        can_hold = self._budget.is_spent or search.can_hold(list(conditions), {}, 0)
+        self._budget.spend(search.steps)
+        return can_hold
 
 
 class _Search:
     def __init__(self, domain: Domain, follows: Consequences) -> None:
         self._domain = domain
         self._follows = follows
-        self._steps = 0
+        self.steps = 0
 
     def can_hold(self, nodes: list[Node], known: _Known, choices: int) -> bool:
         """Tell whether the nodes can be true together with what is known."""
         facts = dict(known)
+        self.steps += len(facts)
         waiting, undecided = list(nodes), []
         while waiting:
-            self._steps += 1
+            self.steps += 1
             node = waiting.pop()
             match node:
                 case AllOf(operands):
@@ -91,7 +104,7 @@ class _Search:
                 case Comparison():
                     if not self._assume(node, facts):
                         return False
-        if not undecided or self._steps > MAX_STEPS or choices == MAX_CHOICES:
+        if not undecided or self.steps > MAX_STEPS or choices == MAX_CHOICES:
             return True
         first, *others = undecided
         return any(

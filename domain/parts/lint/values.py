@@ -2,7 +2,7 @@
 
 import math
 from collections.abc import Iterable
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import TypeAlias
 
 from domain.conditions.tree import Comparison, Operator, Value, is_number
@@ -31,30 +31,41 @@ class Values:
 
     def after(self, leaf: Comparison) -> "Values":
         """Return the values for which a comparison is true."""
-        operator, keys = leaf.operator, frozenset(map(_key, leaf.values))
-        if operator in (Operator.EQUAL, Operator.IN):
-            listed = keys if self.listed is None else keys & self.listed
-            return replace(self, listed=listed)
-        if operator in (Operator.NOT_EQUAL, Operator.NOT_IN):
-            return replace(self, excluded=self.excluded | keys)
+        operator = leaf.operator
+        if operator is Operator.EQUAL or operator is Operator.IN:
+            keys = frozenset(map(_key, leaf.values))
+            return self._listing(keys if self.listed is None else keys & self.listed)
+        if operator is Operator.NOT_EQUAL or operator is Operator.NOT_IN:
+            return self.without(leaf.values)
         return self._bounded(operator, leaf.values[0])
 
     def without(self, values: Iterable[Value]) -> "Values":
         """Return these values but for some."""
-        return replace(self, excluded=self.excluded | frozenset(map(_key, values)))
+        excluded = self.excluded | frozenset(map(_key, values))
+        return Values(
+            self.listed, excluded, self.low, self.high, self.is_low_open, self.is_high_open
+        )
+
+    def _listing(self, listed: frozenset[Key]) -> "Values":
+        return Values(
+            listed, self.excluded, self.low, self.high, self.is_low_open, self.is_high_open
+        )
 
     def _bounded(self, operator: Operator, value: Value) -> "Values":
+        """Return the values on one side of a bound; only numbers have sides."""
         if not isinstance(value, int | float) or isinstance(value, bool):
             return self
-        if operator is Operator.LESS and value <= self.high:
-            return replace(self, high=value, is_high_open=True)
-        if operator is Operator.LESS_OR_EQUAL and value < self.high:
-            return replace(self, high=value, is_high_open=False)
-        if operator is Operator.GREATER and value >= self.low:
-            return replace(self, low=value, is_low_open=True)
-        if operator is Operator.GREATER_OR_EQUAL and value > self.low:
-            return replace(self, low=value, is_low_open=False)
-        return self
+        low, high = self.low, self.high
+        is_low_open, is_high_open = self.is_low_open, self.is_high_open
+        if operator in (Operator.LESS, Operator.LESS_OR_EQUAL):
+            is_open = operator is Operator.LESS
+            if value < high or (value == high and is_open):
+                high, is_high_open = value, is_open
+        else:
+            is_open = operator is Operator.GREATER
+            if value > low or (value == low and is_open):
+                low, is_low_open = value, is_open
+        return Values(self.listed, self.excluded, low, high, is_low_open, is_high_open)
 
     @property
     def is_empty(self) -> bool:

@@ -78,6 +78,8 @@ class Folder:
         self._state: StateFile | None = None
         self._state_fault: str | None = None
         self._kept: dict[Key, bytes] = {}
+        self._lag: Changes = {}
+        """What the state lacks of `_kept`."""
         self._closed: list[LogSummary] = []
         self._last_number = 0
         self._began_file = False
@@ -94,7 +96,7 @@ class Folder:
         """
         self._log, self._state = left.log, left.state
         self._closed, self._last_number = left.closed, left.last_number
-        self._kept = left.kept
+        self._kept, self._lag = left.kept, left.lag
         changes = self._start.changes
         if self._log is not None and self._log.summary.last_batch >= self._next.batch:
             # It could not be read when the numbers of this run were chosen.
@@ -109,7 +111,7 @@ class Folder:
             self._update(changes)
         for path in left.broken:
             _move_aside(path)
-        self._follow({**left.lag, **changes})
+        self._follow()
         self._has_started = True
 
     def write(self, flight: Flight) -> None:
@@ -128,14 +130,14 @@ class Folder:
         self._count(log)
         self._update(changes)
 
-    def follow(self, flight: Flight) -> Report:
-        """Do what can wait for an answer, after `write`; what fails is reported and tried again.
+    def follow(self) -> Report:
+        """Do what no answer waits for, after some `write`; what fails is told and tried again.
 
         Raises:
             apsw.Error: The log cannot be written any more; then only `recover` goes on.
             OSError: Likewise.
         """
-        self._follow(_changes_of(flight))
+        self._follow()
         log = self._require_log()
         log.tidy()
         self._rotate(log)
@@ -160,7 +162,7 @@ class Folder:
         log.write(replace(flight, must_last=True), self._run, everything)
         self._count(log)
         self._update(changes)
-        self._follow(everything)
+        self._follow()
 
     def report(self) -> Report:
         """Return how the folder is."""
@@ -195,23 +197,25 @@ class Folder:
         )
 
     def _update(self, changes: Mapping[Key, bytes | None]) -> None:
+        self._lag.update(changes)
         for key, value in changes.items():
             if value is None:
                 self._kept.pop(key, None)
             else:
                 self._kept[key] = value
 
-    def _follow(self, changes: Changes) -> None:
+    def _follow(self) -> None:
         """Bring the state up to the log; a state that cannot be written is made anew."""
         log = self._require_log()
-        if not changes and self._state is not None:
+        lag, self._lag = self._lag, {}
+        if not lag and self._state is not None:
             return
         applied = Applied(log.number, log.last_change)
         try:
             if self._state is None:
                 self._state = self._new_state(applied)
             else:
-                self._state.apply(changes, applied)
+                self._state.apply(lag, applied)
             self._state_fault = None
         except FAILURES as error:
             self._state_fault = f"state.db: {words(error)}"
@@ -274,7 +278,7 @@ class Folder:
         self._log = self._new_log(log.dictionary)
         log.finish()
         self._closed.append(replace(log.summary, file_bytes=log.path.stat().st_size))
-        self._follow({})
+        self._follow()
 
     def _drop_old(self, log: LogFile) -> None:
         while self._closed and self._is_too_much(log):

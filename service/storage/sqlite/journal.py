@@ -31,6 +31,7 @@ from service.storage.journal import (
     StorageStatus,
     StoredEvent,
 )
+from service.storage.sqlite.announcer import Announcer
 from service.storage.sqlite.backlog import Backlog
 from service.storage.sqlite.batch import IDS, OWN, Flight
 from service.storage.sqlite.connection import FAILURES, words
@@ -44,6 +45,8 @@ _EVENTS_AT_ONCE: Final = 200
 """A step with more events is written down in a turn of its own: for 1,000 it takes 20 ms."""
 BATCH_S: Final = 0.05
 """How long what nobody waits for is gathered."""
+FOLLOW_EVERY_S = 1.0
+"""How often the writer does what no answer waits for, such as to bring the state up to the log."""
 RETRY_S: Final = 1.0
 SLOW_S: Final = 1.0
 """Storage that takes longer for one flight is degraded."""
@@ -69,6 +72,7 @@ class SqliteJournal:
         self._opened = opened
         self._report = opened.report
         self._reader = DiskThread("journal-reader")
+        self._announcer = Announcer(opened.announced)
         self._backlog = Backlog(settings.backlog_bytes, opened.next.batch, opened.next.step)
         self._waiters: list[asyncio.Future[None]] = []
         self._must_last = False
@@ -76,6 +80,9 @@ class SqliteJournal:
         self._is_due = False
         self._flying: asyncio.Task[None] | None = None
         self._took_off_at = 0.0
+        self._followed_at = 0.0
+        self._lags = False
+        """Whether something was written after the writer did last what can wait."""
         self._fault: str | None = None
         self._is_closed = False
         self._deferred = deque[Step]()
@@ -193,17 +200,33 @@ class SqliteJournal:
             self._wants_checkpoint, self._checkpoint_at = False, at
             self._schedule()
 
+    async def announce(self, what: Plain, patience_s: float) -> bool:
+        """Put on disk what is about to be done; return whether it is there, in that time."""
+        self._require_use()
+        try:
+            async with asyncio.timeout(patience_s):
+                await self._announcer.announce(what)
+        except TimeoutError:
+            return False
+        except OSError as error:
+            self._fail_beside_flights(words(error))
+            raise StorageDegradedError(words(error)) from error
+        return True
+
     async def commit(self, patience_s: float) -> bool:
         """Wait until all that was noted before is on disk; return whether it is, in that time."""
         for _ in range(len(self._deferred)):
             # In each turn at least one of them is taken.
             await asyncio.sleep(0)
+        self._require_use()
+        self._must_last = True
+        return await self._landed(patience_s)
+
+    def _require_use(self) -> None:
         if self._is_closed:
             raise StorageDegradedError("storage is closed")
         if self._fault is not None:
             raise StorageDegradedError(self._fault)
-        self._must_last = True
-        return await self._landed(patience_s)
 
     def status(self) -> StorageStatus:
         """Return how storage is doing."""
@@ -246,6 +269,7 @@ class SqliteJournal:
             _log.error("storage is too slow: the last entries may be lost")
         self._writer.end()
         self._reader.end()
+        self._announcer.end()
 
     async def _end(self) -> None:
         while self._deferred:
@@ -256,15 +280,17 @@ class SqliteJournal:
             self._backlog.change((IDS, kind), _id_text(first))
         self._backlog.end_run()
         flight = self._backlog.take(must_last=True)
-        folder, is_degraded = self._opened.folder, self._fault is not None
+        opened, is_degraded = self._opened, self._fault is not None
+        folder = opened.folder
 
         def end() -> None:
             try:
                 (folder.recover if is_degraded else folder.write)(flight)
-                folder.follow(flight)
+                folder.follow()
             finally:
                 folder.close()
-                self._opened.lock.release()
+                opened.announced.close()
+                opened.lock.release()
 
         try:
             await self._writer.run(end)
@@ -306,30 +332,54 @@ class SqliteJournal:
 
     def _take_off(self) -> None:
         self._timer, self._is_due = None, False
-        flight = self._backlog.take(self._must_last)
-        waiters, self._waiters, self._must_last = self._waiters, [], False
         loop = asyncio.get_running_loop()
         self._took_off_at = loop.time()
+        waiters, self._waiters = self._waiters, []
+        if self._backlog.is_empty and not waiters and self._fault is None:
+            self._flying = loop.create_task(self._fly(None, waiters))
+            return
+        flight = self._backlog.take(self._must_last)
+        self._must_last = False
         self._flying = loop.create_task(self._fly(flight, waiters))
 
-    async def _fly(self, flight: Flight, waiters: "list[asyncio.Future[None]]") -> None:
-        """Write a flight down, and see to the next one."""
-        folder = self._opened.folder
-        write = folder.write if self._fault is None else folder.recover
+    async def _fly(self, flight: Flight | None, waiters: "list[asyncio.Future[None]]") -> None:
+        """Write a flight down, and see to the next one; None: only do what can wait."""
+        is_recovering = self._fault is not None
         try:
-            await self._writer.run(lambda: write(flight))
-            self._backlog.written()
-            self._wants_checkpoint |= any(batch.hole for batch in flight.batches)
+            if flight is not None:
+                await self._write(flight, is_recovering=is_recovering)
             self._settle(waiters, None)
-            self._take_report(await self._writer.run(lambda: folder.follow(flight)))
+            now = asyncio.get_running_loop().time()
+            if flight is None or is_recovering or now - self._followed_at >= FOLLOW_EVERY_S:
+                self._followed_at, self._lags = now, False
+                self._take_report(await self._writer.run(self._opened.folder.follow))
         except FAILURES as error:
             self._fail(words(error), waiters)
         except Exception as error:
             _log.exception("steps cannot be written down")
             self._backlog.discard(words(error))
             self._fail(words(error), waiters)
+        else:
+            if is_recovering:
+                _log.warning("storage works again")
+                self._fault = None
         self._flying = None
         self._go_on()
+
+    async def _write(self, flight: Flight, *, is_recovering: bool) -> None:
+        folder, announced = self._opened.folder, self._opened.announced
+
+        def write() -> None:
+            if is_recovering:
+                folder.recover(flight)
+                announced.renew()
+            else:
+                folder.write(flight)
+
+        await self._writer.run(write)
+        self._lags = True
+        self._backlog.written()
+        self._wants_checkpoint |= any(batch.hole for batch in flight.batches)
 
     def _go_on(self) -> None:
         if self._is_closed:
@@ -338,15 +388,12 @@ class SqliteJournal:
             self._timer = asyncio.get_running_loop().call_later(RETRY_S, self._take_off)
         elif self._waiters:
             self._hurry()
-        elif not self._backlog.is_empty:
+        elif not self._backlog.is_empty or self._lags:
             self._schedule()
 
     def _take_report(self, report: Report) -> None:
         self._report = report
         self._wants_checkpoint |= report.began_file
-        if self._fault is not None:
-            _log.warning("storage works again")
-            self._fault = None
 
     def _fail(self, reason: str, waiters: "list[asyncio.Future[None]]") -> None:
         if self._fault is None:
@@ -354,6 +401,17 @@ class SqliteJournal:
         self._fault = reason
         self._settle([*waiters, *self._waiters], StorageDegradedError(reason))
         self._waiters = []
+
+    def _fail_beside_flights(self, reason: str) -> None:
+        """Degrade at once; a flight that is in the air or due lands first."""
+        if self._fault is not None or self._is_closed:
+            return
+        self._fail(reason, [])
+        if self._flying is None:
+            if self._timer is not None:
+                self._timer.cancel()
+            self._is_due = False
+            self._go_on()
 
     def _settle(
         self, waiters: "list[asyncio.Future[None]]", error: StorageDegradedError | None

@@ -21,7 +21,9 @@ from service.storage.sqlite.packing import DictionaryMaker, pack
 from service.storage.sqlite.schema import LOG, bring_up, describe, examine
 
 _COMPRESSION = 1
-_CHECKPOINT_AT_PAGES = 1_000
+_CHECKPOINT_AT_PAGES = 4_000
+"""16 MiB. Commits wait while they are taken into the file, some ms for these as for fewer, since
+most of them are the same few pages again."""
 _SYNC_EVERY: Duration = seconds(0.5)
 """What nobody waits for may be lost with the power for so long."""
 
@@ -39,19 +41,40 @@ class Run:
 _ROWS_AT_ONCE = 1_000
 """So many events are made to one JSON text, which holds the interpreter's lock for some 2 ms."""
 
-_INSERT_EVENTS = """
-INSERT OR REPLACE INTO events
-SELECT value ->> 0, ?1, value ->> 1, value ->> 2, value ->> 3, value ->> 4, value ->> 5,
-  value ->> 7, value ->> 8, value ->> 9
-FROM json_each(?2)
+_NOTED = """
+CREATE TEMP VIEW noted (boot, events, changes) AS SELECT NULL, NULL, NULL;
+CREATE TEMP TRIGGER note INSTEAD OF INSERT ON noted BEGIN
+  INSERT OR REPLACE INTO events
+  SELECT value ->> 0, NEW.boot, value ->> 1, value ->> 2, value ->> 3, value ->> 4, value ->> 5,
+    value ->> 7, value ->> 8, value ->> 9
+  FROM json_each(NEW.events);
+  INSERT OR IGNORE INTO event_parts
+  SELECT part.value, event.value ->> 0
+  FROM json_each(NEW.events) AS event, json_each(event.value, '$[6]') AS part;
+  INSERT INTO changes (kind, name, value)
+  SELECT value ->> 0, value ->> 1, CAST(value ->> 2 AS BLOB) FROM json_each(NEW.changes);
+END;
+CREATE TEMP VIEW flights (
+  number, boot, first_step, count, first_at, last_at, wall_ns, packed, steps,
+  running_ns, step_bytes, event_bytes, events, changes
+) AS SELECT NULL, NULL, NULL, NULL, NULL, NULL, NULL, NULL, NULL, NULL, NULL, NULL, NULL, NULL;
+CREATE TEMP TRIGGER fly INSTEAD OF INSERT ON flights BEGIN
+  INSERT INTO batches VALUES (
+    NEW.number, NEW.boot, NEW.first_step, NEW.count, NEW.first_at, NEW.last_at, NEW.wall_ns,
+    NEW.packed, NEW.steps, NEW.running_ns, NEW.step_bytes, NEW.event_bytes
+  );
+  INSERT INTO noted VALUES (NEW.boot, NEW.events, NEW.changes);
+END;
 """
-"""Of rows in the order of the fields of `EventRow`."""
+"""Each insertion into these views is one statement, whatever it writes.
 
-_INSERT_PARTS = """
-INSERT OR IGNORE INTO event_parts
-SELECT part.value, event.value ->> 0
-FROM json_each(?1) AS event, json_each(event.value, '$[6]') AS part
+`events` are rows in the order of the fields of `EventRow`, `changes` are kind, name and value.
+Each statement gives the interpreter's lock away and has to get it back, for which it waits while
+the loop is busy. What is one statement is a transaction by itself, too.
 """
+_INSERT_NOTED = "INSERT INTO noted VALUES (?, ?, '[]')"
+_NO_CHANGES: Changes = {}
+_INSERT_FLIGHT = "INSERT INTO flights VALUES (?,?,?,?,?,?,?,?,?,?,?,?,?,?)"
 
 
 class LogFile:
@@ -63,6 +86,7 @@ class LogFile:
         self._connection = connection
         self._ahead = WriteAheadLog(connection, _CHECKPOINT_AT_PAGES)
         self._synced_at = 0
+        self._is_synced = True
         self.summary = summary_of(connection, path, number)
         self.dictionary: bytes = _dictionary(connection)
         """Of its steps; empty as long as there were too few."""
@@ -70,6 +94,7 @@ class LogFile:
         """Of what it began with, in bytes; 0 if it was begun by an earlier run."""
         self._maker = DictionaryMaker()
         self.last_change: int = _number(connection, "SELECT max(number) FROM changes")
+        connection.execute(_NOTED)
 
     @classmethod
     def open(cls, path: Path, number: int) -> "LogFile":
@@ -151,15 +176,12 @@ class LogFile:
         now = time.monotonic_ns()
         is_synced = flight.must_last or now - self._synced_at >= _SYNC_EVERY
         self._set_sync(is_synced)
-        summary, dictionary = self.summary, self.dictionary
-        with self._connection:
-            for batch in flight.batches:
-                if batch.number > self.summary.last_batch:
-                    summary = self._insert(batch, run, summary)
-                _insert_hole(self._connection, batch, run)
-            _insert_changes(self._connection, changes.items())
-            dictionary = self._next_dictionary(flight)
-        self.summary, self.dictionary = summary, dictionary
+        if self._is_one_statement(flight, changes):
+            self.summary = self._insert(flight.batches[0], run, self.summary, changes)
+        else:
+            with self._connection:
+                summary, dictionary = self._insert_all(flight, run, changes)
+            self.summary, self.dictionary = summary, dictionary
         self._count_changes(changes)
         if is_synced:
             self._synced_at = now
@@ -187,7 +209,9 @@ class LogFile:
         self._connection.close(True)
 
     def _set_sync(self, is_synced: bool) -> None:
-        self._connection.execute(f"PRAGMA synchronous={'FULL' if is_synced else 'NORMAL'}")
+        if is_synced is not self._is_synced:
+            self._connection.execute(f"PRAGMA synchronous={'FULL' if is_synced else 'NORMAL'}")
+            self._is_synced = is_synced
 
     def _count_changes(self, changes: Changes) -> None:
         self.last_change += len(changes)
@@ -202,7 +226,32 @@ class LogFile:
             self._connection.execute(sql, (dictionary,))
         return dictionary
 
-    def _insert(self, batch: Batch, run: Run, so_far: LogSummary) -> LogSummary:
+    def _is_one_statement(self, flight: Flight, changes: Changes) -> bool:
+        """Tell whether all of a flight fits into one row of `flights`, as it usually does."""
+        batch = flight.batches[0]
+        return (
+            len(flight.batches) == 1
+            and batch.number > self.summary.last_batch
+            and not (batch.hole or batch.checkpoints or batch.ends_run)
+            and bool(self.dictionary)
+            and max(len(batch.events), len(changes)) <= _ROWS_AT_ONCE
+        )
+
+    def _insert_all(self, flight: Flight, run: Run, changes: Changes) -> tuple[LogSummary, bytes]:
+        """Insert a flight in a transaction; return summary and dictionary after it."""
+        summary = self.summary
+        for batch in flight.batches:
+            if batch.number > self.summary.last_batch:
+                summary = self._insert(batch, run, summary)
+                self._insert_rest(batch, run, summary)
+            _insert_hole(self._connection, batch, run)
+        _insert_changes(self._connection, changes.items())
+        return summary, self._next_dictionary(flight)
+
+    def _insert(
+        self, batch: Batch, run: Run, so_far: LogSummary, changes: Changes = _NO_CHANGES
+    ) -> LogSummary:
+        """Insert a batch by one statement, with its first events."""
         steps = pack(batch.steps, self.dictionary)
         event_bytes = sum(len(row.data) + len(row.words) for row in batch.events)
         now = replace(
@@ -213,14 +262,22 @@ class LogFile:
             event_bytes=so_far.event_bytes + event_bytes,
         )
         self._connection.execute(
-            "INSERT INTO batches VALUES (?,?,?,?,?,?,?,?,?,?,?,?)",
+            _INSERT_FLIGHT,
             (
                 *(batch.number, run.number, batch.first_step, len(batch.steps), batch.first_at),
                 *(now.last_at, now.wall_ns, bool(self.dictionary), steps),
                 *(now.running_ns, now.step_bytes, now.event_bytes),
+                to_json(batch.events[:_ROWS_AT_ONCE]).decode(),
+                to_json([(*key, value) for key, value in changes.items()]).decode(),
             ),
         )
-        self._insert_events(batch, run)
+        return now.with_events(batch.events)
+
+    def _insert_rest(self, batch: Batch, run: Run, now: LogSummary) -> None:
+        """Insert what few batches have."""
+        for first in range(_ROWS_AT_ONCE, len(batch.events), _ROWS_AT_ONCE):
+            rows = to_json(batch.events[first : first + _ROWS_AT_ONCE]).decode()
+            self._connection.execute(_INSERT_NOTED, (run.number, rows))
         for taken in batch.checkpoints:
             state = zlib.compress(taken.state, _COMPRESSION)
             self._connection.execute(
@@ -231,18 +288,6 @@ class LogFile:
             self._connection.execute(
                 "UPDATE boots SET ended_wall_ns = ? WHERE number = ?", (now.wall_ns, run.number)
             )
-        return now.with_events(batch.events)
-
-    def _insert_events(self, batch: Batch, run: Run) -> None:
-        """Insert many rows by one statement.
-
-        Each statement gives the interpreter's lock away and has to get it back: beside a busy loop
-        that takes up to 5 ms, which thousands of rows must not wait for one by one.
-        """
-        for first in range(0, len(batch.events), _ROWS_AT_ONCE):
-            rows = to_json(batch.events[first : first + _ROWS_AT_ONCE]).decode()
-            self._connection.execute(_INSERT_EVENTS, (run.number, rows))
-            self._connection.execute(_INSERT_PARTS, (rows,))
 
 
 @dataclass(frozen=True, slots=True)

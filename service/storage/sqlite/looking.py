@@ -12,6 +12,7 @@ import apsw
 
 from service.storage.errors import ForeignFolderError
 from service.storage.id_blocks import BLOCKS, BOOT, EVENT, UNKNOWN_TAIL, IdKind
+from service.storage.sqlite.announced_file import last_text
 from service.storage.sqlite.batch import IDS, Changes, Key
 from service.storage.sqlite.connection import reading, words
 from service.storage.sqlite.log_file import LogFile, Next
@@ -46,6 +47,8 @@ class Left:
     """Number of the newest file of the log, whatever is in it."""
     closed: list[LogSummary] = field(default_factory=list)
     """Files of the log before it, oldest first."""
+    announced: bytes | None = None
+    """What was about to be done, as JSON; None: nothing was."""
     broken: dict[Path, str] = field(default_factory=dict)
     """Files to move aside, and why."""
 
@@ -117,7 +120,7 @@ def look(places: Places, robot: str) -> Left:
         owner = _owner(path)
         if owner is not None and owner != robot:
             raise ForeignFolderError(places.folder, owner, robot)
-    left = Left(last_number=numbers[-1] if numbers else 0)
+    left = Left(last_number=numbers[-1] if numbers else 0, announced=last_text(places.announced))
     try:
         _open_files(left, places, numbers)
         _gather(left)
@@ -138,6 +141,8 @@ def look_at_copy(places: Places, robot: str) -> Left:
     with TemporaryDirectory() as folder:
         copy = Places(Path(folder))
         copy.logs.mkdir()
+        if places.announced.exists():
+            shutil.copyfile(places.announced, copy.announced)
         for path in (places.state, *(places.log(number) for number in numbers[-1:])):
             for file in path.parent.glob(f"{path.name}*"):
                 if file.name in (path.name, f"{path.name}-wal"):

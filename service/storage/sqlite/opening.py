@@ -15,7 +15,8 @@ from service.codec.codec import KEPT
 from service.codec.names import NAMES
 from service.storage.errors import UnusableFolderError
 from service.storage.id_blocks import BOOT, CHANGE, EVENT, TASK, IdBlocks, IdKind, unreserved
-from service.storage.journal import Boot, Found, Plain
+from service.storage.journal import ANNOUNCED, Boot, Found, Plain
+from service.storage.sqlite.announced_file import AnnouncedFile
 from service.storage.sqlite.batch import IDS, OWN, Changes
 from service.storage.sqlite.connection import FAILURES, words
 from service.storage.sqlite.folder import DEFAULT_RETENTION, Folder, Report, Retention, Start
@@ -43,6 +44,7 @@ class Opened:
 
     lock: FolderLock
     folder: Folder
+    announced: AnnouncedFile
     found: Found
     ids: IdBlocks
     next: Next
@@ -85,6 +87,7 @@ def _begin(settings: StoreSettings, places: Places, boot: Boot, lock: FolderLock
         opened = _prepared(settings, lock, left, boot, ids)
         try:
             opened.folder.start(left)
+            opened.announced.renew()
         except FAILURES as error:
             fault = words(error)
             opened.folder.close()
@@ -103,8 +106,10 @@ def _prepared(
     changes = _first_changes(found.restored, blocks, boot)
     run = Run(ids[BOOT], boot, since_epoch(boot.wall_at))
     start = Start(run, changes, left.next_numbers(ids[EVENT]))
-    folder = Folder(Places(settings.folder), settings.robot, settings.retention, start)
-    return Opened(lock, folder, found, blocks, start.next, folder.report())
+    places = Places(settings.folder)
+    folder = Folder(places, settings.robot, settings.retention, start)
+    announced = AnnouncedFile(places.announced)
+    return Opened(lock, folder, announced, found, blocks, start.next, folder.report())
 
 
 def _looked(places: Places, robot: str) -> tuple[Left, str | None]:
@@ -163,4 +168,7 @@ def _read_back(left: Left) -> tuple[tuple[Kept, ...], tuple[str, ...]]:
 
 
 def _own(left: Left) -> dict[str, Plain]:
-    return {name: from_json(text) for (kind, name), text in left.kept.items() if kind == OWN}
+    own = {name: from_json(text) for (kind, name), text in left.kept.items() if kind == OWN}
+    if left.announced is not None:
+        own[ANNOUNCED] = from_json(left.announced)
+    return own

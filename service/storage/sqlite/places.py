@@ -26,6 +26,11 @@ class Places:
         return self.folder / "state.db"
 
     @property
+    def announced(self) -> Path:
+        """Return the file that says what was about to be done."""
+        return self.folder / "announced"
+
+    @property
     def logs(self) -> Path:
         """Return the folder of the log."""
         return self.folder / "log"

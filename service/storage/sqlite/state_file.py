@@ -9,6 +9,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import apsw
+from pydantic_core import to_json
 
 from service.storage.sqlite.batch import Changes, Key
 from service.storage.sqlite.connection import WriteAheadLog, finish, new_file, open_to_write
@@ -97,16 +98,23 @@ class StateFile:
         self._connection.close(True)
 
 
+_DELETE = """
+DELETE FROM current WHERE (kind, name) IN
+  (SELECT value ->> 0, value ->> 1 FROM json_each(?) WHERE value ->> 2 IS NULL)
+"""
+_SET = """
+INSERT INTO current
+SELECT value ->> 0, value ->> 1, CAST(value ->> 2 AS BLOB) FROM json_each(?)
+WHERE value ->> 2 IS NOT NULL
+ON CONFLICT (kind, name) DO UPDATE SET value = excluded.value
+"""
+"""One statement for all: each gives the interpreter's lock away, and a commit may be waiting."""
+
+
 def _apply(connection: apsw.Connection, changes: Changes, applied: Applied) -> None:
-    for (kind, name), value in changes.items():
-        if value is None:
-            connection.execute("DELETE FROM current WHERE kind = ? AND name = ?", (kind, name))
-        else:
-            connection.execute(
-                "INSERT INTO current VALUES (?, ?, ?)"
-                " ON CONFLICT (kind, name) DO UPDATE SET value = excluded.value",
-                (kind, name, value),
-            )
+    rows = to_json([(*key, value) for key, value in changes.items()]).decode()
+    connection.execute(_DELETE, (rows,))
+    connection.execute(_SET, (rows,))
     connection.execute(
         "INSERT OR REPLACE INTO meta VALUES ('applied_log', ?), ('applied_change', ?)",
         (applied.log, applied.change),

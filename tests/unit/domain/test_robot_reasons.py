@@ -7,7 +7,10 @@ from domain.conditions.explanation import explain
 from domain.findings import Blocker
 from domain.inputs import NodeReport
 from domain.lifecycle import LifecycleState
+from domain.robot_reasons import MAX_CAUSES
 from domain.simulation.node_settings import Fault
+from domain.state_and_mode import PartName
+from tests.support.big_model import big_model
 from tests.support.core_robot import CoreRobot
 from tests.support.good import GOOD
 from tests.support.models import BASE, nested_model
@@ -122,3 +125,24 @@ def test_an_error_of_a_part_is_explained_by_what_is_wrong_with_it(robot: CoreRob
     assert _causes(robot, "not drive_base.errors.UNREACHABLE") == [
         ("UNREACHABLE", "drive_base is unreachable")
     ]
+
+
+def test_a_part_that_should_not_be_where_it_is_has_no_further_reason(robot: CoreRobot) -> None:
+    robot.ask_transition("drive_base", "activate")
+    robot.advance(5)
+    robot.give(NodeReport(PartName("lidar"), LifecycleState.FINALIZED))
+
+    assert _causes(robot, "part('robot').state in [unconfigured, inactive]") == [
+        ("FINALIZED", "lidar is finalized: its process must be restarted")
+    ]
+    assert _causes(robot, "drive_base.state != active") == []
+    assert _causes(robot, "not part('robot').reachable") == []
+
+
+def test_of_many_nodes_only_some_are_named() -> None:
+    robot = CoreRobot(big_model(1_000))
+    root = robot.model.parts[0]
+    for node in robot.model.nodes:
+        robot.give(NodeReport(node, reachable=False))
+
+    assert len(_causes(robot, f"part('{root}').state == active")) == MAX_CAUSES

@@ -42,11 +42,16 @@ class Disk:
         self.answers: list[bool | StorageDegradedError] = []
 
     def keep(self, name: str, value: Plain) -> None:
-        self.done.append("store the request")
         self.kept[name] = value
 
+    async def announce(self, what: Plain, patience_s: float) -> bool:
+        return await self._wait(f"announce {what} in {patience_s:g} s")
+
     async def commit(self, patience_s: float) -> bool:
-        self.done.append(f"wait {patience_s:g} s for the disk")
+        return await self._wait(f"wait {patience_s:g} s for the disk")
+
+    async def _wait(self, what: str) -> bool:
+        self.done.append(what)
         answer = self.answers.pop(0) if self.answers else True
         if isinstance(answer, StorageDegradedError):
             raise answer
@@ -78,8 +83,7 @@ async def test_a_release_is_on_disk_before_the_robot_may_drive(disk: Disk, keepe
 
     assert taken.is_durable
     assert disk.done == [
-        "store the request",
-        "wait 2 s for the disk",
+        "announce [1, 'ReleaseRequest'] in 2 s",
         "do ReleaseRequest",
         "wait 2 s for the disk",
     ]

@@ -19,10 +19,9 @@ from domain.inputs import (
 from domain.tasks.holds import MAX_HOLDS
 from domain.timebase import seconds
 from service.files.model_file import LoadedModel
-from service.keeper import LAST_REQUEST
 from service.ports import BackendMessage
 from service.running import TaskFailedError
-from service.storage.journal import Boot
+from service.storage.journal import ANNOUNCED, Boot
 from service.storage.memory import MemoryJournal, MemoryStore
 from service.storage.trends.trends import Trends
 from service.supervisor import Supervisor
@@ -129,12 +128,12 @@ async def test_a_release_of_what_is_released_need_not_wait_for_a_disk() -> None:
 
     await supervisor.request(ReleaseRequest("operator"))
     await supervisor.request(EmergencyStopRequest(engaged=False, reason=""))
-    assert LAST_REQUEST not in store.own
+    assert ANNOUNCED not in store.own
 
     await supervisor.request(HoldRequest("operator", "lunch"))
     await supervisor.request(ReleaseRequest("operator"), volatile=True)
-    assert LAST_REQUEST not in store.own
+    assert ANNOUNCED not in store.own
 
     await supervisor.request(HoldRequest("operator", "lunch"))
     await supervisor.request(ReleaseRequest("operator"))
-    assert store.own[LAST_REQUEST] == [1, "ReleaseRequest"]
+    assert store.own[ANNOUNCED] == [[1, "ReleaseRequest"]]

@@ -14,16 +14,25 @@ class Pills extends HTMLElement {
     );
     renderOnce(this, JSON.stringify([target, actual, part.converged]), () => {
       const shown = actualPill(actual);
+      const set = setter(target);
       // A system may be where its target says while its parts are not: its note tells which.
-      if (part.converged || !target || label(target) === label(actual)) return [shown];
+      if (part.converged || !target || label(target) === label(actual)) return [shown, ...set];
       return [
         el("span", { class: "pill target" }, hidden("target "), label(target)),
         el("span", { class: "arrow", "aria-hidden": "true" }, "→"),
         hidden("actual "),
         shown,
+        ...set,
       ];
     });
   }
+}
+
+/** Who set the target in force, unless it was requested; why is its title. */
+function setter(target) {
+  if (!target?.because || target.because === "requested") return [];
+  const title = target.blockers.map(({ message }) => message).join("; ");
+  return [el("span", { class: "setter", title }, ` ${target.because} ${target.rule ?? ""}`)];
 }
 
 /** Inferred is italic with (*), as in the mode monitor of system_modes. */

@@ -4,7 +4,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from api.cli.excerpt import AFTER, BEFORE, excerpt, visible
+from api.cli.excerpt import AFTER, BEFORE, excerpt
 
 
 def shown(text: str, column: int) -> list[str]:
@@ -31,7 +31,6 @@ def test_wide_characters_take_two_columns_and_marks_none() -> None:
 def test_characters_that_steer_a_terminal_or_turn_a_text_round_are_escaped() -> None:
     assert shown("\x1b[2Ja\u202eb", 5)[0] == "    1 | \\x1b[2Ja\\u202eb"
     assert shown("\x1b[2Ja", 5)[1] == "      |        ^"
-    assert visible("a\nb\x00\U000e0001") == "a\\nb\\x00\\U000e0001"
 
 
 def test_of_a_long_line_the_piece_around_the_caret_is_shown() -> None:

@@ -161,8 +161,8 @@ def test_an_invalid_file_is_told_with_line_and_column_and_ends_with_two(
     told, complaints = capsys.readouterr()
     assert told == ""
     assert complaints.splitlines() == [
-        f"{story}:2:1: error INVALID_VALUE wings: unknown key",
-        f"{story}:3:1: error INVALID_VALUE legs: unknown key",
+        f"{story}:2:1: error[INVALID_VALUE]: wings: unknown key",
+        f"{story}:3:1: error[INVALID_VALUE]: legs: unknown key",
     ]
 
 

@@ -5,6 +5,7 @@ from types import SimpleNamespace
 import pytest
 
 from api.serving.composition import Composition, MisuseError, ServeOptions, compose, read_files
+from domain.errors import InvalidModelError
 from service.files.robot_file import RobotSettings
 from service.ros.graph.graph import UnknownFieldError, UnknownTypeError
 from service.start_task import StartTaskError
@@ -68,6 +69,45 @@ def test_a_start_task_that_cannot_be_driven_is_told(robot: Path) -> None:
 
     with pytest.raises(StartTaskError, match=r"path\.csv"):
         composed(ServeOptions(robot=robot))
+
+
+GUARDED = """\
+arm:
+  ros__parameters:
+    type: node
+    modes: {__DEFAULT__: {ros__parameters: {torque: 0.1}}}
+    mode_settings: {__DEFAULT__: {requires: "reach > 3"}}
+"""
+
+
+def test_a_guard_on_a_signal_that_the_robot_file_does_not_declare_keeps_the_service_from_starting(
+    robot: Path, tmp_path: Path
+) -> None:
+    model = tmp_path / "arm.yaml"
+    model.write_text(GUARDED)
+    robot.write_text("mock: true\n")
+
+    with pytest.raises(InvalidModelError) as caught:
+        composed(ServeOptions(model=model, robot=robot))
+    assert [finding.code for finding in caught.value.findings] == ["UNKNOWN_SIGNAL"]
+
+
+def test_a_guard_on_a_signal_that_the_robot_file_declares_is_no_reason_to_warn(
+    robot: Path, tmp_path: Path
+) -> None:
+    model = tmp_path / "arm.yaml"
+    model.write_text(GUARDED)
+    robot.write_text("signals: {reach: {minimum: 0}}\n")
+
+    assert composed(ServeOptions(model=model, robot=robot)).supervisor.warnings == ()
+
+
+def test_without_a_robot_file_a_guard_on_an_unknown_signal_is_a_warning(tmp_path: Path) -> None:
+    model = tmp_path / "arm.yaml"
+    model.write_text(GUARDED)
+
+    warnings = composed(ServeOptions(model=model)).supervisor.warnings
+    assert [finding.code for finding in warnings] == ["UNKNOWN_SIGNAL"]
 
 
 def test_nothing_set_is_a_robot_file_without_content() -> None:

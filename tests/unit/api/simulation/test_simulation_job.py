@@ -23,6 +23,16 @@ def posted(body: Mapping[str, Any], live: LiveCopy | None = None) -> Any:  # noq
     return json.loads(simulate_posted(json.dumps(body).encode(), ACTUATION, live))
 
 
+def test_a_guard_on_a_signal_that_the_robot_does_not_have_is_rejected() -> None:
+    guard = "    mode_settings: {MODERATE: {requires: reach > 3}}\n    modes:\n"
+    model = ACTUATION.replace("    modes:\n", guard, 1)
+
+    with pytest.raises(InvalidModelError):
+        virtual_robot(scenario(model=model, robot={"mock": True}))
+    robot = virtual_robot(scenario(model=model, robot={"signals": {"reach": {"minimum": 0}}}))
+    assert robot.supervisor.warnings == ()
+
+
 @pytest.fixture
 def live() -> VirtualService:
     """A robot that is in the middle of something."""
@@ -97,6 +107,15 @@ def test_a_condition_that_names_what_the_robot_does_not_have_is_told_before_it_r
     (fault,) = caught.value.faults
     assert (fault.pointer, fault.code) == ("/steps/0/expect", "UNKNOWN_MODE")
     assert fault.message.startswith("column 34: drive_base.mode is never 'FASTER'")
+
+
+def test_a_condition_that_cannot_be_read_is_told_with_its_column() -> None:
+    with pytest.raises(InvalidBodyError) as caught:
+        posted({"until_s": 1, "steps": [{"t_s": 0, "expect": "estop and {x}"}]})
+
+    (fault,) = caught.value.faults
+    assert (fault.pointer, fault.code) == ("/steps/0/expect", "CONDITION_SYNTAX")
+    assert fault.message == "column 11: '{' is not allowed here"
 
 
 def test_a_wrong_model_is_told_with_its_findings() -> None:

@@ -4,7 +4,7 @@ from typing import Any
 
 import pytest
 
-from domain.changes.changes import KEPT_CHANGES
+from domain.changes.change_log import KEPT_CHANGES
 from domain.errors import InvalidValueError, UnknownChangeError
 from domain.health.part_errors import DEVIATES_AFTER
 from domain.identifiers import ChangeId
@@ -545,7 +545,7 @@ def test_only_a_change_that_loses_a_node_is_superseded(robot: CoreRobot) -> None
 def test_large_changes_are_forgotten_earlier_and_running_ones_never(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    monkeypatch.setattr("domain.changes.changes.KEPT_PURSUITS", 3)
+    monkeypatch.setattr("domain.changes.change_log.KEPT_PURSUITS", 3)
     core = _core()
     core.handle(NodeReport(ARM, state=LifecycleState.UNCONFIGURED), 0)
     core.handle(TransitionRequest(ARM, Transition.CONFIGURE), 0)
@@ -560,7 +560,7 @@ def test_large_changes_are_forgotten_earlier_and_running_ones_never(
 
 
 def test_the_newest_change_is_kept_however_large_it_is(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("domain.changes.changes.KEPT_PURSUITS", 0)
+    monkeypatch.setattr("domain.changes.change_log.KEPT_PURSUITS", 0)
     core = _core()
     core.handle(NodeReport(BASE, state=LifecycleState.INACTIVE), 0)
     for _ in range(3):

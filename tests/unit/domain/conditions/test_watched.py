@@ -81,6 +81,7 @@ def test_a_leaf_tells_since_when_it_is_not_true() -> None:
     watched.renew(seconds(5))
 
     (blocker,) = watched.explain(condition)
+    assert blocker.since == seconds(1)
     assert [(cause.value, cause.since) for cause in blocker.causes] == [
         (0.1, seconds(4)),
         (60.0, seconds(1)),

@@ -83,13 +83,30 @@ def test_a_part_has_target_state_and_mode_and_a_star_where_they_are_inferred() -
 
 
 def test_what_is_pursued_counts_more_than_what_was_asked() -> None:
-    pursued = {"state": "active", "mode": "SLOW", "because": "the arm is inactive"}
+    pursued = {"state": "active", "mode": "SLOW", "because": "rule", "rule": "slow_down"}
     wanted = {"state": "active", "mode": "FAST"}
 
     lines = drawn_parts(part("base", target=wanted, effective_target=pursued))
 
     assert "active.SLOW" in lines[1]
     assert "FAST" not in lines[1]
+    assert lines[1].endswith(" rule slow_down")
+
+
+def test_who_set_a_target_is_told_beside_how_long_the_part_deviates() -> None:
+    pursued = {"state": "active", "mode": "SLOW", "because": "rule", "rule": "slow_down"}
+
+    line = drawn_parts(off_target("arm", effective_target=pursued), later_s=12.0)[1]
+
+    assert line.endswith(" deviates 12 s, rule slow_down")
+
+
+def test_a_target_that_was_requested_needs_no_word_more() -> None:
+    pursued = {"state": "active", "mode": "FAST", "because": "requested", "rule": None}
+
+    line = drawn_parts(part("base", mode="FAST", effective_target=pursued))[1]
+
+    assert line.endswith("FAST")
 
 
 def test_a_deviation_is_marked_and_its_time_counted() -> None:

@@ -3,6 +3,7 @@
 import pytest
 
 from api.http.schemas.parts import ModeJson, ParameterRowJson, PartJson, StateJson, type_of
+from domain.findings import Blocker
 from domain.lifecycle import LifecycleState, Transition
 from domain.parameters import ParameterValue
 from domain.snapshot import Actual, Because, EffectiveTarget, ParameterView, PartView
@@ -17,7 +18,12 @@ VIEW = PartView(
     parts=(),
     target=FAST,
     effective_target=EffectiveTarget(
-        LifecycleState.ACTIVE, ModeName("SLOW"), Because.RULE, "slow_down"
+        LifecycleState.ACTIVE,
+        ModeName("SLOW"),
+        Because.RULE,
+        "slow_down",
+        7,
+        (Blocker("RULE", "arm is inactive", ("robot", "arm"), since=seconds(1)),),
     ),
     actual=Actual(LifecycleState.ACTIVE, ModeName("SLOW"), mode_inferred=True),
     converged=False,
@@ -32,7 +38,18 @@ def test_a_part_tells_what_was_asked_what_is_pursued_and_what_is() -> None:
     shown = PartJson.of(VIEW, ManualClock())
 
     assert (shown.target and shown.target.mode) == "FAST"
-    assert (shown.effective_target and shown.effective_target.because) == Because.RULE, "slow_down"
+    assert shown.effective_target is not None
+    pursued = shown.effective_target.model_dump(mode="json")
+    blockers = pursued.pop("blockers")
+    assert pursued == {
+        "state": "active",
+        "mode": "SLOW",
+        "because": "rule",
+        "rule": "slow_down",
+        "cause": 7,
+    }
+    assert blockers[0]["message"] == "arm is inactive"
+    assert blockers[0]["since_at"] == "2026-01-01T00:00:01.000Z"
     assert shown.actual.mode == "SLOW"
     assert shown.deviation_since_at == "2026-01-01T00:00:02.000Z"
     assert shown.deviation_reason == "drive_base is active.SLOW, target active.FAST"

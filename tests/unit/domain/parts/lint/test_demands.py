@@ -1,4 +1,5 @@
-from domain.parts.lint.demands import Demands, contradict
+from domain.parts.lint.budget import Budget
+from domain.parts.lint.demands import Demands, conflicting_demands, contradict
 from domain.state_and_mode import DEFAULT_MODE, ModeName, PartName, StateAndMode
 from tests.support.lint_models import model_of, node, system
 
@@ -18,7 +19,7 @@ MODEL = model_of(
 
 
 def labels(part: str, mode: str, below: str) -> set[str]:
-    pairs = Demands(MODEL).of_mode(PartName(part), ModeName(mode), PartName(below))
+    pairs = Demands(MODEL, Budget()).of_mode(PartName(part), ModeName(mode), PartName(below))
     return {pair.label for pair in pairs}
 
 
@@ -55,8 +56,21 @@ def test_demands_contradict_each_other_unless_one_state_meets_all() -> None:
 
 
 def test_a_demand_of_the_default_mode_is_one_however_it_is_written() -> None:
-    demands = Demands(MODEL)
+    demands = Demands(MODEL, Budget())
 
     assert demands.of_pair(N, StateAndMode.parse("active"), N) == demands.of_mode(
         N, DEFAULT_MODE, N
     )
+
+
+def test_the_lowest_modes_with_demands_that_contradict_each_other_are_told() -> None:
+    found = conflicting_demands(MODEL, Demands(MODEL, Budget()), Budget())
+
+    assert found == {
+        ("top", "__DEFAULT__"): "its parts require n to be active.__DEFAULT__ and inactive",
+    }
+
+
+def test_without_a_budget_nothing_is_demanded() -> None:
+    assert Demands(MODEL, Budget(0)).of_mode(PartName("s"), FAST, N) == frozenset()
+    assert conflicting_demands(MODEL, Demands(MODEL, Budget()), Budget(0)) == {}

@@ -7,9 +7,11 @@ from domain.conditions.condition import Condition
 from domain.conditions.evaluation import Truth, compare, truth_of
 from domain.conditions.facts import Observation
 from domain.conditions.tree import Comparison, Node, Subject, Value
-from domain.parts.lint.satisfiable import can_be_true, equals, negated
+from domain.parts.lint.budget import Budget
+from domain.parts.lint.satisfiable import Satisfiability, equals, negated
 from domain.parts.lint.values import Values
 
+SEARCH = Satisfiability(Budget(10**9)).can_be_true
 VALUES: dict[str, tuple[Value, ...]] = {
     "x": (0, 1, 2), "y": (0, 1, 2), "word": ("A", "B", "C"), "flag": (True, False),
 }  # fmt: skip
@@ -34,7 +36,7 @@ def values_of(subject: Subject) -> Values:
 
 
 def possible(*texts: str) -> bool:
-    return can_be_true([Condition.parse(text).root for text in texts], values_of)
+    return SEARCH([Condition.parse(text).root for text in texts], values_of)
 
 
 def is_true_for_some_values(*texts: str) -> bool:
@@ -64,15 +66,15 @@ def test_conditions_are_possible_exactly_if_some_values_make_them_true(
 def test_a_condition_and_its_negation_are_never_true_together(text: str) -> None:
     root = Condition.parse(text).root
 
-    assert not can_be_true([root, negated(root)], values_of)
+    assert not SEARCH([root, negated(root)], values_of)
 
 
 def test_what_follows_from_a_comparison_counts() -> None:
     x, y = Condition.parse("x == 1").root, Condition.parse("y == 2").root
     word = Subject(equals(_subject("y"), 0).subject.topic)
 
-    assert can_be_true([x, y], values_of)
-    assert not can_be_true([x, y], values_of, lambda leaf: [equals(word, 0)])
+    assert SEARCH([x, y], values_of)
+    assert not SEARCH([x, y], values_of, lambda leaf: [equals(word, 0)])
 
 
 def test_a_search_that_would_take_too_long_counts_as_possible() -> None:
@@ -82,10 +84,20 @@ def test_a_search_that_would_take_too_long_counts_as_possible() -> None:
 
     def search(texts: list[str]) -> bool:
         roots = [Condition.parse(text).root for text in texts]
-        return can_be_true(roots, lambda _subject: Values())
+        return SEARCH(roots, lambda _subject: Values())
 
     assert not search(never)
     assert search([*choices[:13], *never, *choices[13:]])
+
+
+def test_without_a_budget_everything_counts_as_possible() -> None:
+    budget = Budget(3)
+    never = [Condition.parse("x == 0 and x == 1").root]
+    search = Satisfiability(budget).can_be_true
+
+    assert not search(never, values_of)
+    assert search(never, values_of)
+    assert budget.is_spent
 
 
 def _subject(name: str) -> Subject:

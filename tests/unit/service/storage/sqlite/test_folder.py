@@ -26,6 +26,12 @@ def folder(tmp_path: Path) -> Path:
     return tmp_path / "robot"
 
 
+@pytest.fixture(autouse=True)
+def _at_once(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Let what can wait follow each commit."""
+    monkeypatch.setattr(sqlite_journal, "FOLLOW_EVERY_S", 0.0)
+
+
 def numbers(folder: Path) -> list[int]:
     return Places(folder).log_numbers()
 

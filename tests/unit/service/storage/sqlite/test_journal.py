@@ -1,4 +1,6 @@
 import asyncio
+import errno
+import os
 import threading
 from collections.abc import Callable, Iterator
 from pathlib import Path
@@ -10,11 +12,13 @@ from domain.errors import StorageDegradedError
 from domain.inputs import HoldRequest
 from domain.outbox import NOTHING
 from service.codec.codec import STEPS
-from service.storage.journal import EventQuery, Step
+from service.storage.journal import ANNOUNCED, EventQuery, Step
+from service.storage.sqlite import announced_file
 from service.storage.sqlite import journal as sqlite_journal
 from service.storage.sqlite.batch import Flight
-from service.storage.sqlite.folder import Folder, Retention
+from service.storage.sqlite.folder import Folder, Report, Retention
 from service.storage.sqlite.recorded_log import RecordedLog
+from service.storage.sqlite.state_file import StateFile
 from tests.support.folder_robot import ENOUGH_S, as_a_kill_leaves, found_in, holds, started
 from tests.support.noted_robot import NotedRobot
 
@@ -89,6 +93,33 @@ async def test_what_nobody_waits_for_is_written_all_the_same(folder: Path, disk:
     await robot.journal.close()
 
 
+async def test_the_state_follows_the_log_when_nobody_waits(
+    folder: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(sqlite_journal, "FOLLOW_EVERY_S", ENOUGH_S)
+    followed: list[int] = []
+    follow = Folder.follow
+
+    def counted(folder: Folder) -> Report:
+        followed.append(1)
+        return follow(folder)
+
+    monkeypatch.setattr(Folder, "follow", counted)
+    robot = await started(folder)
+    for number in range(10):
+        robot.holds(f"operator {number}")
+        assert await robot.journal.commit(ENOUGH_S)
+    while_asked = len(followed)
+
+    await until(lambda: len(followed) > while_asked)
+
+    assert while_asked <= 1
+    state = StateFile.open(as_a_kill_leaves(folder) / "state.db")
+    assert ("kept_hold", "operator 9") in state.kept()
+    state.close()
+    await robot.journal.close()
+
+
 async def test_whoever_is_not_patient_is_told_that_it_is_not_on_disk_yet(
     folder: Path, disk: Disk
 ) -> None:
@@ -144,6 +175,91 @@ async def test_a_disk_that_fails_is_told_and_nothing_is_lost_when_it_works_again
     assert [event.id for event in events] == [1, 2, 3]
     assert set(holds(await found_in(as_a_kill_leaves(folder)))) == {"planner"}
     assert robot.journal.status().lost_inputs == 0
+    await robot.journal.close()
+
+
+async def test_an_announcement_waits_for_no_commit(folder: Path, disk: Disk) -> None:
+    robot = await started(folder)
+    disk.gate.clear()
+    robot.holds("operator")
+    commit = asyncio.create_task(robot.journal.commit(ENOUGH_S))
+    await asyncio.sleep(0)
+
+    assert await robot.journal.announce([1, "ReleaseRequest"], ENOUGH_S)
+    assert not commit.done()
+
+    disk.gate.set()
+    assert await commit
+    await robot.journal.close()
+    with pytest.raises(StorageDegradedError):
+        await robot.journal.announce([2, "ReleaseRequest"], ENOUGH_S)
+
+
+async def test_what_cannot_be_announced_is_told_until_it_can_be(
+    folder: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(sqlite_journal, "RETRY_S", 0.01)
+    robot = await started(folder)
+    broken = True
+    write_all = announced_file.write_synced
+
+    def fails(fd: int, content: bytes, offset: int) -> None:
+        if broken:
+            raise OSError(errno.EIO, os.strerror(errno.EIO))
+        write_all(fd, content, offset)
+
+    monkeypatch.setattr(announced_file, "write_synced", fails)
+    (folder / "announced").unlink()
+
+    told = await asyncio.gather(
+        *(robot.journal.announce(n, ENOUGH_S) for n in range(3)), return_exceptions=True
+    )
+    assert {type(each) for each in told} == {StorageDegradedError}
+    robot.holds("operator")
+    with pytest.raises(StorageDegradedError):
+        await robot.journal.commit(ENOUGH_S)
+
+    broken = False
+    await until_it_works(robot)
+    assert await robot.journal.announce([4, "ReleaseRequest"], ENOUGH_S)
+    await robot.journal.close()
+    found = await found_in(folder)
+    assert set(holds(found)) == {"operator"}
+    assert found.own == {ANNOUNCED: [[4, "ReleaseRequest"]]}
+
+
+async def test_an_announcement_that_fails_beside_a_flight_stops_neither_it_nor_the_next(
+    folder: Path, disk: Disk
+) -> None:
+    robot = await started(folder)
+    disk.gate.clear()
+    robot.holds("operator")
+    commit = asyncio.create_task(robot.journal.commit(ENOUGH_S))
+    await asyncio.sleep(0.01)
+    (folder / "announced").unlink()
+    with pytest.raises(StorageDegradedError):
+        await robot.journal.announce([1, "ReleaseRequest"], ENOUGH_S)
+    assert robot.journal.fault is not None
+
+    disk.gate.set()
+    assert await commit
+    await until_it_works(robot)
+
+    assert await robot.journal.announce([2, "ReleaseRequest"], ENOUGH_S)
+    await robot.journal.close()
+    assert set(holds(await found_in(folder))) == {"operator"}
+
+
+async def test_whoever_is_not_patient_has_announced_nothing(
+    folder: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    robot = await started(folder)
+    gate = threading.Event()
+    monkeypatch.setattr(announced_file, "write_synced", lambda *_: gate.wait(ENOUGH_S))
+
+    assert not await robot.journal.announce([1, "ReleaseRequest"], 0.02)
+
+    gate.set()
     await robot.journal.close()
 
 

@@ -1,7 +1,11 @@
+from dataclasses import replace
 from pathlib import Path
+from random import Random
 
+import apsw
 import pytest
 
+from domain.state_and_mode import PartName
 from domain.timebase import seconds
 from service.storage.sqlite.batch import Batch, Checkpoint, Hole
 from service.storage.sqlite.connection import reading
@@ -52,6 +56,88 @@ def test_a_flight_is_written_whole(path: Path) -> None:
     ]
     assert rows(path, "SELECT step, batch, at FROM checkpoints") == [(2, 1, 110)]
     assert rows(path, "SELECT * FROM holes") == [(1, 1, 2, 3, 4, 120, 140, "full")]
+    file.close()
+
+
+TABLES = ("batches", "events", "event_parts", "changes")
+AWKWARD = (
+    b"{}",
+    b'"\\u0000\\n"',
+    "\"Grüße 'n' \U0001f916\"".encode(),
+    b"[1e999,-0.0]",
+    b"null",
+    None,
+)
+"""Kept values as JSON, and what is kept no longer."""
+
+
+def with_dictionary(path: Path, number: int) -> LogFile:
+    file = log_file(path.with_name(f"{number:06}.db"), number=number)
+    file.dictionary = b"a step that was written before"
+    return file
+
+
+def random_batch(random: Random, number: int) -> Batch:
+    steps = [b"step %d" % random.randrange(99) for _ in range(random.randrange(4))]
+    first = 10 * number
+    found = batch(number, 100 * number, *steps, at=number, events=(*range(first, first + 2),))
+    event = found.events[0]
+    words = random.choice(["", 'it\'s "so"', "Grüße\n", "\\"])
+    parts = (PartName("left/arm"), PartName("base"))[: random.randrange(3)]
+    cause = random.choice([None, 2**62])
+    found.events[0] = event._replace(words=words, parts=parts, cause=cause)
+    return found
+
+
+def test_what_is_one_statement_writes_the_same_as_many(
+    path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    random = Random(5)
+    one, many = with_dictionary(path, 1), with_dictionary(path, 2)
+    for number in range(1, 60):
+        given = flight(random_batch(random, number))
+        values = {
+            ("kept_hold", f"'{n}'"): random.choice(AWKWARD) for n in range(random.randrange(4))
+        }
+        one.write(given, run(), values)
+        with monkeypatch.context() as patch:
+            patch.setattr(LogFile, "_is_one_statement", lambda *_: False)
+            many.write(given, run(), values)
+
+    for table in TABLES:
+        sql = f"SELECT * FROM {table}"
+        assert rows(one.path, sql) == rows(many.path, sql), table
+    assert changes(one)[1:] == changes(many)[1:]
+    assert replace(one.summary, path=path, number=0) == replace(many.summary, path=path, number=0)
+    one.close()
+    many.close()
+
+
+def test_the_usual_flight_is_one_statement(path: Path) -> None:
+    file = with_dictionary(path, 1)
+    told: list[str] = []
+    file._connection.set_profile(lambda sql, _: told.append(sql))  # noqa: SLF001
+
+    file.write(flight(batch(1, 1, b"one", events=(1, 2))), run(), {("kept_hold", "new"): b"new"})
+
+    assert [sql for sql in told if not sql.startswith("--")] == [told[-1]]
+    assert told[-1].startswith("INSERT INTO flights")
+    file.close()
+
+
+def test_one_statement_that_fails_leaves_nothing(path: Path) -> None:
+    file = with_dictionary(path, 1)
+    before = file.summary
+    # The same number twice.
+    broken = batch(2, 1, b"one", events=(1,))
+    with file._connection as connection:  # noqa: SLF001
+        connection.execute("INSERT INTO batches VALUES (2,1,1,0,0,0,0,0,x'',0,0,0)")
+
+    with pytest.raises(apsw.ConstraintError):
+        file.write(flight(broken), run(), {("a", "b"): b"c"})
+
+    assert file.summary == before
+    assert rows(file.path, "SELECT * FROM events") == changes(file, 1) == []
     file.close()
 
 

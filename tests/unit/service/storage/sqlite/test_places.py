@@ -14,4 +14,5 @@ def test_files_of_the_log_are_found_in_order(tmp_path: Path) -> None:
 
     assert places.log_numbers() == [2, 10, 1_000_000]
     assert places.log(2).name == "000002.db"
-    assert (places.state.name, places.lock.name) == ("state.db", "lock")
+    names = (places.state.name, places.lock.name, places.announced.name)
+    assert names == ("state.db", "lock", "announced")

@@ -26,6 +26,17 @@ def test_what_is_applied_is_there_when_it_is_opened_again(path: Path) -> None:
     assert [found.name for found in path.parent.iterdir()] == ["state.db"]
 
 
+def test_values_come_back_byte_by_byte(path: Path) -> None:
+    values = [b"{}", b"null", b'"\\u0000\\n"', "\"Grüße 'n' \U0001f916\"".encode(), b"[1e999,-0.0]"]
+    kept = {("own", f"'{number}\"'"): value for number, value in enumerate(values)}
+    state = StateFile.begin(path, "robot", {}, Applied(1, 1))
+
+    state.apply({**kept, HOLD: None}, Applied(1, 2))
+
+    assert state.kept() == kept
+    state.close()
+
+
 def test_values_keep_their_order(path: Path) -> None:
     state = StateFile.begin(path, "robot", {TASK: b"1", HOLD: b"2"}, Applied(1, 1))
     state.apply({TASK: b"3"}, Applied(1, 2))

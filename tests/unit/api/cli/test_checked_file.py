@@ -1,0 +1,47 @@
+import json
+
+from api.cli.checked_file import CheckedFile, as_json, as_text
+from domain.findings import Finding
+
+ERROR = Finding("error", "BAD", "no mode FASTT; did you mean FAST?", "arm", (), 2, 4)
+WARNING = Finding("warning", "ODD", "this is odd", None, (), 1, 1)
+
+
+def test_a_finding_is_shown_with_its_line_a_caret_and_what_was_probably_meant() -> None:
+    file = CheckedFile("robot.yaml", "a:\n  b: FASTT\n", (WARNING, ERROR))
+
+    assert list(as_text([file])) == [
+        "robot.yaml:1:1: warning[ODD]: this is odd",
+        "    1 | a:",
+        "      | ^",
+        "robot.yaml:2:4: error[BAD]: no mode FASTT",
+        "    2 |   b: FASTT",
+        "      |    ^",
+        "      = help: did you mean FAST?",
+        "robot.yaml: invalid (1 error, 1 warning)",
+    ]
+
+
+def test_each_of_several_files_is_summed_up() -> None:
+    files = [CheckedFile("model.yaml", "a", ()), CheckedFile("robot.yaml", "a", (WARNING,))]
+
+    assert list(as_text(files))[-2:] == ["model.yaml: valid", "robot.yaml: valid (1 warning)"]
+
+
+def test_nothing_of_a_file_steers_the_terminal() -> None:
+    finding = Finding("error", "BAD", "\x1b[2J", None, (), 1, 1)
+    file = CheckedFile("\x1b]0;x\x07", "\x1b[31m", (finding,))
+
+    assert not any("\x1b" in line or "\x07" in line for line in as_text([file]))
+
+
+def test_a_program_gets_all_findings_with_their_files() -> None:
+    files = [CheckedFile("model.yaml", "a", (ERROR,)), CheckedFile("robot.yaml", "a", (WARNING,))]
+
+    shown = json.loads(as_json(files))
+
+    assert shown["valid"] is False
+    assert [(f["code"], f["file"], f["line"]) for f in shown["findings"]] == [
+        ("BAD", "model.yaml", 2),
+        ("ODD", "robot.yaml", 1),
+    ]

@@ -1,0 +1,112 @@
+"""Requests that wait until what their mode requires is true."""
+
+import pytest
+
+from domain.errors import BlockedError
+from domain.identifiers import ChangeId
+from domain.inputs import CancelRequest, ModeRequest
+from domain.simulation.node_settings import Fault
+from domain.snapshot import ChangeStatus
+from domain.timebase import seconds
+from tests.support.core_robot import CoreRobot
+from tests.support.good import GOOD
+from tests.support.guarded_model import guarded_model
+from tests.support.models import ACTUATION, ARM, PERFORMANCE
+
+
+@pytest.fixture
+def robot() -> CoreRobot:
+    """Return a robot whose battery is too low for PERFORMANCE."""
+    robot = CoreRobot(guarded_model(requires=("vehicle.x_m < 1", "not hold.charging")))
+    robot.read(**GOOD)
+    robot.hold("charging")
+    return robot
+
+
+def _ask(robot: CoreRobot, wait_for_s: float = 60.0) -> ChangeId:
+    return robot.begin(ModeRequest(ACTUATION, PERFORMANCE, wait_for=seconds(wait_for_s)))
+
+
+def _keep_good(robot: CoreRobot, duration_s: int) -> None:
+    """Let time pass while all signals stay fresh."""
+    for _ in range(duration_s):
+        robot.read(**GOOD)
+        robot.advance(1)
+
+
+def test_a_request_waits_and_changes_no_target(robot: CoreRobot) -> None:
+    change = _ask(robot)
+    assert robot.change(change).status is ChangeStatus.WAITING
+    assert robot.core.part(ACTUATION).target is None
+    assert robot.core.part(ACTUATION).change is None
+    (told,) = robot.happened("change.waiting")
+    assert told["reason"] == "hold charging is set"
+
+
+def test_it_begins_in_the_step_in_which_its_guards_hold(robot: CoreRobot) -> None:
+    change = _ask(robot)
+    _keep_good(robot, 5)
+    outputs = robot.release("charging")
+    assert robot.change(change).status is ChangeStatus.RUNNING
+    assert outputs.commands, "the first node is asked at once"
+    _keep_good(robot, 5)
+    assert robot.change(change).status is ChangeStatus.SUCCEEDED
+    assert robot.actual(ACTUATION) == "active.PERFORMANCE"
+
+
+def test_when_its_time_is_up_it_fails_with_what_it_waited_for(robot: CoreRobot) -> None:
+    change = _ask(robot, wait_for_s=3)
+    _keep_good(robot, 4)
+    view = robot.change(change)
+    assert view.status is ChangeStatus.FAILED
+    assert view.reason == "waited for 3 s: hold charging is set"
+    robot.release("charging")
+    assert robot.core.part(ACTUATION).target is None, "an outcome is final"
+
+
+def test_what_waiting_does_not_help_refuses_the_request_at_once(robot: CoreRobot) -> None:
+    robot.read(temperature=51)
+    with pytest.raises(BlockedError):
+        _ask(robot)
+
+
+def test_estop_ends_a_waiting_request(robot: CoreRobot) -> None:
+    change = _ask(robot)
+    robot.read(estop=True)
+    view = robot.change(change)
+    assert view.status is ChangeStatus.FAILED
+    assert "ESTOP" in (view.reason or "") or "e-stop" in (view.reason or "").lower()
+
+
+def test_a_node_that_cannot_be_activated_any_more_ends_it(robot: CoreRobot) -> None:
+    _keep_good(robot, 1)
+    change = _ask(robot)
+    robot.ask_transition(ARM, "shutdown")
+    robot.fault(ARM, Fault.SLOW)
+    _keep_good(robot, 5)
+    assert robot.change(change).status is ChangeStatus.FAILED
+
+
+def test_it_can_be_canceled(robot: CoreRobot) -> None:
+    change = _ask(robot)
+    robot.give(CancelRequest(change))
+    assert robot.change(change).status is ChangeStatus.CANCELED
+    robot.release("charging")
+    assert robot.core.part(ACTUATION).target is None
+
+
+def test_a_later_one_that_waits_supersedes_an_earlier_one(robot: CoreRobot) -> None:
+    earlier, later = _ask(robot), _ask(robot)
+    assert robot.change(earlier).status is ChangeStatus.SUPERSEDED
+    assert robot.change(later).status is ChangeStatus.WAITING
+
+
+def test_a_newer_request_for_the_part_supersedes_it(robot: CoreRobot) -> None:
+    waiting = _ask(robot)
+    robot.begin(ModeRequest(ACTUATION, "MODERATE"))
+    assert robot.change(waiting).status is ChangeStatus.SUPERSEDED
+
+
+def test_a_request_that_need_not_wait_begins_at_once(robot: CoreRobot) -> None:
+    robot.release("charging")
+    assert robot.change(_ask(robot)).status is ChangeStatus.RUNNING
