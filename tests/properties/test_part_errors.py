@@ -159,7 +159,6 @@ def carry_out(robot: Observed, step: tuple[object, ...]) -> None:
 @settings(
     max_examples=STORIES,
     deadline=None,
-    phases=[Phase.generate],
     suppress_health_check=list(HealthCheck),
 )
 @given(st.lists(STEPS, max_size=25))

@@ -26,7 +26,7 @@ VIEWS = [
     ],
 )
 async def test_pending_and_normal_errors_are_not_active(
-    active: bool | None,  # noqa: FBT001 - as in the query
+    active: bool | None,
     errors: list[str],
 ) -> None:
     answer = await answer_errors(make_supervisor(), VIEWS, active)
