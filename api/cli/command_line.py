@@ -12,7 +12,18 @@ import sys
 from collections.abc import Sequence
 from typing import NoReturn
 
-from api.cli.commands import change, check, export, monitor, profile, replay, serve, simulate, task
+from api.cli.commands import (
+    change,
+    check,
+    export,
+    monitor,
+    profile,
+    replay,
+    serve,
+    simulate,
+    task,
+    why,
+)
 from api.cli.standard_files import give_up_output, open_missing
 from api.distribution import ForeignPackageError, check_packages, installed_version
 from api.terminal_text import complain
@@ -28,6 +39,7 @@ _COMMANDS = (
     check.COMMAND,
     change.MODE,
     change.STATE,
+    why.WHY,
     task.COMMAND,
     simulate.COMMAND,
     profile.COMMAND,

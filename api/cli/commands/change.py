@@ -49,6 +49,13 @@ def _add_change_options(parser: argparse.ArgumentParser) -> None:
         metavar="S",
         help="seconds to wait for the end; default: %(default)g",
     )
+    parser.add_argument(
+        "--wait-for",
+        type=_wait_s,
+        metavar="S",
+        help="let the request wait so many seconds for what its modes require; default: it is"
+        " rejected then",
+    )
     parser.add_argument("--dry-run", action="store_true", help="show the steps, change nothing")
 
 
@@ -70,7 +77,10 @@ def _run_state(options: argparse.Namespace) -> int:
     return _run(options, "state", {"transition": options.transition})
 
 
-def _run(options: argparse.Namespace, what: str, request: dict[str, str]) -> int:
+def _run(options: argparse.Namespace, what: str, request: dict[str, str | float]) -> int:
+    if options.wait_for is not None:
+        request["wait_for_s"] = options.wait_for
+
     def ask(client: "ServiceClient") -> Outcome:
         if options.dry_run:
             return show_plan(client, options.part, what, request, print)
@@ -118,7 +128,10 @@ def show_plan(
     if not steps:
         say(f"{part} is there already: no step is needed")
     for step in steps:
-        say(f"would {_words(step['action'])} {step['node']}")
+        stage = f"stage {step['stage']}: " if plan["stages"] > 1 else ""
+        say(f"{stage}would {_words(step['action'])} {step['node']}")
+    if steps and plan["expected_s"] is not None:
+        say(f"takes about {plan['expected_s']:.3g} s")
     return Outcome.SUCCEEDED
 
 
@@ -149,6 +162,8 @@ def change(
     view = client.call("POST", f"{client.path_of(part)}/{what}", request)
     told: dict[tuple[str, int], str] = {}
     deadline = time.monotonic() + wait_s
+    if view["status"] == "waiting":
+        say(f"waits: {view['reason']}")
     while True:
         for line in _news(view["steps"], told):
             say(line)

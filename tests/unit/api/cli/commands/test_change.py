@@ -136,10 +136,53 @@ def test_the_second_step_of_the_same_kind_is_told_too(service: Service) -> None:
     assert said[:2] == ["set parameters arm: succeeded"] * 2
 
 
+def _plan(
+    steps: list[dict[str, Any]], stages: int = 1, expected_s: float | None = None
+) -> dict[str, Any]:
+    return {"part": "actuation", "steps": steps, "stages": stages, "expected_s": expected_s}
+
+
+def test_a_dry_run_in_stages_says_them_and_how_long_it_takes(service: Service) -> None:
+    steps = [
+        {**step("drive_base", "activate", "pending"), "stage": 0},
+        {**step("arm", "activate", "pending"), "stage": 1},
+    ]
+    answer = httpx.Response(200, json=_plan(steps, 2, 0.40000001))
+    service.answers["POST /systems/actuation/mode?dry_run=true"] = answer
+    said: list[str] = []
+
+    show_plan(service.client(), "actuation", "mode", MODE, said.append)
+
+    assert said == [
+        "stage 0: would activate drive_base",
+        "stage 1: would activate arm",
+        "takes about 0.4 s",
+    ]
+
+
+def test_a_request_that_waits_says_for_what_and_is_followed(service: Service) -> None:
+    service.views = iter(
+        [
+            view("waiting", reason="battery_level is 0.2, needs >= 0.3"),
+            view("running", step("drive_base", "activate", "running")),
+            view("succeeded", step("drive_base", "activate", "succeeded")),
+        ]
+    )
+    said: list[str] = []
+
+    outcome = change(
+        service.client(), "actuation", "mode", MODE, 60, said.append, pause=lambda _: None
+    )
+
+    assert outcome is Outcome.SUCCEEDED
+    assert said[0] == "waits: battery_level is 0.2, needs >= 0.3"
+    assert said[-1] == "actuation: succeeded"
+
+
 def test_a_dry_run_says_the_steps_and_changes_nothing(service: Service) -> None:
     steps = [step("arm", "configure", "pending"), step("arm", "set_parameters", "pending")]
     asked = "POST /systems/actuation/mode?dry_run=true"
-    service.answers[asked] = httpx.Response(200, json={"part": "actuation", "steps": steps})
+    service.answers[asked] = httpx.Response(200, json=_plan(steps))
     said: list[str] = []
 
     outcome = show_plan(service.client(), "actuation", "mode", MODE, said.append)
@@ -150,7 +193,7 @@ def test_a_dry_run_says_the_steps_and_changes_nothing(service: Service) -> None:
 
 
 def test_a_dry_run_without_steps_says_that_all_is_well(service: Service) -> None:
-    answer = httpx.Response(200, json={"part": "actuation", "steps": []})
+    answer = httpx.Response(200, json=_plan([]))
     service.answers["POST /systems/actuation/mode?dry_run=true"] = answer
     said: list[str] = []
 
