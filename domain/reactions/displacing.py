@@ -1,6 +1,6 @@
 """Puts targets in force instead of others, and takes them back: events, changes, what is kept."""
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 
 from domain.changes.changing import Changing
@@ -89,11 +89,11 @@ class Displacing:
             restored: What it left.
             because: Of which kind.
             displacers: All of that kind.
-            now: The current time.
+            now: The current time; nothing began later.
         """
         found = []
-        for displaced, displacer in self._kept.restore(restored.kept, because, displacers):
-            displaced.blockers = (displacer.cause(min(self._kept.since(displaced), now)),)
+        for displaced, displacer in self._kept.restore(restored.kept, because, displacers, now):
+            displaced.blockers = (displacer.cause(self._kept.since(displaced)),)
             self._of[displacer] = displaced
             self._parts.displace(displaced)
             found.append(displacer)
@@ -238,9 +238,13 @@ class Displacing:
         """Keep which nodes turned out to be elsewhere than where they were led."""
         self._kept.renew(self._of[displacer])
 
-    def explain(self, displacer: Displacer, blockers: tuple[Blocker, ...]) -> bool:
+    def explain(self, displacer: Displacer, why: Sequence[Blocker]) -> bool:
         """Show why something is displaced; return whether something else was shown before."""
-        return self._parts.explain(self._of[displacer], blockers)
+        return self._parts.explain(self._of[displacer], tuple(why))
+
+    def explain_cause(self, displacer: Displacer) -> bool:
+        """Show the cause of a displacement; return whether something else was shown before."""
+        return self.explain(displacer, [displacer.cause(self._kept.since(self._of[displacer]))])
 
     # --- inside ----------------------------------------------------------------------------------
 

@@ -63,7 +63,11 @@ class KeptDisplacements:
         self._outbox.forget(KeptEffectiveTarget, kept.name)
 
     def restore(
-        self, kept: Iterable[Kept], because: Because, displacers: Iterable[Displacer]
+        self,
+        kept: Iterable[Kept],
+        because: Because,
+        displacers: Iterable[Displacer],
+        now: Instant,
     ) -> Iterator[tuple[Displacement, Displacer]]:
         """Yield the displacements of one kind that were kept, in their order.
 
@@ -73,6 +77,7 @@ class KeptDisplacements:
             kept: What an earlier run left.
             because: The kind.
             displacers: All of that kind that the model has.
+            now: The current time; nothing began later.
         """
         known = {key_of(displacer): displacer for displacer in displacers}
         values = [each for each in kept if isinstance(each, KeptEffectiveTarget)]
@@ -87,7 +92,7 @@ class KeptDisplacements:
             found = Displacement(
                 value.part, self._targets_of(value), because, value.rule, value.cause
             )
-            self._kept[found] = value
+            self._kept[found] = replace(value, since=min(value.since, now))
             yield found, displacer
 
     def _leave_out(self, value: KeptEffectiveTarget) -> None:

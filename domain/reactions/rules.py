@@ -94,19 +94,18 @@ class Rules(Concern):
         if not self._rules:
             return False
         touched = self._about.keys() & self._outbox.parts
-        if touched:
-            rules = {rule for part in touched for rule in self._about[part]}
-            self._review(sorted(rules, key=_number), now)
+        rules = {rule for part in touched for rule in self._about[part]}
+        is_explained = self._review(sorted(rules, key=_number), now)
         if self._health.is_stopped:
             self._matching.stop()
             self._returns.stop()
-        return self._act(now)
+        return self._act(now) or is_explained
 
     # --- what holds ------------------------------------------------------------------------------
 
-    def _review(self, rules: Iterable[RuleWatch], now: Instant) -> None:
-        """Note which conditions begin or cease to hold."""
-        record, grace = self._outbox.record_input, self._grace
+    def _review(self, rules: Iterable[RuleWatch], now: Instant) -> bool:
+        """Note which conditions begin or cease to hold; return whether a reason is shown anew."""
+        record, grace, is_explained = self._outbox.record_input, self._grace, False
         for rule in rules:
             if not self._displacing.acts(rule):
                 holds = rule.may_act and self._is_free(rule) and rule.matches()
@@ -119,6 +118,9 @@ class Rules(Concern):
                 is_gone = self._is_free(rule) and rule.is_cause_gone()
                 self._returns.note(rule, now, grace, is_gone=is_gone)
                 self._displacing.keep(rule)
+                if not is_gone and not self._returns.stays(rule):
+                    is_explained |= self._displacing.explain_cause(rule)
+        return is_explained
 
     def _is_free(self, rule: RuleWatch) -> bool:
         """Tell whether no change of the system or the part is running, and one could begin."""

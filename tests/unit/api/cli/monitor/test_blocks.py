@@ -101,6 +101,17 @@ def test_who_set_a_target_is_told_beside_how_long_the_part_deviates() -> None:
     assert line.endswith(" deviates 12 s, rule slow_down")
 
 
+def test_a_fallback_is_told_with_the_reason_that_one_can_do_something_about() -> None:
+    leaf = {"message": "temperature is 52 °C, needs < 50 °C", "causes": []}
+    tree = {"message": "base cannot stay FAST: temperature is 52 °C", "causes": [leaf]}
+    pursued = {"state": "active", "mode": "SLOW", "because": "invariant", "rule": None}
+
+    line = drawn_parts(part("base", effective_target={**pursued, "blockers": [tree]}), width=120)[1]
+    assert line.endswith(" because an invariant is broken: temperature is 52 °C, needs < 50 °C")
+    line = drawn_parts(part("base", effective_target={**pursued, "blockers": [leaf]}), width=120)[1]
+    assert line.endswith(" because an invariant is broken: temperature is 52 °C, needs < 50 °C")
+
+
 def test_a_target_that_was_requested_needs_no_word_more() -> None:
     pursued = {"state": "active", "mode": "FAST", "because": "requested", "rule": None}
 
