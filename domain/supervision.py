@@ -103,7 +103,6 @@ class Supervision:
         self._changing = Changing(
             self._parts, self._health, self._part_errors, settings.changes, self._outbox, guards
         )
-        displacing = Displacing(self._parts, self._changing, self._outbox)
         # Driving stops the vehicle before the state is published and changes continue.
         self._concerns: tuple[Concern, ...] = (
             Restart(self._outbox),
@@ -117,23 +116,22 @@ class Supervision:
             self._part_errors,
             FactChanges(self.conditions, self.driving, self._outbox),
             self._changing,
-            Fallbacks(
-                self._parts,
-                self._changing,
-                self._health,
-                self._part_errors,
-                guards,
-                displacing,
-                self._outbox,
-            ),
-            Rules(
-                self._parts, self._changing, self._health, settings.rules, displacing, self._outbox
-            ),
+            *self._displacers(guards, settings.rules),
             Audit(self._outbox),
             Stalls(self._outbox),
         )
         self._outbox.errors.clear()  # What is on from the start is no change.
         self._arrange()
+
+    def _displacers(self, guards: Guards, rules: RuleSettings) -> tuple[Concern, Concern]:
+        """Return what sets targets in force, the stronger first; both displace by one object."""
+        parts, changing, health, outbox = self._parts, self._changing, self._health, self._outbox
+        displacing = Displacing(parts, changing, outbox)
+        errors = self._part_errors
+        return (
+            Fallbacks(parts, changing, health, errors, guards, displacing, outbox),
+            Rules(parts, changing, health, rules, displacing, outbox),
+        )
 
     def _arrange(self) -> None:
         """Note which concerns have to be asked when; most have nothing to do most of the time."""

@@ -159,13 +159,11 @@ class Changes:
             identity, started_at, cause = self._log.next_id(), now, self._outbox.record_input()
         else:
             identity, started_at, cause = waited.id, waited.started_at, waited.cause
-        schedule, targets = self.schedule(request, goal), dict(goal.targets)
+        schedule = self.schedule(request, goal)
         if not is_asked:
             schedule = schedule.without_rollback()
-        change = Change(
-            identity, part, request, targets, started_at, cause, schedule, self._steps.durations
-        )
-        change.guarded = frozenset(self._guarded.parts_of(targets)).difference(unguarded)
+        targets, took = dict(goal.targets), self._steps.durations
+        change = Change(identity, part, request, targets, started_at, cause, schedule, took)
         if self._running or not self._steps.is_idle:
             self._supersede(goal.targets.keys() | goal.nodes.keys(), change, now)
         self._log.add(change)
@@ -178,7 +176,7 @@ class Changes:
             change.deadline_at = now + schedule.deadline
             self._deadlines.set(identity, change.deadline_at)
         change.set_out(goal.nodes)
-        self._guarded.add(change)
+        self._guarded.add(change, unguarded)
         self._set_out(change, now)
         self._conclude(change, now)
         self._log.forget_old()
