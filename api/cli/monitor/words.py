@@ -88,6 +88,18 @@ def setter(target: Json | None) -> str:
     return f"{target['because']} {target['rule'] or ''}".rstrip()
 
 
+def setter_and_reason(target: Json | None) -> str:
+    """Return who set a target in force and why, such as "invariant: temperature is 55 °C".
+
+    Args:
+        target: As in frames; None: there is none.
+    """
+    who = setter(target)
+    if not who or target is None or not target["blockers"]:
+        return who
+    return f"{who}: {target['blockers'][0]['message']}"
+
+
 def verdict_words(signal: Json, pending_s: float | None, *, is_live: bool = True) -> str:
     """Return the errors of a signal, or "ok"; nothing is ok that was never received.
 

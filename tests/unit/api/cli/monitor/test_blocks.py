@@ -83,7 +83,13 @@ def test_a_part_has_target_state_and_mode_and_a_star_where_they_are_inferred() -
 
 
 def test_what_is_pursued_counts_more_than_what_was_asked() -> None:
-    pursued = {"state": "active", "mode": "SLOW", "because": "rule", "rule": "slow_down"}
+    pursued = {
+        "state": "active",
+        "mode": "SLOW",
+        "because": "rule",
+        "rule": "slow_down",
+        "blockers": [],
+    }
     wanted = {"state": "active", "mode": "FAST"}
 
     lines = drawn_parts(part("base", target=wanted, effective_target=pursued))
@@ -94,15 +100,36 @@ def test_what_is_pursued_counts_more_than_what_was_asked() -> None:
 
 
 def test_who_set_a_target_is_told_beside_how_long_the_part_deviates() -> None:
-    pursued = {"state": "active", "mode": "SLOW", "because": "rule", "rule": "slow_down"}
+    pursued = {
+        "state": "active",
+        "mode": "SLOW",
+        "because": "rule",
+        "rule": "slow_down",
+        "blockers": [],
+    }
 
     line = drawn_parts(off_target("arm", effective_target=pursued), later_s=12.0)[1]
 
     assert line.endswith(" deviates 12 s, rule slow_down")
 
 
+def test_a_fallback_says_which_invariant_is_broken() -> None:
+    because = {"because": "invariant", "rule": None, "blockers": [{"message": "too hot"}]}
+    pursued: Json = {"state": "active", "mode": "SLOW", **because}
+
+    line = drawn_parts(part("base", mode="SLOW", effective_target=pursued), width=120)[1]
+
+    assert line.endswith(" invariant: too hot")
+
+
 def test_a_target_that_was_requested_needs_no_word_more() -> None:
-    pursued = {"state": "active", "mode": "FAST", "because": "requested", "rule": None}
+    pursued = {
+        "state": "active",
+        "mode": "FAST",
+        "because": "requested",
+        "rule": None,
+        "blockers": [],
+    }
 
     line = drawn_parts(part("base", mode="FAST", effective_target=pursued))[1]
 
