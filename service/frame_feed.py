@@ -6,6 +6,7 @@ from typing import Generic, TypeVar
 
 from domain.snapshot import (
     EmergencyStopView,
+    ErrorState,
     ErrorView,
     HoldView,
     PartView,
@@ -26,6 +27,10 @@ PARTS_AT_ONCE = ERRORS_AT_ONCE = 250
 in which they changed: encoding the parts of a large robot at once would delay this frame and those
 after it."""
 
+ENDED_KEPT = 2_400
+"""Frames for which an error that ended is still in complete frames: two minutes at 20 Hz. A reader
+that takes no frame for some seconds is disconnected."""
+
 LARGE = 500
 """A robot with more parts is large: whoever missed frames of it is told only what changed since."""
 
@@ -43,7 +48,8 @@ class Frame:
     signals: Mapping[str, SignalView]
     """As for `parts`."""
     errors: Mapping[str, ErrorView]
-    """As for `parts`, by name; a full frame has those that are not normal."""
+    """As for `parts`, by name; a full frame has those that are not normal, and those that ended a
+    short time ago."""
     task: TaskView | None
     """The current task, or else the last one; None: there has been none."""
     task_changed: bool
@@ -76,7 +82,9 @@ class FrameFeed(Watched):
         self._complete: Frame | None = None
         self._parts = _Members[PartName, PartView]()
         self._errors = _Members[str, ErrorView]()
-        """All that were ever told, so that who merges frames learns of each end."""
+        """Also those that ended, so that who merges frames learns of each end."""
+        self._ended_in: dict[str, int] = {}
+        """Number of the frame that told the end of an error, the oldest first."""
         self._signals: dict[str, SignalView] = {}
         self._has_all = False
 
@@ -109,11 +117,25 @@ class FrameFeed(Watched):
         """Replace the newest frame and wake the readers. Never blocks."""
         self._parts.take(frame.parts, frame.seq)
         self._errors.take(frame.errors, frame.seq)
+        self._forget_ended(frame)
         self._signals.update(frame.signals)
         self._has_all = self._has_all or frame.full
         self._newest = frame
         self._complete = frame if frame.full else None
         self._wake_watchers()
+
+    def _forget_ended(self, frame: Frame) -> None:
+        """Forget errors that ended so long ago that every reader took a frame since."""
+        for name, view in frame.errors.items():
+            self._ended_in.pop(name, None)
+            if view.state is ErrorState.NORMAL:
+                self._ended_in[name] = frame.seq
+        while self._ended_in:
+            name, ended_in = next(iter(self._ended_in.items()))
+            if ended_in > frame.seq - ENDED_KEPT:
+                return
+            del self._ended_in[name]
+            self._errors.drop(name)
 
     def complete(self) -> Frame | None:
         """Return the newest frame with all parts and signals; None before the first full frame.
@@ -174,6 +196,10 @@ class _Members(Generic[Name, View]):
                 self.views.pop(name, None)
                 self.views[name] = view
                 self._changed_in[name] = seq
+
+    def drop(self, name: Name) -> None:
+        """Forget a member."""
+        del self.views[name], self._changed_in[name]
 
     def since(self, seen: int) -> Iterator[tuple[Name, View]]:
         """Yield the members that changed after the frame `seen`, the newest first."""

@@ -1,6 +1,6 @@
 """Puts the targets of rules in force, and takes them back: events, changes, and what is kept."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 from domain.actor import Actor
@@ -71,10 +71,10 @@ class Displacing:
         Args:
             restored: What it left.
             rules: By system and name.
-            now: The current time.
+            now: The current time; nothing began later.
         """
-        for displaced, watch in self._kept.restore(restored.kept, rules):
-            displaced.blockers = (_cause(watch, min(self._kept.since(displaced), now)),)
+        for displaced, watch in self._kept.restore(restored.kept, rules, now):
+            displaced.blockers = (_cause(watch, self._kept.since(displaced)),)
             self._of_rule[watch] = displaced
             self._parts.displace(displaced)
 
@@ -183,9 +183,13 @@ class Displacing:
         """Keep which nodes turned out to be elsewhere than where a rule led them."""
         self._kept.renew(self._of_rule[watch])
 
-    def explain(self, watch: RuleWatch, obstacles: tuple[Blocker, ...]) -> bool:
+    def explain(self, watch: RuleWatch, why: Sequence[Blocker]) -> bool:
         """Show why a rule displaces something; return whether something else was shown before."""
-        return self._parts.explain(self._of_rule[watch], obstacles)
+        return self._parts.explain(self._of_rule[watch], tuple(why))
+
+    def explain_cause(self, watch: RuleWatch) -> bool:
+        """Show the cause of a rule; return whether something else was shown before."""
+        return self.explain(watch, [_cause(watch, self._kept.since(self._of_rule[watch]))])
 
     # --- inside ----------------------------------------------------------------------------------
 

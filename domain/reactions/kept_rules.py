@@ -62,7 +62,7 @@ class KeptRules:
         self._outbox.forget(KeptEffectiveTarget, kept.name)
 
     def restore(
-        self, kept: Iterable[Kept], rules: Mapping[tuple[PartName, str], RuleWatch]
+        self, kept: Iterable[Kept], rules: Mapping[tuple[PartName, str], RuleWatch], now: Instant
     ) -> Iterator[tuple[Displacement, RuleWatch]]:
         """Yield the displacements that were kept, with their rules, in their order.
 
@@ -81,7 +81,7 @@ class KeptRules:
             found = Displacement(
                 value.part, self._targets_of(value), Because.RULE, value.rule, value.cause
             )
-            self._kept[found] = value
+            self._kept[found] = replace(value, since=min(value.since, now))
             yield found, watch
 
     def _targets_of(self, kept: KeptEffectiveTarget) -> dict[PartName, StateAndMode]:

@@ -105,19 +105,18 @@ class Rules(Concern):
         if not self._rules:
             return False
         touched = self._about.keys() & self._outbox.parts
-        if touched:
-            rules = {rule for part in touched for rule in self._about[part]}
-            self._review(sorted(rules, key=_number), now)
+        rules = {rule for part in touched for rule in self._about[part]}
+        is_explained = self._review(sorted(rules, key=_number), now)
         if self._health.is_stopped:
             self._matching.stop()
             self._relieved.stop()
-        return self._act(now)
+        return self._act(now) or is_explained
 
     # --- what holds ------------------------------------------------------------------------------
 
-    def _review(self, rules: Iterable[RuleWatch], now: Instant) -> None:
-        """Note which conditions begin or cease to hold."""
-        record = self._outbox.record_input
+    def _review(self, rules: Iterable[RuleWatch], now: Instant) -> bool:
+        """Note which conditions begin or cease to hold; return whether a reason is shown anew."""
+        record, is_explained = self._outbox.record_input, False
         for rule in rules:
             if not self._displacing.acts(rule):
                 holds = rule.may_act and self._is_free(rule) and rule.matches()
@@ -130,6 +129,9 @@ class Rules(Concern):
                 holds = rule not in self._staying and self._is_free(rule) and rule.is_cause_gone()
                 self._relieved.note(rule, now, holds=holds, record=record)
                 self._displacing.keep(rule)
+                if not holds and rule not in self._staying:
+                    is_explained |= self._displacing.explain_cause(rule)
+        return is_explained
 
     def _is_free(self, rule: RuleWatch) -> bool:
         """Tell whether no change of the system or the part is running, and one could begin."""

@@ -171,6 +171,9 @@ _HEALTH = (
         then_s=1,
     ),
     Asked("POST /signals/{signal}", "The battery is flat", BATTERY, body={"value": 0.42}),
+    Asked("GET /errors", "Those that are on", query={"active": "true"}),
+    Asked("GET /systems/{part}/errors", "All is well", ACTUATOR),
+    Asked("GET /nodes/{part}/errors", "All is well", BASE),
     Asked("POST /errors/{error}/acknowledge", "A flat battery", {"error": "BATTERY_LOW"}),
     Asked(
         "POST /signals",

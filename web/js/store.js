@@ -57,12 +57,13 @@ export function firstEventId({ events }) {
 }
 
 const FOLDERS = {
-  /** After a restart of the service the earlier state is void, and told anew.
+  /** After a restart of the service the earlier state is void, and told anew. Errors that ended
+   * without contact are not told: the next frame has all that are on.
    *
    * The first run of a folder has boot 1: then nothing was kept, and ids begin again.
    */
   hello(state, { epoch, boot, started_at, newest, replay = null }) {
-    if (epoch === state.epoch) return { ...state, replay };
+    if (epoch === state.epoch) return { ...state, errors: {}, replay };
     if (state.epoch === null) return { ...state, epoch, boot, lastEventId: newest, replay };
     const { events, eventsKept, oldestEventId, lastEventId } = state;
     const fresh = { ...emptyState(), epoch, boot, restartedAt: started_at, replay };

@@ -85,7 +85,8 @@ def fold(robot: Robot, frame: Json) -> Robot:
 def _hello(robot: Robot, frame: Json) -> Robot:
     """Continue, or start again: after a restart of the service the earlier state is void."""
     if robot.epoch in (None, frame["epoch"]):
-        return replace(robot, epoch=frame["epoch"], boot=frame["boot"])
+        # Errors that ended without contact are not told: the next frame has all that are on.
+        return replace(robot, epoch=frame["epoch"], boot=frame["boot"], errors={})
     begun = Robot(epoch=frame["epoch"], boot=frame["boot"], restarted_at=frame["started_at"])
     if begun.boot > 1:
         # Events go on, and one of them tells what was restored.

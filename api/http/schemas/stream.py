@@ -80,7 +80,7 @@ class StateFrame(Json):
         description=(
             "Errors that have changed, by name: `BATTERY_LOW`, `drive_base.UNREACHABLE`; one that"
             " ended is told once more, as `normal`. In a full frame, all that are not normal, and"
-            " those that ended since the service told them first"
+            " those that ended in the last two minutes: who connects anew begins with none"
         ),
         json_schema_extra=left_out,
     )

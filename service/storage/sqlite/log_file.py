@@ -179,9 +179,7 @@ class LogFile:
         if self._is_one_statement(flight, changes):
             self.summary = self._insert(flight.batches[0], run, self.summary, changes)
         else:
-            with self._connection:
-                summary, dictionary = self._insert_all(flight, run, changes)
-            self.summary, self.dictionary = summary, dictionary
+            self.summary, self.dictionary = self._insert_all(flight, run, changes)
         self._count_changes(changes)
         if is_synced:
             self._synced_at = now
@@ -239,14 +237,16 @@ class LogFile:
 
     def _insert_all(self, flight: Flight, run: Run, changes: Changes) -> tuple[LogSummary, bytes]:
         """Insert a flight in a transaction; return summary and dictionary after it."""
-        summary = self.summary
-        for batch in flight.batches:
-            if batch.number > self.summary.last_batch:
-                summary = self._insert(batch, run, summary)
-                self._insert_rest(batch, run, summary)
-            _insert_hole(self._connection, batch, run)
-        _insert_changes(self._connection, changes.items())
-        return summary, self._next_dictionary(flight)
+        summary, dictionary = self.summary, self.dictionary
+        with self._connection:
+            for batch in flight.batches:
+                if batch.number > self.summary.last_batch:
+                    summary = self._insert(batch, run, summary)
+                    self._insert_rest(batch, run, summary)
+                _insert_hole(self._connection, batch, run)
+            _insert_changes(self._connection, changes.items())
+            dictionary = self._next_dictionary(flight)
+        return summary, dictionary
 
     def _insert(
         self, batch: Batch, run: Run, so_far: LogSummary, changes: Changes = _NO_CHANGES

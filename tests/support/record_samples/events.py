@@ -12,6 +12,7 @@ from domain.events.changes import (
     ChangeSucceeded,
     ChangeSuperseded,
     ChangeTimedOut,
+    ChangeWaiting,
     NodeAnswered,
     NodeNotRestored,
     NodeRestoring,
@@ -91,6 +92,11 @@ EVENTS: Mapping[str, tuple[object, ...]] = {
     "change.cancel_requested": (ChangeCancelRequested(change="17"),),
     "change.canceled": (
         ChangeCanceled(
+            change=ChangeId("17"), part=PartName("arm"), reason='Größe ≤ 3 — "gripper\\jam"'
+        ),
+    ),
+    "change.waiting": (
+        ChangeWaiting(
             change=ChangeId("17"), part=PartName("arm"), reason='Größe ≤ 3 — "gripper\\jam"'
         ),
     ),

@@ -159,6 +159,7 @@ INPUTS: Mapping[str, tuple[object, ...]] = {
             actor=Actor(name="ada", way="http", address="10.0.0.7"),
         ),
         ModeRequest(part=PartName("arm"), mode="FAST", actor=Actor(name="", way="", address="")),
+        ModeRequest(part=PartName("arm"), mode="FAST", wait_for=30_000_000_000),
     ),
     "transition_request": (
         TransitionRequest(

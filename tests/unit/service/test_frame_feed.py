@@ -11,7 +11,7 @@ from domain.inputs import (
 )
 from domain.snapshot import ErrorState, PartView, TaskPhase
 from domain.state_and_mode import PartName
-from service.frame_feed import LARGE, Frame, FrameFeed, FrameReader
+from service.frame_feed import ENDED_KEPT, LARGE, Frame, FrameFeed, FrameReader
 from tests.support.frames import error_view, frame, part_view, signal_view
 from tests.support.live_robot import make_supervisor, running
 from tests.support.manual_clock import ManualClock
@@ -333,3 +333,25 @@ def test_who_merges_what_it_is_told_has_all_errors_whatever_it_missed(data: st.D
         if data.draw(st.booleans()):
             held |= {name: view.state for name, view in taken(reader)[0].errors.items()}
             assert held == {name: view.state for name, view in now.items()}
+
+
+def test_an_error_that_ended_long_ago_is_in_no_frame_any_more() -> None:
+    feed = FrameFeed()
+    feed.publish(frame(1, [ARM], errors=[LOST], full=True))
+    feed.publish(frame(2, errors=[FOUND]))
+    feed.publish(frame(1 + ENDED_KEPT))
+    assert feed.errors == {"arm.UNREACHABLE": FOUND}
+    feed.publish(frame(2 + ENDED_KEPT))
+    assert feed.errors == {}
+    complete = feed.complete()
+    assert complete is not None
+    assert complete.errors == {}
+
+
+def test_an_error_that_came_back_is_not_forgotten() -> None:
+    feed = FrameFeed()
+    feed.publish(frame(1, [ARM], errors=[LOST], full=True))
+    feed.publish(frame(2, errors=[FOUND]))
+    feed.publish(frame(3, errors=[LOST]))
+    feed.publish(frame(9 + ENDED_KEPT))
+    assert feed.errors == {"arm.UNREACHABLE": LOST}

@@ -9,6 +9,7 @@ from domain.events.changes import (
     ChangeFailed,
     ChangeRequested,
     ChangeSucceeded,
+    ChangeWaiting,
     NodeAnswered,
     NodeNotRestored,
     NodeRestoring,
@@ -44,6 +45,7 @@ ARM, C1 = PartName("arm"), ChangeId("c1")
         (NodeAnswered(ARM, False, "busy"), "arm rejects the request: busy"),
         (ChangeFailed(C1, ARM, "arm refused"), "arm: change failed: arm refused"),
         (ChangeSucceeded(C1, ARM, None), "arm: change succeeded"),
+        (ChangeWaiting(C1, ARM, "hold lunch is set"), "arm: change waits: hold lunch is set"),
         (NodeRestoring(ARM, active("FAST")), "arm reappeared and is restored to active.FAST"),
         (
             NodeNotRestored(ARM, active("FAST"), "ESTOP is on"),
@@ -58,5 +60,5 @@ def test_an_event_says_in_words_what_happened(event: Event, words: str) -> None:
 
 
 def test_every_end_of_a_change_has_an_event() -> None:
-    assert set(CHANGE_ENDS) == set(ChangeStatus) - {ChangeStatus.RUNNING}
+    assert set(CHANGE_ENDS) == {status for status in ChangeStatus if status.is_final}
     assert all(end.kind == f"change.{status}" for status, end in CHANGE_ENDS.items())

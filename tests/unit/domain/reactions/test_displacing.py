@@ -92,6 +92,11 @@ def test_what_keeps_a_system_from_returning_is_shown_until_it_is_gone() -> None:
         ("FINALIZED", "drive_base is finalized: its process must be restarted")
     ]
     assert robot.happened(ENDED) == []
+    robot.somebody_asks("manipulator", "deactivate")
+    assert robot.why("actuation") == [("RULE", "manipulator is inactive")]
+    robot.somebody_asks("manipulator", "activate")
+    robot.advance(5)
+    assert [code for code, _ in robot.why("actuation")] == ["FINALIZED"]
 
     robot.fault("drive_base", Fault.DIE)
     robot.fault("drive_base", None)

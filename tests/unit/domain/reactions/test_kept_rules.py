@@ -74,7 +74,7 @@ def test_it_is_kept_anew_only_when_a_node_stays_elsewhere() -> None:
 def test_what_was_kept_is_restored_in_its_order() -> None:
     kept = KeptRules(MODEL, Requests(newest=4), Outbox())
 
-    found = list(kept.restore((parked(2), parked(1)), RULES))
+    found = list(kept.restore((parked(2), parked(1)), RULES, 40))
 
     assert [watch for _, watch in found] == [WATCH, WATCH]
     assert kept.since(found[0][0]) == 30
@@ -85,7 +85,7 @@ def test_what_was_kept_is_restored_in_its_order() -> None:
 def test_a_part_of_which_something_was_requested_later_does_not_inherit() -> None:
     kept = KeptRules(MODEL, Requests(newest=5, drive_base=5, manipulator=3), Outbox())
 
-    ((park, _),) = kept.restore((parked(after=4),), RULES)
+    ((park, _),) = kept.restore((parked(after=4),), RULES, 40)
 
     assert park.targets == {ACTUATION: inactive(), ARM: UNCONFIGURED}
 
@@ -94,7 +94,7 @@ def test_what_the_model_no_longer_says_is_left_out_and_told() -> None:
     outbox = Outbox()
     kept = KeptRules(MODEL, Requests(newest=4), outbox)
 
-    assert list(kept.restore((parked(rule="gone"),), RULES)) == []
+    assert list(kept.restore((parked(rule="gone"),), RULES, 40)) == []
 
     outputs = outbox.take()
     told = [entry.event for entry in outputs.events if isinstance(entry.event, NotRestored)]

@@ -13,6 +13,7 @@ from domain.parts.system_model import Rule
 from domain.simulation.node_settings import Fault
 from domain.snapshot import Because, ChangeStatus
 from domain.state_and_mode import DEFAULT_MODE, PartName
+from service.files.model_file import read_model
 from tests.support.models import ACTUATION, ARM, BASE, active, actuation_model, inactive
 from tests.support.ruled_robot import (
     RuledRobot,
@@ -21,6 +22,7 @@ from tests.support.ruled_robot import (
     nested_ruled_model,
     with_rules,
 )
+from tests.support.shared import PROJECT
 
 S = LifecycleState
 DEFAULT = "active.__DEFAULT__"
@@ -400,6 +402,26 @@ def test_the_outer_system_acts_after_the_inner_one_and_returns_with_it() -> None
     assert robot.asked("robot") == "active.RACE"
     robot.advance(60)
     assert robot.actual("robot") == "active.RACE", "MODERATE mends the arm"
+
+
+def test_the_example_of_the_vehicle_is_careful_without_gps_and_then_cruises_again() -> None:
+    text = (PROJECT / "examples" / "models" / "gem_e2.yaml").read_text(encoding="utf-8")
+    robot = RuledRobot(read_model(text).model)
+    robot.ask_mode("vehicle", "CRUISE")
+    robot.advance(4)
+    robot.somebody_asks("gps", "deactivate")
+    robot.advance(6)
+    assert robot.actual("vehicle") == "active.CAREFUL"
+    assert robot.target("path_tracker") == "active.SLOW by careful_without_gps"
+
+    robot.somebody_asks("gps", "activate")
+    robot.advance(6)
+    assert robot.actual("vehicle") == "active.CRUISE"
+    assert robot.target("localization") == DEFAULT
+    assert [(event["part"], event["rule"]) for event in robot.happened(BEGAN)] == [
+        ("localization", "go_on_without_gps"),
+        ("vehicle", "careful_without_gps"),
+    ]
 
 
 # --- rules that undo each other ------------------------------------------------------------------

@@ -160,3 +160,8 @@ def test_errors_are_known_until_they_are_told_to_be_normal() -> None:
 
     known = fold(known, frame(after(2), errors={"BATTERY_LOW": {**low, "state": "normal"}}))
     assert known.errors == {"arm.UNREACHABLE": lost}
+
+
+def test_after_a_reconnection_only_the_errors_of_the_next_frame_are_known() -> None:
+    known = fold(robot(), frame(errors={"arm.DEVIATES": error("DEVIATES", "arm")}))
+    assert fold(known, hello()).errors == {}

@@ -91,7 +91,14 @@ async def test_after_a_change_target_and_actual_tell_state_and_mode_and_why(
     part = await robot.get("/systems/actuation")
 
     assert part["target"] == {"state": "active", "mode": "PERFORMANCE"}
-    assert set(part["effective_target"]) == {"state", "mode", "because"}
+    assert part["effective_target"] == {
+        "state": "active",
+        "mode": "PERFORMANCE",
+        "because": "requested",
+        "rule": None,
+        "cause": None,
+        "blockers": [],
+    }
     assert (part["actual"]["state"], part["actual"]["mode"]) == ("active", "PERFORMANCE")
     assert part["converged"] is True
 

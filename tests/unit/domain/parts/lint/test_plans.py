@@ -102,3 +102,28 @@ def test_a_mode_of_a_system_whose_part_can_never_enter_its_mode_is_told() -> Non
             ("n", "mode_settings", "FAST", "requires", "battery_level > 1 and battery_level < 0"),
         ),
     ]
+
+
+def test_a_mode_whose_guards_contradict_those_of_the_modes_that_it_requires_is_told() -> None:
+    findings = told(
+        system("top", default={"s": "active"}, RACE={"s": "active.RACE"}),
+        system("s", default={"n": "active"}, RACE={"n": "active.FAST"}),
+        FAST_NODE,
+        top={"RACE": guarded("battery_level > 0.8")},
+        n={"FAST": guarded("battery_level < 0.3")},
+    )
+
+    assert brief(findings) == [unreachable("top", "modes", "RACE")]
+    assert "contradict each other" in findings[0].message
+
+
+def test_a_guard_sees_a_system_in_a_mode_to_which_its_parts_were_brought_one_by_one() -> None:
+    findings = told(
+        system("s", default={"n": "active"}, RACE={"n": "active.FAST"}),
+        FAST_NODE,
+        node("m", default={"a": 1}, FAST={"a": 2}),
+        s={"RACE": guarded("s.mode == RACE")},
+        m={"FAST": guarded("s.mode == RACE")},
+    )
+
+    assert brief(findings) == [unreachable("s", "modes", "RACE")]
