@@ -114,7 +114,7 @@ def test_who_set_a_target_is_told_beside_how_long_the_part_deviates() -> None:
 
 
 def test_a_fallback_says_which_invariant_is_broken() -> None:
-    because = {"because": "invariant", "rule": None, "blockers": [{"message": "too hot"}]}
+    because: Json = {"because": "invariant", "rule": None, "blockers": [{"message": "too hot"}]}
     pursued: Json = {"state": "active", "mode": "SLOW", **because}
 
     line = drawn_parts(part("base", mode="SLOW", effective_target=pursued), width=120)[1]
