@@ -83,7 +83,7 @@ def test_a_part_has_target_state_and_mode_and_a_star_where_they_are_inferred() -
 
 
 def test_what_is_pursued_counts_more_than_what_was_asked() -> None:
-    pursued = {
+    pursued: Json = {
         "state": "active",
         "mode": "SLOW",
         "because": "rule",
@@ -100,7 +100,7 @@ def test_what_is_pursued_counts_more_than_what_was_asked() -> None:
 
 
 def test_who_set_a_target_is_told_beside_how_long_the_part_deviates() -> None:
-    pursued = {
+    pursued: Json = {
         "state": "active",
         "mode": "SLOW",
         "because": "rule",
@@ -123,7 +123,7 @@ def test_a_fallback_says_which_invariant_is_broken() -> None:
 
 
 def test_a_target_that_was_requested_needs_no_word_more() -> None:
-    pursued = {
+    pursued: Json = {
         "state": "active",
         "mode": "FAST",
         "because": "requested",
