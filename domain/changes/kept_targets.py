@@ -23,9 +23,11 @@ class RequestOrder(Protocol):
     @property
     def newest(self) -> int:
         """Return the number of the last request."""
+        ...
 
     def of(self, part: PartName) -> int:
         """Return the number of the request that set the target of a part; 0: none did."""
+        ...
 
 
 class KeptTargets:

@@ -35,6 +35,8 @@ class Whys:
         told = {blocker.path[-1] for blocker in found if blocker.path}
         nodes = (each for each in self._of_nodes(part) if each.path[-1] not in told)
         found += islice(nodes, MOST_REASONS)
+        if not found:
+            found += self._of_itself(part)
         return tuple(sorted(found, key=lambda blocker: len(blocker.path))[:MOST_REASONS])
 
     def _of_target(self, part: PartName) -> tuple[Blocker, ...]:
@@ -51,6 +53,21 @@ class Whys:
         model, facts = self._parts.model, self._parts.facts
         request = request_towards(model, facts, part, target, NOBODY)
         return self._admission.blockers(request, self._health.stop_reasons)
+
+    def _of_itself(self, part: PartName) -> Iterator[Blocker]:
+        """Yield which system is elsewhere, although all nodes are where they should be.
+
+        So it is if something else was requested of a part below it.
+        """
+        inference = self._parts.inference
+        cause = inference.deviation_cause(part)
+        if cause is None or (target := inference.target(cause)) is None:
+            return
+        message = inference.deviation_reason(part) or ""
+        label = inference.actual(cause).state_and_mode.label
+        since = self._parts.view(cause).deviation_since
+        path = self._admission.path(part, cause)
+        yield Blocker(DEVIATES, message, path, label, target.label, since)
 
     def _of_nodes(self, part: PartName) -> Iterator[Blocker]:
         """Yield why each node below is elsewhere, in the order of the file."""

@@ -17,7 +17,7 @@ from domain.timebase import Duration
 from service.files.extension import Setting
 from service.files.setting_values import InvalidSettingError, SettingValues
 from service.files.smh_block import MODE_SETTINGS, SmhBlock, WrittenCondition
-from service.files.smh_order import ORDER_KEYS, Order, OrderReader
+from service.files.smh_order import ORDER_KEYS, SEQUENTIAL, Order, OrderReader
 from service.files.source_text import SourceText
 
 MAX_CONDITIONS = 50
@@ -62,7 +62,10 @@ def read_mode_settings(
     if not lines:
         return {}
     reader = _Reader(block, known, source)
-    every = reader.read(EVERY_MODE, lines.pop(EVERY_MODE, []), _Written())
+    # A sequence for all modes has an effect in those that say that they are sequential.
+    has_order = any(setting.path[2:] == ("transition", "order") for setting in block.settings)
+    others = _Written(order=Order(SEQUENTIAL) if has_order else Order())
+    every = reader.read(EVERY_MODE, lines.pop(EVERY_MODE, []), others)
     written = {mode: reader.read(mode, of_mode, every) for mode, of_mode in lines.items()}
     return _merged(block, every, written)
 

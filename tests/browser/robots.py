@@ -37,3 +37,58 @@ def large_robot(folder: Path, nodes: int = 100) -> tuple[str, ...]:
         + "".join(f"{name}:\n  {of_a_node}\n" for name in names)
     )
     return (str(model),)
+
+
+GUARDED = """\
+mobile_manipulation:
+  ros__parameters:
+    type: system
+    modes:
+      __DEFAULT__: {drive_base: active, arm: inactive, GRIPPER: inactive}
+      CAREFUL: {drive_base: active.SLOW, arm: active, GRIPPER: active}
+      MANIPULATE: {drive_base: active.SLOW, arm: active.STRONG, GRIPPER: active}
+      TRANSPORT: {drive_base: active.FAST, arm: active, GRIPPER: active}
+    mode_settings:
+      CAREFUL:
+        transition: {order: sequential, sequence: [drive_base, arm, GRIPPER], deadline_s: 20}
+      MANIPULATE:
+        requires:
+          - "battery_level >= 0.3 and (arm.state != finalized or hold.operator)"
+          - "drive_base.reachable"
+        invariants: ["temperature < 50"]
+        fallback: CAREFUL
+        transition: {after: {arm: [drive_base], GRIPPER: [drive_base]}, on_failure: rollback}
+      TRANSPORT:
+        requires: ["signal_strength == CONNECTED"]
+drive_base:
+  ros__parameters:
+    type: node
+    modes:
+      __DEFAULT__: {ros__parameters: {max_speed: 0.1}}
+      SLOW: {ros__parameters: {max_speed: 0.2}}
+      FAST: {ros__parameters: {max_speed: 0.9}}
+arm:
+  ros__parameters:
+    type: node
+    modes:
+      __DEFAULT__: {ros__parameters: {max_torque: 0.1}}
+      STRONG: {ros__parameters: {max_torque: 0.2}}
+GRIPPER:
+  ros__parameters:
+    type: node
+    modes:
+      __DEFAULT__: {ros__parameters: {force: 5.0}}
+"""
+"""Modes that require something, go in stages, fall back and roll back."""
+
+
+def guarded_robot(folder: Path, fault: str | None = None) -> tuple[str, ...]:
+    """Return arguments of `pilothouse serve` for a robot whose modes have guards and an order.
+
+    The node with the long name, which begins last, has `fault`.
+    """
+    model, robot = folder / "guarded.yaml", folder / f"guarded_{fault}.yaml"
+    model.write_text(GUARDED.replace("GRIPPER", LONG))
+    settings = f"nodes: {{{LONG}: {{fault: {fault}}}}}\n" if fault else ""
+    robot.write_text(f"{settings}changes: {{transition_deadline_s: 2.0}}\n")
+    return (str(model), "--robot", str(robot))

@@ -18,7 +18,7 @@ from typing import Any, Literal
 from playwright.sync_api import Browser, Page, WebSocketRoute, sync_playwright
 
 from tests.browser.earlier_runs import tell_earlier_runs
-from tests.browser.robots import large_robot, troubled_robot
+from tests.browser.robots import guarded_robot, large_robot, troubled_robot
 from tests.browser.station import CHROMIUM, CHROMIUM_ARGUMENTS, Service, free_port
 
 SCREENS = {"desktop": (1440, 900), "phone": (360, 640)}
@@ -27,7 +27,8 @@ UTM = (303_628.48, 3_900_696.88)
 LOST_MS = 3600
 
 Act = Callable[[Page, Service], None]
-Robot = Literal["example", "troubled", "large"]
+Robot = Literal["example", "troubled", "large", "guarded", "guarded_failing"]
+MANIPULATION = "/systems/mobile_manipulation"
 
 
 def post(service: Service, path: str, body: object) -> None:
@@ -64,6 +65,38 @@ def stopped(_: Page, service: Service) -> None:
     stop = {"engaged": True, "reason": "smoke in hall 3"}
     service.request("PUT", "/emergency_stop", stop)
     time.sleep(1)
+
+
+def guarded(page: Page, service: Service) -> None:
+    """A mode that cannot be entered, with all reasons, and a part that a dead node keeps away."""
+    post(service, f"{MANIPULATION}/mode", {"mode": "CAREFUL"})
+    page.locator(".change-status").filter(has_text="failed").wait_for()
+    service.request("PATCH", "/mock/battery_level", {"value": 0.21})
+    service.request("PATCH", "/mock/temperature", {"value": 55})
+    page.locator(".mode").filter(has_text="MANIPULATE").locator("summary").click()
+    page.locator("ph-why summary").click()
+    page.locator(".root").nth(1).scroll_into_view_if_needed()
+
+
+def plan(page: Page, service: Service) -> None:
+    post(service, f"{MANIPULATION}/mode?wait=15", {"mode": "CAREFUL"})
+    post(service, f"{MANIPULATION}/state?wait=15", {"transition": "cleanup"})
+    page.get_by_label("Show the plan first").check()
+    page.get_by_role("button", name="MANIPULATE").click()
+    page.get_by_role("button", name="Apply").scroll_into_view_if_needed()
+
+
+def rolled_back(page: Page, service: Service) -> None:
+    post(service, f"{MANIPULATION}/mode", {"mode": "MANIPULATE"})
+    page.locator(".change-status").filter(has_text="rolled back").wait_for()
+    page.locator(".change").scroll_into_view_if_needed()
+
+
+def waiting(page: Page, service: Service) -> None:
+    service.request("PATCH", "/mock/battery_level", {"value": 0.21})
+    page.get_by_text("battery_level is 0.21").wait_for()
+    post(service, f"{MANIPULATION}/mode", {"mode": "MANIPULATE", "wait_for_s": 600})
+    page.get_by_role("button", name="Stop waiting").scroll_into_view_if_needed()
 
 
 def acknowledge(_: Page, service: Service) -> None:
@@ -193,6 +226,10 @@ STATES: dict[str, tuple[Robot, Act]] = {
     "aborted": ("example", patched(aborted)),
     "stopped": ("example", stopped),
     "still_moving": ("example", patched(still_moving)),
+    "guarded": ("guarded_failing", guarded),
+    "plan": ("guarded", plan),
+    "rolled_back": ("guarded_failing", rolled_back),
+    "waiting": ("guarded", waiting),
     "acknowledge": ("troubled", acknowledge),
     "low_battery": ("example", low_battery),
     "rejected": ("example", rejected),
@@ -216,6 +253,8 @@ def running_robot(kind: Robot) -> Iterator[Service]:
             "example": (),
             "troubled": troubled_robot(folder),
             "large": large_robot(folder),
+            "guarded": guarded_robot(folder),
+            "guarded_failing": guarded_robot(folder, "fail"),
         }
         with (folder / "output").open("w+b") as output:
             service = Service(free_port(), output, files[kind], str(folder / "data"))

@@ -19,7 +19,11 @@ from tests.support.process import COMMAND, ServiceProcess, service
 from tests.support.shared import PROJECT
 from tests.support.shown_output import disagreement, last_json, missing_lines
 
-PAGES = [PROJECT / "README.md", *sorted((PROJECT / "docs").rglob("*.md"))]
+PAGES = [
+    PROJECT / "README.md",
+    *sorted((PROJECT / "docs").rglob("*.md")),
+    PROJECT / "examples" / "mobile_manipulator" / "README.md",
+]
 NOT_RUN = {
     # What is meant by this is run by tests/ros2/test_example.py.
     "needs ROS 2",

@@ -13,7 +13,11 @@ import yaml
 from tests.support.documents import Block, read_blocks
 from tests.support.shared import PROJECT
 
-PAGES = [PROJECT / "README.md", *sorted((PROJECT / "docs").rglob("*.md"))]
+PAGES = [
+    PROJECT / "README.md",
+    *sorted((PROJECT / "docs").rglob("*.md")),
+    PROJECT / "examples" / "mobile_manipulator" / "README.md",
+]
 BLOCKS = [block for page in PAGES for block in read_blocks(page)]
 
 

@@ -1,20 +1,35 @@
 /** Loads what the stream does not carry of the selected part.
  *
- * That is the available transitions and modes, what blocks them, and the progress of its last change.
+ * That is the available transitions and modes, what blocks them, and the progress of its last change;
+ * while someone looks at them, also why the part is not where it should be, and the plan of a request.
  */
 
 import { partPath, request } from "/web/js/api.js";
+import { isOpen } from "/web/js/words.js";
 
-// One load is three requests, so a burst of events must not cause a burst of loads.
+// One load is up to five requests, so a burst of events must not cause a burst of loads.
 const PAUSE_MS = 500;
 
-/** Calls `changed` after each load; `transitions`, `modes` and `change` are the newest answers. */
+/** Ask for the plan of a request; it has the `path` and `body` of that besides.
+ *
+ * @throws {ProblemError} The request would be rejected.
+ */
+export async function requestPlan({ path, body }) {
+  return { ...(await request("POST", `${path}?dry_run=true`, body)), path, body };
+}
+
+/** Calls `changed` after each load; the fields below are the newest answers. */
 export class PartWatch {
   part = null;
   transitions = [];
   modes = [];
   change = null;
+  /** Null unless `explain` asked for it. */
+  why = null;
+  /** What `requestPlan` returned, and null once it is to be forgotten. */
+  plan = null;
   #changed;
+  #isExplained = false;
   #changeId = null;
   #epoch = null;
   #busy = false;
@@ -28,7 +43,7 @@ export class PartWatch {
   async select(part) {
     this.part = part;
     this.transitions = this.modes = [];
-    this.change = null;
+    this.change = this.why = this.plan = null;
     this.#changeId = part.change;
     this.#changed();
     this.refresh();
@@ -76,6 +91,14 @@ export class PartWatch {
     this.refresh();
   }
 
+  /** Say whether the reasons why the part is not where it should be are looked at. */
+  explain(isLookedAt) {
+    if (isLookedAt === this.#isExplained) return;
+    this.#isExplained = isLookedAt;
+    this.why = null;
+    if (isLookedAt) this.refresh();
+  }
+
   /** Ids of changes start again after a restart: an old id would name another change. */
   #begin(epoch) {
     if (epoch !== this.#epoch) this.change = this.#changeId = null;
@@ -91,14 +114,26 @@ export class PartWatch {
   async #load(part) {
     const path = partPath(part);
     const paths = [`${path}/state`, `${path}/modes`];
-    const isKnown = this.change?.id === this.#changeId && this.change?.status !== "running";
+    const isKnown = this.change?.id === this.#changeId && !isOpen(this.change ?? {});
     if (this.#changeId && !isKnown) paths.push(`/changes/${this.#changeId}`);
-    const [state, modes, change] = await this.#answers(paths);
+    const [[state, modes, change], [why]] = await Promise.all([
+      this.#answers(paths),
+      this.#answers(this.#isExplained ? [`${path}/why`] : []),
+      this.#renewPlan(),
+    ]);
     if (this.part !== part) return;
+    if (this.#isExplained) this.why = why?.blockers ? why : this.why;
     this.transitions = state.available_transitions ?? this.transitions;
     this.modes = modes.items ?? this.modes;
     if (change?.id && change.id === this.#changeId) this.change = change;
     this.#changed();
+  }
+
+  /** A plan that would be rejected by now stays as it was shown: its request says why not. */
+  async #renewPlan() {
+    const { plan } = this;
+    const newer = plan && (await requestPlan(plan).catch(() => plan));
+    if (this.plan === plan) this.plan = newer;
   }
 
   /** What cannot be loaded stays as it was: the state bar shows lost contact. */

@@ -39,13 +39,19 @@ export function requestWords(asked) {
   return "parameters";
 }
 
+/** Whether a change has not ended: it runs, or waits until it may. */
+export function isOpen({ status }) {
+  return status === "running" || status === "waiting";
+}
+
 /** The status of a change, with its duration so far. */
 export function changeWords(change, now) {
   const took = duration(
     (change.ended_at ? Date.parse(change.ended_at) : now) - Date.parse(change.started_at),
   );
-  const words = CHANGE_STATUS[change.status] ?? change.status;
-  return `${words} ${change.status === "running" ? "for" : "after"} ${took}`;
+  const isBack = change.status === "running" && change.steps.some(({ rollback }) => rollback);
+  const words = isBack ? "going back" : (CHANGE_STATUS[change.status] ?? change.status);
+  return `${words} ${isOpen(change) ? "for" : "after"} ${took}`;
 }
 
 /** Local date, "2026-03-01". */
@@ -54,6 +60,7 @@ function isoDate(at) {
 }
 
 const CHANGE_STATUS = {
+  waiting: "waiting",
   running: "running",
   succeeded: "succeeded",
   failed: "failed",

@@ -134,7 +134,7 @@ def _part_cells(view: View, row: PartRow) -> tuple[str, ...]:
 
 
 def _part_note(view: View, row: PartRow) -> str:
-    said = (_part_state(view, row), words.setter(row.part["effective_target"]))
+    said = (_part_state(view, row), words.setter_and_reason(row.part["effective_target"]))
     return ", ".join(filter(None, said))
 
 

@@ -80,17 +80,24 @@ def figure(value: float) -> str:
 def setter(target: Json | None) -> str:
     """Return who set a target in force, such as "rule slow_down"; empty: it was requested.
 
-    Of a fallback, that is why: "because an invariant is broken: battery_level is 0.2, needs >= 0.3"
-
     Args:
         target: As in frames; None: there is none.
     """
     if target is None or target["because"] == "requested":
         return ""
-    if target["because"] == "invariant":
-        why = [(*blocker["causes"], blocker)[0]["message"] for blocker in target["blockers"]]
-        return f"because an invariant is broken: {why[0]}"
     return f"{target['because']} {target['rule'] or ''}".rstrip()
+
+
+def setter_and_reason(target: Json | None) -> str:
+    """Return who set a target in force and why, such as "invariant: temperature is 55 °C".
+
+    Args:
+        target: As in frames; None: there is none.
+    """
+    who = setter(target)
+    if not who or target is None or not target["blockers"]:
+        return who
+    return f"{who}: {target['blockers'][0]['message']}"
 
 
 def verdict_words(signal: Json, pending_s: float | None, *, is_live: bool = True) -> str:

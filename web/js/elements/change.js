@@ -4,9 +4,8 @@ import { request } from "/web/js/api.js";
 import { el, renderOnce, setAttribute, setText } from "/web/js/dom.js";
 import { problemLines } from "/web/js/problem.js";
 import { whileSending } from "/web/js/sending.js";
-import { changeWords, duration, requestWords, timeOfDay } from "/web/js/words.js";
-
-const MARKS = { pending: "·", running: "…", succeeded: "✓", failed: "✕", timed_out: "✕" };
+import { progressWords, stepLists } from "/web/js/step_list.js";
+import { changeWords, isOpen, requestWords, timeOfDay, wholeSeconds } from "/web/js/words.js";
 
 class Change extends HTMLElement {
   connectedCallback() {
@@ -14,7 +13,8 @@ class Change extends HTMLElement {
     this.problem = el("div", { class: "problem", role: "alert", hidden: true });
     this.asked = el("h3");
     this.status = el("p", { class: "change-status" });
-    this.steps = el("ol", { class: "steps" });
+    this.progress = el("p", { class: "facts" });
+    this.steps = el("div", { class: "steps" });
     this.cancel = el(
       "button",
       { type: "button", class: "small", onclick: () => this.#cancel() },
@@ -25,6 +25,7 @@ class Change extends HTMLElement {
       { class: "change", hidden: true },
       this.asked,
       this.status,
+      this.progress,
       this.steps,
       this.cancel,
     );
@@ -47,11 +48,16 @@ class Change extends HTMLElement {
       changeWords(change, knownAt) + (change.reason ? `: ${change.reason}` : ""),
     );
     setAttribute(this.status, "data-status", change.status);
-    setAttribute(this.cancel, "hidden", change.status !== "running");
-    const running = change.status === "running" ? Math.floor(knownAt / 250) : 0;
+    const progress = [progressWords(change), deadlineWords(change, knownAt)].filter(Boolean);
+    setText(this.progress, progress.join(", "));
+    setAttribute(this.cancel, "hidden", !isOpen(change));
+    const running = isOpen(change) ? Math.floor(knownAt / 250) : 0;
     renderOnce(this.steps, JSON.stringify([change.steps, running]), () =>
-      change.steps.map((step) => stepLine(step, knownAt)),
+      stepLists(change.steps, knownAt),
     );
+    // A press is under way: its mark is a child of the button.
+    if (this.cancel.hasAttribute("data-sending")) return;
+    setText(this.cancel, change.status === "waiting" ? "Stop waiting" : "Cancel the rest");
   }
 
   #cancel() {
@@ -65,19 +71,10 @@ class Change extends HTMLElement {
   }
 }
 
-function stepLine(step, now) {
-  const { node, action, status, started_at, ended_at, error } = step;
-  const took = started_at
-    ? duration((ended_at ? Date.parse(ended_at) : now) - Date.parse(started_at))
-    : "";
-  return el(
-    "li",
-    { "data-status": status },
-    el("span", { class: "step-mark", "aria-hidden": "true" }, MARKS[status] ?? "–"),
-    el("span", {}, `${node}: ${action.replaceAll("_", " ")}`),
-    el("span", { class: "quiet" }, `${status.replaceAll("_", " ")}${took ? `, ${took}` : ""}`),
-    error ? el("span", { class: "step-error" }, error) : null,
-  );
+/** "times out in 12 s", while a change with a deadline runs. */
+function deadlineWords(change, now) {
+  if (!change.deadline_at || change.status !== "running") return "";
+  return `times out in ${wholeSeconds(Math.max(0, Date.parse(change.deadline_at) - now))}`;
 }
 
 customElements.define("ph-change", Change);

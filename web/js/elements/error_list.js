@@ -30,7 +30,7 @@ class ErrorList extends HTMLElement {
 
   #add(error) {
     const [message, since] = [el("span"), el("span", { class: "quiet" })];
-    const item = el("li", {}, el("strong", {}, `⚠ ${error}`), " ", message, " ", since);
+    const item = el("li", {}, el("strong", {}, `⚠ ${error}`), " ", since, " ", message);
     this.list.append(item);
     this.#lines.set(error, { item, message, since });
   }

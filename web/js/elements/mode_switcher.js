@@ -1,12 +1,16 @@
 /** <ph-mode-switcher>: buttons for lifecycle and mode, each mode with its first blocker.
  *
- * A mode that cannot be entered is disabled; a blocker that does not refuse is only a warning.
+ * A mode that cannot be entered is disabled; a blocker that does not refuse is only a warning. What
+ * is behind the first blocker, and the conditions of a mode, can be opened beside it.
  *
- * Dispatches `ph-change` with the change that the server started, or `ph-problem`.
+ * Dispatches `ph-change` with the change that the server started, or `ph-problem`; `ph-plan` with the
+ * plan of it, if that is to be seen first.
  */
 
 import { partPath, request } from "/web/js/api.js";
-import { el, setAttribute, setText } from "/web/js/dom.js";
+import { el, renderOnce, setAttribute, setText } from "/web/js/dom.js";
+import { nearestWords, reasonTree } from "/web/js/reasons.js";
+import { requestPlan } from "/web/js/part_watch.js";
 import { whileSending } from "/web/js/sending.js";
 
 const TRANSITIONS = ["configure", "activate", "deactivate", "cleanup", "shutdown"];
@@ -24,9 +28,12 @@ class ModeSwitcher extends HTMLElement {
     this.modes = new Map();
     this.modeList = el("div", { class: "modes", role: "group", "aria-label": "Mode" });
     this.modeTitle = el("h3", {}, "Mode");
+    this.planFirst = el("input", { type: "checkbox", role: "switch" });
+    const planFirst = el("label", { class: "switch" }, this.planFirst, "Show the plan first");
     this.fields = el(
       "fieldset",
       {},
+      planFirst,
       this.modeTitle,
       this.modeList,
       el("h3", {}, "Lifecycle"),
@@ -72,38 +79,52 @@ class ModeSwitcher extends HTMLElement {
       const mark = el("span", { class: "mark" });
       const button = el("button", { type: "button" }, el("span", {}, mode), mark);
       button.addEventListener("click", () => this.#ask(button, "mode", { mode }));
-      this.modes.set(mode, {
-        button,
-        mark,
-        blocker,
-        item: el("div", { class: "mode" }, button, blocker),
-      });
+      const details = this.#details(mode);
+      const item = el("div", { class: "mode" }, button, blocker, details.whole);
+      this.modes.set(mode, { button, mark, blocker, details, item });
     }
     this.modeList.replaceChildren(...[...this.modes.values()].map(({ item }) => item));
   }
 
-  #fill({ mode, can_enter, blockers }) {
-    const { button, mark, blocker } = this.modes.get(mode);
+  /** Built only while it is open, since a tree of reasons may be long. */
+  #details(mode) {
+    const [title, content] = [el("span"), el("div")];
+    const summary = el("summary", {}, title, el("span", { class: "visually-hidden" }, ` ${mode}`));
+    const whole = el("details", { class: "reasons-of" }, summary, content);
+    const details = { whole, title, content, item: null };
+    whole.addEventListener("toggle", () => fillDetails(details));
+    return details;
+  }
+
+  #fill(shown) {
+    const { mode, can_enter, can_stay, blockers } = shown;
+    const { button, mark, blocker, details } = this.modes.get(mode);
     const { actual, target } = this.subject;
     const isActual = actual.mode === mode && actual.state === "active";
     const isTarget = target?.mode === mode;
     setAttribute(button, "disabled", !can_enter);
     setAttribute(button, "aria-pressed", String(isActual));
     setAttribute(button, "aria-describedby", blockers.length ? blocker.id : null);
-    setText(mark, isActual ? (this.isLive ? "actual" : "was actual") : isTarget ? "target" : "");
+    const here = this.isLive ? "actual" : "was actual";
+    const stays = can_stay === false ? ", cannot stay" : "";
+    setText(mark, `${isActual ? here : isTarget ? "target" : ""}${stays}`.replace(/^, /, ""));
     // What refuses comes first: it is why the button is disabled.
     const sorted = [...blockers].sort((a, b) => refuses(b) - refuses(a));
     const [first, ...others] = sorted;
     const more = others.length ? ` (and ${others.length} more)` : "";
-    setText(blocker, first ? `${can_enter ? "⚠ " : ""}${first.message}${more}` : "");
+    setText(blocker, first ? `${can_enter ? "⚠ " : ""}${nearestWords(first)}${more}` : "");
     setAttribute(blocker, "data-advisory", can_enter);
+    details.item = { ...shown, blockers: sorted };
+    fillDetails(details);
   }
 
   #ask(button, what, body) {
     const path = `${partPath(this.subject)}/${what}`;
+    const isPlan = this.planFirst.checked;
     return whileSending(button, async () => {
       try {
-        this.#emit("ph-change", await request("POST", path, body));
+        if (isPlan) this.#emit("ph-plan", await requestPlan({ path, body }));
+        else this.#emit("ph-change", await request("POST", path, body));
       } catch (error) {
         this.#emit("ph-problem", error.problem);
       }
@@ -113,6 +134,24 @@ class ModeSwitcher extends HTMLElement {
   #emit(name, detail) {
     this.dispatchEvent(new CustomEvent(name, { bubbles: true, detail }));
   }
+}
+
+function fillDetails({ whole, title, content, item }) {
+  const { can_enter, blockers, requires = [], invariants = [] } = item ?? { blockers: [] };
+  setAttribute(whole, "hidden", blockers.length + requires.length + invariants.length === 0);
+  setText(title, blockers.length === 0 ? "Conditions" : can_enter ? "Why the warning" : "Why not");
+  if (!whole.open) return;
+  renderOnce(content, JSON.stringify([blockers, requires, invariants]), () => [
+    ...(blockers.length ? [reasonTree(blockers)] : []),
+    ...conditionList("Required to enter", requires),
+    ...conditionList("Required to enter and to stay", invariants),
+  ]);
+}
+
+function conditionList(title, conditions) {
+  if (conditions.length === 0) return [];
+  const items = conditions.map((text) => el("li", {}, el("code", {}, text)));
+  return [el("h4", {}, title), el("ul", { class: "conditions" }, ...items)];
 }
 
 function refuses(blocker) {

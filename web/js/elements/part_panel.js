@@ -1,7 +1,10 @@
 /** <ph-part-panel>: the selected part, its commands, and the progress of the last request. */
 
+import { request } from "/web/js/api.js";
 import { el, setAttribute, setText } from "/web/js/dom.js";
 import { PartWatch } from "/web/js/part_watch.js";
+import { conditionsIn } from "/web/js/reasons.js";
+import { whileSending } from "/web/js/sending.js";
 import { errorsOf } from "/web/js/store.js";
 
 const SPACE_PX = 12;
@@ -18,8 +21,10 @@ class PartPanel extends HTMLElement {
     this.kind = el("span", { class: "kind" });
     this.pills = el("ph-pills");
     this.reason = el("p", { class: "note" });
+    this.why = el("ph-why", { hidden: true });
     this.errors = el("ph-error-list", { hidden: true });
     this.commands = el("ph-mode-switcher");
+    this.plan = el("ph-plan", { hidden: true });
     this.result = el("ph-change");
     this.empty = el("p", { class: "quiet" }, "Select a part to see and change its mode.");
     this.whole = el(
@@ -28,13 +33,19 @@ class PartPanel extends HTMLElement {
       el("div", { class: "panel-head" }, this.heading, this.kind, this.back),
       this.pills,
       this.reason,
+      this.why,
       this.errors,
       this.commands,
+      this.plan,
       this.result,
     );
     this.append(this.empty, this.whole);
     this.addEventListener("ph-change", ({ detail }) => this.#began(detail));
     this.addEventListener("ph-problem", ({ detail }) => this.#refused(detail));
+    this.addEventListener("ph-why", () => this.watch.explain(this.why.isOpen));
+    this.addEventListener("ph-plan", ({ detail }) => this.#planned(detail));
+    this.addEventListener("ph-apply", ({ detail }) => this.#apply(detail));
+    this.addEventListener("ph-close", () => this.#closePlan());
   }
 
   /** Reload what the stream does not carry. */
@@ -71,7 +82,7 @@ class PartPanel extends HTMLElement {
       this.problem = null;
       this.watch.select(part);
     }
-    const seen = whatDecides(part, view.state);
+    const seen = [...whatDecides(part, view.state), ...whatIsNamed(this.watch, view.state)];
     if (!isSame(seen, this.seen)) this.watch.refresh();
     this.seen = seen;
     setText(this.heading, part.name);
@@ -86,8 +97,32 @@ class PartPanel extends HTMLElement {
     this.dispatchEvent(new CustomEvent("ph-back", { bubbles: true }));
   }
 
+  #planned(plan) {
+    this.problem = null;
+    this.watch.plan = plan;
+    this.#show();
+  }
+
+  #apply(button) {
+    const { path, body } = this.watch.plan;
+    return whileSending(button, async () => {
+      try {
+        this.#began(await request("POST", path, body));
+      } catch (error) {
+        this.#refused(error.problem);
+      }
+    });
+  }
+
+  #closePlan() {
+    this.watch.plan = null;
+    this.#show();
+    this.commands.planFirst.focus();
+  }
+
   #began(change) {
     this.problem = null;
+    this.watch.plan = null;
     this.watch.follow(change);
   }
 
@@ -98,11 +133,15 @@ class PartPanel extends HTMLElement {
   }
 
   #show() {
-    const { part, transitions, modes, change } = this.watch;
+    const { part, transitions, modes, change, why, plan } = this.watch;
     if (part === null) return;
     const { state, contact, knownAt } = this.view;
     const now = state.parts[part.name] ?? part;
-    this.commands.show({ part: now, transitions, modes, enabled: contact.level !== "lost" });
+    const enabled = contact.level !== "lost";
+    this.why.show({ part: now, why });
+    this.watch.explain(this.why.isOpen);
+    this.commands.show({ part: now, transitions, modes, enabled });
+    this.plan.show({ plan, enabled });
     this.result.show({ part: now, change, problem: this.problem, knownAt });
   }
 }
@@ -121,6 +160,23 @@ function whatDecides(part, { parts, systemState, errors, emergencyStop }) {
   };
   add(part);
   return [...below, errors, reasons.join("\n"), Boolean(emergencyStop?.engaged)];
+}
+
+/** The facts that the conditions of the modes name: readings and parts anywhere, the drive. */
+function whatIsNamed({ modes, why }, { signals, parts, task, vehicle, holds }) {
+  const blockers = [...modes.flatMap((mode) => mode.blockers), ...(why?.blockers ?? [])];
+  const guards = modes.flatMap(({ requires = [], invariants = [] }) => [...requires, ...invariants]);
+  const text = [...guards, ...conditionsIn(blockers)].join("\n");
+  if (!text) return [];
+  const named = (members) =>
+    Object.values(members).filter((one) => text.includes(one.signal ?? one.name));
+  return [
+    ...named(signals).flatMap(({ value, stale, error }) => [value, stale, error]),
+    ...named(parts),
+    ...(text.includes("task.") ? [task] : []),
+    ...(text.includes("vehicle.") ? [vehicle] : []),
+    ...(text.includes("hold") ? [holds] : []),
+  ];
 }
 
 function isSame(one, other) {

@@ -1,7 +1,13 @@
 import json
+import unicodedata
+
+from hypothesis import given
+from hypothesis import strategies as st
 
 from api.cli.checked_file import CheckedFile, as_json, as_text
+from api.cli.sarif import as_sarif
 from domain.findings import Finding
+from service.files.model_file import check_model
 
 ERROR = Finding("error", "BAD", "no mode FASTT; did you mean FAST?", "arm", (), 2, 4)
 WARNING = Finding("warning", "ODD", "this is odd", None, (), 1, 1)
@@ -45,3 +51,34 @@ def test_a_program_gets_all_findings_with_their_files() -> None:
         ("BAD", "model.yaml", 2),
         ("ODD", "robot.yaml", 1),
     ]
+
+
+PIECES = st.sampled_from(
+    ["arm:\n", "  ros__parameters:\n", "    type: node\n", "    mode_settings: {A: {", "requires: ",
+     "[", "]", "{", "}", "\x1b[2J", "\u202e", "\t", "\x07", "日本", "e\u0301", "\r", "\x85", "*a",
+     "&a ", "'", '"', "x" * 300, "\U000e0001", "\ufeff", "null", "estop > 3 and", "\n"]
+)  # fmt: skip
+
+
+@given(st.text() | st.lists(PIECES, max_size=30).map("".join))
+def test_whatever_is_in_a_file_each_finding_is_one_line_with_its_line_and_a_caret(
+    text: str,
+) -> None:
+    file = CheckedFile("robot.yaml", text, check_model(text))
+
+    lines = list(as_text([file]))
+
+    hidden = {c for line in lines for c in line if unicodedata.category(c) in ("Cc", "Cf", "Zl")}
+    assert not hidden
+    assert sum(line.startswith("robot.yaml:") for line in lines) == len(file.findings) + 1
+    assert sum(line.endswith(" ^") for line in lines) >= len(file.findings)
+
+
+@given(st.text() | st.lists(PIECES, max_size=30).map("".join))
+def test_whatever_is_in_a_file_programs_get_json(text: str) -> None:
+    file = CheckedFile("robot.yaml", text, check_model(text))
+
+    (run,) = json.loads(as_sarif([file]))["runs"]
+    assert len(run["results"]) == len(json.loads(as_json([file]))["findings"]) == len(file.findings)
+    for result in run["results"]:
+        assert run["tool"]["driver"]["rules"][result["ruleIndex"]]["id"] == result["ruleId"]

@@ -48,3 +48,13 @@ def test_what_would_block_a_request_comes_before_the_nodes_below() -> None:
     first, *others = robot.core.why(ACTUATION)
     assert first.message == "battery_level is 0.1, needs >= 0.3"
     assert {why.message.partition(";")[2] for why in others} == {" nothing moves it"}
+
+
+def test_a_system_whose_part_was_asked_for_something_else_says_so() -> None:
+    robot = _robot()
+    robot.ask_transition(ACTUATION, "configure")
+    robot.advance(3)
+    robot.begin(ModeRequest(BASE, "FAST"))
+    robot.advance(3)
+    (why,) = robot.core.why(ACTUATION)
+    assert (why.code, why.path, why.threshold) == ("DEVIATES", ("actuation",), "inactive")

@@ -110,6 +110,24 @@ FAST:
     )
 
 
+def test_a_sequence_for_all_modes_is_that_of_the_modes_that_are_sequential() -> None:
+    settings = read(
+        """
+__ALL__: {transition: {sequence: [left/camera, arm, base]}}
+FAST: {transition: {order: sequential}}
+"""
+    )
+
+    assert settings[FAST].transition.after == {ARM: (CAMERA,), BASE: (ARM,)}
+    assert settings[EVERY_MODE].transition.after == {}
+
+
+def test_a_sequence_for_all_modes_of_which_none_is_sequential_is_told() -> None:
+    settings = "__ALL__: {transition: {sequence: [left/camera, arm, base]}}\nFAST: {grace_s: 1}"
+
+    assert told(settings) == [("ORDER_CONFLICT", 9, 30)]
+
+
 def test_the_fallback_of_all_modes_is_not_its_own() -> None:
     model = read_model(robot("__ALL__: {fallback: SAFE, grace_s: 1}")).model
 
