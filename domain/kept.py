@@ -41,8 +41,8 @@ class KeptEffectiveTarget:
 
     part: PartName
     target: StateAndMode
-    rule: str
-    """Name of the rule of the system that set it."""
+    rule: str | None
+    """Name of the rule of the system that set it; None: no rule did."""
     order: int
     """Rises with each displacement: a later one prevails where two concern the same part."""
     after: int
@@ -53,6 +53,8 @@ class KeptEffectiveTarget:
     since: Instant
     staying: Mapping[PartName, LifecycleState] = field(default_factory=dict)
     """Nodes below to which it does not apply, and the state that each is to keep."""
+    because: str = "rule"
+    """Who set it: `rule` or `invariant`."""
 
     @property
     def name(self) -> str:

@@ -10,8 +10,8 @@ from domain.parameters import ParameterValue
 from domain.parts.system_model import NodeModel, SystemModel
 from domain.state_and_mode import PartName
 
-_OF_EVERY_PART = (*OF_EVERY_PART, "INVARIANT_BROKEN")
-_OF_NODES = (*OF_NODES, "INVARIANT_BROKEN")
+_OF_EVERY_PART = tuple(OF_EVERY_PART)
+_OF_NODES = tuple(OF_NODES)
 
 
 class PartsOfRobot(Protocol):

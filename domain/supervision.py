@@ -29,6 +29,8 @@ from domain.loosening import may_loosen
 from domain.outbox import Outbox, Outputs
 from domain.parts.parts import Parts
 from domain.parts.system_model import SmhModel
+from domain.reactions.displacing import Displacing
+from domain.reactions.fallbacks import Fallbacks
 from domain.reactions.rules import Rules
 from domain.reactions.settings import RuleSettings
 from domain.restart import Restart
@@ -114,12 +116,22 @@ class Supervision:
             self._part_errors,
             FactChanges(self.conditions, self.driving, self._outbox),
             self._changing,
-            Rules(self._parts, self._changing, self._health, settings.rules, self._outbox),
+            *self._displacers(guards, settings.rules),
             Audit(self._outbox),
             Stalls(self._outbox),
         )
         self._outbox.errors.clear()  # What is on from the start is no change.
         self._arrange()
+
+    def _displacers(self, guards: Guards, rules: RuleSettings) -> tuple[Concern, Concern]:
+        """Return what sets targets in force, the stronger first; both displace by one object."""
+        parts, changing, health, outbox = self._parts, self._changing, self._health, self._outbox
+        displacing = Displacing(parts, changing, outbox)
+        errors = self._part_errors
+        return (
+            Fallbacks(parts, changing, health, errors, guards, displacing, outbox),
+            Rules(parts, changing, health, rules, displacing, outbox),
+        )
 
     def _arrange(self) -> None:
         """Note which concerns have to be asked when; most have nothing to do most of the time."""

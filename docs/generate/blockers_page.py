@@ -5,6 +5,7 @@ from collections.abc import Iterator
 from docs.generate.markdown import code, page, table
 from docs.generate.source_scan import codes_given_to, codes_in, require_described
 from domain.changes.admission import ADVISORY
+from domain.changes.guards import INVARIANT
 from domain.conditions.explanation import CONDITION, UNKNOWN_VALUE
 from domain.errors import BackendUnavailableError
 from domain.health.built_in_errors import OF_NODES
@@ -20,8 +21,8 @@ from domain.health.signals import (
     SignalSettings,
     default_signals,
 )
-from domain.reactions.displacing import RULE
-from domain.reactions.rules import RESTART, TOO_OFTEN
+from domain.reactions.returns import RESTART, TOO_OFTEN
+from domain.reactions.rule_watch import RULE
 from domain.tasks.standstill import STANDSTILL_UNKNOWN, STILL_MOVING
 from domain.timebase import to_seconds
 
@@ -47,9 +48,11 @@ _OF_CONDITIONS = {
 }
 _OF_TARGETS = {
     RULE: "A part is as a rule of the model says.",
-    ESTOP: "ESTOP was active when the system would have returned.",
+    INVARIANT: "An invariant of the mode is broken, or the time for which its guards have to hold "
+    "is not over.",
+    ESTOP: "ESTOP was active when the part would have returned.",
     RESTART: "The service was restarted, and nothing has been requested since.",
-    TOO_OFTEN: "The system has returned too often within a minute.",
+    TOO_OFTEN: "The part has returned too often within a minute.",
 }
 _OF_PARTS = {
     "UNREACHABLE": "The node cannot be reached, or was never heard of.",
@@ -60,6 +63,8 @@ _OF_PARTS = {
     f"{to_seconds(DEVIATES_AFTER):g} s, and no change drives it or the part that is why.",
     "CHANGE_FAILED": "The last change that was requested of the part failed or timed out; until a "
     "change that drives the part succeeds, also over a restart.",
+    "INVARIANT_BROKEN": "An invariant of the mode that is in force has been broken for longer than "
+    "its `grace_s`, and the mode has no `fallback` that could replace it.",
 }
 _WARNINGS = {
     "CLOCK_SKEW": "The stamps of a signal differ from the local clock by more than a second.",

@@ -4,7 +4,7 @@ What a change wants of its nodes is the work of `node_steps.py`.
 """
 
 from collections import defaultdict
-from collections.abc import Iterable, Mapping, Set
+from collections.abc import Collection, Iterable, Mapping, Set
 from itertools import islice
 
 from domain.changes.change_log import ChangeLog
@@ -141,6 +141,7 @@ class Changes:
         *,
         is_asked: bool = True,
         waited: Change | None = None,
+        unguarded: Collection[PartName] = (),
     ) -> ChangeId:
         """Begin an admitted change; it may already have ended when this returns.
 
@@ -152,18 +153,17 @@ class Changes:
             is_asked: Whether its targets are requested. Otherwise they are in force already, and a
                 failure does not lead back.
             waited: The same change, if it waited until now.
+            unguarded: Parts of which the guards do not count.
         """
         if waited is None:
             identity, started_at, cause = self._log.next_id(), now, self._outbox.record_input()
         else:
             identity, started_at, cause = waited.id, waited.started_at, waited.cause
-        schedule, targets = self.schedule(request, goal), dict(goal.targets)
+        schedule = self.schedule(request, goal)
         if not is_asked:
             schedule = schedule.without_rollback()
-        change = Change(
-            identity, part, request, targets, started_at, cause, schedule, self._steps.durations
-        )
-        change.guarded = frozenset(self._guarded.parts_of(targets))
+        targets, took = dict(goal.targets), self._steps.durations
+        change = Change(identity, part, request, targets, started_at, cause, schedule, took)
         if self._running or not self._steps.is_idle:
             self._supersede(goal.targets.keys() | goal.nodes.keys(), change, now)
         self._log.add(change)
@@ -176,7 +176,7 @@ class Changes:
             change.deadline_at = now + schedule.deadline
             self._deadlines.set(identity, change.deadline_at)
         change.set_out(goal.nodes)
-        self._guarded.add(change)
+        self._guarded.add(change, unguarded)
         self._set_out(change, now)
         self._conclude(change, now)
         self._log.forget_old()

@@ -1,6 +1,6 @@
 """Changes as a concern of the core: requests in; steps and verified results out."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from itertools import islice
 
 from domain.changes.admission import ChangeAdmission, refuse
@@ -184,7 +184,14 @@ class Changing(Concern):
         """Tell whether the backend works, so that a change could begin at all."""
         return self._backend.available
 
-    def drive(self, part: PartName, request: ChangeRequest, goal: ChangeGoal, now: Instant) -> None:
+    def drive(
+        self,
+        part: PartName,
+        request: ChangeRequest,
+        goal: ChangeGoal,
+        now: Instant,
+        unguarded: Collection[PartName] = (),
+    ) -> ChangeId:
         """Begin a change towards targets that are in force already; it supersedes others.
 
         Args:
@@ -192,8 +199,9 @@ class Changing(Concern):
             request: What it would be as a request, in the name of who set the target.
             goal: Its targets and node goals.
             now: The current time.
+            unguarded: Parts of which the guards do not count for this change.
         """
-        self._changes.begin(part, request, goal, now, is_asked=False)
+        return self._changes.begin(part, request, goal, now, is_asked=False, unguarded=unguarded)
 
     # --- what can be seen ------------------------------------------------------------------------
 

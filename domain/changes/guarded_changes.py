@@ -1,12 +1,12 @@
 """The running changes whose modes have guards, judged whenever a guard ceases to hold."""
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Collection
 
 from domain.changes.guards import Guards
 from domain.changes.record import Change
 from domain.identifiers import ChangeId
 from domain.parts.system_model import SmhModel
-from domain.state_and_mode import PartName, StateAndMode
+from domain.state_and_mode import PartName
 from domain.timebase import Instant
 
 
@@ -32,12 +32,14 @@ class GuardedChanges:
         """Return when the grace of a broken invariant ends; None: none is broken."""
         return self._due
 
-    def parts_of(self, targets: Mapping[PartName, StateAndMode]) -> Iterable[PartName]:
-        """Return the parts whose target mode has guards."""
-        return self._guards.of(targets)
+    def add(self, change: Change, unguarded: Collection[PartName] = ()) -> None:
+        """Judge a change, if it has guards, until it is dropped.
 
-    def add(self, change: Change) -> None:
-        """Judge a change, if it has guards, until it is dropped."""
+        Args:
+            change: Of its parts, those whose target mode has guards are judged.
+            unguarded: Parts of which the guards do not count.
+        """
+        change.guarded = frozenset(self._guards.of(change.targets)).difference(unguarded)
         if change.guarded:
             self._running[change.id], self._revision = change, None
 

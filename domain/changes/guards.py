@@ -4,13 +4,14 @@ from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import replace
 
 from domain.conditions.condition import Condition
+from domain.conditions.evaluation import Truth
 from domain.conditions.watched import WatchedConditions
 from domain.findings import Blocker
 from domain.lifecycle import LifecycleState
 from domain.parts.mode_settings import ModeSettings
 from domain.parts.system_model import SmhModel
 from domain.state_and_mode import ModeName, PartName, StateAndMode
-from domain.timebase import Instant
+from domain.timebase import Duration, Instant
 
 INVARIANT = "INVARIANT"
 
@@ -71,15 +72,37 @@ class Guards:
         invariants = self._model.settings_of(part, mode).invariants
         return not any(self._watched.explain(condition) for condition in invariants)
 
+    def broken(self, part: PartName, target: StateAndMode) -> tuple[Blocker, ...]:
+        """Return which guards keep a part from a target, each with its reasons; empty: none."""
+        return tuple(self.blockers((part,), {part: target}))
+
+    def grace_of(self, part: PartName, target: StateAndMode) -> Duration:
+        """Return how long an invariant of a target mode may be broken before it counts."""
+        return self._settings(part, target).grace
+
+    def fallback_of(self, part: PartName, target: StateAndMode) -> ModeName | None:
+        """Return the mode that replaces a target mode whose invariants are broken; None: none."""
+        return self._settings(part, target).fallback
+
     @property
     def revision(self) -> int:
         """Return a number that rises whenever a guard begins or ceases to hold."""
         return self._watched.revision
 
     def broken_for_too_long(
-        self, parts: Iterable[PartName], targets: Mapping[PartName, StateAndMode], now: Instant
+        self,
+        parts: Iterable[PartName],
+        targets: Mapping[PartName, StateAndMode],
+        now: Instant,
+        unknown_from: Instant = 0,
     ) -> tuple[Blocker | None, Instant | None]:
         """Look for an invariant of the target modes that is broken for longer than its grace.
+
+        Args:
+            parts: Parts that have a target.
+            targets: State and mode of each.
+            now: The current time.
+            unknown_from: From when on an invariant that is unknown counts.
 
         Returns:
             Why one is; None: none is. And when the next one will be, if nothing changes.
@@ -92,6 +115,8 @@ class Guards:
                 if since is None:
                     continue
                 at = since + settings.grace
+                if self._watched.truth(condition) is Truth.UNKNOWN:
+                    at = max(at, unknown_from)
                 if at > now:
                     due = at if due is None else min(due, at)
                     continue

@@ -17,12 +17,13 @@ class DisplacementBegan(Event):
     target: StateAndMode
     was: StateAndMode
     because: Because
-    rule: str
+    rule: str | None
     reason: str
 
     def _words(self) -> str:
         instead = f"{self.target.label} instead of {self.was.label}"
-        return because(f"{self.part}: {self.because} {self.rule} sets {instead}", self.reason)
+        setter = _setter(self.because, self.rule)
+        return because(f"{self.part}: {setter} sets {instead}", self.reason)
 
 
 @dataclass(frozen=True, slots=True)
@@ -35,12 +36,12 @@ class DisplacementEnded(Event):
     target: StateAndMode | None
     was: StateAndMode
     because: Because
-    rule: str
+    rule: str | None
     reason: str
 
     def _words(self) -> str:
         now = self.target.label if self.target else "no target"
-        what = f"{self.was.label} of {self.because} {self.rule}"
+        what = f"{self.was.label} of {_setter(self.because, self.rule)}"
         return because(f"{self.part}: {now} replaces {what}", self.reason)
 
 
@@ -53,11 +54,11 @@ class DisplacementStays(Event):
     part: PartName
     target: StateAndMode
     because: Because
-    rule: str
+    rule: str | None
     reason: str
 
     def _words(self) -> str:
-        words = f"{self.part} stays {self.target.label} after {self.because} {self.rule}"
+        words = f"{self.part} stays {self.target.label} after {_setter(self.because, self.rule)}"
         return because(words, self.reason)
 
 
@@ -75,3 +76,8 @@ class RuleNotApplied(Event):
     def _words(self) -> str:
         words = f"{self.part}: rule {self.rule} does not set {self.target.label}"
         return because(words, self.reason)
+
+
+def _setter(kind: Because, rule: str | None) -> str:
+    """Return who set a target, as in "rule slow_down"."""
+    return "a broken invariant" if kind is Because.INVARIANT else f"{kind} {rule}"

@@ -10,9 +10,14 @@ ERROR_PROCESSING = "ERROR_PROCESSING"
 PARAMETERS_DRIFTED = "PARAMETERS_DRIFTED"
 DEVIATES = "DEVIATES"
 CHANGE_FAILED = "CHANGE_FAILED"
+INVARIANT_BROKEN = "INVARIANT_BROKEN"
 
 OF_EVERY_PART: Mapping[str, Severity] = MappingProxyType(
-    {DEVIATES: Severity.WARNING, CHANGE_FAILED: Severity.WARNING}
+    {
+        DEVIATES: Severity.WARNING,
+        CHANGE_FAILED: Severity.WARNING,
+        INVARIANT_BROKEN: Severity.WARNING,
+    }
 )
 """The errors of systems, with their severities; nodes have them as well."""
 

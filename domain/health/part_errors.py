@@ -17,6 +17,7 @@ from domain.health.built_in_errors import (
     CHANGE_FAILED,
     DEVIATES,
     ERROR_PROCESSING,
+    INVARIANT_BROKEN,
     OF_EVERY_PART,
     OF_NODES,
     PARAMETERS_DRIFTED,
@@ -139,6 +140,25 @@ class PartErrors(Concern):
             self._raise(part, CHANGE_FAILED, Found(_ACTIVE, message, str(status)), now, event)
             since = self._view(part, CHANGE_FAILED).since or now
             self._outbox.keep(KeptFailedChange(part, ended.change, message, str(status), since))
+
+    def note_invariant(
+        self, part: PartName, broken: Blocker | None, cause: int | None, now: Instant
+    ) -> bool:
+        """Raise INVARIANT_BROKEN of a part, or clear it; return whether that changed anything.
+
+        Args:
+            part: The part.
+            broken: Which invariant of the mode in force is broken for too long; None: none is.
+            cause: Id of the event with which it broke; None: of the current input.
+            now: The current time.
+        """
+        was_on = self._errors.is_on(ErrorKey(part, INVARIANT_BROKEN))
+        if broken is None:
+            self._clear(part, INVARIANT_BROKEN)
+            return was_on
+        message = shortened(broken.message, MAX_MESSAGE)
+        self._raise(part, INVARIANT_BROKEN, Found(_ACTIVE, message), now, cause)
+        return not was_on
 
     def wake_at(self) -> Instant | None:
         """Return when a deviation becomes an error; None: none will."""

@@ -28,7 +28,7 @@ from domain.parts.reachability import Reachability
 from domain.parts.system_model import SmhModel
 from domain.parts.targets import Displacement, Targets
 from domain.parts.waiting_parts import WaitingParts
-from domain.snapshot import Actual, ParameterView, PartView
+from domain.snapshot import Actual, Because, ParameterView, PartView
 from domain.state_and_mode import DEFAULT_MODE, PartName, StateAndMode
 from domain.timebase import Instant
 
@@ -233,6 +233,14 @@ class Parts(Concern):
     def displacements(self) -> Sequence[Displacement]:
         """Return which systems are displaced, those that prevail last; read only."""
         return self._targets.displacements
+
+    def prevails(self, displaced: Displacement) -> bool:
+        """Tell whether a displacement decides the target in force of its own part."""
+        return self._targets.prevails(displaced)
+
+    def beyond(self, because: Because) -> Set[PartName]:
+        """Return the parts whose targets in force nothing of this kind can replace."""
+        return self._targets.beyond(because)
 
     def targets_without(self, displaced: Displacement) -> Mapping[PartName, StateAndMode]:
         """Return the targets that the end of a displacement would put in force, by part."""

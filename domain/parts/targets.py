@@ -27,7 +27,8 @@ class Displacement:
     targets: dict[PartName, StateAndMode]
     """Of the system and of all parts that inherit."""
     because: Because
-    rule: str
+    rule: str | None
+    """Name of the rule that set it; None: no rule did."""
     cause: int
     """Id of the event that recorded it."""
     blockers: tuple[Blocker, ...] = ()
@@ -105,6 +106,15 @@ class Targets:
     def displacements(self) -> Sequence[Displacement]:
         """Return all displacements, those that prevail last; read only."""
         return self._displacements
+
+    def prevails(self, displaced: Displacement) -> bool:
+        """Tell whether a displacement decides the target in force of its own part."""
+        return self._prevailing(displaced.system) is displaced
+
+    def beyond(self, because: Because) -> set[PartName]:
+        """Return the parts whose targets in force nothing of this kind can replace."""
+        stronger = [d for d in self._displacements if _RANK[d.because] > _RANK[because]]
+        return {part for displaced in stronger for part in displaced.targets}
 
     def without(self, displaced: Displacement) -> dict[PartName, StateAndMode]:
         """Return the targets that the end of a displacement would put in force, by part."""

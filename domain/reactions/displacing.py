@@ -1,9 +1,8 @@
-"""Puts the targets of rules in force, and takes them back: events, changes, and what is kept."""
+"""Puts targets in force instead of others, and takes them back: events, changes, what is kept."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 
-from domain.actor import Actor
 from domain.changes.changing import Changing
 from domain.changes.plan import ChangeGoal
 from domain.changes.pursuit import request_towards
@@ -11,35 +10,45 @@ from domain.events.targets import (
     DisplacementBegan,
     DisplacementEnded,
     DisplacementStays,
-    RuleNotApplied,
 )
 from domain.findings import Blocker
+from domain.identifiers import ChangeId
 from domain.inputs import ChangeRequest, Restored
 from domain.outbox import Outbox
 from domain.parts.parts import Parts
 from domain.parts.targets import Displacement
-from domain.reactions.kept_rules import KeptRules
-from domain.reactions.rule_watch import RuleWatch
-from domain.reactions.waits import Wait
+from domain.reactions.displacer import Displacer
+from domain.reactions.kept_displacements import KeptDisplacements
 from domain.snapshot import Because
 from domain.state_and_mode import PartName, StateAndMode
 from domain.timebase import Instant
 
-RULE = "RULE"
-"""Code of the blocker that names the cause of a displacement."""
-
 
 @dataclass(frozen=True, slots=True)
 class Way:
-    """What leads a system, and the parts below that inherit, to their targets."""
+    """What leads a part, and those below that inherit, to their targets."""
 
     request: ChangeRequest
     """What it would be as a request."""
     goal: ChangeGoal
+    """Of the parts whose targets in force change."""
+    targets: dict[PartName, StateAndMode]
+    """Of all parts that inherit."""
+
+
+@dataclass(frozen=True, slots=True)
+class Ground:
+    """Why a target is put in force."""
+
+    reason: str
+    blockers: tuple[Blocker, ...]
+    since: Instant
+    cause: int
+    """Id of the event with which it began to be so."""
 
 
 class Displacing:
-    """What each rule displaces; decides nothing."""
+    """What each rule and each fallback displaces; decides nothing."""
 
     def __init__(self, parts: Parts, changing: Changing, outbox: Outbox) -> None:
         """Begin without a displacement.
@@ -52,168 +61,206 @@ class Displacing:
         self._parts = parts
         self._changing = changing
         self._outbox = outbox
-        self._kept = KeptRules(parts.model, changing.requests, outbox)
-        self._of_rule: dict[RuleWatch, Displacement] = {}
+        self._kept = KeptDisplacements(parts.model, changing.requests, outbox)
+        self._of: dict[Displacer, Displacement] = {}
 
-    def acts(self, watch: RuleWatch) -> bool:
-        """Tell whether a rule displaces something, or did until the current request."""
-        return watch in self._of_rule
+    def acts(self, displacer: Displacer) -> bool:
+        """Tell whether a displacer displaces something, or did until the current request."""
+        return displacer in self._of
 
-    def is_ended(self, watch: RuleWatch) -> bool:
-        """Tell whether a request has ended what a rule displaced."""
-        return self._of_rule[watch] not in self._parts.displacements
+    def is_ended(self, displacer: Displacer) -> bool:
+        """Tell whether a request has ended what was displaced."""
+        return self._of[displacer] not in self._parts.displacements
+
+    def prevails(self, displacer: Displacer) -> bool:
+        """Tell whether what a displacer set is in force for its own part."""
+        return self._parts.prevails(self._of[displacer])
 
     def restore(
-        self, restored: Restored, rules: Mapping[tuple[PartName, str], RuleWatch], now: Instant
-    ) -> None:
-        """Displace again what an earlier run had displaced.
+        self,
+        restored: Restored,
+        because: Because,
+        displacers: Iterable[Displacer],
+        now: Instant,
+    ) -> list[Displacer]:
+        """Displace again what an earlier run had displaced; return what does.
 
         Args:
             restored: What it left.
-            rules: By system and name.
+            because: Of which kind.
+            displacers: All of that kind.
             now: The current time; nothing began later.
         """
-        for displaced, watch in self._kept.restore(restored.kept, rules, now):
-            displaced.blockers = (_cause(watch, self._kept.since(displaced)),)
-            self._of_rule[watch] = displaced
+        found = []
+        for displaced, displacer in self._kept.restore(restored.kept, because, displacers, now):
+            displaced.blockers = (displacer.cause(self._kept.since(displaced)),)
+            self._of[displacer] = displaced
             self._parts.displace(displaced)
+            found.append(displacer)
+        return found
 
-    # --- what a rule does ------------------------------------------------------------------------
+    # --- what is displaced -----------------------------------------------------------------------
 
-    def way_ahead(self, watch: RuleWatch) -> Way:
-        """Return what leads to the target of a rule."""
-        request = self._towards(watch, watch.rule.new_target)
-        return Way(request, self._changing.admission.goal(request))
+    def way_ahead(self, displacer: Displacer) -> Way:
+        """Return what leads to the target of a displacer, where nothing stronger stands."""
+        request = self._towards(displacer, displacer.new_target)
+        goal = self._changing.admission.goal(request)
+        targets = {displacer.system: displacer.new_target, **goal.targets}
+        beyond = self._parts.beyond(displacer.because)
+        if beyond:
+            goal = ChangeGoal(
+                {part: target for part, target in goal.targets.items() if part not in beyond},
+                {node: want for node, want in goal.nodes.items() if node not in beyond},
+            )
+        return Way(request, goal, targets)
 
     def would_activate(self, way: Way) -> bool:
         """Tell whether a way would activate a node, or might."""
         return self._changing.admission.would_activate(way.goal)
 
-    def guard_ahead(self, watch: RuleWatch, way: Way) -> Blocker | None:
+    def guard_ahead(self, displacer: Displacer, way: Way) -> Blocker | None:
         """Return a guard on a way that does not hold; None: all do."""
-        blockers = self._changing.admission.guard_blockers(watch.system, way.goal)
+        blockers = self._changing.admission.guard_blockers(displacer.system, way.goal)
         return blockers[0] if blockers else None
 
-    def displace(self, watch: RuleWatch, way: Way, wait: Wait, now: Instant) -> None:
-        """Put the target of a rule in force, and begin the change that leads there.
+    def displace(
+        self,
+        displacer: Displacer,
+        way: Way,
+        ground: Ground,
+        now: Instant,
+        instead_of: Displacer | None = None,
+    ) -> None:
+        """Put the target of a displacer in force; `set_out` begins the change that leads there.
 
         Args:
-            watch: The rule.
+            displacer: The rule or fallback.
             way: Leads there.
-            wait: For how long the rule has matched.
+            ground: Why.
             now: The current time.
+            instead_of: What displaced the same part so far; None: nothing of this kind.
         """
-        system, rule = watch.system, watch.rule
+        system, target = displacer.system, displacer.new_target
         was = self._parts.target(system)
-        assert was is not None, "it is the target that the rule replaces"
-        began = DisplacementBegan(
-            system, rule.new_target, was, Because.RULE, rule.name, watch.reason
-        )
-        self._outbox.begin(now, began, _actor(watch), wait.cause)
-        targets = {system: rule.new_target, **way.goal.targets}
+        assert was is not None, "it is the target that is replaced"
+        because, name = displacer.because, displacer.name
+        began = DisplacementBegan(system, target, was, because, name, ground.reason)
+        self._outbox.begin(now, began, displacer.actor, ground.cause)
         recorded = self._outbox.record_input()
-        displaced = Displacement(system, targets, Because.RULE, rule.name, recorded)
-        displaced.blockers = (_cause(watch, wait.since),)
-        self._of_rule[watch] = displaced
-        self._kept.begin(displaced, wait.since)
+        if instead_of is not None:
+            self._parts.end_displacement(self._of[instead_of])
+            self._forget(instead_of)
+        displaced = Displacement(system, way.targets, because, name, recorded, ground.blockers)
+        self._of[displacer] = displaced
+        self._kept.begin(displaced, ground.since)
         self._parts.displace(displaced)
-        self._changing.drive(system, way.request, way.goal, now)
 
-    def refuse(self, watch: RuleWatch, why: str, wait: Wait, now: Instant) -> None:
-        """Tell once that a rule is not applied, and why."""
-        if wait.is_told:
-            return
-        wait.is_told = True
-        told = RuleNotApplied(watch.system, watch.rule.name, watch.rule.new_target, why)
-        self._outbox.begin(now, told, _actor(watch), wait.cause)
-        self._outbox.record_input()
+    def set_out(
+        self, displacer: Displacer, way: Way, now: Instant, *, is_guarded: bool = True
+    ) -> ChangeId:
+        """Begin the change that leads to targets that are in force already; return it.
+
+        Args:
+            displacer: In whose name.
+            way: Leads there.
+            now: The current time.
+            is_guarded: Whether the guards of the mode of its own part count.
+        """
+        unguarded = () if is_guarded else (displacer.system,)
+        return self._changing.drive(displacer.system, way.request, way.goal, now, unguarded)
 
     # --- and how that ends -----------------------------------------------------------------------
 
-    def way_back(self, watch: RuleWatch) -> Way | None:
+    def way_back(self, displacer: Displacer) -> Way | None:
         """Return what leads to the targets that the end of a displacement would put in force.
 
         None: others are in force, or none was requested.
         """
-        targets = self._parts.targets_without(self._of_rule[watch])
-        target = targets.get(watch.system, self._parts.target(watch.system))
+        targets = dict(self._parts.targets_without(self._of[displacer]))
+        target = targets.get(displacer.system, self._parts.target(displacer.system))
         if not targets or target is None:
             return None
         goal = self._changing.admission.goal_of_targets(targets)
-        return Way(self._towards(watch, target), goal)
+        return Way(self._towards(displacer, target), goal, targets)
+
+    def target_back(self, displacer: Displacer) -> StateAndMode | None:
+        """Return the target that the end of a displacement would put in force for its own part.
+
+        None: none was requested, or something else is in force.
+        """
+        return self._parts.targets_without(self._of[displacer]).get(displacer.system)
 
     def obstacles(self, way: Way) -> tuple[Blocker, ...]:
         """Return why a request for where a way leads would be rejected, besides ESTOP."""
         blockers = self._changing.admission.blockers_of(way.request, way.goal)
         return tuple(blocker for blocker in blockers if blocker.refuses)
 
-    def take_back(self, watch: RuleWatch, way: Way | None, wait: Wait, now: Instant) -> None:
-        """Put what a rule displaces in force again, and begin the change that leads there.
+    def take_back(self, displacer: Displacer, way: Way | None, cause: int, now: Instant) -> None:
+        """Put what is displaced in force again, and begin the change that leads there.
 
         Args:
-            watch: The rule.
+            displacer: The rule or fallback.
             way: Leads there; None: nothing has to move.
-            wait: For how long its cause has been gone.
+            cause: Id of the event with which the cause was gone.
             now: The current time.
         """
-        displaced = self._of_rule[watch]
-        ended = self._ended(watch, f"no longer true that {watch.reason}", way)
-        self._outbox.begin(now, ended, _actor(watch), wait.cause)
+        displaced = self._of[displacer]
+        ended = self._ended(displacer, displacer.relief, way)
+        self._outbox.begin(now, ended, displacer.actor, cause)
         self._outbox.record_input()
         self._parts.end_displacement(displaced)
-        self._forget(watch)
+        self._forget(displacer)
         if way is not None:
-            self._changing.drive(watch.system, way.request, way.goal, now)
+            self.set_out(displacer, way, now)
 
-    def end_by_request(self, watch: RuleWatch) -> None:
-        """Tell that the current input, a request, ended what a rule displaced."""
-        self._outbox.emit(self._ended(watch, "a newer request"))
-        self._forget(watch)
+    def end_by_request(self, displacer: Displacer) -> None:
+        """Tell that the current input, a request, ended what was displaced."""
+        self._outbox.emit(self._ended(displacer, "a newer request"))
+        self._forget(displacer)
 
-    def let_stay(self, watch: RuleWatch, why: Blocker, wait: Wait, now: Instant) -> None:
-        """Tell that only a request ends what a rule displaces, and why."""
-        displaced = self._of_rule[watch]
-        name, target = watch.rule.name, displaced.target
-        stays = DisplacementStays(watch.system, target, Because.RULE, name, why.message)
-        self._outbox.begin(now, stays, _actor(watch), wait.cause)
+    def let_stay(self, displacer: Displacer, why: Blocker, cause: int, now: Instant) -> None:
+        """Tell that only a request ends what is displaced, and why.
+
+        Args:
+            displacer: The rule or fallback.
+            why: What keeps the part from returning.
+            cause: Id of the event with which the cause was gone.
+            now: The current time.
+        """
+        displaced = self._of[displacer]
+        because, name, target = displacer.because, displacer.name, displaced.target
+        stays = DisplacementStays(displacer.system, target, because, name, why.message)
+        self._outbox.begin(now, stays, displacer.actor, cause)
         self._outbox.record_input()
         self._parts.explain(displaced, (why,))
 
-    def keep(self, watch: RuleWatch) -> None:
-        """Keep which nodes turned out to be elsewhere than where a rule led them."""
-        self._kept.renew(self._of_rule[watch])
+    def keep(self, displacer: Displacer) -> None:
+        """Keep which nodes turned out to be elsewhere than where they were led."""
+        self._kept.renew(self._of[displacer])
 
-    def explain(self, watch: RuleWatch, why: Sequence[Blocker]) -> bool:
-        """Show why a rule displaces something; return whether something else was shown before."""
-        return self._parts.explain(self._of_rule[watch], tuple(why))
+    def explain(self, displacer: Displacer, why: Sequence[Blocker]) -> bool:
+        """Show why something is displaced; return whether something else was shown before."""
+        return self._parts.explain(self._of[displacer], tuple(why))
 
-    def explain_cause(self, watch: RuleWatch) -> bool:
-        """Show the cause of a rule; return whether something else was shown before."""
-        return self.explain(watch, [_cause(watch, self._kept.since(self._of_rule[watch]))])
+    def explain_cause(self, displacer: Displacer) -> bool:
+        """Show the cause of a displacement; return whether something else was shown before."""
+        return self.explain(displacer, [displacer.cause(self._kept.since(self._of[displacer]))])
 
     # --- inside ----------------------------------------------------------------------------------
 
-    def _ended(self, watch: RuleWatch, reason: str, way: Way | None = None) -> DisplacementEnded:
-        displaced, system = self._of_rule[watch], watch.system
+    def _ended(
+        self, displacer: Displacer, reason: str, way: Way | None = None
+    ) -> DisplacementEnded:
+        displaced, system = self._of[displacer], displacer.system
         target = self._parts.target(system)
         if way is not None:
-            target = way.goal.targets.get(system, target)
-        name = watch.rule.name
-        return DisplacementEnded(system, target, displaced.target, Because.RULE, name, reason)
+            target = way.targets.get(system, target)
+        because, name = displacer.because, displacer.name
+        return DisplacementEnded(system, target, displaced.target, because, name, reason)
 
-    def _forget(self, watch: RuleWatch) -> None:
-        self._kept.forget(self._of_rule.pop(watch))
+    def _forget(self, displacer: Displacer) -> None:
+        self._kept.forget(self._of.pop(displacer))
 
-    def _towards(self, watch: RuleWatch, target: StateAndMode) -> ChangeRequest:
+    def _towards(self, displacer: Displacer, target: StateAndMode) -> ChangeRequest:
         parts = self._parts
-        return request_towards(parts.model, parts.facts, watch.system, target, _actor(watch))
-
-
-def _actor(watch: RuleWatch) -> Actor:
-    return Actor(f"rule:{watch.rule.name}")
-
-
-def _cause(watch: RuleWatch, since: Instant) -> Blocker:
-    part, pair = watch.rule.if_part
-    path = (watch.system, part)
-    return Blocker(RULE, watch.reason, path, pair.label, since=since, refuses=False)
+        return request_towards(parts.model, parts.facts, displacer.system, target, displacer.actor)

@@ -7,13 +7,19 @@ target without a mode means `__DEFAULT__`.
 from dataclasses import dataclass
 from functools import cached_property
 
+from domain.actor import Actor
 from domain.changes.plan import targets_of
+from domain.findings import Blocker
 from domain.lifecycle import LifecycleState
 from domain.parts.convergence import is_there
 from domain.parts.mode_inference import ModeInference
 from domain.parts.system_model import Rule
-from domain.snapshot import Actual
+from domain.snapshot import Actual, Because
 from domain.state_and_mode import DEFAULT_MODE, PartName, StateAndMode
+from domain.timebase import Instant
+
+RULE = "RULE"
+"""Code of the blocker that names the cause of a displacement."""
 
 
 @dataclass(eq=False)
@@ -26,6 +32,32 @@ class RuleWatch:
     """In the order in which rules act that are due at the same time."""
     inference: ModeInference
     """Read only."""
+
+    @property
+    def because(self) -> Because:
+        """Return what kind it is."""
+        return Because.RULE
+
+    @property
+    def new_target(self) -> StateAndMode:
+        """Return the target that it puts in force."""
+        return self.rule.new_target
+
+    @property
+    def actor(self) -> Actor:
+        """Return in whose name changes begin that lead there and back."""
+        return Actor(f"rule:{self.name}")
+
+    @property
+    def relief(self) -> str:
+        """Return in words why what it replaced may be in force again."""
+        return f"no longer true that {self.reason}"
+
+    def cause(self, since: Instant) -> Blocker:
+        """Return why its target is in force."""
+        part, pair = self.rule.if_part
+        path = (self.system, part)
+        return Blocker(RULE, self.reason, path, pair.label, since=since, refuses=False)
 
     @property
     def name(self) -> str:

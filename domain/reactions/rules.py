@@ -12,30 +12,21 @@ from collections.abc import Iterable, Mapping
 
 from domain.changes.changing import Changing
 from domain.concern import Concern, Takers
-from domain.findings import Blocker
+from domain.events.targets import RuleNotApplied
 from domain.health.health import Health
-from domain.health.signals import ESTOP
 from domain.inputs import BackendStatus, Restored
 from domain.outbox import Outbox
 from domain.parts.convergence import bottom_up
 from domain.parts.parts import Parts
 from domain.reactions.bound import Bound
-from domain.reactions.displacing import Displacing
+from domain.reactions.displacing import Displacing, Ground
+from domain.reactions.returns import RESTARTED, STOPPED, WITHIN, Returns
 from domain.reactions.rule_watch import RuleWatch
-from domain.reactions.settings import MAX_FIRINGS, MAX_RETURNS, WINDOW, RuleSettings
+from domain.reactions.settings import MAX_FIRINGS, WINDOW, RuleSettings
 from domain.reactions.waits import Wait, Waits
+from domain.snapshot import Because
 from domain.state_and_mode import PartName
-from domain.timebase import Instant, to_seconds
-
-RESTART = "RESTART"
-"""Code of the blocker that says that a restart keeps a system from returning."""
-TOO_OFTEN = "TOO_OFTEN"
-"""Code of the blocker that says that a system has returned too often."""
-
-_UNTIL = "until a change of it is requested"
-_RESTARTED = f"the service was restarted: nothing is activated or returns {_UNTIL}"
-_STOPPED = f"ESTOP was active: nothing is made up for {_UNTIL}"
-_WITHIN = f"within {to_seconds(WINDOW):g} s"
+from domain.timebase import Instant
 
 
 class Rules(Concern):
@@ -47,6 +38,7 @@ class Rules(Concern):
         changing: Changing,
         health: Health,
         settings: RuleSettings,
+        displacing: Displacing,
         outbox: Outbox,
     ) -> None:
         """Begin without a rule that acts.
@@ -56,6 +48,7 @@ class Rules(Concern):
             changing: Begins the changes that lead to new targets.
             health: Tells whether ESTOP is active.
             settings: How long conditions must last.
+            displacing: Puts targets in force.
             outbox: Receives events.
         """
         self._parts = parts
@@ -63,17 +56,14 @@ class Rules(Concern):
         self._health = health
         self._outbox = outbox
         self._grace = settings.grace
-        self._displacing = Displacing(parts, changing, outbox)
+        self._displacing = displacing
         self._rules = _rules_of(parts)
         self._about = _by_part(self._rules)
-        self._matching = Waits(settings.grace)
+        self._matching: Waits[RuleWatch] = Waits()
         """Rules that match, and do not act yet."""
-        self._relieved = Waits(settings.grace)
-        """Rules that act, and whose cause is gone."""
         self._firings = {rule: Bound(MAX_FIRINGS, WINDOW) for rule in self._rules}
-        self._returns = {rule.system: Bound(MAX_RETURNS, WINDOW) for rule in self._rules}
-        self._staying: set[RuleWatch] = set()
-        """Rules whose effect nothing but a request ends."""
+        systems = {rule.system for rule in self._rules}
+        self._returns = Returns(systems, parts, displacing, outbox, self._is_free)
 
     # --- what happens ----------------------------------------------------------------------------
 
@@ -84,21 +74,20 @@ class Rules(Concern):
 
     def restore(self, restored: Restored, now: Instant) -> None:
         """Displace what an earlier run had displaced."""
-        rules = {(rule.system, rule.name): rule for rule in self._rules}
-        self._displacing.restore(restored, rules, now)
+        self._displacing.restore(restored, Because.RULE, self._rules, now)
 
     def _follow_backend(self, status: BackendStatus, now: Instant) -> None:
         self._review(self._rules, now)
 
     def wake_at(self) -> Instant | None:
         """Return when the next condition has lasted long enough."""
-        times = (self._matching.wake_at(), self._relieved.wake_at())
+        times = (self._matching.wake_at(), self._returns.wake_at())
         return min((at for at in times if at is not None), default=None)
 
     def pass_time(self, now: Instant) -> None:
         """Note which conditions have lasted long enough."""
         self._matching.pass_time(now)
-        self._relieved.pass_time(now)
+        self._returns.pass_time(now)
 
     def settle(self, now: Instant) -> bool:
         """Let one rule act, or one system return; return whether one did."""
@@ -109,27 +98,27 @@ class Rules(Concern):
         is_explained = self._review(sorted(rules, key=_number), now)
         if self._health.is_stopped:
             self._matching.stop()
-            self._relieved.stop()
+            self._returns.stop()
         return self._act(now) or is_explained
 
     # --- what holds ------------------------------------------------------------------------------
 
     def _review(self, rules: Iterable[RuleWatch], now: Instant) -> bool:
         """Note which conditions begin or cease to hold; return whether a reason is shown anew."""
-        record, is_explained = self._outbox.record_input, False
+        record, grace, is_explained = self._outbox.record_input, self._grace, False
         for rule in rules:
             if not self._displacing.acts(rule):
                 holds = rule.may_act and self._is_free(rule) and rule.matches()
-                self._matching.note(rule, now, holds=holds, record=record)
+                holds = holds and rule.system not in self._parts.beyond(Because.RULE)
+                self._matching.note(rule, now, grace, holds=holds, record=record)
             elif self._displacing.is_ended(rule):
                 self._displacing.end_by_request(rule)
-                self._relieved.end(rule)
-                self._staying.discard(rule)
+                self._returns.forget(rule)
             else:
-                holds = rule not in self._staying and self._is_free(rule) and rule.is_cause_gone()
-                self._relieved.note(rule, now, holds=holds, record=record)
+                is_gone = self._is_free(rule) and rule.is_cause_gone()
+                self._returns.note(rule, now, grace, is_gone=is_gone)
                 self._displacing.keep(rule)
-                if not holds and rule not in self._staying:
+                if not is_gone and not self._returns.stays(rule):
                     is_explained |= self._displacing.explain_cause(rule)
         return is_explained
 
@@ -143,9 +132,8 @@ class Rules(Concern):
 
     def _act(self, now: Instant) -> bool:
         """Let the first system return that may, or else the first rule act."""
-        for rule, wait in self._relieved.over():
-            if self._return(rule, wait, now):
-                return True
+        if self._returns.act(now):
+            return True
         due = dict(self._matching.over())
         if due:
             rule = min(due, key=_number)
@@ -157,64 +145,42 @@ class Rules(Concern):
         way = self._displacing.way_ahead(rule)
         why = self._why_not(rule, wait)
         if why and self._displacing.would_activate(way):
-            self._displacing.refuse(rule, why, wait, now)
+            self._refuse(rule, why, wait, now)
             wait.is_idle = True
             return
         free_at = self._firings[rule].free_at(now)
         if free_at > now:
-            often = f"it was applied {MAX_FIRINGS} times {_WITHIN}"
+            often = f"it was applied {MAX_FIRINGS} times {WITHIN}"
             self._postpone(rule, often, wait, free_at, now)
         elif guard := self._displacing.guard_ahead(rule, way):
             self._postpone(rule, guard.message, wait, now + self._grace, now)
         else:
             self._matching.end(rule)
             self._firings[rule].note(now)
-            self._displacing.displace(rule, way, wait, now)
+            ground = Ground(rule.reason, (rule.cause(wait.since),), wait.since, wait.cause)
+            self._displacing.displace(rule, way, ground, now)
+            self._displacing.set_out(rule, way, now)
 
     def _postpone(
         self, rule: RuleWatch, why: str, wait: Wait, until: Instant, now: Instant
     ) -> None:
-        self._displacing.refuse(rule, why, wait, now)
+        self._refuse(rule, why, wait, now)
         self._matching.postpone(rule, until)
+
+    def _refuse(self, rule: RuleWatch, why: str, wait: Wait, now: Instant) -> None:
+        """Tell once that a rule is not applied, and why."""
+        if wait.is_told:
+            return
+        wait.is_told = True
+        told = RuleNotApplied(rule.system, rule.name, rule.new_target, why)
+        self._outbox.begin(now, told, rule.actor, wait.cause)
+        self._outbox.record_input()
 
     def _why_not(self, rule: RuleWatch, wait: Wait) -> str | None:
         """Return why nothing may be activated; None: it may."""
         if wait.was_stopped:
-            return _STOPPED
-        return _RESTARTED if self._parts.waits_for_operator(rule.system) else None
-
-    def _return(self, rule: RuleWatch, wait: Wait, now: Instant) -> bool:
-        """Let a system return, or say why it stays; return whether that is something new."""
-        way = self._displacing.way_back(rule)
-        if way is None:
-            self._relieved.end(rule)
-            self._displacing.take_back(rule, way, wait, now)
-            return True
-        if (stays := self._why_staying(rule, wait, now)) is not None:
-            self._relieved.end(rule)
-            self._staying.add(rule)
-            self._displacing.let_stay(rule, stays, wait, now)
-            return True
-        if obstacles := self._displacing.obstacles(way):
-            self._relieved.postpone(rule, now + self._grace)
-            return self._displacing.explain(rule, obstacles)
-        self._relieved.end(rule)
-        self._returns[rule.system].note(now)
-        self._displacing.take_back(rule, way, wait, now)
-        return True
-
-    def _why_staying(self, rule: RuleWatch, wait: Wait, now: Instant) -> Blocker | None:
-        """Return what keeps a system from returning until a request; None: nothing does."""
-        often = f"it has returned {MAX_RETURNS} times {_WITHIN}: it stays {_UNTIL}"
-        if wait.was_stopped:
-            code, why = ESTOP, _STOPPED
-        elif self._parts.waits_for_operator(rule.system):
-            code, why = RESTART, _RESTARTED
-        elif self._returns[rule.system].free_at(now) > now:
-            code, why = TOO_OFTEN, often
-        else:
-            return None
-        return Blocker(code, why, (rule.system,), since=now, refuses=False)
+            return STOPPED
+        return RESTARTED if self._parts.waits_for_operator(rule.system) else None
 
 
 def _rules_of(parts: Parts) -> list[RuleWatch]:

@@ -1,11 +1,13 @@
 """Conditions that must last for a time before something follows from them."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Hashable
 from dataclasses import dataclass
+from typing import Generic, TypeVar
 
 from domain.deadlines import Deadlines
-from domain.reactions.rule_watch import RuleWatch
 from domain.timebase import Duration, Instant
+
+KeyT = TypeVar("KeyT", bound=Hashable)
 
 
 @dataclass(slots=True)
@@ -25,45 +27,50 @@ class Wait:
     """ESTOP was active meanwhile."""
 
 
-class Waits:
-    """One wait per rule."""
+class Waits(Generic[KeyT]):
+    """One wait per key, such as a rule."""
 
-    def __init__(self, grace: Duration) -> None:
-        self._grace = grace
-        self._waits: dict[RuleWatch, Wait] = {}
-        self._deadlines: Deadlines[RuleWatch] = Deadlines()
+    def __init__(self) -> None:
+        self._waits: dict[KeyT, Wait] = {}
+        self._deadlines: Deadlines[KeyT] = Deadlines()
 
     def note(
-        self, rule: RuleWatch, now: Instant, *, holds: bool, record: Callable[[], int]
+        self, key: KeyT, now: Instant, lasts: Duration, *, holds: bool, record: Callable[[], int]
     ) -> None:
-        """Note whether the condition of a rule holds.
+        """Note whether the condition of a key holds.
 
         Args:
-            rule: The rule.
+            key: Such as a rule.
             now: The current time.
+            lasts: For how long it has to hold; what it began with counts.
             holds: Whether it does.
             record: Returns the id of the event with which it begins to hold.
         """
         if not holds:
-            self.end(rule)
-        elif rule not in self._waits:
-            self._waits[rule] = Wait(now, record())
-            self._deadlines.set(rule, now + self._grace)
+            self.end(key)
+        elif key not in self._waits:
+            self._waits[key] = Wait(now, record())
+            self._deadlines.set(key, now + lasts)
 
-    def end(self, rule: RuleWatch) -> None:
-        """Note that the condition of a rule does not hold; without effect if it did not."""
-        if self._waits.pop(rule, None) is not None:
-            self._deadlines.clear(rule)
+    def end(self, key: KeyT) -> None:
+        """Note that the condition of a key does not hold; without effect if it did not."""
+        if self._waits.pop(key, None) is not None:
+            self._deadlines.clear(key)
 
-    def postpone(self, rule: RuleWatch, until: Instant) -> None:
+    def postpone(self, key: KeyT, until: Instant) -> None:
         """Let a wait be over at a later time."""
-        self._waits[rule].is_over = False
-        self._deadlines.set(rule, until)
+        self._waits[key].is_over = False
+        self._deadlines.set(key, until)
 
     def stop(self) -> None:
         """Note that ESTOP is active."""
         for wait in self._waits.values():
             wait.was_stopped = True
+
+    def stop_since(self, now: Instant) -> None:
+        """Note that ESTOP was active when the conditions began to hold that do so since now."""
+        for wait in self._waits.values():
+            wait.was_stopped |= wait.since == now
 
     def wake_at(self) -> Instant | None:
         """Return when the next wait is over; None: there is none."""
@@ -71,9 +78,9 @@ class Waits:
 
     def pass_time(self, now: Instant) -> None:
         """Note which waits are over."""
-        while (rule := self._deadlines.pop_due(now)) is not None:
-            self._waits[rule].is_over = True
+        while (key := self._deadlines.pop_due(now)) is not None:
+            self._waits[key].is_over = True
 
-    def over(self) -> list[tuple[RuleWatch, Wait]]:
-        """Return the waits that are over and from which something may follow, with their rules."""
+    def over(self) -> list[tuple[KeyT, Wait]]:
+        """Return the waits that are over and from which something may follow, with their keys."""
         return [item for item in self._waits.items() if item[1].is_over and not item[1].is_idle]

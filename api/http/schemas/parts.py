@@ -69,7 +69,7 @@ class EffectiveTargetJson(Json):
     state: LifecycleState
     mode: str | None
     because: Because = Field(description="Who set it; each prevails over those before it")
-    rule: str | None = Field(description="Name of the rule that set it")
+    rule: str | None = Field(description="Name of the rule that set it; null: no rule did")
     cause: int | None = Field(
         description="Id of the event that recorded why it differs from the requested one"
     )

@@ -268,6 +268,14 @@ EVENTS: Mapping[str, tuple[object, ...]] = {
             rule="slow_down",
             reason='Größe ≤ 3 — "gripper\\jam"',
         ),
+        DisplacementBegan(
+            part=PartName("left/arm"),
+            target=StateAndMode(state=LifecycleState.ACTIVE, mode=ModeName("SLOW")),
+            was=StateAndMode(state=LifecycleState.ACTIVE, mode=ModeName("FAST")),
+            because=Because.INVARIANT,
+            rule=None,
+            reason='Größe ≤ 3 — "gripper\\jam"',
+        ),
     ),
     "target.displacement_ended": (
         DisplacementEnded(
@@ -278,6 +286,14 @@ EVENTS: Mapping[str, tuple[object, ...]] = {
             rule="slow_down",
             reason='Größe ≤ 3 — "gripper\\jam"',
         ),
+        DisplacementEnded(
+            part=PartName("left/arm"),
+            target=StateAndMode(state=LifecycleState.ACTIVE, mode=ModeName("FAST")),
+            was=StateAndMode(state=LifecycleState.ACTIVE, mode=ModeName("SLOW")),
+            because=Because.INVARIANT,
+            rule=None,
+            reason='Größe ≤ 3 — "gripper\\jam"',
+        ),
     ),
     "target.displacement_stays": (
         DisplacementStays(
@@ -285,6 +301,13 @@ EVENTS: Mapping[str, tuple[object, ...]] = {
             target=StateAndMode(state=LifecycleState.ACTIVE, mode=ModeName("SLOW")),
             because=Because.RULE,
             rule="slow_down",
+            reason='Größe ≤ 3 — "gripper\\jam"',
+        ),
+        DisplacementStays(
+            part=PartName("left/arm"),
+            target=StateAndMode(state=LifecycleState.ACTIVE, mode=ModeName("SLOW")),
+            because=Because.INVARIANT,
+            rule=None,
             reason='Größe ≤ 3 — "gripper\\jam"',
         ),
     ),

@@ -137,6 +137,16 @@ OTHERS: Mapping[str, tuple[object, ...]] = {
             cause=40,
             since=1764420000123456789,
         ),
+        KeptEffectiveTarget(
+            part=PartName("arm"),
+            target=StateAndMode(state=LifecycleState.ACTIVE, mode=ModeName("SLOW")),
+            rule=None,
+            order=3,
+            after=9,
+            cause=41,
+            since=1764420000123456789,
+            because="invariant",
+        ),
     ),
     "kept_change": (
         KeptChange(

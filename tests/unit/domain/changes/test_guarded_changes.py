@@ -28,7 +28,6 @@ class Guarded:
         targets = {ACTUATION: active(PERFORMANCE)}
         request = ModeRequest(ACTUATION, PERFORMANCE)
         self.change = Change(ChangeId("c1"), ACTUATION, request, targets, 0, 1)
-        self.change.guarded = frozenset(self.changes.parts_of(targets))
         self.changes.add(self.change)
 
     def heat(self, now: int, value: float = 60.0) -> None:
@@ -59,6 +58,14 @@ def test_the_end_of_the_grace_is_known_ahead() -> None:
     assert robot.changes.broken(seconds(1)) == []
     assert robot.changes.due == seconds(3)
     assert len(robot.changes.broken(seconds(3))) == 1
+
+
+def test_guards_of_a_part_can_be_left_out() -> None:
+    robot = Guarded()
+    robot.changes.add(robot.change, unguarded=(ACTUATION,))
+    robot.heat(5)
+    assert robot.change.guarded == frozenset()
+    assert robot.changes.forbids(robot.change, BASE) is None
 
 
 def test_a_change_that_was_dropped_is_judged_no_more() -> None:

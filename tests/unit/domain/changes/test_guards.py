@@ -112,6 +112,18 @@ def test_an_invariant_counts_as_broken_once_its_grace_is_over() -> None:
     assert broken is not None
 
 
+def test_an_unknown_invariant_may_be_given_time_to_become_known() -> None:
+    robot = Guarded()
+    del robot.facts.values["temperature"]
+    robot.watched.touch(Topic(TopicKind.SIGNAL, "temperature"))
+    robot.watched.renew(seconds(5))
+    judge = robot.guards.broken_for_too_long
+    broken, due = judge((BASE,), TARGETS, seconds(6), unknown_from=seconds(7))
+    assert (broken, due) == (None, seconds(7))
+    broken, _ = judge((BASE,), TARGETS, seconds(7), unknown_from=seconds(7))
+    assert broken is not None
+
+
 def test_an_invariant_that_recovered_in_between_begins_its_grace_anew() -> None:
     robot = Guarded(grace_s=2)
     robot.set(seconds(5), temperature=60.0)

@@ -12,7 +12,8 @@ from domain.events.targets import (
 from domain.snapshot import Because
 from tests.support.models import ACTUATION, active, inactive
 
-RULE, FAST, SLOW = Because.RULE, active("FAST"), active("SLOW")
+RULE, INVARIANT = Because.RULE, Because.INVARIANT
+FAST, SLOW = active("FAST"), active("SLOW")
 
 
 @pytest.mark.parametrize(
@@ -33,6 +34,19 @@ RULE, FAST, SLOW = Because.RULE, active("FAST"), active("SLOW")
         (
             DisplacementStays(ACTUATION, SLOW, RULE, "slow_down", "ESTOP was active"),
             "actuation stays active.SLOW after rule slow_down: ESTOP was active",
+        ),
+        (
+            DisplacementBegan(ACTUATION, SLOW, FAST, INVARIANT, None, "it is too hot"),
+            "actuation: a broken invariant sets active.SLOW instead of active.FAST: it is too hot",
+        ),
+        (
+            DisplacementEnded(ACTUATION, FAST, SLOW, INVARIANT, None, "its guards hold again"),
+            "actuation: active.FAST replaces active.SLOW of a broken invariant: its guards hold "
+            "again",
+        ),
+        (
+            DisplacementStays(ACTUATION, SLOW, INVARIANT, None, "ESTOP was active"),
+            "actuation stays active.SLOW after a broken invariant: ESTOP was active",
         ),
         (
             RuleNotApplied(ACTUATION, "park", inactive(), "ESTOP was active"),

@@ -16,8 +16,9 @@ def test_a_node_has_what_every_part_has_and_more() -> None:
         "PARAMETERS_DRIFTED",
         "DEVIATES",
         "CHANGE_FAILED",
+        "INVARIANT_BROKEN",
     ]
-    assert list(OF_EVERY_PART) == ["DEVIATES", "CHANGE_FAILED"]
+    assert list(OF_EVERY_PART) == ["DEVIATES", "CHANGE_FAILED", "INVARIANT_BROKEN"]
 
 
 @pytest.mark.parametrize("error", OF_NODES)

@@ -3,10 +3,14 @@
 import pytest
 
 from domain.events.event import RecordedEvent
-from domain.health.part_errors import DEVIATES_AFTER, LOOKS_AT_ONCE
+from domain.findings import Blocker
+from domain.health.error_list import ErrorList
+from domain.health.part_errors import DEVIATES_AFTER, LOOKS_AT_ONCE, PartErrors
 from domain.inputs import ModeRequest, NodeReport, ParametersRequest, Restored, TimePassed
 from domain.kept import Keeping, KeptChange, KeptFailedChange
 from domain.lifecycle import LifecycleState, Transition
+from domain.outbox import Outbox
+from domain.parts.parts import Parts
 from domain.parts.system_model import SmhModel
 from domain.simulation.node_settings import Fault
 from domain.snapshot import ErrorKey, ErrorState, ErrorView, SystemState
@@ -393,7 +397,31 @@ def test_the_errors_of_the_robot_are_in_the_same_list() -> None:
     names = [view.key.name for view in robot.core.errors()]
     assert names[0] == "BATTERY_LOW"
     assert len(names) == len(set(names))
-    assert names[-2:] == ["manipulator.DEVIATES", "manipulator.CHANGE_FAILED"]
+    assert names[-3:] == [
+        "manipulator.DEVIATES",
+        "manipulator.CHANGE_FAILED",
+        "manipulator.INVARIANT_BROKEN",
+    ]
+
+
+# --- INVARIANT_BROKEN ----------------------------------------------------------------------------
+
+
+def test_whoever_judges_invariants_raises_and_clears_their_error() -> None:
+    outbox, model = Outbox(), actuation_model()
+    found = ErrorList(outbox)
+    errors = PartErrors(Parts(model, outbox), found, outbox, 0)
+    key = ErrorKey(ACTUATION, "INVARIANT_BROKEN")
+    broken = Blocker("INVARIANT", "actuation cannot stay FAST: it is too hot", (ACTUATION,))
+
+    assert errors.note_invariant(ACTUATION, broken, 7, seconds(3))
+    assert not errors.note_invariant(ACTUATION, broken, 7, seconds(4)), "it is on already"
+    view = found.view(key)
+    assert (view.state, view.message, view.since) == (S.ACTIVE, broken.message, seconds(3))
+    assert view.severity == "warning"
+    assert errors.note_invariant(ACTUATION, None, None, seconds(5))
+    assert not found.is_on(key)
+    assert not errors.note_invariant(ACTUATION, None, None, seconds(6))
 
 
 # --- large robots --------------------------------------------------------------------------------

@@ -15,9 +15,9 @@ RULE = RuleWatch(
 )
 
 
-def waiting(since: int = 5) -> Waits:
-    waits = Waits(GRACE)
-    waits.note(RULE, since, holds=True, record=lambda: 7)
+def waiting(since: int = 5) -> Waits[RuleWatch]:
+    waits: Waits[RuleWatch] = Waits()
+    waits.note(RULE, since, GRACE, holds=True, record=lambda: 7)
     return waits
 
 
@@ -35,14 +35,14 @@ def test_a_wait_is_over_when_its_condition_has_lasted_and_not_before() -> None:
 
 def test_a_condition_that_goes_on_does_not_begin_anew() -> None:
     waits = waiting()
-    waits.note(RULE, 9, holds=True, record=lambda: 99)
+    waits.note(RULE, 9, GRACE, holds=True, record=lambda: 99)
 
     assert waits.wake_at() == 15
 
 
 def test_a_condition_that_ceases_is_forgotten() -> None:
     waits = waiting()
-    waits.note(RULE, 9, holds=False, record=lambda: 99)
+    waits.note(RULE, 9, GRACE, holds=False, record=lambda: 99)
     waits.pass_time(100)
 
     assert (waits.wake_at(), waits.over()) == (None, [])
@@ -75,7 +75,7 @@ def test_a_wait_remembers_that_estop_was_active() -> None:
 
 
 def test_a_rule_that_does_not_wait_needs_no_thought() -> None:
-    waits = Waits(GRACE)
+    waits: Waits[RuleWatch] = Waits()
     waits.end(RULE)
 
     assert waits.over() == []

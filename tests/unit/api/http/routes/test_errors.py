@@ -32,6 +32,7 @@ OF_NODES = [
     "PARAMETERS_DRIFTED",
     "DEVIATES",
     "CHANGE_FAILED",
+    "INVARIANT_BROKEN",
 ]
 
 NAMED_ERRORS = """\
@@ -64,6 +65,7 @@ async def test_all_errors_are_listed_those_of_the_robot_first(robot: HttpRobot) 
     assert of_parts == [
         ("actuation", "DEVIATES"),
         ("actuation", "CHANGE_FAILED"),
+        ("actuation", "INVARIANT_BROKEN"),
         *(("drive_base", error) for error in OF_NODES),
         *(("manipulator", error) for error in OF_NODES),
     ]
@@ -114,6 +116,7 @@ async def test_the_errors_of_one_part_are_at_the_part_and_in_the_list(robot: Htt
     assert names(await robot.get("/systems/actuation/errors")) == [
         ("actuation", "DEVIATES"),
         ("actuation", "CHANGE_FAILED"),
+        ("actuation", "INVARIANT_BROKEN"),
     ]
 
 

@@ -7,7 +7,7 @@ from domain.outbox import Outbox
 from domain.parts.mode_inference import ModeInference
 from domain.parts.system_model import Rule
 from domain.parts.targets import Displacement
-from domain.reactions.kept_rules import KeptRules
+from domain.reactions.kept_displacements import KeptDisplacements
 from domain.reactions.rule_watch import RuleWatch
 from domain.snapshot import Because
 from domain.state_and_mode import PartName, StateAndMode
@@ -16,7 +16,7 @@ from tests.support.models import ACTUATION, ARM, BASE, active, actuation_model, 
 MODEL = actuation_model()
 PARK = Rule("park", active("PERFORMANCE"), (BASE, inactive()), inactive())
 WATCH = RuleWatch(ACTUATION, PARK, 0, ModeInference(MODEL))
-RULES = {(ACTUATION, "park"): WATCH}
+RULE, RULES = Because.RULE, (WATCH,)
 UNCONFIGURED = StateAndMode(LifecycleState.UNCONFIGURED)
 
 
@@ -49,7 +49,7 @@ def parked(order: int = 1, after: int = 4, rule: str = "park") -> KeptEffectiveT
 
 def test_a_displacement_is_kept_with_what_it_leaves_as_it_is_until_it_ends() -> None:
     outbox = Outbox()
-    kept, park = KeptRules(MODEL, Requests(newest=4), outbox), displaced()
+    kept, park = KeptDisplacements(MODEL, Requests(newest=4), outbox), displaced()
     kept.begin(park, 30)
     assert kept_of(outbox) == [parked()]
     assert kept.since(park) == 30
@@ -59,7 +59,7 @@ def test_a_displacement_is_kept_with_what_it_leaves_as_it_is_until_it_ends() -> 
 
 def test_it_is_kept_anew_only_when_a_node_stays_elsewhere() -> None:
     outbox = Outbox()
-    kept, park = KeptRules(MODEL, Requests(newest=4), outbox), displaced()
+    kept, park = KeptDisplacements(MODEL, Requests(newest=4), outbox), displaced()
     kept.begin(park, 30)
     outbox.take()
     kept.renew(park)
@@ -72,9 +72,9 @@ def test_it_is_kept_anew_only_when_a_node_stays_elsewhere() -> None:
 
 
 def test_what_was_kept_is_restored_in_its_order() -> None:
-    kept = KeptRules(MODEL, Requests(newest=4), Outbox())
+    kept = KeptDisplacements(MODEL, Requests(newest=4), Outbox())
 
-    found = list(kept.restore((parked(2), parked(1)), RULES, 40))
+    found = list(kept.restore((parked(2), parked(1)), RULE, RULES, 40))
 
     assert [watch for _, watch in found] == [WATCH, WATCH]
     assert kept.since(found[0][0]) == 30
@@ -83,18 +83,18 @@ def test_what_was_kept_is_restored_in_its_order() -> None:
 
 
 def test_a_part_of_which_something_was_requested_later_does_not_inherit() -> None:
-    kept = KeptRules(MODEL, Requests(newest=5, drive_base=5, manipulator=3), Outbox())
+    kept = KeptDisplacements(MODEL, Requests(newest=5, drive_base=5, manipulator=3), Outbox())
 
-    ((park, _),) = kept.restore((parked(after=4),), RULES, 40)
+    ((park, _),) = kept.restore((parked(after=4),), RULE, RULES, 40)
 
     assert park.targets == {ACTUATION: inactive(), ARM: UNCONFIGURED}
 
 
 def test_what_the_model_no_longer_says_is_left_out_and_told() -> None:
     outbox = Outbox()
-    kept = KeptRules(MODEL, Requests(newest=4), outbox)
+    kept = KeptDisplacements(MODEL, Requests(newest=4), outbox)
 
-    assert list(kept.restore((parked(rule="gone"),), RULES, 40)) == []
+    assert list(kept.restore((parked(rule="gone"),), RULE, RULES, 40)) == []
 
     outputs = outbox.take()
     told = [entry.event for entry in outputs.events if isinstance(entry.event, NotRestored)]

@@ -1,6 +1,6 @@
-"""The displacements of rules that survive a restart."""
+"""The displacements that survive a restart."""
 
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable, Iterator
 from dataclasses import replace
 
 from domain.changes.kept_targets import RequestOrder, staying_in
@@ -10,14 +10,14 @@ from domain.kept import Kept, KeptEffectiveTarget
 from domain.outbox import Outbox
 from domain.parts.system_model import SmhModel
 from domain.parts.targets import Displacement
-from domain.reactions.rule_watch import RuleWatch
+from domain.reactions.displacer import Displacer, key_of
 from domain.snapshot import Because
 from domain.state_and_mode import PartName, StateAndMode
 from domain.timebase import Instant
 
 
-class KeptRules:
-    """What is kept of each displacement."""
+class KeptDisplacements:
+    """What is kept of each displacement; all kinds share one order."""
 
     def __init__(self, model: SmhModel, requests: RequestOrder, outbox: Outbox) -> None:
         self._model = model
@@ -46,6 +46,7 @@ class KeptRules:
                 displaced.cause,
                 now,
                 staying_in(target, displaced.targets),
+                str(displaced.because),
             ),
         )
 
@@ -62,27 +63,47 @@ class KeptRules:
         self._outbox.forget(KeptEffectiveTarget, kept.name)
 
     def restore(
-        self, kept: Iterable[Kept], rules: Mapping[tuple[PartName, str], RuleWatch], now: Instant
-    ) -> Iterator[tuple[Displacement, RuleWatch]]:
-        """Yield the displacements that were kept, with their rules, in their order.
+        self,
+        kept: Iterable[Kept],
+        because: Because,
+        displacers: Iterable[Displacer],
+        now: Instant,
+    ) -> Iterator[tuple[Displacement, Displacer]]:
+        """Yield the displacements of one kind that were kept, in their order.
 
-        Those whose rule the model no longer has are left out, and told.
+        Those that the model no longer has are left out, and told.
+
+        Args:
+            kept: What an earlier run left.
+            because: The kind.
+            displacers: All of that kind that the model has.
+            now: The current time; nothing began later.
         """
-        displaced = [value for value in kept if isinstance(value, KeptEffectiveTarget)]
-        for value in sorted(displaced, key=lambda value: value.order):
-            self._order = value.order
-            watch = rules.get((value.part, value.rule))
-            if watch is None or watch.rule.new_target != value.target:
-                what = f"the target {value.target.label} of {value.part} that a rule set"
-                reason = f"the model has no rule {value.rule!r} that sets it"
-                self._outbox.emit(NotRestored(what, reason))
-                self._outbox.forget(KeptEffectiveTarget, value.name)
+        known = {key_of(displacer): displacer for displacer in displacers}
+        values = [each for each in kept if isinstance(each, KeptEffectiveTarget)]
+        for value in sorted(values, key=lambda value: value.order):
+            if value.because != because:
+                continue
+            self._order = max(self._order, value.order)
+            displacer = known.get((because, value.part, value.rule, value.target))
+            if displacer is None:
+                self._leave_out(value)
                 continue
             found = Displacement(
-                value.part, self._targets_of(value), Because.RULE, value.rule, value.cause
+                value.part, self._targets_of(value), because, value.rule, value.cause
             )
             self._kept[found] = replace(value, since=min(value.since, now))
-            yield found, watch
+            yield found, displacer
+
+    def _leave_out(self, value: KeptEffectiveTarget) -> None:
+        label, part = value.target.label, value.part
+        what = f"the target {label} of {part} that a rule set"
+        reason = f"the model has no rule {value.rule!r} that sets it"
+        if value.because == Because.INVARIANT:
+            what = f"the target {label} of {part}, a fallback"
+            reason = "no mode of the model falls back to it"
+        self._outbox.emit(NotRestored(what, reason))
+        self._outbox.forget(KeptEffectiveTarget, value.name)
 
     def _targets_of(self, kept: KeptEffectiveTarget) -> dict[PartName, StateAndMode]:
         targets = {
