@@ -319,3 +319,38 @@ def test_why_a_part_deviates_is_asked_only_while_it_is_open(
     failing.request("POST", f"{SYSTEM}/state", {"transition": "cleanup"})
     expect(why).to_be_hidden(timeout=SLOW_MS)
     page.close()
+
+
+def test_a_part_that_is_displaced_says_by_whom_and_from_what(desktop: Page) -> None:
+    said = desktop.evaluate(
+        """() => {
+            const shown = document.createElement("ph-why");
+            document.body.append(shown);
+            const target = { state: "active", mode: "FAST" };
+            const fallback = { state: "active", mode: "SLOW", because: "invariant", rule: null };
+            const part = { converged: true, target, effective_target: fallback };
+            shown.show({ part, why: { blockers: [] } });
+            return [shown.hidden, shown.textContent];
+        }"""
+    )
+    assert said == [
+        False,
+        "Why this targetTarget active.SLOW, set by its invariant, in place of active.FAST that was "
+        "requested.No reason is known.",
+    ]
+
+
+def test_the_mode_in_force_says_that_it_cannot_stay(desktop: Page) -> None:
+    said = desktop.evaluate(
+        """() => {
+            const shown = document.createElement("ph-mode-switcher");
+            document.body.append(shown);
+            const actual = { state: "active", mode: "FAST" };
+            const blockers = [{ message: "too hot", path: ["base"], refuses: true, causes: [] }];
+            const item = { mode: "FAST", can_enter: false, can_stay: false, blockers };
+            const part = { name: "base", kind: "node", actual, target: actual };
+            shown.show({ part, transitions: [], modes: [item], enabled: true });
+            return shown.querySelector(".mode").textContent;
+        }"""
+    )
+    assert said == "FASTactual, cannot staytoo hotWhy not FAST"
