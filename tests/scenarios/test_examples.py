@@ -12,7 +12,7 @@ Output = pytest.CaptureFixture[str]
 
 
 def test_there_are_the_stories_of_the_operator_and_the_steps_of_annex_4() -> None:
-    assert len(EXAMPLES) >= 26
+    assert len(EXAMPLES) >= 27
     assert sum(path.name.startswith("annex4_step") for path in EXAMPLES) == 4
 
 
