@@ -349,8 +349,8 @@ def test_a_part_that_is_displaced_says_by_whom_and_from_what(desktop: Page) -> N
     )
     assert said == [
         False,
-        "Why this targetTarget active.SLOW, set by a broken invariant, in place of active.FAST that "
-        "was requested.No reason is known.",
+        "Why this targetTarget active.SLOW, set by a broken invariant, in place of active.FAST "
+        "that was requested.No reason is known.",
     ]
 
 
