@@ -86,6 +86,14 @@ def plan(page: Page, service: Service) -> None:
     page.get_by_role("button", name="Apply").scroll_into_view_if_needed()
 
 
+def displaced(page: Page, service: Service) -> None:
+    """A fallback in place of the mode that was requested, and why."""
+    post(service, f"{MANIPULATION}/mode?wait=15", {"mode": "MANIPULATE"})
+    service.request("PATCH", "/mock/temperature", {"value": 55})
+    page.locator("ph-why summary").click()
+    page.locator("ph-why .root").wait_for()
+
+
 def rolled_back(page: Page, service: Service) -> None:
     post(service, f"{MANIPULATION}/mode", {"mode": "MANIPULATE"})
     page.locator(".change-status").filter(has_text="rolled back").wait_for()
@@ -228,6 +236,7 @@ STATES: dict[str, tuple[Robot, Act]] = {
     "still_moving": ("example", patched(still_moving)),
     "guarded": ("guarded_failing", guarded),
     "plan": ("guarded", plan),
+    "displaced": ("guarded", displaced),
     "rolled_back": ("guarded_failing", rolled_back),
     "waiting": ("guarded", waiting),
     "acknowledge": ("troubled", acknowledge),

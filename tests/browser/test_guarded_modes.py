@@ -321,6 +321,20 @@ def test_why_a_part_deviates_is_asked_only_while_it_is_open(
     page.close()
 
 
+def test_a_fallback_says_why_until_the_requested_mode_is_back(
+    desktop: Page, service: Service
+) -> None:
+    service.request("POST", f"{SYSTEM}/mode?wait=15", {"mode": "MANIPULATE"})
+    service.request("PATCH", "/mock/temperature", {"value": 55})
+    why = desktop.locator("ph-why")
+    why.locator("summary").click()
+    expect(why).to_contain_text("Target active.CAREFUL, set by a broken invariant")
+    expect(why.locator(".reason-tree li li")).to_contain_text("temperature is 55 °C, needs < 50 °C")
+    service.request("PATCH", "/mock/temperature", {"value": 30})
+    expect(why).to_be_hidden(timeout=SLOW_MS)
+    expect(mode(desktop, "MANIPULATE").locator(".mark")).to_have_text("actual")
+
+
 def test_a_part_that_is_displaced_says_by_whom_and_from_what(desktop: Page) -> None:
     said = desktop.evaluate(
         """() => {
@@ -335,8 +349,8 @@ def test_a_part_that_is_displaced_says_by_whom_and_from_what(desktop: Page) -> N
     )
     assert said == [
         False,
-        "Why this targetTarget active.SLOW, set by its invariant, in place of active.FAST that was "
-        "requested.No reason is known.",
+        "Why this targetTarget active.SLOW, set by a broken invariant, in place of active.FAST "
+        "that was requested.No reason is known.",
     ]
 
 

@@ -40,8 +40,10 @@ class Why extends HTMLElement {
   }
 }
 
+const SETTERS = { invariant: "a broken invariant", reaction: "a reaction" };
+
 function displacedWords({ target: requested }, target) {
-  const because = target.rule ? `${target.because} ${target.rule}` : `its ${target.because}`;
+  const because = target.rule ? `${target.because} ${target.rule}` : (SETTERS[target.because] ?? target.because);
   const from = requested ? `, in place of ${label(requested)} that was requested` : "";
   return `Target ${label(target)}, set by ${because}${from}.`;
 }
