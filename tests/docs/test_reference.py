@@ -24,6 +24,7 @@ from domain.inputs import (
     BackendStatus,
     DriveStatus,
     Input,
+    ModeRequest,
     Restored,
     ServiceStall,
     StorageStatus,
@@ -34,7 +35,10 @@ from domain.lifecycle import LifecycleState
 from domain.parts.system_model import Rule
 from domain.state_and_mode import PartName, StateAndMode
 from domain.supervision import Supervision, SupervisionSettings
+from domain.timebase import seconds
+from tests.support.core_robot import CoreRobot
 from tests.support.good import GOOD
+from tests.support.guarded_model import guarded_model
 from tests.support.http_robot import ACTUATION
 from tests.support.models import BASE, active, actuation_model
 from tests.support.ruled_robot import RuledRobot, degrading_model
@@ -243,6 +247,14 @@ def a_lost_arm() -> list[RecordedEvent]:
     return robot.events
 
 
+def a_wait() -> list[RecordedEvent]:
+    """A request waits until the battery is charged."""
+    robot = CoreRobot(guarded_model())
+    robot.read(**{**GOOD, "battery_level": 0.2})
+    robot.begin(ModeRequest(robot.model.parts[0], "PERFORMANCE", wait_for=seconds(60)))
+    return robot.events
+
+
 def told(*inputs: Input) -> list[RecordedEvent]:
     """Return the events of a core that is given what no scenario holds."""
     core = Supervision(actuation_model(), SupervisionSettings(), 0)
@@ -280,6 +292,7 @@ def test_events_that_happen_are_listed_with_what_they_carry() -> None:
         a_restart,
         a_full_disk,
         a_lost_arm,
+        a_wait,
         the_examples,
     )
     for event in (event for story in stories for event in story()):
