@@ -30,4 +30,5 @@ class Durations:
         times = self._times.get((node, action))
         if times is None:
             return None
-        return round(median(took for (took,) in _TIME.iter_unpack(times)))
+        known: list[Duration] = [took for (took,) in _TIME.iter_unpack(times)]
+        return round(median(known))
