@@ -83,7 +83,7 @@ class RobotFacts:
         return Observation(value=True, since=min(known, default=None))
 
     def _error(self, part: PartName, name: str) -> Observation:
-        if part not in self._parts.model.parts:
+        if part not in self._parts.model:
             return _MISSING
         reason = self._part_errors(part, name)
         return Observation(reason is not None, since=reason.since if reason else None)
@@ -91,7 +91,7 @@ class RobotFacts:
     # --- parts -----------------------------------------------------------------------------------
 
     def _part(self, part: PartName, subject: Subject) -> Observation:
-        if part not in self._parts.model.parts:
+        if part not in self._parts.model:
             return _MISSING
         match subject.attribute:
             case "reachable":

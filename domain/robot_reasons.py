@@ -42,7 +42,7 @@ class RobotReasons:
                 found: Iterable[Blocker] = (reason,) if reason else ()
             case TopicKind.ERROR:
                 found = (reason for reason in self._health.reasons if reason.code == name)
-            case TopicKind.PART if name in self._parts.model.parts:
+            case TopicKind.PART if name in self._parts.model:
                 found = self._of_part(PartName(name), leaf)
             case TopicKind.ROBOT:
                 found = self._health.reasons

@@ -1,6 +1,6 @@
 """The guards of modes: what must be true for a part to enter a mode, and to stay in it."""
 
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import replace
 
 from domain.conditions.condition import Condition
@@ -49,13 +49,9 @@ class Guards:
             parts: Parts that have a target.
             targets: State and mode of each.
         """
+        # Between two inputs all conditions are up to date, and most guards of a large robot hold.
         for part in parts:
-            settings = self._settings(part, targets[part])
-            for condition in settings.requires:
-                for blocker in self._watched.explain(condition):
-                    yield replace(blocker, path=(part, *blocker.path))
-            for condition in settings.invariants:
-                yield from self._broken_invariant(part, targets[part].mode, condition)
+            yield from self._blockers(part, targets[part], self._why_not)
 
     def blockers_of_step(
         self, parts: Iterable[PartName], targets: Mapping[PartName, StateAndMode]
@@ -63,14 +59,15 @@ class Guards:
         """Return why parts cannot go on to their target modes: of invariants, without grace."""
         for part in parts:
             has_grace = self._settings(part, targets[part]).grace > 0
-            for blocker in self.blockers((part,), targets):
+            # The report that lets the step begin may be what breaks a guard.
+            for blocker in self._blockers(part, targets[part], self._watched.explain):
                 if not (has_grace and blocker.code == INVARIANT):
                     yield blocker
 
     def can_stay(self, part: PartName, mode: ModeName) -> bool:
         """Tell whether all invariants of a mode hold."""
         invariants = self._model.settings_of(part, mode).invariants
-        return not any(self._watched.explain(condition) for condition in invariants)
+        return not any(self._why_not(condition) for condition in invariants)
 
     def broken(self, part: PartName, target: StateAndMode) -> tuple[Blocker, ...]:
         """Return which guards keep a part from a target, each with its reasons; empty: none."""
@@ -120,7 +117,8 @@ class Guards:
                 if at > now:
                     due = at if due is None else min(due, at)
                     continue
-                for blocker in self._broken_invariant(part, targets[part].mode, condition):
+                causes = self._watched.explain(condition)
+                for blocker in self._broken_invariant(part, targets[part].mode, condition, causes):
                     return blocker, None
         return None, due
 
@@ -130,10 +128,31 @@ class Guards:
             return _UNGUARDED
         return self._model.settings_of(part, target.mode)
 
-    def _broken_invariant(
-        self, part: PartName, mode: ModeName | None, condition: Condition
+    def _why_not(self, condition: Condition) -> tuple[Blocker, ...]:
+        """Return why a guard does not hold, unless it is known to; empty: it does."""
+        is_true = self._watched.truth(condition) is Truth.TRUE
+        return () if is_true else self._watched.explain(condition)
+
+    def _blockers(
+        self,
+        part: PartName,
+        target: StateAndMode,
+        why_not: Callable[[Condition], tuple[Blocker, ...]],
     ) -> Iterator[Blocker]:
-        causes = self._watched.explain(condition)
+        settings = self._settings(part, target)
+        for condition in settings.requires:
+            for blocker in why_not(condition):
+                yield replace(blocker, path=(part, *blocker.path))
+        for condition in settings.invariants:
+            yield from self._broken_invariant(part, target.mode, condition, why_not(condition))
+
+    def _broken_invariant(
+        self,
+        part: PartName,
+        mode: ModeName | None,
+        condition: Condition,
+        causes: tuple[Blocker, ...],
+    ) -> Iterator[Blocker]:
         if causes:
             message = f"{part} cannot stay {mode or 'active'}: {causes[0].message}"
             yield Blocker(

@@ -6,7 +6,6 @@ import pytest
 
 from domain.changes.guards import Guards
 from domain.conditions.condition import Condition
-from domain.conditions.tree import Topic, TopicKind
 from domain.conditions.watched import WatchedConditions
 from domain.parts.mode_settings import ModeSettings
 from domain.parts.system_model import SmhModel
@@ -41,8 +40,8 @@ class Guarded:
     def set(self, now: int, **values: float) -> None:
         """Let signals have other values."""
         self.facts.values |= values
-        for name in values:
-            self.watched.touch(Topic(TopicKind.SIGNAL, name))
+        for topic in self.watched.topics:
+            self.watched.touch(topic)
         self.watched.renew(now)
 
     def codes(self, parts: Sequence[PartName] = (ACTUATION, BASE)) -> list[tuple[str, str]]:
@@ -82,6 +81,7 @@ def test_a_broken_invariant_blocks_every_part_that_has_it() -> None:
 def test_a_guard_over_what_is_not_known_does_not_hold() -> None:
     robot = Guarded()
     del robot.facts.values["battery_level"]
+    robot.set(5)
     assert robot.codes((ACTUATION,)) == [("UNKNOWN_VALUE", "actuation")]
 
 
@@ -115,8 +115,7 @@ def test_an_invariant_counts_as_broken_once_its_grace_is_over() -> None:
 def test_an_unknown_invariant_may_be_given_time_to_become_known() -> None:
     robot = Guarded()
     del robot.facts.values["temperature"]
-    robot.watched.touch(Topic(TopicKind.SIGNAL, "temperature"))
-    robot.watched.renew(seconds(5))
+    robot.set(seconds(5))
     judge = robot.guards.broken_for_too_long
     broken, due = judge((BASE,), TARGETS, seconds(6), unknown_from=seconds(7))
     assert (broken, due) == (None, seconds(7))
