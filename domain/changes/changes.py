@@ -314,10 +314,10 @@ class Changes:
 
     def _is_late(self, change: Change, now: Instant) -> None:
         """End a change that is not done by its deadline, unless it ends or goes back already."""
-        if change.is_stopping or change.is_going_back or change.deadline_at is None:
+        allowed = change.schedule.deadline
+        if change.is_stopping or change.is_going_back or allowed is None:
             return
-        allowed = to_seconds(change.deadline_at - change.started_at)
-        reason = f"not done within {allowed:g} s: {joined(sorted(change.open))}"
+        reason = f"not done within {to_seconds(allowed):g} s: {joined(sorted(change.open))}"
         if change.schedule.on_failure is OnFailure.ROLLBACK:
             change.failure = (ChangeStatus.TIMED_OUT, reason)
             self._stop(change, now)

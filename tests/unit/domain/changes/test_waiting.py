@@ -5,6 +5,7 @@ import pytest
 from domain.errors import BlockedError
 from domain.identifiers import ChangeId
 from domain.inputs import CancelRequest, ModeRequest
+from domain.parts.mode_settings import TransitionSettings
 from domain.simulation.node_settings import Fault
 from domain.snapshot import ChangeStatus
 from domain.timebase import seconds
@@ -110,3 +111,22 @@ def test_a_newer_request_for_the_part_supersedes_it(robot: CoreRobot) -> None:
 def test_a_request_that_need_not_wait_begins_at_once(robot: CoreRobot) -> None:
     robot.release("charging")
     assert robot.change(_ask(robot)).status is ChangeStatus.RUNNING
+
+
+def test_the_deadline_of_a_change_counts_from_when_it_begins() -> None:
+    model = guarded_model(
+        requires=("not hold.charging",),
+        invariants=(),
+        transition=TransitionSettings(deadline=seconds(2)),
+    )
+    robot = CoreRobot(model)
+    robot.read(**GOOD)
+    robot.hold("charging")
+    robot.fault(ARM, Fault.SILENT)
+    change = _ask(robot)
+    _keep_good(robot, 5)
+    robot.release("charging")
+    _keep_good(robot, 3)
+    view = robot.change(change)
+    assert view.status is ChangeStatus.TIMED_OUT
+    assert view.reason == "not done within 2 s: manipulator"
