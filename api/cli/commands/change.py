@@ -127,7 +127,7 @@ def show_plan(
     steps = plan["steps"]
     if not steps:
         say(f"{part} is there already: no step is needed")
-    for step in steps:
+    for step in sorted(steps, key=lambda step: int(step["stage"])):
         stage = f"stage {step['stage']}: " if plan["stages"] > 1 else ""
         say(f"{stage}would {_words(step['action'])} {step['node']}")
     if steps and plan["expected_s"] is not None:

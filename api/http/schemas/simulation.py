@@ -20,6 +20,8 @@ from api.http.schemas.sent_values import SentParameter, SentSignalValue
 from api.http.schemas.tasks import TaskBody
 from domain.conditions.condition import Condition
 from domain.conditions.lexer import MAX_LENGTH, ConditionSyntaxError
+from domain.errors import near_match, shortened
+from domain.events.kinds import EVENTS
 
 MAX_UNTIL_S = 86_400.0
 MAX_SAMPLES = 20_000
@@ -174,8 +176,15 @@ class ExpectStep(TimedStep):
 
     @model_validator(mode="after")
     def _counts_events(self) -> Self:
-        if not isinstance(self.expect.get("events", {}), dict):
+        events = self.expect.get("events", {})
+        if not isinstance(events, dict):
             raise ValueError("events must be an object with a number for each kind of event")
+        for kind in events:
+            if kind not in EVENTS:
+                # A number of 0 of what never happens would be met by every robot.
+                near = near_match(str(kind), tuple(EVENTS))
+                hint = f"; did you mean {near}?" if near else ""
+                raise ValueError(f"there is no kind of event {shortened(str(kind))!r}{hint}")
         return self
 
 

@@ -144,8 +144,8 @@ def _plan(
 
 def test_a_dry_run_in_stages_says_them_and_how_long_it_takes(service: Service) -> None:
     steps = [
-        {**step("drive_base", "activate", "pending"), "stage": 0},
         {**step("arm", "activate", "pending"), "stage": 1},
+        {**step("drive_base", "activate", "pending"), "stage": 0},
     ]
     answer = httpx.Response(200, json=_plan(steps, 2, 0.40000001))
     service.answers["POST /systems/actuation/mode?dry_run=true"] = answer
@@ -180,7 +180,8 @@ def test_a_request_that_waits_says_for_what_and_is_followed(service: Service) ->
 
 
 def test_a_dry_run_says_the_steps_and_changes_nothing(service: Service) -> None:
-    steps = [step("arm", "configure", "pending"), step("arm", "set_parameters", "pending")]
+    actions = ("configure", "set_parameters")
+    steps = [{**step("arm", action, "pending"), "stage": 0} for action in actions]
     asked = "POST /systems/actuation/mode?dry_run=true"
     service.answers[asked] = httpx.Response(200, json=_plan(steps))
     said: list[str] = []

@@ -92,6 +92,7 @@ def test_a_fault_is_set_or_ended(fault: str, meant: Fault | None) -> None:
         ({"request": {"method": "PUT", "path": "/", "body": nested(40)}}, "levels of nested"),
         ({"expect": {}}, "at least 1"),
         ({"expect": {"events": 3}}, "for each kind of event"),
+        ({"expect": {"events": {"task.start": 0}}}, "did you mean task.started?"),
         ({"expect": nested(40)}, "levels of nested"),
         ({"expect": {"task": None}, "refused": True}, "Extra inputs"),
         ({"task": None, "t_s": -1}, "greater than or equal to 0"),
