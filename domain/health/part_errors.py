@@ -181,7 +181,9 @@ class PartErrors(Concern):
         if not changed:
             return False
         if len(changed) > LOOKS_AT_ONCE:
-            changed = {part for part in changed if self._may_matter(part)}
+            # In bulk: a request may change ten thousand.
+            known = self._deviating.keys() | self._drifted
+            changed = (changed - self._parts.driven) | (changed & known)
         if len(changed) > LOOKS_AT_ONCE:
             origin = _Origin(self._outbox.record_input(), self._outbox.actor, now)
             self._to_look.update(dict.fromkeys(changed, origin))
@@ -237,14 +239,6 @@ class PartErrors(Concern):
 
     def _sorted(self, parts: Iterable[PartName]) -> list[PartName]:
         return sorted(parts, key=self._rank.__getitem__)
-
-    def _may_matter(self, part: PartName) -> bool:
-        return (
-            self._parts.change_of(part) is None
-            or part in self._deviating
-            or part in self._drifted
-            or part in self._reported
-        )
 
     def _look(self, part: PartName, since: Instant) -> None:
         """Judge a part by what is known of it now.

@@ -246,6 +246,11 @@ class Parts(Concern):
         """Return the targets that the end of a displacement would put in force, by part."""
         return self._targets.without(displaced)
 
+    @property
+    def driven(self) -> Set[PartName]:
+        """Return the parts that a change drives; read only."""
+        return self._changes.keys()
+
     def change_of(self, part: PartName) -> ChangeId | None:
         """Return the change that drives a part; None: there is none."""
         return self._changes.get(part)
