@@ -67,7 +67,9 @@ class Changing(Concern):
         self._admission = ChangeAdmission(parts.model, parts.facts, guards)
         self._changes = Changes(parts, settings, outbox, health, guards, part_errors)
         self._whys = Whys(parts, self._admission, health)
-        self._waiting = Waiting(parts, self._changes, self._admission, guards, health, outbox)
+        self._waiting = Waiting(
+            parts, self._changes, self._admission, guards, health, outbox, self._admit
+        )
         self._restoring = Restoring(parts, self._changes, settings, outbox, self._admit)
         self._backend = BackendStatus(available=True)
         self._backend_since: Instant | None = None
@@ -163,6 +165,7 @@ class Changing(Concern):
             self._outbox.record_input()
             self._backend_since = now
         self._backend = status
+        self._waiting.note_backend()
 
     def _take_backlog(self, backlog: ReportBacklog, now: Instant) -> None:
         self._changes.note_backlog(backlog)

@@ -6,10 +6,11 @@ from domain.changes.admission import ChangeAdmission
 from domain.changes.changes import Changes
 from domain.changes.guards import Guards
 from domain.changes.outcome import joined
+from domain.changes.plan import ChangeGoal
 from domain.changes.record import Change
 from domain.conditions.explanation import CONDITION, UNKNOWN_VALUE
 from domain.deadlines import Deadlines
-from domain.errors import RefusedError
+from domain.errors import BackendUnavailableError, RefusedError
 from domain.findings import Blocker
 from domain.health.health import Health
 from domain.identifiers import ChangeId
@@ -42,6 +43,7 @@ class Waiting:
         guards: Guards,
         health: Health,
         outbox: Outbox,
+        admit: Callable[[ChangeRequest], ChangeGoal],
     ) -> None:
         """Begin without any.
 
@@ -52,6 +54,7 @@ class Waiting:
             guards: Tell when one of them begins or ceases to hold.
             health: Tells why ESTOP is active.
             outbox: Receives events.
+            admit: Returns the goal of a request, or raises the error that rejects it.
         """
         self._parts = parts
         self._changes = changes
@@ -59,6 +62,7 @@ class Waiting:
         self._guards = guards
         self._health = health
         self._outbox = outbox
+        self._admit = admit
         self._waiting: dict[ChangeId, Change] = {}
         self._deadlines: Deadlines[ChangeId] = Deadlines()
         self._seen: tuple[object, ...] = ()
@@ -103,6 +107,10 @@ class Waiting:
             if node == change.part or change.part in self._parts.model.ancestors[node]:
                 self._seen = ()
 
+    def note_backend(self) -> None:
+        """Judge all changes anew: none begins while the backend is down."""
+        self._seen = ()
+
     def wake_at(self) -> Instant | None:
         """Return when the time of the next one ends; None: none waits."""
         return self._deadlines.next()
@@ -142,7 +150,9 @@ class Waiting:
             self._end(change, ChangeStatus.FAILED, why, now)
             return True
         try:
-            goal = self._admission.admit(request, self._health.stop_reasons)
+            goal = self._admit(request)
+        except BackendUnavailableError:
+            return False
         except RefusedError as refusal:
             self._end(change, ChangeStatus.FAILED, refusal.message, now)
             return True

@@ -4,7 +4,7 @@ import pytest
 
 from domain.errors import BlockedError
 from domain.identifiers import ChangeId
-from domain.inputs import CancelRequest, ModeRequest
+from domain.inputs import BackendStatus, CancelRequest, ModeRequest
 from domain.parts.mode_settings import TransitionSettings
 from domain.simulation.node_settings import Fault
 from domain.snapshot import ChangeStatus
@@ -130,3 +130,12 @@ def test_the_deadline_of_a_change_counts_from_when_it_begins() -> None:
     view = robot.change(change)
     assert view.status is ChangeStatus.TIMED_OUT
     assert view.reason == "not done within 2 s: manipulator"
+
+
+def test_nothing_begins_while_the_backend_is_down(robot: CoreRobot) -> None:
+    change = _ask(robot)
+    robot.give(BackendStatus(available=False, reason="no route"))
+    robot.release("charging")
+    assert robot.change(change).status is ChangeStatus.WAITING
+    robot.give(BackendStatus(available=True))
+    assert robot.change(change).status is ChangeStatus.RUNNING
