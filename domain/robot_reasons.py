@@ -79,21 +79,9 @@ class RobotReasons:
                 continue
             if attribute == "reachable" and facts.reachable:
                 continue
-            doubt = doubt_of(node, facts, self._path(part, node))
+            doubt = doubt_of(node, facts, self._parts.model.path_down(part, node))
             if doubt is not None:
                 yield doubt
-
-    def _path(self, part: PartName, node: PartName) -> tuple[str, ...]:
-        """Return one path down from a system to a node below it."""
-        model, path, system = self._parts.model, [part], part
-        while system in model.systems and node not in model.systems[system].parts:
-            system = next(
-                child
-                for child in model.systems[system].parts
-                if child in model.systems and child in model.ancestors[node]
-            )
-            path.append(system)
-        return (*path, node)
 
     def _of_task(self) -> Iterable[Blocker]:
         if self._driving.status is not TaskStatus.PAUSED_TASK:

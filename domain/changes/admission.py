@@ -14,26 +14,16 @@ from domain.errors import BlockedError, IllegalTransitionError
 from domain.findings import Blocker
 from domain.inputs import ChangeRequest, ModeRequest, TransitionRequest
 from domain.lifecycle import LifecycleState, Transition, arrival, is_legal_request
+from domain.parts.node_doubts import IN_DOUBT, UNKNOWN_STATE, UNREACHABLE, doubt_of
 from domain.parts.node_facts import NodeFacts
 from domain.parts.system_model import SmhModel
 from domain.state_and_mode import PartName, StateAndMode
 
-ADVISORY = frozenset({"UNREACHABLE", "UNKNOWN_STATE"})
+ADVISORY = frozenset({UNREACHABLE, UNKNOWN_STATE})
 """Shown, but no reason to reject: an absent node may reappear before the deadline."""
 
 MAX_BLOCKERS = 100
 """Largest number of blockers of one request; more would not be read."""
-
-_CODES = {
-    LifecycleState.FINALIZED: "FINALIZED",
-    LifecycleState.ERROR_PROCESSING: "ERROR_PROCESSING",
-}
-_IN_DOUBT = frozenset({LifecycleState.UNKNOWN, *_CODES})
-"""States in which something may block a node from its goal."""
-_WORDS = {
-    LifecycleState.FINALIZED: "is finalized: its process must be restarted",
-    LifecycleState.ERROR_PROCESSING: "is processing an error",
-}
 
 
 class ChangeAdmission:
@@ -146,13 +136,11 @@ class ChangeAdmission:
         part = part_of(request)
         resting = isinstance(request, TransitionRequest) and request.transition in TOWARDS_REST
         facts = self._facts
-        doubtful = [node for node in goal.nodes if facts[node].known_state in _IN_DOUBT]
-        codes = [(self._code(node, goal.nodes[node], resting), node) for node in doubtful]
-        found = sorted(
-            ((code, node) for code, node in codes if code is not None),
-            key=lambda item: item[0] in ADVISORY,
-        )
-        blockers = [self._blocker(part, node, code) for code, node in found[:MAX_BLOCKERS]]
+        doubtful = [node for node in goal.nodes if facts[node].known_state in IN_DOUBT]
+        # Those that reject come first; of the others, no more are made than are told.
+        doubtful.sort(key=lambda node: facts[node].known_state is LifecycleState.UNKNOWN)
+        doubts = (self._doubt(part, node, goal.nodes[node], resting) for node in doubtful)
+        blockers = list(islice(filter(None, doubts), MAX_BLOCKERS))
         blockers = [*self.guard_blockers(part, goal), *blockers]
         if estop and self.would_activate(goal):
             blockers = [replace(why, path=(part, *why.path)) for why in estop] + blockers
@@ -168,7 +156,7 @@ class ChangeAdmission:
 
     def _path_of_guard(self, part: PartName, blocker: Blocker) -> tuple[str, ...]:
         owner, *below = blocker.path
-        return (*self.path(part, PartName(owner)), *below)
+        return (*self._model.path_down(part, PartName(owner)), *below)
 
     def _activates(self, node: PartName, goal: NodeGoal) -> bool:
         """Tell whether a node would, or in an unknown state might, be activated."""
@@ -179,41 +167,16 @@ class ChangeAdmission:
             return facts.has_lifecycle
         return Transition.ACTIVATE in (next_steps(facts, goal) or ())
 
-    def _code(self, node: PartName, goal: NodeGoal, resting: bool) -> str | None:
-        """Return the code of what blocks a node from its goal; None: nothing does."""
+    def _doubt(
+        self, part: PartName, node: PartName, goal: NodeGoal, resting: bool
+    ) -> Blocker | None:
+        """Return what blocks a node from its goal, or is not known of it; None: nothing does."""
         facts = self._facts[node]
         state = facts.known_state
-        if state is LifecycleState.UNKNOWN:
-            return "UNREACHABLE" if facts.reachable is False else "UNKNOWN_STATE"
-        if resting or goal.state is state:
+        if state is not LifecycleState.UNKNOWN and (resting or goal.state is state):
             return None
-        return _CODES.get(state)
-
-    def _blocker(self, part: PartName, node: PartName, code: str) -> Blocker:
-        facts = self._facts[node]
-        known = facts.known_state
-        value = None if code in ADVISORY else str(known)
-        words = facts.why_unknown if code in ADVISORY else _WORDS[known]
-        path = self.path(part, node)
-        return Blocker(
-            code,
-            f"{node} {words}",
-            path,
-            value,
-            since=facts.state_since,
-            refuses=code not in ADVISORY,
-        )
-
-    def path(self, part: PartName, node: PartName) -> tuple[str, ...]:
-        """Return one path down from the requested part to the node."""
-        if part == node:
-            return (part,)
-        for child in self._model.systems[part].parts:
-            if child == node or (
-                child in self._model.systems and child in self._model.ancestors[node]
-            ):
-                return (part, *self.path(child, node))
-        return (part, node)
+        doubt = doubt_of(node, facts, self._model.path_down(part, node))
+        return doubt and replace(doubt, refuses=doubt.code not in ADVISORY)
 
 
 def refuse(blockers: Iterable[Blocker]) -> bool:

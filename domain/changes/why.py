@@ -66,7 +66,7 @@ class Whys:
         message = inference.deviation_reason(part) or ""
         label = inference.actual(cause).state_and_mode.label
         since = self._parts.view(cause).deviation_since
-        path = self._admission.path(part, cause)
+        path = self._parts.model.path_down(part, cause)
         yield Blocker(DEVIATES, message, path, label, target.label, since)
 
     def _of_nodes(self, part: PartName) -> Iterator[Blocker]:
@@ -76,7 +76,7 @@ class Whys:
             target = inference.target(node)
             if target is None or inference.converged(node):
                 continue
-            path = self._admission.path(part, node)
+            path = self._parts.model.path_down(part, node)
             doubt = doubt_of(node, self._parts.facts[node], path)
             if doubt is not None:
                 yield doubt

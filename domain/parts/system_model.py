@@ -163,6 +163,17 @@ class SmhModel:
         own = settings.get(mode) if mode is not None else None
         return own or settings.get(EVERY_MODE) or _DEFAULTS
 
+    def path_down(self, part: PartName, below: PartName) -> tuple[PartName, ...]:
+        """Return one path from a part down to one below it, with both ends."""
+        path, systems = [part], self.systems
+        while path[-1] != below:
+            children = systems[path[-1]].named_parts
+            inside = (
+                each for each in children if each in systems and each in self.ancestors[below]
+            )
+            path.append(below if below in children else next(inside))
+        return tuple(path)
+
     def nodes_below(self, part: PartName) -> tuple[PartName, ...]:
         """Return the nodes that a part consists of, each once; a node consists of itself."""
         if part in self.nodes:

@@ -320,3 +320,10 @@ def test_settings_that_lead_back_to_themselves_make_no_model() -> None:
         SmhModel(parts, {}, settings)
 
     assert [finding.code for finding in caught.value.findings] == ["FALLBACK_CIRCLE"]
+
+
+def test_a_path_leads_down_through_the_systems_in_between() -> None:
+    robot, lidar = PartName("robot"), PartName("lidar")
+    assert nested_model().path_down(robot, ARM) == (robot, ACTUATION, ARM)
+    assert nested_model().path_down(robot, lidar) == (robot, lidar)
+    assert nested_model().path_down(ARM, ARM) == (ARM,)
