@@ -135,7 +135,7 @@ class Fallbacks(Concern):
         if self._revision != self._guards.revision:
             self._revision = self._guards.revision
             return list(self._rank)
-        touched = {part for part in self._outbox.parts if part in self._rank}
+        touched = self._rank.keys() & self._outbox.parts
         return sorted(due | touched, key=self._rank.__getitem__)
 
     def _follow_requests(self, parts: Iterable[PartName]) -> bool:
