@@ -5,8 +5,8 @@ import pytest
 from domain.errors import BlockedError
 from domain.findings import Blocker
 from domain.inputs import ModeRequest
-from domain.parts.mode_settings import OnFailure, TransitionSettings
-from domain.parts.system_model import SmhModel
+from domain.parts.mode_settings import ModeSettings, OnFailure, TransitionSettings
+from domain.parts.system_model import EVERY_MODE, SmhModel
 from domain.simulation.node_settings import Fault
 from domain.snapshot import ChangeStatus, ModeView, Rollback
 from domain.state_and_mode import ModeName, PartName
@@ -126,3 +126,15 @@ def test_a_mode_in_force_can_be_stayed_in_exactly_while_its_invariants_hold() ->
     assert _mode(robot, ACTUATION, PERFORMANCE).can_stay is True
     robot.read(temperature=51)
     assert _mode(robot, ACTUATION, PERFORMANCE).can_stay is False
+
+
+def test_a_guard_of_one_part_that_breaks_lets_no_later_part_begin() -> None:
+    model = guarded_model(BASE, FAST, invariants=())
+    order = ModeSettings(transition=TransitionSettings({ARM: (BASE,)}))
+    settings = {**model.mode_settings, ACTUATION: {EVERY_MODE: order}}
+    robot = _robot(SmhModel(model.nodes, model.systems, settings))
+    change = robot.begin(PERFORM)
+    robot.read(battery_level=0.2)
+    robot.advance(5)
+    assert robot.change(change).status is ChangeStatus.FAILED
+    assert robot.actual(ARM) == "unconfigured", "as with stop, although its policy is to continue"

@@ -228,6 +228,8 @@ def test_of_a_superseded_change_no_later_stage_begins() -> None:
     assert robot.change(change).status is ChangeStatus.SUPERSEDED
     assert robot.change(newer).status is ChangeStatus.SUCCEEDED
     assert [robot.actual(node) for node in NODES[:4]] == ["active.FAST"] + 3 * ["inactive"]
+    waited = {str(step.status) for step in robot.change(change).steps if step.stage in (1, 2, 3)}
+    assert waited == {"superseded"}, "no step looks as if it were still to come"
 
 
 def test_a_canceled_change_leaves_those_that_wait() -> None:

@@ -6,13 +6,14 @@ from domain.errors import BlockedError
 from domain.identifiers import ChangeId
 from domain.inputs import BackendStatus, CancelRequest, ModeRequest
 from domain.parts.mode_settings import TransitionSettings
+from domain.parts.system_model import SmhModel
 from domain.simulation.node_settings import Fault
 from domain.snapshot import ChangeStatus
 from domain.timebase import seconds
 from tests.support.core_robot import CoreRobot
 from tests.support.good import GOOD
 from tests.support.guarded_model import guarded_model
-from tests.support.models import ACTUATION, ARM, PERFORMANCE
+from tests.support.models import ACTUATION, ARM, BASE, FAST, PERFORMANCE
 
 
 @pytest.fixture
@@ -139,3 +140,27 @@ def test_nothing_begins_while_the_backend_is_down(robot: CoreRobot) -> None:
     assert robot.change(change).status is ChangeStatus.WAITING
     robot.give(BackendStatus(available=True))
     assert robot.change(change).status is ChangeStatus.RUNNING
+
+
+def test_one_that_begins_supersedes_those_that_wait_below_it() -> None:
+    of_base = guarded_model(BASE, FAST, requires=("not hold.lunch",), invariants=())
+    model = guarded_model(requires=("not hold.charging",), invariants=())
+    robot = CoreRobot(
+        SmhModel(model.nodes, model.systems, {**model.mode_settings, **of_base.mode_settings})
+    )
+    robot.read(**GOOD)
+    robot.hold("charging")
+    above = _ask(robot)
+    robot.hold("lunch")
+    below = robot.begin(ModeRequest(BASE, FAST, wait_for=seconds(60)))
+    robot.release("lunch")
+    assert robot.change(below).status is ChangeStatus.RUNNING
+    robot.hold("lunch")
+    below = robot.begin(ModeRequest(BASE, FAST, wait_for=seconds(60)))
+    robot.release("charging")
+    assert robot.change(above).status is ChangeStatus.WAITING, (
+        "the base below still waits for lunch"
+    )
+    robot.release("lunch")
+    ends = {robot.change(one).status for one in (above, below)}
+    assert ends == {ChangeStatus.RUNNING, ChangeStatus.SUPERSEDED}
