@@ -5,15 +5,19 @@ from dataclasses import replace
 import pytest
 
 from domain.identifiers import ChangeId
-from domain.inputs import CancelRequest, ModeRequest, TransitionRequest
+from domain.inputs import CancelRequest, Input, ModeRequest, TransitionRequest
 from domain.lifecycle import Transition
+from domain.outbox import Outputs
 from domain.parts.mode_settings import OnFailure
+from domain.parts.system_model import SmhModel
 from domain.simulation.node_settings import Fault, NodeSettings
 from domain.snapshot import ChangeStatus, Rollback
+from domain.state_and_mode import DEFAULT_MODE
 from domain.timebase import to_seconds
 from tests.support.core_robot import CoreRobot
 from tests.support.good import GOOD
-from tests.support.models import FAST
+from tests.support.kept_values import KeptValues
+from tests.support.models import FAST, active
 from tests.support.ordered_model import IN_A_ROW, NODES, ROBOT, ordered_model
 
 ONE_SECOND = NodeSettings(configure=0, activate=10**9, deactivate=10**9, set_parameters=0)
@@ -265,3 +269,32 @@ def test_at_its_deadline_a_change_goes_back_if_it_is_to_on_a_failure() -> None:
     view = robot.change(change)
     assert (view.status, view.rollback) == (ChangeStatus.TIMED_OUT, Rollback.DONE)
     assert {robot.actual(node) for node in NODES} == {"inactive"}
+
+
+class _KeepingRobot(CoreRobot):
+    """Keeps what survives a restart."""
+
+    def __init__(self, model: SmhModel) -> None:
+        self.kept = KeptValues()
+        super().__init__(model, nodes=dict.fromkeys(NODES, ONE_SECOND))
+
+    def give(self, given: Input) -> Outputs:
+        """Hand in one input."""
+        return self.kept.take(super().give(given))
+
+
+def test_after_a_rollback_the_targets_before_it_are_those_that_survive_a_restart() -> None:
+    model = ordered_model(IN_A_ROW, OnFailure.ROLLBACK)
+    robot = _KeepingRobot(model)
+    robot.read(**GOOD)
+    robot.begin(ModeRequest(NODES[0], DEFAULT_MODE))
+    robot.advance(3)
+    robot.fault("n3", Fault.REFUSE)
+    robot.begin(ENTER_FAST)
+    robot.advance(20)
+    restarted = CoreRobot(model)
+    restarted.give(robot.kept.restored())
+    targets = {name: view.target for name, view in restarted.core.parts().items()}
+    assert targets == {name: view.target for name, view in robot.core.parts().items()}
+    assert targets[NODES[0]] == active()
+    assert targets[ROBOT] is None
