@@ -116,7 +116,8 @@ def blockers_page() -> str:
     Raises:
         UndescribedError: A code of the source is not described here, or the reverse.
     """
-    of_changes = codes_in("domain/changes/admission.py") | {ESTOP, BackendUnavailableError.code}
+    of_nodes = codes_in("domain/parts/node_doubts.py")
+    of_changes = of_nodes | {ESTOP, BackendUnavailableError.code}
     require_described("blockers", of_changes, set(_OF_CHANGES))
     of_conditions = codes_in("domain/robot_reasons.py") | {CONDITION, UNKNOWN_VALUE}
     require_described("conditions", of_conditions, set(_OF_CONDITIONS))

@@ -136,6 +136,17 @@ def test_the_stop_is_that_of_the_last_frame_or_of_the_press_that_was_answered(pa
     assert fold(page, pressed, later)["emergencyStop"] == released
 
 
+def test_an_answer_to_the_press_that_comes_after_the_standstill_does_not_hide_it(
+    page: Page,
+) -> None:
+    engaged = {"engaged": True, "since_at": AT, "standstill_at": None}
+    stands = engaged | {"standstill_at": LATER}
+    pressed = {"type": "latch", "latch": engaged}
+    assert fold(page, frame(LATER, emergency_stop=stands), pressed)["emergencyStop"] == stands
+    released = {"engaged": False, "since_at": LATER, "standstill_at": None}
+    assert fold(page, frame(LATER, emergency_stop=released), pressed)["emergencyStop"] == released
+
+
 def test_when_the_service_was_restarted_is_told_until_it_is_read(page: Page) -> None:
     first, second = hello("a"), hello("b", LATER)
     assert fold(page, first, first)["restartedAt"] is None

@@ -4,6 +4,7 @@ import signal
 import subprocess
 import time
 from collections.abc import Iterator
+from typing import IO
 
 import httpx
 import pytest
@@ -36,6 +37,9 @@ def test_a_drive_is_followed_to_its_end_and_the_next_one_is_left_and_canceled(
         text=True,
         preexec_fn=hear_ctrl_c,
     )
+    assert watched.stdout is not None
+    # The task may move before its client has read the answer.
+    until_told(watched.stdout, "task t2")
     until_running(serving)
     watched.send_signal(signal.SIGINT)
     told, complaints = watched.communicate(timeout=10)
@@ -62,6 +66,14 @@ def test_waypoints_that_cannot_be_driven_are_refused(serving: ServiceProcess) ->
 def hear_ctrl_c() -> None:
     """Undo what is inherited where the tests run in the background: there Ctrl-C is ignored."""
     signal.signal(signal.SIGINT, signal.SIG_DFL)
+
+
+def until_told(lines: IO[str], words: str) -> None:
+    """Read lines until one has `words`."""
+    for line in lines:
+        if words in line:
+            return
+    raise AssertionError(f"{words!r} was never told")
 
 
 def until_running(serving: ServiceProcess) -> None:

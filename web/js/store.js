@@ -131,8 +131,11 @@ const FOLDERS = {
     return { ...append(state, noteOf(gap)), lastEventId };
   },
 
+  /** A frame may tell of the press and of the standstill before the answer to the press comes. */
   latch(state, { latch }) {
-    return { ...state, emergencyStop: latch };
+    const known = state.emergencyStop?.since_at;
+    const isTold = known && Date.parse(known) >= Date.parse(latch.since_at);
+    return isTold ? state : { ...state, emergencyStop: latch };
   },
 
   path(state, { task, items, indices }) {
