@@ -17,6 +17,8 @@ from domain.errors import InvalidModelError, UnknownModeError, UnknownPartError,
 from domain.findings import Finding
 from domain.lifecycle import LifecycleState
 from domain.parameters import Parameters
+from domain.parts.declared_errors import DeclaredError
+from domain.parts.declared_reactions import DeclaredReaction
 from domain.parts.mode_settings import ModeSettings
 from domain.parts.settings_check import check_settings
 from domain.state_and_mode import DEFAULT_MODE, ModeName, PartName, StateAndMode
@@ -93,6 +95,10 @@ class SmhModel:
     """Settings of modes, by part; read by `settings_of`. `EVERY_MODE` is a key beside them;
     what a mode does not say is filled in from it.
     """
+    errors: Mapping[PartName, Mapping[str, DeclaredError]] = field(default_factory=dict)
+    """Errors that the file declares, by part and name; also what it says about built-in ones."""
+    reactions: Mapping[PartName, Mapping[str, DeclaredReaction]] = field(default_factory=dict)
+    """Reactions by part and name, in the order of the file."""
     ancestors: Mapping[PartName, tuple[PartName, ...]] = field(init=False)
     """Every system that a part belongs to, directly or indirectly; children before parents."""
 
