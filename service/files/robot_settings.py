@@ -4,11 +4,11 @@ A robot file and the `robot` of a simulation have the same keys. Omitted keys ke
 the core.
 """
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 from dataclasses import replace
-from typing import Annotated, Any, Literal, Self, TypeAlias
+from typing import Annotated, Literal, Self, TypeAlias
 
-from pydantic import BaseModel, ConfigDict, Field, model_validator
+from pydantic import ConfigDict, Field, model_validator
 
 from domain.health.signals import (
     STALE_DATA,
@@ -21,35 +21,10 @@ from domain.health.signals import (
     default_signals,
 )
 from domain.timebase import Duration, seconds
-
-Seconds: TypeAlias = Annotated[float, Field(ge=0, le=86_400, allow_inf_nan=False)]
-Number: TypeAlias = Annotated[float, Field(allow_inf_nan=False)]
+from service.files.settings_block import Number, Seconds, SettingsBlock, bare_names
 
 _SignalName: TypeAlias = Annotated[str, Field(pattern=r"^[a-z][a-z0-9_]{0,63}$")]
 _ErrorName: TypeAlias = Annotated[str, Field(pattern=r"^[A-Z][A-Z0-9_]{0,63}$")]
-
-
-def bare_names(named: Mapping[str, Any]) -> dict[str, Any]:
-    """Return what is named, without the leading slashes that names have in ROS.
-
-    Raises:
-        ValueError: A name occurs both with and without one.
-    """
-    found: dict[str, Any] = {}
-    for name, value in named.items():
-        bare = name.lstrip("/")
-        if bare in found:
-            raise ValueError(f"{bare} is named twice, with and without a leading slash")
-        found[bare] = value
-    return found
-
-
-class SettingsBlock(BaseModel):
-    """A block of settings: strict, frozen, without unknown keys."""
-
-    model_config = ConfigDict(
-        strict=True, extra="forbid", frozen=True, use_attribute_docstrings=True
-    )
 
 
 class AnySignal(SettingsBlock):
