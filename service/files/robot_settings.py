@@ -22,9 +22,13 @@ from domain.health.signals import (
 )
 from domain.timebase import Duration, seconds
 from service.files.settings_block import Number, Seconds, SettingsBlock, bare_names
+from service.files.source_block import MISSED_PERIODS, SourceBlock
 
 _SignalName: TypeAlias = Annotated[str, Field(pattern=r"^[a-z][a-z0-9_]{0,63}$")]
 _ErrorName: TypeAlias = Annotated[str, Field(pattern=r"^[A-Z][A-Z0-9_]{0,63}$")]
+
+
+_STALE_BETWEEN = "stale_after_s is shorter than the period of the source"
 
 
 class AnySignal(SettingsBlock):
@@ -38,6 +42,15 @@ class AnySignal(SettingsBlock):
     recovery: Literal["automatic", "acknowledge"] | None = None
     """Whether an error clears when its cause is gone, or only after it was acknowledged as well.
     Default: automatic."""
+    source: SourceBlock | None = None
+    """What the service itself reads the signal from. Default: readings are posted, or come from a
+    topic of ROS 2. Without effect in simulations, which open nothing."""
+
+    @model_validator(mode="after")
+    def _is_not_always_stale(self) -> Self:
+        if self.source is not None and 0 < (self.stale_after_s or 0) < self.source.period_s:
+            raise ValueError(f"{_STALE_BETWEEN}, {self.source.period_s:g} s")
+        return self
 
     def applied_to(self, settings: SignalSettings) -> SignalSettings:
         """Return `settings` with the values that are set here.
@@ -182,18 +195,45 @@ class SignalsBlock(SettingsBlock):
 
     def to_domain(self) -> tuple[SignalSettings, ...]:
         """Return the settings of all signals; see `RobotSettings.to_signal_settings`."""
-        general = AnySignal(stale_after_s=self.stale_after_s)
         usual = (
-            getattr(self, settings.spec.name).applied_to(general.applied_to(settings))
-            for settings in default_signals()
+            signal.applied_to(self._general(signal).applied_to(settings))
+            for signal, settings in self._default_ones()
         )
-        further = (signal.declared(name, general) for name, signal in self.further.items())
+        further = (
+            signal.declared(name, self._general(signal)) for name, signal in self.further.items()
+        )
         return (*usual, *further)
+
+    def _general(self, signal: AnySignal) -> AnySignal:
+        """Return the settings of all signals; without any, those that suit the source of one."""
+        stale_after_s = self.stale_after_s
+        if stale_after_s is None and signal.source is not None:
+            stale_after_s = MISSED_PERIODS * signal.source.period_s
+        return AnySignal(stale_after_s=stale_after_s)
+
+    def _default_ones(self) -> Iterator[tuple[AnySignal, SignalSettings]]:
+        for settings in default_signals():
+            yield getattr(self, settings.spec.name), settings
+
+    @property
+    def sources(self) -> dict[str, SourceBlock]:
+        """Return the sources by the names of their signals."""
+        default = {settings.spec.name: signal for signal, settings in self._default_ones()}
+        named = {**default, **self.further}
+        return {name: signal.source for name, signal in named.items() if signal.source is not None}
 
     @property
     def further(self) -> dict[str, DeclaredSignal]:
         """Return the declared signals by name."""
         return self.__pydantic_extra__
+
+    @model_validator(mode="after")
+    def _none_is_always_stale(self) -> Self:
+        for name, source in self.sources.items():
+            own = getattr(self, name).stale_after_s
+            if own is None and 0 < (self.stale_after_s or 0) < source.period_s:
+                raise ValueError(f"{_STALE_BETWEEN} of {name}, {source.period_s:g} s")
+        return self
 
     @model_validator(mode="after")
     def _errors_have_names_of_their_own(self) -> Self:
