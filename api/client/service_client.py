@@ -123,8 +123,9 @@ class ServiceClient:
         return answer
 
     def why_forgotten(self) -> str:
-        """Return why a restart of the service would forget what was asked of it; empty: it would
-        not, or nothing was meant to be stored.
+        """Return why a restart of the service would forget what was asked of it.
+
+        Empty: it would not, or the service was told to store nothing.
 
         Raises:
             ServiceProblemError: The service denied access.
