@@ -1,6 +1,6 @@
 """What conditions can name on a robot: the parts of its model, its signals and their errors."""
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from typing import Protocol
 
 from domain.conditions.vocabulary import Kind, PartTerms, Terms, Vocabulary
@@ -39,20 +39,32 @@ def vocabulary_of(
         is_complete: All signals are known; False: a robot file may declare more.
     """
     known = tuple(signals)
-    parts = {str(name): _terms_of_node(node) for name, node in model.nodes.items()}
+    errors = _errors_of(known)
+    parts = {
+        str(name): _terms_of_node(node, errors.get(name, ())) for name, node in model.nodes.items()
+    }
     for name, system in model.systems.items():
-        modes = tuple(map(str, system.modes))
-        parts[str(name)] = PartTerms(is_node=False, modes=modes, errors=_OF_EVERY_PART)
-    errors = [bound.error for signal in known for bound in signal.bounds]
+        modes, own = tuple(map(str, system.modes)), (*_OF_EVERY_PART, *errors.get(name, ()))
+        parts[str(name)] = PartTerms(is_node=False, modes=modes, errors=own)
     return Vocabulary(
         parts,
         {signal.spec.name: _terms_of_signal(signal.spec) for signal in known},
-        (*dict.fromkeys(errors), STALE_DATA),
+        (*dict.fromkeys(errors.get(None, ())), STALE_DATA),
         is_complete,
     )
 
 
-def _terms_of_node(node: NodeModel) -> PartTerms:
+def _errors_of(signals: Iterable[SignalSettings]) -> Mapping[PartName | None, Sequence[str]]:
+    """Return by part the errors that signals raise, but stale data; None: the robot's own."""
+    errors: dict[PartName | None, list[str]] = {}
+    for signal in signals:
+        for key, _ in signal.can_raise().values():
+            if key.error != STALE_DATA:
+                errors.setdefault(key.part, []).append(key.error)
+    return errors
+
+
+def _terms_of_node(node: NodeModel, errors: Iterable[str]) -> PartTerms:
     parameters: dict[str, Terms | None] = {}
     for values in node.modes.values():
         for name, value in values.items():
@@ -61,7 +73,7 @@ def _terms_of_node(node: NodeModel) -> PartTerms:
         is_node=True,
         modes=tuple(map(str, node.modes)),
         parameters=parameters,
-        errors=_OF_NODES,
+        errors=(*_OF_NODES, *errors),
     )
 
 
