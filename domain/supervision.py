@@ -21,6 +21,7 @@ from domain.fact_changes import FactChanges
 from domain.findings import Blocker
 from domain.health.emergency_stop import EmergencyStop
 from domain.health.health import Health
+from domain.health.mode_limits import ModeLimits
 from domain.health.part_errors import PartErrors
 from domain.health.signals import SignalSettings, default_signals
 from domain.inputs import ChangeRequest, Input, TimePassed
@@ -42,6 +43,7 @@ from domain.snapshot import (
     ErrorKey,
     ErrorView,
     ModeView,
+    MonitorView,
     ParameterView,
     PartView,
     PlanView,
@@ -109,6 +111,7 @@ class Supervision:
             self._parts,
             self._health,
             self._emergency_stop,
+            ModeLimits(settings.signals, self._parts, self._health, self._outbox),
             self.driving,
             Standstill(self.driving, self._emergency_stop, self._outbox),
             storage,
@@ -303,6 +306,10 @@ class Supervision:
     def signals(self) -> Mapping[str, SignalView]:
         """Return all signals."""
         return self._health.signals()
+
+    def monitors(self) -> tuple[MonitorView, ...]:
+        """Return the monitors, as of the last input."""
+        return tuple(self._health.monitors(self._now))
 
     def error(self, key: ErrorKey) -> ErrorView:
         """Return one error, as `Outputs.errors` names it."""
