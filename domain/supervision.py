@@ -10,6 +10,7 @@ from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
+from domain.analysis.fault_trees import ErrorGraph, error_graph
 from domain.audit import Audit
 from domain.changes.changing import Changing
 from domain.changes.guards import Guards
@@ -321,6 +322,11 @@ class Supervision:
     def open_errors(self) -> Mapping[str, ErrorView]:
         """Return the errors that are not normal, by their names."""
         return self._health.error_list.open_ones()
+
+    def error_graph(self) -> ErrorGraph:
+        """Return the critical and fatal errors, and the errors that they follow from."""
+        own = {view.key: view.severity for view in self._health.error_views()}
+        return error_graph(self.model, own)
 
     @property
     def parts_with_errors(self) -> Mapping[str, int]:

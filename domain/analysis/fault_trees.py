@@ -7,6 +7,7 @@ are left out, so that no combination is missed; some may be harmless at the mome
 
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
+from typing import Final
 
 from domain.analysis.cut_sets import MAX_CUT_SETS, Event, Gate, minimal_cut_sets
 from domain.health.built_in_errors import OF_NODES
@@ -14,7 +15,7 @@ from domain.parts.declared_errors import DeclaredError
 from domain.parts.system_model import SmhModel
 from domain.snapshot import ErrorKey, Severity
 
-TOO_MANY_CUT_SETS = "TOO_MANY_CUT_SETS"
+TOO_MANY_CUT_SETS: Final = "TOO_MANY_CUT_SETS"
 """Code of an error of which not all cut sets were found."""
 
 _STOPS_THE_TASK = (Severity.CRITICAL, Severity.FATAL)
