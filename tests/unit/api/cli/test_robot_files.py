@@ -40,7 +40,7 @@ def test_a_robot_file_brings_its_signals(model: Path, robot: Path) -> None:
 
 
 def test_without_a_valid_model_the_robot_file_is_not_checked(model: Path, robot: Path) -> None:
-    model.write_text(ACTUATION.replace("drive_base:", "wheels:"))
+    model.write_text(ACTUATION.replace("\ndrive_base:", "\nwheels:"))
     robot.write_text("nodes: {nobody: {}}\n")
 
     read = read_robot_files(str(model), str(robot))

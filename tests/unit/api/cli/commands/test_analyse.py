@@ -48,7 +48,7 @@ def test_errors_of_signals_of_the_robot_file_are_there_too(
 def test_an_invalid_model_is_told_as_check_does(
     model: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    model.write_text(ACTUATION.replace("drive_base:", "wheels:"))
+    model.write_text(ACTUATION.replace("\ndrive_base:", "\nwheels:"))
 
     assert analyse(str(model), "text") == 1
 
