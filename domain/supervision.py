@@ -20,6 +20,8 @@ from domain.conditions.watched import WatchedConditions
 from domain.events.service import TimeWasDue
 from domain.fact_changes import FactChanges
 from domain.findings import Blocker
+from domain.health.checkpoint_errors import CheckpointErrors
+from domain.health.checkpoints import CheckpointSettings
 from domain.health.emergency_stop import EmergencyStop
 from domain.health.health import Health
 from domain.health.part_errors import PartErrors
@@ -71,6 +73,8 @@ class SupervisionSettings:
     tasks: TaskSettings = field(default_factory=TaskSettings)
     vehicle: VehicleLimits = field(default_factory=VehicleLimits)
     rules: RuleSettings = field(default_factory=RuleSettings)
+    checkpoints: Mapping[PartName, CheckpointSettings] = field(default_factory=dict)
+    """What is supervised of the checkpoints of nodes."""
 
 
 class Supervision:
@@ -95,7 +99,9 @@ class Supervision:
         )
         storage = Storage(self._outbox)
         self._robot_state = RobotState(self._health, self.driving, storage, self._outbox)
-        self._part_errors = PartErrors(self._parts, self._health.error_list, self._outbox, start)
+        self._part_errors = PartErrors(
+            self._parts, self._health.error_list, outbox, start, settings.checkpoints
+        )
         self.facts = RobotFacts(self._parts, self._health, self.driving, self._part_errors.reason)
         """What conditions are evaluated over."""
         self.conditions = WatchedConditions(self.facts)
@@ -115,6 +121,9 @@ class Supervision:
             storage,
             self._robot_state,
             self._part_errors,
+            CheckpointErrors(
+                settings.checkpoints, self._parts, self._health, self._part_errors, outbox
+            ),
             FactChanges(self.conditions, self.driving, self._outbox),
             self._changing,
             *self._displacers(guards, settings.rules),

@@ -76,6 +76,11 @@ class Health(Concern):
         finally:
             self._manager.is_late = False
 
+    @property
+    def is_late(self) -> bool:
+        """Tell whether the current input was heard late by our own fault."""
+        return self._manager.is_late
+
     def take_readings(self, readings: Readings, now: Instant) -> None:
         """Accept readings, and decide at once; one that releases a stop is in the audit trail.
 
