@@ -73,12 +73,10 @@ LATE:
 
 
 def test_how_an_error_follows_is_read() -> None:
-    errors = read(
-        "BLIND: {caused_by: left/lidar.SILENT, need: all, after_s: 0, unless: vehicle.speed_mps < 1}"
-    )
+    errors = read("BLIND: {caused_by: left/lidar.SILENT, need: all, after_s: 1, unless: estop}")
 
     assert errors["BLIND"] == DeclaredError(
-        caused_by=(SILENT,), need_all=True, unless=Condition("vehicle.speed_mps < 1")
+        caused_by=(SILENT,), need_all=True, unless=Condition("estop"), after=seconds(1)
     )
 
 
