@@ -267,8 +267,8 @@ class Severity(StrEnum):
     """It needs hands; the robot is in ERROR."""
 
     @property
-    def is_severe(self) -> bool:
-        """Tell whether an error of this severity puts the robot into ERROR."""
+    def stops_task(self) -> bool:
+        """Tell whether an error of this severity sets a bit, and so the robot is in ERROR."""
         return self in (Severity.CRITICAL, Severity.FATAL)
 
 

@@ -46,7 +46,7 @@ def error_circles(
         for key, own in declared.items()
     }
     needs[_STATE] = tuple(
-        key for key, own in declared.items() if own.severity and own.severity.is_severe
+        key for key, own in declared.items() if own.severity and own.severity.stops_task
     )
     for circle in circles(needs):
         # It begins and ends with the same error; begin with one that the file declares.
