@@ -322,11 +322,12 @@ class Supervision:
         """Yield all errors: the robot's own, then those of the parts in the order of the file."""
         yield from self._health.error_views()
         for part in self.model.parts:
-            yield from self._part_errors.views_of(part)
+            yield from self.errors_of(part)
 
     def errors_of(self, part: PartName) -> Iterator[ErrorView]:
-        """Yield the errors of one part; the model must have it."""
-        return self._part_errors.views_of(part)
+        """Yield the errors of one part, those that signals raise last; the model must have it."""
+        yield from self._part_errors.views_of(part)
+        yield from self._health.error_views(part)
 
     def open_errors(self) -> Mapping[str, ErrorView]:
         """Return the errors that are not normal, by their names."""
