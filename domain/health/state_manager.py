@@ -198,7 +198,7 @@ class StateManager:
         monitor = self._monitors.get(kept.signal)
         if monitor is None:
             return f"there is no signal {kept.signal} any more"
-        if not monitor.waits_with(kept.error):
+        if monitor.settings.part != kept.part or not monitor.waits_with(kept.error):
             return f"{kept.signal} has no such error to acknowledge any more"
         return ""
 
