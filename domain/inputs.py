@@ -66,6 +66,16 @@ class Readings:
 
 
 @dataclass(frozen=True, slots=True)
+class SourceFault:
+    """A source gives no reading of a signal; one from the same source ends that."""
+
+    signal: str
+    source: str
+    """As in `Readings`."""
+    reason: str
+
+
+@dataclass(frozen=True, slots=True)
 class VehicleReport:
     """Pose and motion of the vehicle, from its localization."""
 
@@ -289,6 +299,7 @@ Input: TypeAlias = (
     NodeReport
     | NodeAnswer
     | Readings
+    | SourceFault
     | VehicleReport
     | DriveStatus
     | BackendStatus
