@@ -6,7 +6,7 @@ from collections.abc import Callable, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, field
 from functools import partial
-from typing import Protocol, TypeAlias
+from typing import TypeAlias
 
 from domain.timebase import Duration, Instant, seconds, to_seconds
 from service.call_thread import CallThread
@@ -34,18 +34,6 @@ class Probe:
     read: Callable[[], object]
     """Runs in the thread of the source, and may block. None: there is nothing to tell yet, as of a
     rate before the second look. What it raises is the reason why there is no reading."""
-
-
-class Thread(Protocol):
-    """Runs calls one after the other, so that the loop does not wait for them."""
-
-    def run(self, call: "Callable[[], _Batch]", /) -> "asyncio.Future[_Batch]":
-        """Return what a call will return."""
-        ...
-
-    def end(self) -> None:
-        """End after the calls that it was given."""
-        ...
 
 
 @dataclass(slots=True)
@@ -112,7 +100,6 @@ class SampledSource:
         probes: Sequence[Probe],
         clock: Clock,
         close: Callable[[], None] | None = None,
-        make_thread: Callable[[str], Thread] = CallThread,
     ) -> None:
         """Prepare; nothing is opened yet.
 
@@ -121,20 +108,18 @@ class SampledSource:
             probes: At least one.
             clock: Of the service.
             close: Called in the thread at the end; None: there is nothing to close.
-            make_thread: Makes the thread, of a given name.
         """
         self.name = name
         self.signals = tuple(probe.signal for probe in probes)
-        self._probes = probes
+        self.probes = probes
         self._clock = clock
         self._close = close
-        self._make_thread = make_thread
 
     async def run(self, sink: Sink) -> None:
         """Read each probe in its period until cancelled."""
         now = self._clock.now()
-        plans = [_Plan(probe, now) for probe in self._probes]
-        thread = self._make_thread(f"source {self.name}")
+        plans = [_Plan(probe, now) for probe in self.probes]
+        thread = CallThread(f"source {self.name}")
         try:
             while True:
                 await self._clock.sleep_until(min(plan.due for plan in plans))
@@ -145,7 +130,7 @@ class SampledSource:
                 thread.run(partial(_closed, self._close))
             thread.end()
 
-    async def _read(self, plans: Sequence[_Plan], thread: Thread, sink: Sink) -> None:
+    async def _read(self, plans: Sequence[_Plan], thread: CallThread, sink: Sink) -> None:
         batch = _Batch([plan.probe for plan in plans])
         reading = thread.run(batch.read)
         if not await self._is_in_time(reading):
