@@ -18,6 +18,7 @@ from domain.errors import InvalidModelError
 from domain.findings import Finding
 from domain.health.signals import SignalSettings, default_signals
 from domain.parts.lint.model_lint import lint
+from domain.parts.reactions_check import all_reactions, check_reactions
 from domain.parts.system_model import EVERY_MODE, SmhModel, find_errors
 from domain.robot_vocabulary import vocabulary_of
 from service.files.extension import NAMES_OF_CPP, is_in_extension
@@ -128,7 +129,7 @@ def _read_all(
     findings.extend(_faults_of_conditions(parts, source, vocabulary))
     model = None
     if _has_errors(findings):
-        found = find_errors(parts.nodes, parts.systems)
+        found = [*find_errors(parts.nodes, parts.systems), *_faults_of_reactions(parts)]
     else:
         model, found = _build(parts, vocabulary)
     findings.extend(map(places.placed, found))
@@ -138,7 +139,7 @@ def _read_all(
 def _build(parts: SmhParts, vocabulary: Vocabulary) -> tuple[SmhModel | None, list[Finding]]:
     """Return the model and its warnings, or its errors."""
     try:
-        model = SmhModel(parts.nodes, parts.systems, parts.mode_settings)
+        model = SmhModel(parts.nodes, parts.systems, parts.mode_settings, reactions=parts.reactions)
     except InvalidModelError as error:
         return None, list(error.findings)
     found = lint(model, vocabulary)
@@ -157,6 +158,13 @@ def _faults_of_conditions(
             place = source.place(own.place, own.shift + fault.column - 1)
             message = f"{own.where}: {fault.message}"
             yield finding_at(place, fault.code, message, own.part, fault.severity)
+
+
+def _faults_of_reactions(parts: SmhParts) -> Iterator[Finding]:
+    """Yield what is wrong with reactions, also while something else is."""
+    modes_of = {name: part.modes.keys() for name, part in (parts.nodes | parts.systems).items()}
+    reactions = all_reactions(parts.reactions)
+    return check_reactions(reactions, modes_of, parts.nodes, {})
 
 
 def _has_errors(findings: Iterable[Finding]) -> bool:

@@ -13,6 +13,8 @@ from service.files.yaml_tree import Node, Scalar, finding_at
 
 MODE_SETTINGS = "mode_settings"
 """The block about guards and order of modes."""
+REACTIONS = "reactions"
+"""The block about what the robot does while something is so."""
 
 _RESERVED_NAMES = frozenset(("state", "states", "mode", "modes", "parameters"))
 
@@ -52,6 +54,8 @@ class SmhBlock:
         self.findings.extend(findings)
         self.settings: list[Setting] = [s for s in extensions if s.path[0] == MODE_SETTINGS]
         """The lines of `mode_settings`."""
+        self.reactions: list[Setting] = [s for s in extensions if s.path[0] == REACTIONS]
+        """The lines of `reactions`."""
         for parameter in source.parameters:
             self._sort(parameter)
         self.is_node = self._tell_kind()
