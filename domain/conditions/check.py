@@ -107,6 +107,7 @@ def _terms_of_part(subject: Subject, part: PartTerms, is_complete: bool) -> Term
     if kind is TopicKind.ERROR:
         if name in part.errors:
             return _BOOLEAN
+        # That of a signal of the robot file may be an error of a part.
         return _unknown(subject, f"error of {owner}", name, part.errors, is_complete)
     if subject.attribute == "mode":
         if part.modes:

@@ -23,7 +23,7 @@ from domain.health.signals import (
     Recovery,
     SignalSettings,
 )
-from domain.inputs import Reading, SignalValue
+from domain.inputs import Reading, SignalValue, SourceFault
 from domain.snapshot import SignalView
 from domain.timebase import Duration, Instant, to_seconds
 
@@ -43,6 +43,7 @@ class SignalState(NamedTuple):
     skewed: bool
     needs_acknowledgement: bool
     settings: Mapping[str, Fact]
+    source_fault: str | None
 
 
 class SignalMonitor:
@@ -73,6 +74,8 @@ class SignalMonitor:
         self._counted: Duration = 0
         """How long it had counted when the error was raised."""
         self._engaged_since: Instant | None = None
+        self.fault: SourceFault | None = None
+        """The last failure of a source that it did not end by a reading."""
         self._measured_before = ""
         """What an earlier run had measured of the error that it left; empty: it left none."""
         self._facts: Mapping[str, Fact] = MappingProxyType(self._make_facts())
@@ -101,7 +104,14 @@ class SignalMonitor:
             now: When it arrived.
         """
         self.readings.take(reading, source, now)
+        if self.fault is not None and self.fault.source == source:
+            self.fault = None
         self._judge(self._count(now), now)
+
+    def note_fault(self, fault: SourceFault, now: Instant) -> None:
+        """Take why a source gives no reading; the signal becomes stale in its own time."""
+        self.fault = fault
+        self.judge(now)
 
     def set_engaged(self, since: Instant | None, now: Instant) -> None:
         """Press or release the stop independently of its sources; this takes effect at once.
@@ -233,7 +243,8 @@ class SignalMonitor:
             threshold = self._cause.threshold
             yield self._reason(self._value_slot, message, value, threshold)
         if self._stale_slot.cause is not None:
-            message = stale_reason(self.settings, is_seen=self.readings.newest is not None)
+            is_seen = self.readings.newest is not None
+            message = stale_reason(self.settings, self._fault_reason, is_seen=is_seen)
             limit = to_seconds(self.settings.stale_after)
             yield self._reason(self._stale_slot, message, threshold=limit)
         elif self._stale_slot.error is not None:
@@ -293,7 +304,12 @@ class SignalMonitor:
             newest.skewed if newest else False,
             self._value_slot.waits_for_acknowledgement,
             self._facts,
+            self._fault_reason or None,
         )
+
+    @property
+    def _fault_reason(self) -> str:
+        return "" if self.fault is None else self.fault.reason
 
     # --- what is judged --------------------------------------------------------------------------
 

@@ -24,7 +24,7 @@ from domain.health.monitor_graph import faults_of_monitors, fed_by, number_of
 from domain.health.signal_monitor import SignalMonitor, SignalState
 from domain.health.signals import ESTOP_SIGNAL, STALE_DATA, ModeLimit, SignalSettings
 from domain.health.window_monitor import WindowMonitor
-from domain.inputs import Reading, Readings
+from domain.inputs import Reading, Readings, SourceFault
 from domain.kept import KeptError
 from domain.snapshot import (
     ErrorKey,
@@ -202,6 +202,20 @@ class StateManager:
         """Put another limit of a signal in force, one of its settings; None: none is."""
         with self._gathering(now) as gathered:
             self._touched(signal).set_limit(limit, now)
+        return self._build(gathered)
+
+    def is_new_fault(self, fault: SourceFault) -> bool:
+        """Tell whether it is not yet known that a source gives no reading, for this reason.
+
+        Raises:
+            UnknownSignalError: The signal is not declared.
+        """
+        return self._monitor(fault.signal).fault != fault
+
+    def note_fault(self, fault: SourceFault, now: Instant) -> HealthChanges:
+        """Take why a source gives no reading of a signal."""
+        with self._gathering(now) as gathered:
+            self._touched(fault.signal).note_fault(fault, now)
         return self._build(gathered)
 
     def set_emergency_stop(self, since: Instant | None, now: Instant) -> HealthChanges:
