@@ -66,6 +66,15 @@ class Readings:
 
 
 @dataclass(frozen=True, slots=True)
+class CheckpointReport:
+    """A node passes a place in its program that it was asked to report."""
+
+    node: PartName
+    checkpoint: str
+    actor: Actor = NOBODY
+
+
+@dataclass(frozen=True, slots=True)
 class VehicleReport:
     """Pose and motion of the vehicle, from its localization."""
 
@@ -289,6 +298,7 @@ Input: TypeAlias = (
     NodeReport
     | NodeAnswer
     | Readings
+    | CheckpointReport
     | VehicleReport
     | DriveStatus
     | BackendStatus

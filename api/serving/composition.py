@@ -227,7 +227,8 @@ def _require_types(graph: RosGraph, topics: Ros2Block) -> None:
         UnknownTypeError: A type is not installed.
         UnknownFieldError: A type does not have the field for the value of a signal.
     """
-    named = [block.type for block in (*topics.signals.values(), *topics.statistics.values())]
+    named = [signal.type for signal in topics.signals.values()]
+    named += [statistic.type for statistic in topics.statistics.values()]
     if topics.command is not None:
         named.append(topics.command.type)
     for type_name in named:

@@ -7,7 +7,7 @@ from typing import Annotated, Literal, Self, TypeAlias, TypeVar
 from pydantic import AfterValidator, Field, field_validator, model_validator
 
 from domain.health.signals import SignalKind
-from service.files.robot_settings import Number, SettingsBlock, bare_names
+from service.files.settings_block import Number, SettingsBlock, bare_names
 
 NAV_SAT_FIX = "sensor_msgs/msg/NavSatFix"
 """The only type from which a signal is computed if no field is given."""
