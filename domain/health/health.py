@@ -8,6 +8,7 @@ from domain.events.health import (
     ErrorAcknowledged,
     ErrorCleared,
     ErrorRaised,
+    SignalNotRead,
     SignalPending,
     SignalRead,
     SignalSettled,
@@ -19,7 +20,7 @@ from domain.health.error_list import ErrorList
 from domain.health.robot_errors import RobotErrors
 from domain.health.signals import ESTOP, SignalSettings
 from domain.health.state_manager import HealthChanges, StateManager
-from domain.inputs import AcknowledgeRequest, Readings, Restored
+from domain.inputs import AcknowledgeRequest, Readings, Restored, SourceFault
 from domain.kept import KeptError
 from domain.outbox import Outbox
 from domain.snapshot import ErrorKey, ErrorView, SignalView, SystemStateView, TaskStatus
@@ -61,6 +62,7 @@ class Health(Concern):
         """Return the handler of each class of input."""
         return {
             Readings: self.take_readings,
+            SourceFault: self.take_fault,
             AcknowledgeRequest: self.acknowledge,
             Restored: self.restore,
         }
@@ -101,6 +103,18 @@ class Health(Concern):
         sender = readings.actor.address or readings.source
         for signal in released:
             self._outbox.emit(WriteAnswered("READING", f"/signals/{signal}", _TAKEN, sender))
+
+    def take_fault(self, fault: SourceFault, now: Instant) -> None:
+        """Take why a source gives no reading of a signal; only what is new is told.
+
+        Raises:
+            UnknownSignalError: The signal is not declared.
+        """
+        is_new = self._manager.is_new_fault(fault)
+        self._outbox.begin(now, SignalNotRead(fault.signal, fault.source, fault.reason))
+        if is_new:
+            self._outbox.record_input()
+            self._tell(self._manager.note_fault(fault, now), now)
 
     def acknowledge(self, request: AcknowledgeRequest, now: Instant) -> None:
         """Acknowledge an error, so that it clears once its cause is gone.

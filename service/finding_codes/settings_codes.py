@@ -19,6 +19,13 @@ SETTINGS = (
         "See the message.",
     ),
     FindingCode(
+        "DUPLICATE_ERROR",
+        ERROR,
+        "A signal of the robot file gives a part an error of a name that the part has already: a "
+        "built-in one, or one of the model file.",
+        "Use another name.",
+    ),
+    FindingCode(
         "NOT_FOR_CPP",
         WARNING,
         "C++ would reject or misread the file: a null, an alias, an empty list or map, a list "
