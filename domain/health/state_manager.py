@@ -185,8 +185,8 @@ class StateManager:
     def note_fault(self, fault: SourceFault, now: Instant) -> HealthChanges:
         """Take why a source gives no reading of a signal."""
         with self._gathering(now) as gathered:
-            self._monitors[fault.signal].note_fault(fault, now)
-        return gathered.build()
+            self._touched(fault.signal).note_fault(fault, now)
+        return self._build(gathered)
 
     def set_emergency_stop(self, since: Instant | None, now: Instant) -> HealthChanges:
         """Raise ESTOP for the emergency stop, which no reading releases, or remove that cause.

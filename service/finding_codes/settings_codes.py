@@ -119,6 +119,49 @@ ERRORS = (
     ),
 )
 
+REACTIONS = (
+    FindingCode(
+        "INCOMPLETE_REACTION",
+        ERROR,
+        "A reaction lacks `when`, `action`, the `target` of a mode or a state, or one of "
+        "`escalate_after_s` and `escalate_to`.",
+        "Add it.",
+    ),
+    FindingCode(
+        "INVALID_REACTION",
+        ERROR,
+        "The action cannot have this target, or has none; it cannot be done to this part, such as "
+        "the restart of a system; or it has a budget and may act at any time.",
+        "See the message.",
+    ),
+    FindingCode(
+        "DUPLICATE_REACTION",
+        ERROR,
+        "Two parts have a reaction of the same name.",
+        "Rename one: names are unique in a model.",
+    ),
+    FindingCode(
+        "UNKNOWN_REACTION",
+        ERROR,
+        "`escalate_to` names no reaction.",
+        "Correct the name.",
+    ),
+    FindingCode(
+        "REACTION_CIRCLE",
+        ERROR,
+        "A reaction escalates to itself, directly or through others.",
+        "Let escalations lead in one direction.",
+    ),
+    FindingCode(
+        "REACTION_RESTS_ON_ITSELF",
+        ERROR,
+        "What the reaction does changes what its condition looks at: its part's state, mode, "
+        "parameters or `converged`, its hold, `robot.state` or `task.status`. It would end as soon "
+        "as it acts, and begin again.",
+        "Name the cause itself, such as an error, or write `until: acknowledged`.",
+    ),
+)
+
 CONDITIONS = (
     FindingCode(
         "CONDITION_SYNTAX",
