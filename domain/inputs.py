@@ -66,6 +66,15 @@ class Readings:
 
 
 @dataclass(frozen=True, slots=True)
+class CheckpointReport:
+    """A node passes a place in its program that it was asked to report."""
+
+    node: PartName
+    checkpoint: str
+    actor: Actor = NOBODY
+
+
+@dataclass(frozen=True, slots=True)
 class SourceFault:
     """A source gives no reading of a signal; one from the same source ends that."""
 
@@ -299,6 +308,7 @@ Input: TypeAlias = (
     NodeReport
     | NodeAnswer
     | Readings
+    | CheckpointReport
     | SourceFault
     | VehicleReport
     | DriveStatus

@@ -7,7 +7,7 @@ from typing import NamedTuple
 from domain.findings import Fact
 from domain.health.built_in_errors import severity_of
 from domain.outbox import Outbox
-from domain.snapshot import ErrorKey, ErrorState, ErrorView
+from domain.snapshot import ErrorKey, ErrorState, ErrorView, Severity
 from domain.timebase import Instant
 
 
@@ -31,6 +31,8 @@ class ErrorList:
 
     def __init__(self, outbox: Outbox) -> None:
         self._outbox = outbox
+        self._severities: dict[ErrorKey, Severity] = {}
+        """Of those that are declared."""
         self._open: dict[ErrorKey, ErrorView] = {}
         """Those that are not normal."""
         self._ended: dict[ErrorKey, ErrorView] = {}
@@ -42,6 +44,10 @@ class ErrorList:
         """The error that was raised first since none was on."""
 
     # --- what happens ----------------------------------------------------------------------------
+
+    def declare(self, key: ErrorKey, severity: Severity) -> None:
+        """Give an error a severity of its own."""
+        self._severities[key] = severity
 
     def note(self, key: ErrorKey, found: Found, since: Instant) -> None:
         """Note what was found of an error; of several, in the order of the file.
@@ -65,7 +71,7 @@ class ErrorList:
         raised = found.state.is_on and not was_on
         view = ErrorView(
             key,
-            severity_of(key),
+            self._severity_of(key),
             found.state,
             known is not None and known.first_out,
             found.message,
@@ -96,7 +102,7 @@ class ErrorList:
         known = self._open.get(key) or self._ended.get(key)
         if known is not None:
             return known
-        severity = severity_of(key)
+        severity = self._severity_of(key)
         return ErrorView(key, severity, ErrorState.NORMAL, False, "", None, None, None, 0)
 
     def open_ones(self) -> Mapping[str, ErrorView]:
@@ -109,6 +115,9 @@ class ErrorList:
         return self._parts_with
 
     # --- inside ----------------------------------------------------------------------------------
+
+    def _severity_of(self, key: ErrorKey) -> Severity:
+        return self._severities.get(key) or severity_of(key)
 
     def _put(self, view: ErrorView) -> None:
         is_open = view.state is not ErrorState.NORMAL
