@@ -114,7 +114,7 @@ class Supervision:
             storage,
             self._robot_state,
             self._part_errors,
-            FactChanges(self.conditions, self.driving, self._outbox),
+            FactChanges(self.conditions, self._parts, self.driving, self._outbox),
             self._changing,
             *self._displacers(guards, settings.rules),
             Audit(self._outbox),
