@@ -127,7 +127,7 @@ class Supervision:
             CheckpointErrors(
                 settings.checkpoints, self._parts, self._health, self._part_errors, outbox
             ),
-            FactChanges(self.conditions, self.driving, self._outbox),
+            FactChanges(self.conditions, self._parts, self.driving, self._outbox),
             self._changing,
             *self._displacers(guards, settings.rules),
             Audit(self._outbox),
