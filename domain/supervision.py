@@ -19,6 +19,7 @@ from domain.conditions.watched import WatchedConditions
 from domain.events.service import TimeWasDue
 from domain.fact_changes import FactChanges
 from domain.findings import Blocker
+from domain.health.announcing import Announcing
 from domain.health.emergency_stop import EmergencyStop
 from domain.health.health import Health
 from domain.health.part_errors import PartErrors
@@ -87,7 +88,7 @@ class Supervision:
         self._now = start
         outbox = self._outbox = Outbox()
         self._parts = Parts(model, self._outbox)
-        self._health = Health(settings.signals, self._outbox, start)
+        self._health = Health(settings.signals, self._outbox, start, model.errors)
         self._emergency_stop = EmergencyStop(self._health, self._outbox)
         self.driving = Driving(
             settings.tasks, settings.vehicle, self._health, self._emergency_stop, outbox, start
@@ -115,12 +116,12 @@ class Supervision:
             self._robot_state,
             self._part_errors,
             FactChanges(self.conditions, self.driving, self._outbox),
+            Announcing(model, self._health, self._part_errors, self.conditions, outbox, start),
             self._changing,
             *self._displacers(guards, settings.rules),
             Audit(self._outbox),
             Stalls(self._outbox),
         )
-        self._outbox.errors.clear()  # What is on from the start is no change.
         self._arrange()
 
     def _displacers(self, guards: Guards, rules: RuleSettings) -> tuple[Concern, Concern]:
@@ -135,6 +136,8 @@ class Supervision:
 
     def _arrange(self) -> None:
         """Note which concerns have to be asked when; most have nothing to do most of the time."""
+        self._health.error_list.mark_start()
+        self._outbox.errors.clear()  # What is on from the start is no change.
         self._takers = _takers(self._concerns)
         self._clocked = [c for c in self._concerns if _overrides(c, "wake_at")]
         self._settling = [c for c in self._concerns if _overrides(c, "settle")]

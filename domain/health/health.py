@@ -2,10 +2,10 @@
 
 from collections.abc import Iterable, Iterator, Mapping
 from contextlib import contextmanager
+from types import MappingProxyType
 
 from domain.concern import Concern, Takers
 from domain.events.health import (
-    ErrorAcknowledged,
     ErrorCleared,
     ErrorRaised,
     SignalPending,
@@ -15,11 +15,11 @@ from domain.events.health import (
 )
 from domain.events.service import NotRestored, WriteAnswered
 from domain.findings import Blocker
-from domain.health.error_list import ErrorList
+from domain.health.error_list import Declared, ErrorList
 from domain.health.robot_errors import RobotErrors
 from domain.health.signals import ESTOP, SignalSettings
 from domain.health.state_manager import HealthChanges, StateManager
-from domain.inputs import AcknowledgeRequest, Readings, Restored
+from domain.inputs import Readings, Restored
 from domain.kept import KeptError
 from domain.outbox import Outbox
 from domain.snapshot import ErrorKey, ErrorView, SignalView, SystemStateView, TaskStatus
@@ -35,10 +35,24 @@ class Health(Concern):
     The cause of an error that time alone raised is the first bad reading, not the clock.
     """
 
-    def __init__(self, signals: Iterable[SignalSettings], outbox: Outbox, start: Instant) -> None:
+    def __init__(
+        self,
+        signals: Iterable[SignalSettings],
+        outbox: Outbox,
+        start: Instant,
+        declared: Declared = MappingProxyType({}),
+    ) -> None:
+        """Begin with no readings.
+
+        Args:
+            signals: Settings of the signals.
+            outbox: Receives events.
+            start: The current time.
+            declared: What the model says about errors of parts.
+        """
         self._manager = StateManager(signals, start)
         self._outbox = outbox
-        self.error_list = ErrorList(outbox)
+        self.error_list = ErrorList(outbox, declared)
         """All errors; later concerns note those of parts there."""
         self._robot_errors = RobotErrors(self._manager, self.error_list, start)
         self._pending: dict[str, int] = {}
@@ -53,11 +67,7 @@ class Health(Concern):
     @property
     def takes(self) -> Takers:
         """Return the handler of each class of input."""
-        return {
-            Readings: self.take_readings,
-            AcknowledgeRequest: self.acknowledge,
-            Restored: self.restore,
-        }
+        return {Readings: self.take_readings, Restored: self.restore}
 
     def wake_at(self) -> Instant | None:
         """Return when time alone raises or clears an error."""
@@ -91,15 +101,14 @@ class Health(Concern):
         for signal in released:
             self._outbox.emit(WriteAnswered("READING", f"/signals/{signal}", _TAKEN, sender))
 
-    def acknowledge(self, request: AcknowledgeRequest, now: Instant) -> None:
-        """Acknowledge an error, so that it clears once its cause is gone.
+    def acknowledge(self, error: str, now: Instant) -> None:
+        """Acknowledge an error of the robot itself, so that it clears once its cause is gone.
 
         Raises:
             UnknownErrorNameError: There is no error of this name.
         """
-        self._outbox.begin(now, ErrorAcknowledged(request.error), request.actor)
-        self._tell(self._manager.acknowledge(request.error, now), now)
-        self._robot_errors.follow_acknowledgement(request.error, now)
+        self._tell(self._manager.acknowledge(error, now), now)
+        self._robot_errors.follow_acknowledgement(error, now)
 
     def press_stop(self, since: Instant | None, now: Instant) -> None:
         """Raise ESTOP for the emergency stop, or remove that cause.
@@ -131,6 +140,11 @@ class Health(Concern):
     def errors(self) -> tuple[str, ...]:
         """Return the active errors, in the order of their bits."""
         return self._manager.errors
+
+    @property
+    def error_names(self) -> tuple[str, ...]:
+        """Return all errors of the robot itself that can be raised, in the order of their bits."""
+        return self._manager.names
 
     @property
     def reasons(self) -> tuple[Blocker, ...]:

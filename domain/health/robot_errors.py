@@ -1,10 +1,9 @@
 """The robot's own errors in the list of all errors, as the state manager decides them."""
 
-from collections.abc import Iterable
+from collections.abc import Collection, Iterable
 
 from domain.findings import Blocker
 from domain.health.error_list import NORMAL, ErrorList, Found
-from domain.health.signals import Recovery
 from domain.health.state_manager import HealthChanges, StateManager
 from domain.snapshot import ErrorKey, ErrorState, SignalView
 from domain.timebase import Instant
@@ -40,10 +39,8 @@ class RobotErrors:
             since = now
             if name in self._manager.errors:
                 reason = self._reason(name)
-                acting = [view for view in signals if view.error == name]
-                found = Found(
-                    self._state(name, acting), reason.message, reason.value, reason.threshold
-                )
+                state, lingers = self._state(name, signals)
+                found = Found(state, reason.message, reason.value, reason.threshold, lingers)
                 since = now if reason.since is None else reason.since
             elif name in pending:
                 found = Found(ErrorState.PENDING)
@@ -56,15 +53,15 @@ class RobotErrors:
         """Return the most urgent reason of an active error."""
         return next(reason for reason in self._manager.reasons if reason.code == error)
 
-    def _state(self, error: str, acting: list[SignalView]) -> ErrorState:
-        """Return the state of an active error.
+    def _state(self, error: str, signals: Collection[SignalView]) -> tuple[ErrorState, bool]:
+        """Return whether an active error is latched, and whether it lingers without a cause.
 
         Args:
             error: Its name.
-            acting: The signals whose error it is.
+            signals: All signals.
         """
-        if any(view.needs_acknowledgement for view in acting):
-            is_present = error in self._manager.present
-            return ErrorState.ACTIVE if is_present else ErrorState.LATCHED
-        needs_it = any(view.settings["recovery"] == str(Recovery.ACKNOWLEDGE) for view in acting)
-        return ErrorState.ACKNOWLEDGED if needs_it else ErrorState.ACTIVE
+        if error in self._manager.present:
+            return ErrorState.ACTIVE, False
+        if any(view.needs_acknowledgement for view in signals if view.error == error):
+            return ErrorState.LATCHED, False
+        return ErrorState.ACTIVE, True

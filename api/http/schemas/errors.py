@@ -23,12 +23,16 @@ class ErrorJson(Json):
     state: ErrorState = Field(
         description=(
             "`active`, `acknowledged` and `latched` are on; `latched`: its cause is gone, and an"
-            " operator has yet to acknowledge it; `pending`: raised unless the cause ends in time"
+            " operator has yet to acknowledge it; `returned`: it ended by itself, and nobody has"
+            " acknowledged it; `pending`: raised unless the cause ends in time"
         )
     )
-    shelved_until_at: Timestamp | None
-    suppressed: bool
-    chattering: bool
+    shelved_until_at: Timestamp | None = Field(
+        description="Until then it is not announced; null: it is not shelved"
+    )
+    shelved_because: str | None = Field(description="Why it is shelved")
+    suppressed: bool = Field(description="The model silences it as things are now")
+    chattering: bool = Field(description="It was raised or ended more than 5 times in 10 min")
     root_cause: bool = Field(description="No other error causes it")
     first_out: bool = Field(description="It was raised first since no error was on")
     caused_by: list[ErrorNameJson]
@@ -39,8 +43,11 @@ class ErrorJson(Json):
     since_at: Timestamp | None = Field(
         description="When it was raised, or began to be pending; null: it is normal"
     )
+    ended_at: Timestamp | None = Field(
+        description="When its cause was gone; null: it is present, or that is not known"
+    )
     count: int = Field(description="How often it was raised in this run of the service")
-    hint: str | None
+    hint: str | None = Field(description="What would help")
 
 
 class ErrorsJson(Json):
