@@ -69,6 +69,15 @@ class Readings:
 
 
 @dataclass(frozen=True, slots=True)
+class CheckpointReport:
+    """A node passes a place in its program that it was asked to report."""
+
+    node: PartName
+    checkpoint: str
+    actor: Actor = NOBODY
+
+
+@dataclass(frozen=True, slots=True)
 class VehicleReport:
     """Pose and motion of the vehicle, from its localization."""
 
@@ -317,6 +326,7 @@ Input: TypeAlias = (
     NodeReport
     | NodeAnswer
     | Readings
+    | CheckpointReport
     | VehicleReport
     | DriveStatus
     | BackendStatus

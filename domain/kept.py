@@ -108,11 +108,13 @@ class KeptError:
     """When it was raised."""
     message: str
     """What was measured."""
+    part: PartName | None = None
+    """Whose error it is; None: the robot's own."""
 
     @property
     def name(self) -> str:
         """Return its name among those of its kind."""
-        return self.error
+        return self.error if self.part is None else f"{self.part}.{self.error}"
 
 
 @dataclass(frozen=True, slots=True)

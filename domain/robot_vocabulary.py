@@ -7,6 +7,7 @@ from domain.conditions.vocabulary import Kind, PartTerms, Terms, Vocabulary
 from domain.health.built_in_errors import OF_EVERY_PART, OF_NODES
 from domain.health.signals import STALE_DATA, SignalKind, SignalSettings, SignalSpec
 from domain.parameters import ParameterValue
+from domain.parts.declared_errors import DeclaredError
 from domain.parts.system_model import NodeModel, SystemModel
 from domain.state_and_mode import PartName
 
@@ -20,6 +21,11 @@ class PartsOfRobot(Protocol):
     @property
     def nodes(self) -> Mapping[PartName, NodeModel]:
         """Return the nodes by name."""
+        ...
+
+    @property
+    def errors(self) -> Mapping[PartName, Mapping[str, DeclaredError]]:
+        """Return the errors that parts declare, by name."""
         ...
 
     @property
@@ -39,10 +45,14 @@ def vocabulary_of(
         is_complete: All signals are known; False: a robot file may declare more.
     """
     known = tuple(signals)
-    parts = {str(name): _terms_of_node(node) for name, node in model.nodes.items()}
+    parts = {
+        str(name): _terms_of_node(node, _with(_OF_NODES, model.errors.get(name)))
+        for name, node in model.nodes.items()
+    }
     for name, system in model.systems.items():
         modes = tuple(map(str, system.modes))
-        parts[str(name)] = PartTerms(is_node=False, modes=modes, errors=_OF_EVERY_PART)
+        own = _with(_OF_EVERY_PART, model.errors.get(name))
+        parts[str(name)] = PartTerms(is_node=False, modes=modes, errors=own)
     errors = [bound.error for signal in known for bound in signal.bounds]
     return Vocabulary(
         parts,
@@ -52,7 +62,16 @@ def vocabulary_of(
     )
 
 
-def _terms_of_node(node: NodeModel) -> PartTerms:
+def _with(
+    built_in: tuple[str, ...], declared: Mapping[str, DeclaredError] | None
+) -> tuple[str, ...]:
+    """Return all errors of a part; most parts declare none, and share one tuple."""
+    return (
+        (*built_in, *(name for name in declared if name not in built_in)) if declared else built_in
+    )
+
+
+def _terms_of_node(node: NodeModel, errors: tuple[str, ...]) -> PartTerms:
     parameters: dict[str, Terms | None] = {}
     for values in node.modes.values():
         for name, value in values.items():
@@ -61,7 +80,7 @@ def _terms_of_node(node: NodeModel) -> PartTerms:
         is_node=True,
         modes=tuple(map(str, node.modes)),
         parameters=parameters,
-        errors=_OF_NODES,
+        errors=errors,
     )
 
 

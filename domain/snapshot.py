@@ -266,6 +266,11 @@ class Severity(StrEnum):
     FATAL = "fatal"
     """It needs hands; the robot is in ERROR."""
 
+    @property
+    def stops_task(self) -> bool:
+        """Tell whether an error of this severity sets a bit, and so the robot is in ERROR."""
+        return self in (Severity.CRITICAL, Severity.FATAL)
+
 
 class ErrorState(StrEnum):
     """State of an error. Source: ISA-18.2, states of an alarm."""

@@ -10,6 +10,7 @@ from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
+from domain.analysis.fault_trees import ErrorGraph, error_graph
 from domain.audit import Audit
 from domain.changes.changing import Changing
 from domain.changes.guards import Guards
@@ -20,6 +21,8 @@ from domain.events.service import TimeWasDue
 from domain.fact_changes import FactChanges
 from domain.findings import Blocker
 from domain.health.announcing import Announcing
+from domain.health.checkpoint_errors import CheckpointErrors
+from domain.health.checkpoints import CheckpointSettings
 from domain.health.emergency_stop import EmergencyStop
 from domain.health.health import Health
 from domain.health.part_errors import PartErrors
@@ -71,6 +74,8 @@ class SupervisionSettings:
     tasks: TaskSettings = field(default_factory=TaskSettings)
     vehicle: VehicleLimits = field(default_factory=VehicleLimits)
     rules: RuleSettings = field(default_factory=RuleSettings)
+    checkpoints: Mapping[PartName, CheckpointSettings] = field(default_factory=dict)
+    """What is supervised of the checkpoints of nodes."""
 
 
 class Supervision:
@@ -88,14 +93,16 @@ class Supervision:
         self._now = start
         outbox = self._outbox = Outbox()
         self._parts = Parts(model, self._outbox)
-        self._health = Health(settings.signals, self._outbox, start, model.errors)
+        self._health = Health(settings.signals, self._outbox, start)
         self._emergency_stop = EmergencyStop(self._health, self._outbox)
         self.driving = Driving(
             settings.tasks, settings.vehicle, self._health, self._emergency_stop, outbox, start
         )
         storage = Storage(self._outbox)
         self._robot_state = RobotState(self._health, self.driving, storage, self._outbox)
-        self._part_errors = PartErrors(self._parts, self._health.error_list, self._outbox, start)
+        self._part_errors = PartErrors(
+            self._parts, self._health.error_list, outbox, start, settings.checkpoints
+        )
         self.facts = RobotFacts(self._parts, self._health, self.driving, self._part_errors.reason)
         """What conditions are evaluated over."""
         self.conditions = WatchedConditions(self.facts)
@@ -115,14 +122,26 @@ class Supervision:
             storage,
             self._robot_state,
             self._part_errors,
-            FactChanges(self.conditions, self.driving, self._outbox),
-            Announcing(model, self._health, self._part_errors, self.conditions, outbox, start),
+            *self._after_part_errors(settings, start),
             self._changing,
             *self._displacers(guards, settings.rules),
             Audit(self._outbox),
             Stalls(self._outbox),
         )
         self._arrange()
+
+    def _after_part_errors(
+        self, settings: SupervisionSettings, start: Instant
+    ) -> tuple[Concern, ...]:
+        """Return what else raises errors of parts, what conditions then say, and who is told."""
+        parts, health, errors, outbox = self._parts, self._health, self._part_errors, self._outbox
+        announcing = Announcing(health, errors, self.conditions, outbox, start)
+        return (
+            CheckpointErrors(settings.checkpoints, parts, health, errors, outbox),
+            # It evaluates all conditions, and so comes last of those that watch some.
+            FactChanges(self.conditions, self.driving, outbox),
+            announcing,
+        )
 
     def _displacers(self, guards: Guards, rules: RuleSettings) -> tuple[Concern, Concern]:
         """Return what sets targets in force, the stronger first; both displace by one object."""
@@ -315,15 +334,21 @@ class Supervision:
         """Yield all errors: the robot's own, then those of the parts in the order of the file."""
         yield from self._health.error_views()
         for part in self.model.parts:
-            yield from self._part_errors.views_of(part)
+            yield from self.errors_of(part)
 
     def errors_of(self, part: PartName) -> Iterator[ErrorView]:
-        """Yield the errors of one part; the model must have it."""
-        return self._part_errors.views_of(part)
+        """Yield the errors of one part, those that signals raise last; the model must have it."""
+        yield from self._part_errors.views_of(part)
+        yield from self._health.error_views(part)
 
     def open_errors(self) -> Mapping[str, ErrorView]:
         """Return the errors that are not normal, by their names."""
         return self._health.error_list.open_ones()
+
+    def error_graph(self) -> ErrorGraph:
+        """Return the critical and fatal errors, and the errors that they follow from."""
+        own = {view.key: view.severity for view in self._health.error_views()}
+        return error_graph(self.model, own)
 
     @property
     def parts_with_errors(self) -> Mapping[str, int]:

@@ -228,6 +228,7 @@ def _require_types(graph: RosGraph, topics: Ros2Block) -> None:
         UnknownFieldError: A type does not have the field for the value of a signal.
     """
     named = [signal.type for signal in topics.signals.values()]
+    named += [statistic.type for statistic in topics.statistics.values()]
     if topics.command is not None:
         named.append(topics.command.type)
     for type_name in named:

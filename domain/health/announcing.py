@@ -35,7 +35,6 @@ class Announcing(Concern):
 
     def __init__(
         self,
-        model: SmhModel,
         health: Health,
         part_errors: PartErrors,
         watched: WatchedConditions,
@@ -45,14 +44,13 @@ class Announcing(Concern):
         """Begin with nothing shelved.
 
         Args:
-            model: Says when which errors are suppressed.
             health: The errors of the robot itself, and the list of all.
-            part_errors: The errors of parts.
+            part_errors: The errors of parts, and the model, which says when some are suppressed.
             watched: Keeps the conditions up to date by which errors are suppressed.
             outbox: Receives events.
             start: The current time.
         """
-        self._model = model
+        model = self._model = part_errors.model
         self._health = health
         self._part_errors = part_errors
         self._errors = health.error_list
@@ -62,6 +60,10 @@ class Announcing(Concern):
         self._chatter = Chatter()
         self._suppressing = _suppressing(model)
         """By the condition that silences them, errors."""
+        for part, declared in model.errors.items():
+            for name, error in declared.items():
+                if error.needs_acknowledgement:
+                    self._errors.declare(ErrorKey(part, name), latches=True)
         watched.watch(self._suppressing, start)
         self._suppressed: frozenset[ErrorKey] = frozenset()
         self._revision: int | None = None
@@ -88,8 +90,7 @@ class Announcing(Concern):
         key = self._checked(request)
         acknowledged = ErrorAcknowledged(key.error, key.part)
         self._outbox.begin(now, acknowledged, request.actor)
-        if key.part is None:
-            self._health.acknowledge(key.error, now)
+        self._health.acknowledge(key, now)
         was_on = self._errors.is_on(key)
         if not self._errors.acknowledge(key):
             return
@@ -175,9 +176,12 @@ class Announcing(Concern):
 
     def _names(self, key: ErrorKey) -> tuple[str, ...]:
         """Return the names of all errors of the part of an error, or of the robot itself."""
+        of_signals = (view.key.error for view in self._health.error_views(key.part))
         if key.part is None:
-            return self._health.error_names
-        return tuple(self._part_errors.names_of(key.part)) if key.part in self._model else ()
+            return tuple(of_signals)
+        if key.part not in self._model:
+            return ()
+        return (*self._part_errors.names_of(key.part), *of_signals)
 
     def _is_known(self, key: ErrorKey, kind: type, what: str) -> bool:
         """Tell whether an error of an earlier run still exists; one that does not is forgotten."""

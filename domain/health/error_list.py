@@ -2,8 +2,7 @@
 
 from collections.abc import Mapping
 from dataclasses import replace
-from types import MappingProxyType
-from typing import NamedTuple, TypeAlias
+from typing import NamedTuple
 
 from domain.findings import Fact
 from domain.health.alarm import QUIET, Alarm, Evidence
@@ -12,13 +11,8 @@ from domain.health.built_in_errors import severity_of
 from domain.health.turns import Turn
 from domain.kept import KeptUnacknowledged
 from domain.outbox import Outbox
-from domain.parts.declared_errors import DeclaredError
-from domain.snapshot import NO_MARKS, ErrorKey, ErrorMarks, ErrorState, ErrorView
-from domain.state_and_mode import PartName
+from domain.snapshot import NO_MARKS, ErrorKey, ErrorMarks, ErrorState, ErrorView, Severity
 from domain.timebase import Instant
-
-Declared: TypeAlias = Mapping[PartName, Mapping[str, DeclaredError]]
-"""What a model says about errors, by part and name."""
 
 
 class Found(NamedTuple):
@@ -43,16 +37,13 @@ class ErrorList:
     An error that was never raised takes no memory: a robot may have ten thousand parts.
     """
 
-    def __init__(self, outbox: Outbox, declared: Declared = MappingProxyType({})) -> None:
-        """Begin with all errors normal.
-
-        Args:
-            outbox: Is told what changed.
-            declared: Tells which errors of parts stay on until they are acknowledged.
-        """
+    def __init__(self, outbox: Outbox) -> None:
         self._outbox = outbox
-        self._declared = declared
         self._alarms = Alarms(outbox)
+        self._severities: dict[ErrorKey, Severity] = {}
+        """Of those that are declared."""
+        self._latching: set[ErrorKey] = set()
+        """Those that stay on until they are acknowledged; signals keep their own on."""
         self._open: dict[ErrorKey, ErrorView] = {}
         """Those that are not normal, or shelved."""
         self._ended: dict[ErrorKey, ErrorView] = {}
@@ -66,6 +57,22 @@ class ErrorList:
 
     # --- what happens ----------------------------------------------------------------------------
 
+    def declare(
+        self, key: ErrorKey, severity: Severity | None = None, *, latches: bool = False
+    ) -> None:
+        """Give an error settings of its own.
+
+        Args:
+            key: The error.
+            severity: None: that of the built-in error.
+            latches: It stays on after its cause until it is acknowledged; signals keep their own
+                errors on by themselves.
+        """
+        if severity is not None:
+            self._severities[key] = severity
+        if latches:
+            self._latching.add(key)
+
     def note(self, key: ErrorKey, found: Found, since: Instant) -> None:
         """Note what was found of an error; of several, in the order of the file.
 
@@ -76,8 +83,7 @@ class ErrorList:
         """
         before = self._alarms[key]
         evidence = Evidence(found.state, found.lingers)
-        latches = self._needs_acknowledgement(key)
-        after = before.after(evidence, since, self._outbox.now, latches=latches)
+        after = before.after(evidence, since, self._outbox.now, latches=key in self._latching)
         if self._alarms.is_from_start(key) and not after.state.is_on:
             after = Alarm(evidence)
         known = self.view(key)
@@ -126,7 +132,7 @@ class ErrorList:
         self._alarms.restore(kept)
         if self.is_on(key):
             return
-        state = ErrorState.LATCHED if self._needs_acknowledgement(key) else ErrorState.NORMAL
+        state = ErrorState.LATCHED if key in self._latching else ErrorState.NORMAL
         since = min(kept.since, now)
         alarm = Alarm(Evidence(state), unseen=True, raised=since)
         found = Found(state, kept.message, kept.value, kept.threshold)
@@ -155,7 +161,7 @@ class ErrorList:
         known = self._open.get(key) or self._ended.get(key)
         if known is not None:
             return known
-        severity = severity_of(key)
+        severity = self._severity_of(key)
         return ErrorView(key, severity, ErrorState.NORMAL, False, "", None, None, None, 0)
 
     def open_ones(self) -> Mapping[str, ErrorView]:
@@ -169,15 +175,8 @@ class ErrorList:
 
     # --- inside ----------------------------------------------------------------------------------
 
-    def _needs_acknowledgement(self, key: ErrorKey) -> bool:
-        """Tell whether an error of a part stays on until it is acknowledged.
-
-        The signals keep their own errors on.
-        """
-        if key.part is None:
-            return False
-        declared = self._declared.get(key.part, {}).get(key.error)
-        return declared is not None and declared.needs_acknowledgement
+    def _severity_of(self, key: ErrorKey) -> Severity:
+        return self._severities.get(key) or severity_of(key)
 
     def _show(
         self, known: ErrorView, before: Alarm, after: Alarm, found: Found, since: Instant

@@ -2,7 +2,6 @@
 
 from collections.abc import Iterable, Iterator, Mapping
 from contextlib import contextmanager
-from types import MappingProxyType
 
 from domain.concern import Concern, Takers
 from domain.events.health import (
@@ -15,7 +14,7 @@ from domain.events.health import (
 )
 from domain.events.service import NotRestored, WriteAnswered
 from domain.findings import Blocker
-from domain.health.error_list import Declared, ErrorList
+from domain.health.error_list import ErrorList
 from domain.health.robot_errors import RobotErrors
 from domain.health.signals import ESTOP, SignalSettings
 from domain.health.state_manager import HealthChanges, StateManager
@@ -23,8 +22,10 @@ from domain.inputs import Readings, Restored
 from domain.kept import KeptError
 from domain.outbox import Outbox
 from domain.snapshot import ErrorKey, ErrorView, SignalView, SystemStateView, TaskStatus
+from domain.state_and_mode import PartName
 from domain.timebase import Instant
 
+_ESTOP = ErrorKey(None, ESTOP)
 _TAKEN = 200
 """Status of a request that was accepted, as in HTTP."""
 
@@ -35,29 +36,19 @@ class Health(Concern):
     The cause of an error that time alone raised is the first bad reading, not the clock.
     """
 
-    def __init__(
-        self,
-        signals: Iterable[SignalSettings],
-        outbox: Outbox,
-        start: Instant,
-        declared: Declared = MappingProxyType({}),
-    ) -> None:
-        """Begin with no readings.
-
-        Args:
-            signals: Settings of the signals.
-            outbox: Receives events.
-            start: The current time.
-            declared: What the model says about errors of parts.
-        """
+    def __init__(self, signals: Iterable[SignalSettings], outbox: Outbox, start: Instant) -> None:
         self._manager = StateManager(signals, start)
         self._outbox = outbox
-        self.error_list = ErrorList(outbox, declared)
+        self.error_list = ErrorList(outbox)
         """All errors; later concerns note those of parts there."""
         self._robot_errors = RobotErrors(self._manager, self.error_list, start)
-        self._pending: dict[str, int] = {}
+        self._keys_of: dict[PartName | None, list[ErrorKey]] = {}
+        """By part, the errors that signals raise; None: the robot's own."""
+        for key in self._manager.keys:
+            self._keys_of.setdefault(key.part, []).append(key)
+        self._pending: dict[ErrorKey, int] = {}
         """By error, the event that recorded it as pending."""
-        self._kept: dict[str, str] = {}
+        self._kept: dict[str, ErrorKey] = {}
         """By signal, the error that is kept, since it waits for an acknowledgement."""
         self.decided_by: int | None = None
         """The newest event that raised or cleared an error; None: there was none yet."""
@@ -86,6 +77,11 @@ class Health(Concern):
         finally:
             self._manager.is_late = False
 
+    @property
+    def is_late(self) -> bool:
+        """Tell whether the current input was heard late by our own fault."""
+        return self._manager.is_late
+
     def take_readings(self, readings: Readings, now: Instant) -> None:
         """Accept readings, and decide at once; one that releases a stop is in the audit trail.
 
@@ -101,14 +97,14 @@ class Health(Concern):
         for signal in released:
             self._outbox.emit(WriteAnswered("READING", f"/signals/{signal}", _TAKEN, sender))
 
-    def acknowledge(self, error: str, now: Instant) -> None:
-        """Acknowledge an error of the robot itself, so that it clears once its cause is gone.
+    def acknowledge(self, key: ErrorKey, now: Instant) -> None:
+        """Acknowledge an error, so that its signal clears it once its cause is gone.
 
-        Raises:
-            UnknownErrorNameError: There is no error of this name.
+        For an error that no signal raises, this has no effect.
         """
-        self._tell(self._manager.acknowledge(error, now), now)
-        self._robot_errors.follow_acknowledgement(error, now)
+        if key in self._manager.keys:
+            self._tell(self._manager.acknowledge(key, now), now)
+            self._robot_errors.follow_acknowledgement(key, now)
 
     def press_stop(self, since: Instant | None, now: Instant) -> None:
         """Raise ESTOP for the emergency stop, or remove that cause.
@@ -130,7 +126,7 @@ class Health(Concern):
                 self._outbox.emit(NotRestored(f"the error {kept.error}", reason))
             else:
                 errors.append(kept)
-                self._kept[kept.signal] = kept.error
+                self._kept[kept.signal] = ErrorKey(kept.part, kept.error)
         if errors:
             self._tell(self._manager.restore(errors, now), now)
 
@@ -138,28 +134,30 @@ class Health(Concern):
 
     @property
     def errors(self) -> tuple[str, ...]:
-        """Return the active errors, in the order of their bits."""
+        """Return the names of the active errors that set a bit, in the order of their bits."""
         return self._manager.errors
 
     @property
-    def error_names(self) -> tuple[str, ...]:
-        """Return all errors of the robot itself that can be raised, in the order of their bits."""
-        return self._manager.names
-
-    @property
     def reasons(self) -> tuple[Blocker, ...]:
-        """Return why errors are active, the most urgent first; the same object until it changes."""
+        """Return why errors that set a bit are active, the most urgent first.
+
+        The same object until it changes.
+        """
         return self._manager.reasons
 
-    def error_views(self) -> Iterator[ErrorView]:
-        """Yield the errors of the robot, also those that were never raised, by their bits."""
-        for name in self._manager.names:
-            yield self.error_list.view(ErrorKey(None, name))
+    def error_views(self, part: PartName | None = None) -> Iterator[ErrorView]:
+        """Yield the errors that signals raise, also those that were never raised, by their bits.
+
+        Args:
+            part: Whose errors; None: the robot's own.
+        """
+        for key in self._keys_of.get(part, ()):
+            yield self.error_list.view(key)
 
     @property
     def is_stopped(self) -> bool:
         """Tell whether ESTOP is active: no node may be activated."""
-        return ESTOP in self._manager.errors
+        return self._manager.is_on(_ESTOP)
 
     @property
     def stop_reasons(self) -> tuple[Blocker, ...]:
@@ -190,17 +188,17 @@ class Health(Concern):
         """Record changes as events, causes first."""
         emit = self._outbox.emit
         for signal, error in changes.pending:
-            self._pending[error] = emit(SignalPending(signal, error))
+            self._pending[self._key(signal, error)] = emit(SignalPending(signal, error))
         for signal, error, stale in changes.settled:
             emit(SignalSettled(signal, error, stale))
-            self._pending.pop(error, None)
+            self._pending.pop(self._key(signal, error), None)
         for signal in changes.skewed:
             emit(SignalSkewed(signal))
-        for reason in changes.raised:
-            raised = ErrorRaised(reason.code, reason.message, reason.value, reason.threshold)
-            self.decided_by = emit(raised, self._pending.pop(reason.code, None))
-        for error in changes.cleared:
-            self.decided_by = emit(ErrorCleared(error))
+        for key, why in changes.raised:
+            raised = ErrorRaised(key.error, why.message, why.value, why.threshold, key.part)
+            self.decided_by = emit(raised, self._pending.pop(key, None))
+        for key in changes.cleared:
+            self.decided_by = emit(ErrorCleared(key.error, key.part))
         self._robot_errors.follow(changes, now)
         self._outbox.signals |= changes.signals
         for signal in changes.signals:
@@ -212,13 +210,18 @@ class Health(Concern):
         With what was measured when it began to: later readings are not worth a write each.
         """
         name, kept = signal.signal, self._kept.get(signal.signal)
-        error = signal.error if signal.needs_acknowledgement else None
-        if error == kept:
+        waits = signal.error if signal.needs_acknowledgement else None
+        key = None if waits is None else self._key(name, waits)
+        if key == kept:
             return
         if kept is not None:
-            self._outbox.forget(KeptError, kept)
+            self._outbox.forget(KeptError, kept.name)
             del self._kept[name]
-        if error is not None:
-            why = next(reason for reason in self._manager.reasons if reason.code == error)
-            self._outbox.keep(KeptError(name, error, why.since or 0, why.message))
-            self._kept[name] = error
+        if key is not None:
+            why = self._manager.reason(key)
+            self._outbox.keep(KeptError(name, key.error, why.since or 0, why.message, key.part))
+            self._kept[name] = key
+
+    def _key(self, signal: str, error: str) -> ErrorKey:
+        """Return which error of a signal is meant."""
+        return ErrorKey(self._manager.settings(signal).part, error)

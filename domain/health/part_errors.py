@@ -14,6 +14,7 @@ from domain.events.health import ErrorCleared, ErrorRaised
 from domain.events.service import NotRestored
 from domain.findings import Blocker
 from domain.health.built_in_errors import (
+    ALL_OF_NODES,
     CHANGE_FAILED,
     DEVIATES,
     ERROR_PROCESSING,
@@ -64,7 +65,25 @@ class PartErrors(Concern):
     it is how each node of each robot begins.
     """
 
-    def __init__(self, parts: Parts, errors: ErrorList, outbox: Outbox, start: Instant) -> None:
+    def __init__(
+        self,
+        parts: Parts,
+        errors: ErrorList,
+        outbox: Outbox,
+        start: Instant,
+        with_checkpoints: Container[PartName] = (),
+    ) -> None:
+        """Begin with all nodes unheard.
+
+        Args:
+            parts: Whose errors these are.
+            errors: Where they are noted.
+            outbox: Where they are told.
+            start: The current time.
+            with_checkpoints: Nodes whose checkpoints are supervised.
+        """
+        self._with_checkpoints = with_checkpoints
+        self.model = parts.model
         self._parts = parts
         self._errors = errors
         self._outbox = outbox
@@ -160,6 +179,22 @@ class PartErrors(Concern):
         self._raise(part, INVARIANT_BROKEN, Found(_ACTIVE, message), now, cause)
         return not was_on
 
+    def note_checkpoints(
+        self, node: PartName, error: str, found: Found | None, now: Instant
+    ) -> None:
+        """Raise an error of the checkpoints of a node, or clear it.
+
+        Args:
+            node: The node.
+            error: Which error.
+            found: What is wrong; None: nothing is.
+            now: The current time.
+        """
+        if found is None:
+            self._clear(node, error)
+        else:
+            self._raise(node, error, found, now)
+
     def wake_at(self) -> Instant | None:
         """Return when a deviation becomes an error; None: none will."""
         return self._deadlines.next()
@@ -218,7 +253,9 @@ class PartErrors(Concern):
 
     def names_of(self, part: PartName) -> Iterable[str]:
         """Return the errors that a part can have."""
-        return OF_NODES if part in self._parts.model.nodes else OF_EVERY_PART
+        if part not in self._parts.model.nodes:
+            return OF_EVERY_PART
+        return ALL_OF_NODES if part in self._with_checkpoints else OF_NODES
 
     def views_of(self, part: PartName) -> Iterator[ErrorView]:
         """Yield the errors of a part, also those that were never raised."""

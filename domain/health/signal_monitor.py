@@ -15,10 +15,9 @@ from domain.health.signal_reasons import (
 )
 from domain.health.signals import (
     ESTOP,
-    STALE_DATA,
-    STALE_DATA_BIT,
     Bound,
     CountsFrom,
+    Raisable,
     Recovery,
     SignalSettings,
 )
@@ -28,7 +27,7 @@ from domain.timebase import Duration, Instant, to_seconds
 
 
 class SignalMonitor:
-    """One signal and its two errors: that of its value, and STALE_DATA.
+    """One signal and its two errors: that of its value, and that it is stale.
 
     The result follows from the readings and from the instant of the last `judge`. The caller must
     call `judge` at each `wake_at`, before anything else that happens then or later.
@@ -44,6 +43,8 @@ class SignalMonitor:
     def __init__(self, settings: SignalSettings, start: Instant) -> None:
         self.settings = settings
         self.readings = HeldReadings(settings)
+        name, part = settings.spec.name, settings.part
+        self._path = (name,) if part is None else (part, name)
         self._counts_last_good = settings.counts_from is CountsFrom.LAST_GOOD
         self._counting_since = start if self._counts_last_good else None
         """From here on "for" counts; None: nothing counts."""
@@ -54,15 +55,14 @@ class SignalMonitor:
         self._measured_before = ""
         """What an earlier run had measured of the error that it left; empty: it left none."""
         self._facts = MappingProxyType(settings.facts())
-        self.bits: Mapping[str, int] = MappingProxyType(
-            {STALE_DATA: STALE_DATA_BIT, **{c.error: c.bit for c in settings.bounds}}
-        )
-        """The errors that it can raise, with their bits."""
+        self._stale = settings.stale_key.error
+        self.can_raise: Mapping[str, Raisable] = MappingProxyType(settings.can_raise())
+        """The errors that it can raise, by name."""
         self._value_slot = ErrorSlot(settings.min_on, settings.recovery)
         self._stale_slot = ErrorSlot(settings.min_on, Recovery.AUTOMATIC)
         if settings.stale_after:
             # No minimum time: the first reading clears it at once.
-            self._stale_slot.begin_with(STALE_DATA, start)
+            self._stale_slot.begin_with(self._stale, start)
         self.view = self._make_view(start)
         """The same object until something changes."""
 
@@ -128,7 +128,7 @@ class SignalMonitor:
             self._cause = cause
             self._counted = 0 if self._counting_since is None else now - self._counting_since
         self._value_slot.update(None if cause is None else cause.error, now)
-        self._stale_slot.update(STALE_DATA if self._is_stale(now) else None, now)
+        self._stale_slot.update(self._stale if self._is_stale(now) else None, now)
         view = self._make_view(now)
         if view != self.view:
             self.view = view
@@ -196,7 +196,7 @@ class SignalMonitor:
         return Blocker(
             code=slot.error or "",
             message=message,
-            path=(self.settings.spec.name,),
+            path=self._path,
             value=value,
             threshold=threshold,
             since=slot.since if since is None else since,

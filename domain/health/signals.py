@@ -7,10 +7,13 @@ declared with the same types.
 import math
 from dataclasses import dataclass
 from enum import StrEnum
+from typing import NamedTuple
 
 from domain.errors import InvalidValueError
 from domain.findings import Fact
 from domain.inputs import SignalValue
+from domain.snapshot import ErrorKey, Severity
+from domain.state_and_mode import PartName
 from domain.timebase import Duration, seconds, to_seconds
 
 ESTOP_SIGNAL = "estop"
@@ -199,6 +202,15 @@ class Bound:
         return excess if self.comparison is Comparison.ABOVE else -excess
 
 
+class Raisable(NamedTuple):
+    """An error that can be raised."""
+
+    key: ErrorKey
+    """Whose it is, and its name."""
+    bit: int
+    """Its bit in the error code; 0: it sets none, and the robot is not in ERROR because of it."""
+
+
 @dataclass(frozen=True, slots=True)
 class SignalSettings:
     """A signal with its bounds and settings.
@@ -219,6 +231,10 @@ class SignalSettings:
     """Recovery of value errors; staleness always recovers automatically."""
     counts_from: CountsFrom = CountsFrom.FIRST_BAD
     """Where `for_` of the bounds begins."""
+    part: PartName | None = None
+    """Whose errors these are; None: the robot's own."""
+    severity: Severity = Severity.CRITICAL
+    """How bad its errors are, and that it is stale."""
 
     def __post_init__(self) -> None:
         if len({bound.key for bound in self.bounds}) != len(self.bounds):
@@ -228,6 +244,32 @@ class SignalSettings:
                 raise self._invalid(setting, "must not be negative")
         for bound in self.bounds:
             self._check_bound(bound)
+
+    def key(self, bound: Bound) -> ErrorKey:
+        """Return which error one of its bounds raises."""
+        return ErrorKey(self.part, bound.error)
+
+    @property
+    def stale_key(self) -> ErrorKey:
+        """Return which error it raises while it is stale.
+
+        Critical signals share one of the robot: what it cannot do without is not known.
+        """
+        if self.severity.stops_task:
+            return ErrorKey(None, STALE_DATA)
+        return ErrorKey(self.part, f"{self.spec.name.upper()}_STALE")
+
+    def can_raise(self) -> dict[str, Raisable]:
+        """Return the errors that it can raise, by name."""
+        stale, sets_bit = self.stale_key, self.severity.stops_task
+        raisable = {}
+        if sets_bit:
+            raisable[stale.error] = Raisable(stale, STALE_DATA_BIT)
+        elif self.stale_after:
+            raisable[stale.error] = Raisable(stale, 0)
+        for bound in self.bounds:
+            raisable[bound.error] = Raisable(self.key(bound), bound.bit if sets_bit else 0)
+        return raisable
 
     def is_worse(self, value: SignalValue, held: SignalValue) -> bool:
         """Tell whether `value` is worse than the one held."""

@@ -19,6 +19,7 @@ from domain.lifecycle import LifecycleState
 from domain.parameters import Parameters
 from domain.parts.declared_errors import DeclaredError
 from domain.parts.declared_reactions import DeclaredReaction
+from domain.parts.errors_check import error_circles
 from domain.parts.mode_settings import ModeSettings
 from domain.parts.settings_check import check_settings
 from domain.state_and_mode import DEFAULT_MODE, ModeName, PartName, StateAndMode
@@ -110,6 +111,7 @@ class SmhModel:
         object.__setattr__(self, "nodes", MappingProxyType(dict(self.nodes)))
         object.__setattr__(self, "systems", MappingProxyType(_shared(self.nodes, self.systems)))
         object.__setattr__(self, "mode_settings", MappingProxyType(dict(self.mode_settings)))
+        object.__setattr__(self, "errors", MappingProxyType(dict(self.errors)))
         object.__setattr__(
             self, "ancestors", MappingProxyType(_ancestors(self.systems, self.nodes))
         )
@@ -119,6 +121,7 @@ class SmhModel:
         for part, settings in self.mode_settings.items():
             parts = self.systems[part].named_parts if part in self.systems else ()
             findings.extend(check_settings(part, settings, self.modes_of(part), parts))
+        findings.extend(error_circles(self.errors))
         return findings
 
     @property
@@ -128,7 +131,9 @@ class SmhModel:
 
     @property
     def has_conditions(self) -> bool:
-        """Tell whether any mode has a guard."""
+        """Tell whether any mode has a guard, or any error is declared."""
+        if self.errors:
+            return True
         settings = chain.from_iterable(by_mode.values() for by_mode in self.mode_settings.values())
         return any(own.requires or own.invariants for own in settings)
 

@@ -22,14 +22,9 @@ from domain.vehicle import VehicleLimits
 from service.files.driving_block import DrivingBlock, StartTaskBlock
 from service.files.limits_block import LimitsBlock
 from service.files.parameter_file import scalar_value
-from service.files.robot_settings import (
-    ChangesBlock,
-    NodeBlock,
-    SettingsBlock,
-    SignalsBlock,
-    bare_names,
-)
+from service.files.robot_settings import ChangesBlock, NodeBlock, SignalsBlock
 from service.files.ros2_block import Ros2Block
+from service.files.settings_block import SettingsBlock, bare_names
 from service.files.vehicle_block import VehicleBlock
 from service.files.yaml_tree import Mapping, Node, Scalar, Sequence, finding_at, in_order, read_tree
 

@@ -4,11 +4,11 @@ A robot file and the `robot` of a simulation have the same keys. Omitted keys ke
 the core.
 """
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 from dataclasses import replace
-from typing import Annotated, Any, Literal, Self, TypeAlias
+from typing import Annotated, Literal, Self, TypeAlias
 
-from pydantic import BaseModel, ConfigDict, Field, model_validator
+from pydantic import ConfigDict, Field, model_validator
 
 from domain.health.signals import (
     STALE_DATA,
@@ -21,35 +21,14 @@ from domain.health.signals import (
     default_signals,
 )
 from domain.timebase import Duration, seconds
-
-Seconds: TypeAlias = Annotated[float, Field(ge=0, le=86_400, allow_inf_nan=False)]
-Number: TypeAlias = Annotated[float, Field(allow_inf_nan=False)]
+from service.files.settings_block import Number, Seconds, SettingsBlock, bare_names
+from service.files.source_block import MISSED_PERIODS, SourceBlock
 
 _SignalName: TypeAlias = Annotated[str, Field(pattern=r"^[a-z][a-z0-9_]{0,63}$")]
 _ErrorName: TypeAlias = Annotated[str, Field(pattern=r"^[A-Z][A-Z0-9_]{0,63}$")]
 
 
-def bare_names(named: Mapping[str, Any]) -> dict[str, Any]:
-    """Return what is named, without the leading slashes that names have in ROS.
-
-    Raises:
-        ValueError: A name occurs both with and without one.
-    """
-    found: dict[str, Any] = {}
-    for name, value in named.items():
-        bare = name.lstrip("/")
-        if bare in found:
-            raise ValueError(f"{bare} is named twice, with and without a leading slash")
-        found[bare] = value
-    return found
-
-
-class SettingsBlock(BaseModel):
-    """A block of settings: strict, frozen, without unknown keys."""
-
-    model_config = ConfigDict(
-        strict=True, extra="forbid", frozen=True, use_attribute_docstrings=True
-    )
+_STALE_BETWEEN = "stale_after_s is shorter than the period of the source"
 
 
 class AnySignal(SettingsBlock):
@@ -63,6 +42,15 @@ class AnySignal(SettingsBlock):
     recovery: Literal["automatic", "acknowledge"] | None = None
     """Whether an error clears when its cause is gone, or only after it was acknowledged as well.
     Default: automatic."""
+    source: SourceBlock | None = None
+    """What the service itself reads the signal from. Default: readings are posted, or come from a
+    topic of ROS 2. Without effect in simulations, which open nothing."""
+
+    @model_validator(mode="after")
+    def _is_not_always_stale(self) -> Self:
+        if self.source is not None and 0 < (self.stale_after_s or 0) < self.source.period_s:
+            raise ValueError(f"{_STALE_BETWEEN}, {self.source.period_s:g} s")
+        return self
 
     def applied_to(self, settings: SignalSettings) -> SignalSettings:
         """Return `settings` with the values that are set here.
@@ -207,18 +195,45 @@ class SignalsBlock(SettingsBlock):
 
     def to_domain(self) -> tuple[SignalSettings, ...]:
         """Return the settings of all signals; see `RobotSettings.to_signal_settings`."""
-        general = AnySignal(stale_after_s=self.stale_after_s)
         usual = (
-            getattr(self, settings.spec.name).applied_to(general.applied_to(settings))
-            for settings in default_signals()
+            signal.applied_to(self._general(signal).applied_to(settings))
+            for signal, settings in self._default_ones()
         )
-        further = (signal.declared(name, general) for name, signal in self.further.items())
+        further = (
+            signal.declared(name, self._general(signal)) for name, signal in self.further.items()
+        )
         return (*usual, *further)
+
+    def _general(self, signal: AnySignal) -> AnySignal:
+        """Return the settings of all signals; without any, those that suit the source of one."""
+        stale_after_s = self.stale_after_s
+        if stale_after_s is None and signal.source is not None:
+            stale_after_s = MISSED_PERIODS * signal.source.period_s
+        return AnySignal(stale_after_s=stale_after_s)
+
+    def _default_ones(self) -> Iterator[tuple[AnySignal, SignalSettings]]:
+        for settings in default_signals():
+            yield getattr(self, settings.spec.name), settings
+
+    @property
+    def sources(self) -> dict[str, SourceBlock]:
+        """Return the sources by the names of their signals."""
+        default = {settings.spec.name: signal for signal, settings in self._default_ones()}
+        named = {**default, **self.further}
+        return {name: signal.source for name, signal in named.items() if signal.source is not None}
 
     @property
     def further(self) -> dict[str, DeclaredSignal]:
         """Return the declared signals by name."""
         return self.__pydantic_extra__
+
+    @model_validator(mode="after")
+    def _none_is_always_stale(self) -> Self:
+        for name, source in self.sources.items():
+            own = getattr(self, name).stale_after_s
+            if own is None and 0 < (self.stale_after_s or 0) < source.period_s:
+                raise ValueError(f"{_STALE_BETWEEN} of {name}, {source.period_s:g} s")
+        return self
 
     @model_validator(mode="after")
     def _errors_have_names_of_their_own(self) -> Self:

@@ -73,6 +73,45 @@ SETTINGS = (
     ),
 )
 
+ERRORS = (
+    FindingCode(
+        "INVALID_ERROR_NAME",
+        ERROR,
+        "The name of an error has other characters than capital letters, digits and "
+        "underscores, or more than 64, or does not begin with a letter.",
+        "Use another name, such as `SCAN_LATE`.",
+    ),
+    FindingCode(
+        "NAME_TAKEN",
+        ERROR,
+        "The name of an error is that of the emergency stop, or that of an error of a signal of "
+        "the same part.",
+        "Use another name.",
+    ),
+    FindingCode(
+        "BUILT_IN_ERROR",
+        ERROR,
+        "The settings of an error that parts have anyway, such as `UNREACHABLE`, say how it is "
+        "found or how it follows.",
+        "Leave the key out, or declare an error of another name.",
+    ),
+    FindingCode(
+        "ERROR_CIRCLE",
+        ERROR,
+        "An error depends on itself through `caused_by` or the conditions of errors; or a "
+        "`critical` or `fatal` one rests on the state of the robot, its task or the hold `error`, "
+        "which follow from it.",
+        "Remove one of the dependencies; the message names them.",
+    ),
+    FindingCode(
+        "NO_EFFECT",
+        WARNING,
+        "A key of an error has no effect beside the others: times without the condition that they "
+        "are for, or how an error follows that is found by its own condition.",
+        "Leave it out; the message says why.",
+    ),
+)
+
 CONDITIONS = (
     FindingCode(
         "CONDITION_SYNTAX",

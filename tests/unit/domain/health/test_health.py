@@ -16,7 +16,7 @@ from domain.kept import KeptError
 from domain.outbox import Outbox, Outputs
 from domain.restart import Restart
 from domain.robot_state import RobotState
-from domain.snapshot import TaskStatus
+from domain.snapshot import ErrorKey, TaskStatus
 from domain.storage import Storage
 from domain.tasks.driving import Driving
 from domain.timebase import Instant, seconds
@@ -46,7 +46,7 @@ class Robot:
 
     def acknowledge(self, error: str) -> list[RecordedEvent]:
         self.outbox.begin(self.now, ErrorAcknowledged(error))
-        self.health.acknowledge(error, self.now)
+        self.health.acknowledge(ErrorKey(None, error), self.now)
         return self._taken()
 
     def restore(self, *kept: KeptError) -> list[RecordedEvent]:

@@ -31,7 +31,7 @@ class Robot:
         self.health.take_readings(Readings(items, "test"), seconds(at_s))
 
     def acknowledge(self, error: str, at_s: float) -> None:
-        self.health.acknowledge(error, seconds(at_s))
+        self.health.acknowledge(ErrorKey(None, error), seconds(at_s))
         self.health.error_list.acknowledge(ErrorKey(None, error))
 
     def error(self, name: str) -> ErrorView:
