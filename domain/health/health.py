@@ -7,6 +7,7 @@ from domain.concern import Concern, Takers
 from domain.events.health import (
     ErrorCleared,
     ErrorRaised,
+    SignalNotRead,
     SignalPending,
     SignalRead,
     SignalSettled,
@@ -18,7 +19,7 @@ from domain.health.error_list import ErrorList
 from domain.health.robot_errors import RobotErrors
 from domain.health.signals import ESTOP, SignalSettings
 from domain.health.state_manager import HealthChanges, StateManager
-from domain.inputs import Readings, Restored
+from domain.inputs import Readings, Restored, SourceFault
 from domain.kept import KeptError
 from domain.outbox import Outbox
 from domain.snapshot import ErrorKey, ErrorView, SignalView, SystemStateView, TaskStatus
@@ -58,7 +59,11 @@ class Health(Concern):
     @property
     def takes(self) -> Takers:
         """Return the handler of each class of input."""
-        return {Readings: self.take_readings, Restored: self.restore}
+        return {
+            Readings: self.take_readings,
+            SourceFault: self.take_fault,
+            Restored: self.restore,
+        }
 
     def wake_at(self) -> Instant | None:
         """Return when time alone raises or clears an error."""
@@ -96,6 +101,18 @@ class Health(Concern):
         sender = readings.actor.address or readings.source
         for signal in released:
             self._outbox.emit(WriteAnswered("READING", f"/signals/{signal}", _TAKEN, sender))
+
+    def take_fault(self, fault: SourceFault, now: Instant) -> None:
+        """Take why a source gives no reading of a signal; only what is new is told.
+
+        Raises:
+            UnknownSignalError: The signal is not declared.
+        """
+        is_new = self._manager.is_new_fault(fault)
+        self._outbox.begin(now, SignalNotRead(fault.signal, fault.source, fault.reason))
+        if is_new:
+            self._outbox.record_input()
+            self._tell(self._manager.note_fault(fault, now), now)
 
     def acknowledge(self, key: ErrorKey, now: Instant) -> None:
         """Acknowledge an error, so that its signal clears it once its cause is gone.

@@ -26,6 +26,7 @@ from domain.inputs import (
     Restored,
     ServiceStall,
     ShelveRequest,
+    SourceFault,
     StorageStatus,
     TaskRequest,
     TimePassed,
@@ -98,6 +99,9 @@ INPUTS: Mapping[str, tuple[object, ...]] = {
                 steering_angle_rad=0.0625,
             )
         ),
+    ),
+    "source_fault": (
+        SourceFault(signal="disk", source="os disk /", reason='Größe ≤ 3 — "gripper\\jam"'),
     ),
     "drive_status": (
         DriveStatus(available=True, reason='Größe ≤ 3 — "gripper\\jam"'),
