@@ -363,6 +363,11 @@ class ErrorView:
     """When its cause was gone; None: it is present, or that is not known."""
     marks: ErrorMarks = NO_MARKS
 
+    @property
+    def is_open(self) -> bool:
+        """Tell whether an operator may want to see it: it is not normal, or it is shelved."""
+        return self.state is not ErrorState.NORMAL or self.marks.shelf is not None
+
 
 @dataclass(frozen=True, slots=True)
 class EmergencyStopView:

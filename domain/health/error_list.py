@@ -221,7 +221,7 @@ class ErrorList:
             self.acknowledge(too_many)
 
     def _put(self, view: ErrorView) -> None:
-        is_open = view.state is not ErrorState.NORMAL or view.marks.shelf is not None
+        is_open = view.is_open
         here, there = (self._open, self._ended) if is_open else (self._ended, self._open)
         there.pop(view.key, None)
         if is_open or view.count or view.marks != NO_MARKS:

@@ -2,9 +2,14 @@
 
 from pydantic import Field
 
-from api.http.schemas.base import Json, Timestamp
+from api.http.schemas.base import Body, Json, Timestamp
 from domain.findings import Fact
+from domain.inputs import MAX_SHELF
 from domain.snapshot import ErrorState, Severity
+from domain.timebase import to_seconds
+
+MAX_REASON = 500
+"""Largest length of the reason why an error is shelved, in characters."""
 
 
 class ErrorNameJson(Json):
@@ -48,6 +53,15 @@ class ErrorJson(Json):
     )
     count: int = Field(description="How often it was raised in this run of the service")
     hint: str | None = Field(description="What would help")
+
+
+class ShelfBody(Body):
+    """For how long an error is not announced, and why."""
+
+    for_s: float = Field(
+        gt=0, le=to_seconds(MAX_SHELF), allow_inf_nan=False, description="At most 8 h"
+    )
+    reason: str = Field(min_length=1, max_length=MAX_REASON, pattern=r"\S")
 
 
 class ErrorsJson(Json):
