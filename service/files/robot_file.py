@@ -13,7 +13,7 @@ from pydantic import Field, ValidationError, field_validator
 from domain.changes.settings import ChangeSettings
 from domain.errors import InvalidValueError, PilothouseError, UnknownPartError, near_match
 from domain.findings import Finding
-from domain.health.signals import SignalSettings
+from domain.health.signals import ESTOP_SIGNAL, SignalSettings
 from domain.navigation import NavigationSettings
 from domain.parts.system_model import SmhModel
 from domain.state_and_mode import PartName
@@ -236,6 +236,11 @@ def _faults(settings: RobotSettings, model: SmhModel) -> Iterator[Fault]:
     kinds = {signal.spec.name: signal.spec.kind for signal in settings.to_signal_settings()}
     for keys, code, message in settings.ros2.faults(kinds):
         yield ("ros2", *keys), code, message
+    # Several sources of a stop are kept apart; of anything else the newest reading would count.
+    for name in sorted(settings.signals.sources.keys() & settings.ros2.signals.keys()):
+        if name != ESTOP_SIGNAL:
+            message = f"{name} has a source under signals; remove one of them"
+            yield ("ros2", "signals", name), "INVALID_VALUE", message
 
 
 def _plain(node: Node | None, findings: list[Finding]) -> Any:  # noqa: ANN401  # as in JSON
