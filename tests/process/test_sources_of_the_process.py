@@ -74,7 +74,7 @@ async def test_what_is_wrong_with_one_source_harms_no_other_and_does_not_delay_t
             (tmp_path / "lies").write_text("7")
 
             async def lies_no_longer() -> bool:
-                return (await signals())["lies"]["value"] == 7
+                return bool((await signals())["lies"]["value"] == 7)
 
             await until(lies_no_longer, 0.05)
         running.send_signal(signal.SIGTERM)
