@@ -139,7 +139,7 @@ class HttpRobot:
         await self.pass_time(3)
         assert (await self.get(answer.headers["location"]))["status"] == "succeeded"
 
-    def break_node(self, node: str, fault: Fault) -> None:
+    def break_node(self, node: str, fault: Fault | None) -> None:
         """Give a node a fault."""
         self.backend.set_fault(PartName(node), fault)
 
