@@ -25,6 +25,7 @@ from domain.health.checkpoint_errors import CheckpointErrors
 from domain.health.checkpoints import CheckpointSettings
 from domain.health.emergency_stop import EmergencyStop
 from domain.health.health import Health
+from domain.health.mode_limits import ModeLimits
 from domain.health.part_errors import PartErrors
 from domain.health.signals import SignalSettings, default_signals
 from domain.inputs import ChangeRequest, Input, TimePassed
@@ -46,6 +47,7 @@ from domain.snapshot import (
     ErrorKey,
     ErrorView,
     ModeView,
+    MonitorView,
     ParameterView,
     PartView,
     PlanView,
@@ -117,6 +119,7 @@ class Supervision:
             self._parts,
             self._health,
             self._emergency_stop,
+            ModeLimits(settings.signals, self._parts, self._health, self._outbox),
             self.driving,
             Standstill(self.driving, self._emergency_stop, self._outbox),
             storage,
@@ -139,7 +142,7 @@ class Supervision:
         return (
             CheckpointErrors(settings.checkpoints, parts, health, errors, outbox),
             # It evaluates all conditions, and so comes last of those that watch some.
-            FactChanges(self.conditions, self.driving, outbox),
+            FactChanges(self.conditions, parts, self.driving, outbox),
             announcing,
         )
 
@@ -325,6 +328,10 @@ class Supervision:
     def signals(self) -> Mapping[str, SignalView]:
         """Return all signals."""
         return self._health.signals()
+
+    def monitors(self) -> tuple[MonitorView, ...]:
+        """Return the monitors, as of the last input."""
+        return tuple(self._health.monitors(self._now))
 
     def error(self, key: ErrorKey) -> ErrorView:
         """Return one error, as `Outputs.errors` names it."""

@@ -140,7 +140,7 @@ class HttpRobot:
         assert (await self.get(answer.headers["location"]))["status"] == "succeeded"
 
     def break_node(self, node: str, fault: Fault | None) -> None:
-        """Give a node a fault."""
+        """Give a node a fault; None: it has none any more."""
         self.backend.set_fault(PartName(node), fault)
 
 
