@@ -25,10 +25,13 @@ from domain.inputs import (
     DriveStatus,
     Input,
     ModeRequest,
+    NodeReport,
     Restored,
     ServiceStall,
+    ShelveRequest,
     SourceFault,
     StorageStatus,
+    UnshelveRequest,
     WriteRecord,
 )
 from domain.kept import KeptHold, KeptTarget
@@ -225,6 +228,13 @@ def a_lost_sensor() -> list[RecordedEvent]:
     return told(SourceFault("temperature", "file /sys/class/thermal", "No such file"))
 
 
+def an_error_that_comes_and_goes() -> list[RecordedEvent]:
+    """A node is lost and heard again and again, until somebody shelves that for a while."""
+    heard = [NodeReport(BASE, reachable=reachable) for reachable in (True, False) * 4]
+    shelved = ShelveRequest("UNREACHABLE", seconds(600), "the cable is loose", part=BASE)
+    return told(*heard, shelved, UnshelveRequest("UNREACHABLE", part=BASE))
+
+
 def a_restart() -> list[RecordedEvent]:
     kept = (
         KeptTarget(PartName("gripper"), StateAndMode(LifecycleState.ACTIVE), 1),
@@ -297,6 +307,7 @@ def test_events_that_happen_are_listed_with_what_they_carry() -> None:
         a_restart,
         a_full_disk,
         a_lost_sensor,
+        an_error_that_comes_and_goes,
         a_lost_arm,
         a_wait,
         the_examples,
