@@ -1,14 +1,19 @@
 """Notes which facts an input changed, and evaluates the conditions that name them."""
 
-from collections.abc import Iterable, Mapping, Set
+from collections.abc import Hashable, Iterable, Mapping, Set
+from typing import TypeVar
 
 from domain.concern import Concern, Takers
 from domain.conditions.tree import Topic, TopicKind
 from domain.conditions.watched import WatchedConditions
 from domain.inputs import NodeReport
 from domain.outbox import Outbox
+from domain.snapshot import ErrorKey
+from domain.state_and_mode import PartName
 from domain.tasks.driving import Driving
 from domain.timebase import Instant
+
+KeyT = TypeVar("KeyT", bound=Hashable)
 
 _ROBOT, _TASK, _VEHICLE = map(Topic, (TopicKind.ROBOT, TopicKind.TASK, TopicKind.VEHICLE))
 
@@ -31,7 +36,11 @@ class FactChanges(Concern):
         self._is_idle = not topics
         self._signals = _by_name(topics, TopicKind.SIGNAL)
         self._parts = _by_name(topics, TopicKind.PART)
-        self._errors = [topic for topic in topics if topic.kind is TopicKind.ERROR]
+        self._errors = {
+            ErrorKey(PartName(topic.part) if topic.part else None, topic.name): topic
+            for topic in topics
+            if topic.kind is TopicKind.ERROR
+        }
         self._holds = [topic for topic in topics if topic.kind is TopicKind.HOLD]
         self._seen: object = None
         """The holds as they were evaluated last."""
@@ -53,8 +62,7 @@ class FactChanges(Concern):
             return False
         self._touch_named(self._outbox.signals, self._signals)
         self._touch_named(self._outbox.parts, self._parts)
-        if self._outbox.errors:
-            self._touch(self._errors)
+        self._touch_named(self._outbox.errors, self._errors)
         if (holds := self._driving.holds) is not self._seen:
             # A pose that is too old sets a hold.
             self._touch((*self._holds, _VEHICLE))
@@ -67,7 +75,7 @@ class FactChanges(Concern):
             self._touch((_VEHICLE,))
         return bool(self._watched.renew(now))
 
-    def _touch_named(self, changed: Set[str], named: Mapping[str, Topic]) -> None:
+    def _touch_named(self, changed: Set[KeyT], named: Mapping[KeyT, Topic]) -> None:
         """Touch what is in both; the smaller one may be far smaller."""
         names = changed if len(changed) < len(named) else named
         self._touch(named[name] for name in names if name in changed and name in named)

@@ -9,6 +9,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import TypeAlias
 
+from domain.findings import Fact
 from domain.identifiers import ChangeId, TaskId
 from domain.lifecycle import LifecycleState, Transition
 from domain.parameters import ParameterValue
@@ -136,6 +137,23 @@ class KeptFailedChange:
 
 
 @dataclass(frozen=True, slots=True)
+class KeptReport:
+    """An error of a part that somebody reported, and that is not over."""
+
+    part: PartName
+    error: str
+    message: str
+    value: Fact
+    since: Instant
+    """When it was reported first."""
+
+    @property
+    def name(self) -> str:
+        """Return its name among those of its kind."""
+        return f"{self.part}.{self.error}"
+
+
+@dataclass(frozen=True, slots=True)
 class KeptHold:
     """A hold that somebody set."""
 
@@ -200,6 +218,7 @@ Kept: TypeAlias = (
     | KeptEmergencyStop
     | KeptError
     | KeptFailedChange
+    | KeptReport
     | KeptHold
     | KeptTask
     | KeptProgress

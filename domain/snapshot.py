@@ -320,6 +320,17 @@ class ErrorView:
     """When it was raised, or when it began to be pending; None: it is normal."""
     count: int
     """How often it was raised, in this run of the service."""
+    caused_by: "tuple[ErrorKey, ...]" = ()
+    """The errors that explain it: those of its causes that are on, or were last."""
+    roots: "tuple[ErrorKey, ...]" = ()
+    """The errors that it goes back to through its causes; empty: it is a root itself."""
+    hint: str = ""
+    """What to do about it; empty: nobody said."""
+
+    @property
+    def is_root(self) -> bool:
+        """Tell whether no other error explains it."""
+        return not self.roots
 
 
 @dataclass(frozen=True, slots=True)

@@ -20,8 +20,11 @@ from domain.events.service import TimeWasDue
 from domain.fact_changes import FactChanges
 from domain.findings import Blocker
 from domain.health.emergency_stop import EmergencyStop
+from domain.health.error_causes import ErrorCauses
 from domain.health.health import Health
 from domain.health.part_errors import PartErrors
+from domain.health.propagation import Propagation
+from domain.health.reported_errors import ReportedErrors
 from domain.health.signals import SignalSettings, default_signals
 from domain.inputs import ChangeRequest, Input, TimePassed
 from domain.lifecycle import Transition
@@ -87,7 +90,8 @@ class Supervision:
         self._now = start
         outbox = self._outbox = Outbox()
         self._parts = Parts(model, self._outbox)
-        self._health = Health(settings.signals, self._outbox, start)
+        causes = ErrorCauses(model)
+        self._health = Health(settings.signals, self._outbox, start, causes)
         self._emergency_stop = EmergencyStop(self._health, self._outbox)
         self.driving = Driving(
             settings.tasks, settings.vehicle, self._health, self._emergency_stop, outbox, start
@@ -100,6 +104,9 @@ class Supervision:
         self.conditions = WatchedConditions(self.facts)
         """The conditions of the model, kept up to date; read only."""
         guards = Guards(model, self.conditions, start)
+        propagation = Propagation(
+            self._health.error_list, self.conditions, self._part_errors.unheard, outbox, start
+        )
         self._changing = Changing(
             self._parts, self._health, self._part_errors, settings.changes, self._outbox, guards
         )
@@ -114,7 +121,9 @@ class Supervision:
             storage,
             self._robot_state,
             self._part_errors,
+            ReportedErrors(model, self._health.error_list, outbox),
             FactChanges(self.conditions, self.driving, self._outbox),
+            propagation,
             self._changing,
             *self._displacers(guards, settings.rules),
             Audit(self._outbox),

@@ -24,19 +24,18 @@ def error_text(view: ErrorView, show: Callable[[Instant], str]) -> str:
         "part": key.part,
         "severity": str(view.severity),
         "state": str(view.state),
-        # Nothing shelves, suppresses or causes an error: each is its own root.
         "shelved_until_at": None,
         "suppressed": False,
         "chattering": False,
-        "root_cause": True,
+        "root_cause": view.is_root,
         "first_out": view.first_out,
-        "caused_by": [],
-        "roots": [{"part": key.part, "error": key.error}],
+        "caused_by": [each._asdict() for each in view.caused_by],
+        "roots": [each._asdict() for each in view.roots or (key,)],
         "message": view.message,
         "value": view.value,
         "threshold": view.threshold,
         "since_at": None if since is None else show(since),
         "count": view.count,
-        "hint": None,
+        "hint": view.hint or None,
     }
     return to_json(shown, inf_nan_mode="null").decode()

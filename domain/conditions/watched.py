@@ -7,7 +7,7 @@ from domain.conditions.condition import Condition
 from domain.conditions.evaluation import Truth, compare, truth_of
 from domain.conditions.explanation import explain
 from domain.conditions.facts import Facts
-from domain.conditions.tree import Comparison, Subject, Topic, comparisons
+from domain.conditions.tree import Comparison, Subject, Topic, Value, comparisons
 from domain.findings import Blocker
 from domain.timebase import Instant
 
@@ -21,6 +21,8 @@ class _Watched:
     since: Instant
     broken_since: Instant | None
     """Since when it is false or unknown; None: it is true."""
+    followers: "list[dict[str, Condition]]" = field(default_factory=list)
+    """Where it is noted that its value changed."""
 
 
 @dataclass(slots=True)
@@ -75,6 +77,19 @@ class WatchedConditions:
             for leaf in leaves.values():
                 leaf.conditions.append(watched)
 
+    def follow(self, conditions: Iterable[Condition], now: Instant) -> dict[str, Condition]:
+        """Add conditions; return where those whose value changed are noted by their text.
+
+        Whoever follows them removes them from there. At first, all of them are in it.
+        """
+        noted: dict[str, Condition] = {}
+        for condition in conditions:
+            if condition.text not in noted:
+                self.watch((condition,), now)
+                noted[condition.text] = condition
+                self._watched[condition.text].followers.append(noted)
+        return noted
+
     def touch(self, topic: Topic) -> None:
         """Note that something about a topic changed."""
         if topic in self._by_topic:
@@ -105,6 +120,8 @@ class WatchedConditions:
                 elif watched.broken_since is None:
                     watched.broken_since = now
                 changed.append(watched.condition)
+                for noted in watched.followers:
+                    noted[watched.condition.text] = watched.condition
         self.revision += len(changed)
         return tuple(changed)
 
@@ -119,6 +136,11 @@ class WatchedConditions:
     def broken_since(self, condition: Condition) -> Instant | None:
         """Return since when a condition that is watched is false or unknown; None: it is true."""
         return self._watched[condition.text].broken_since
+
+    def value_of(self, subject: Subject) -> Value | None:
+        """Return the value of a fact; None: there is none, or it is not known."""
+        observed = self._facts.observe(subject)
+        return None if observed.doubt else observed.value
 
     def explain(self, condition: Condition) -> tuple[Blocker, ...]:
         """Return why a condition that is watched is not true; empty: it is."""

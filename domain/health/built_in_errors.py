@@ -33,5 +33,10 @@ OF_NODES: Mapping[str, Severity] = MappingProxyType(
 
 
 def severity_of(key: ErrorKey) -> Severity:
-    """Return the severity of an error; each of the robot itself sets a bit, and so ERROR."""
-    return Severity.CRITICAL if key.part is None else OF_NODES[key.error]
+    """Return the severity of an error of which nothing else is said.
+
+    Each of the robot itself sets a bit, and so ERROR.
+    """
+    if key.part is None:
+        return Severity.CRITICAL
+    return OF_NODES.get(key.error, Severity.WARNING)
