@@ -20,6 +20,7 @@ from api.http.limits import USUAL_LIMITS, ServiceLimits
 from api.http.metrics import Metrics
 from api.http.problem_handlers import add_problem_handlers
 from api.http.routes import (
+    analysis,
     changes,
     emergency_stop,
     errors,
@@ -56,6 +57,7 @@ _RESOURCES = (
     signals.router,
     system_state.router,
     errors.router,
+    analysis.router,
     emergency_stop.router,
     mock.router,
     tasks.router,

@@ -5,6 +5,7 @@
     |   +-- UnknownPartError
     |   +-- UnknownModeError
     |   +-- UnknownSignalError
+    |   +-- UnknownCheckpointError
     |   +-- UnknownErrorNameError
     |   +-- UnknownChangeError
     |   +-- UnknownParameterError
@@ -122,6 +123,12 @@ class UnknownSignalError(UnknownNameError):
     """An unknown signal: it is not declared."""
 
     code = "UNKNOWN_SIGNAL"
+
+
+class UnknownCheckpointError(UnknownNameError):
+    """An unknown checkpoint: the robot file has none of this name for the node."""
+
+    code = "UNKNOWN_CHECKPOINT"
 
 
 class UnknownErrorNameError(UnknownNameError):

@@ -67,6 +67,25 @@ class Readings:
 
 
 @dataclass(frozen=True, slots=True)
+class CheckpointReport:
+    """A node passes a place in its program that it was asked to report."""
+
+    node: PartName
+    checkpoint: str
+    actor: Actor = NOBODY
+
+
+@dataclass(frozen=True, slots=True)
+class SourceFault:
+    """A source gives no reading of a signal; one from the same source ends that."""
+
+    signal: str
+    source: str
+    """As in `Readings`."""
+    reason: str
+
+
+@dataclass(frozen=True, slots=True)
 class VehicleReport:
     """Pose and motion of the vehicle, from its localization."""
 
@@ -303,6 +322,8 @@ Input: TypeAlias = (
     NodeReport
     | NodeAnswer
     | Readings
+    | CheckpointReport
+    | SourceFault
     | VehicleReport
     | DriveStatus
     | BackendStatus

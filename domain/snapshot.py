@@ -239,6 +239,8 @@ class SignalView:
     needs_acknowledgement: bool
     """`error` ends only after an operator has acknowledged it, and nobody has yet."""
     settings: Mapping[str, Fact]
+    source_fault: str | None = None
+    """Why a source gives no reading; None: none has said so since its last reading."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -10,6 +10,7 @@ from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
+from domain.analysis.fault_trees import ErrorGraph, error_graph
 from domain.audit import Audit
 from domain.changes.changing import Changing
 from domain.changes.guards import Guards
@@ -19,6 +20,8 @@ from domain.conditions.watched import WatchedConditions
 from domain.events.service import TimeWasDue
 from domain.fact_changes import FactChanges
 from domain.findings import Blocker
+from domain.health.checkpoint_errors import CheckpointErrors
+from domain.health.checkpoints import CheckpointSettings
 from domain.health.emergency_stop import EmergencyStop
 from domain.health.error_causes import ErrorCauses
 from domain.health.health import Health
@@ -73,6 +76,8 @@ class SupervisionSettings:
     tasks: TaskSettings = field(default_factory=TaskSettings)
     vehicle: VehicleLimits = field(default_factory=VehicleLimits)
     rules: RuleSettings = field(default_factory=RuleSettings)
+    checkpoints: Mapping[PartName, CheckpointSettings] = field(default_factory=dict)
+    """What is supervised of the checkpoints of nodes."""
 
 
 class Supervision:
@@ -98,7 +103,9 @@ class Supervision:
         )
         storage = Storage(self._outbox)
         self._robot_state = RobotState(self._health, self.driving, storage, self._outbox)
-        self._part_errors = PartErrors(self._parts, self._health.error_list, self._outbox, start)
+        self._part_errors = PartErrors(
+            self._parts, self._health.error_list, outbox, start, settings.checkpoints
+        )
         self.facts = RobotFacts(self._parts, self._health, self.driving, self._part_errors.reason)
         """What conditions are evaluated over."""
         self.conditions = WatchedConditions(self.facts)
@@ -122,6 +129,9 @@ class Supervision:
             self._robot_state,
             self._part_errors,
             ReportedErrors(model, self._health.error_list, outbox),
+            CheckpointErrors(
+                settings.checkpoints, self._parts, self._health, self._part_errors, outbox
+            ),
             FactChanges(self.conditions, self.driving, self._outbox),
             propagation,
             self._changing,
@@ -331,6 +341,11 @@ class Supervision:
     def open_errors(self) -> Mapping[str, ErrorView]:
         """Return the errors that are not normal, by their names."""
         return self._health.error_list.open_ones()
+
+    def error_graph(self) -> ErrorGraph:
+        """Return the critical and fatal errors, and the errors that they follow from."""
+        own = {view.key: view.severity for view in self._health.error_views()}
+        return error_graph(self.model, own)
 
     @property
     def parts_with_errors(self) -> Mapping[str, int]:

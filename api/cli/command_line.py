@@ -13,6 +13,7 @@ from collections.abc import Sequence
 from typing import NoReturn
 
 from api.cli.commands import (
+    analyse,
     change,
     check,
     export,
@@ -37,6 +38,7 @@ _COMMANDS = (
     serve.COMMAND,
     monitor.COMMAND,
     check.COMMAND,
+    analyse.COMMAND,
     change.MODE,
     change.STATE,
     why.WHY,
@@ -52,6 +54,7 @@ examples:
   pilothouse serve                        run with the built-in simulated robot
   pilothouse monitor                      watch it in this terminal
   pilothouse check robot.yaml             check a model file
+  pilothouse analyse robot.yaml           find single points of failure
   pilothouse serve robot.yaml --port 9000 supervise it, with simulated nodes
   pilothouse mode actuation PERFORMANCE   change a mode, and follow the steps
   pilothouse state drive_base deactivate  request a lifecycle transition

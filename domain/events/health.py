@@ -27,6 +27,22 @@ class SignalRead(Event):
 
 
 @dataclass(frozen=True, slots=True)
+class SignalNotRead(Event):
+    """A source gives no reading of a signal, which becomes stale unless another one does."""
+
+    kind = "signal.not_read"
+    is_input = True
+    is_notable = False
+
+    signal: str
+    source: str
+    reason: str
+
+    def _words(self) -> str:
+        return because(f"no reading of {self.signal} from {self.source}", self.reason)
+
+
+@dataclass(frozen=True, slots=True)
 class SignalPending(Event):
     """A signal is bad; an error follows unless it recovers in time."""
 

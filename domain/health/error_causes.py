@@ -7,7 +7,13 @@ from typing import TypeAlias
 from domain.circles import circles
 from domain.conditions.condition import Condition
 from domain.conditions.tree import Comparison, Operator, TopicKind, comparisons
-from domain.health.built_in_errors import DEVIATES, OF_EVERY_PART, OF_NODES, UNREACHABLE
+from domain.health.built_in_errors import (
+    ALL_OF_NODES,
+    DEVIATES,
+    OF_EVERY_PART,
+    OF_NODES,
+    UNREACHABLE,
+)
 from domain.parts.declared_errors import DeclaredError
 from domain.parts.errors_check import named_errors
 from domain.parts.system_model import SmhModel
@@ -20,7 +26,7 @@ MAX_SHOWN = 20
 Place: TypeAlias = tuple[int, int, int]
 """Where an error stands in the order of decisions: its level, its part, its place there."""
 
-_POSITIONS = {error: position for position, error in enumerate(OF_NODES)}
+_POSITIONS = {error: position for position, error in enumerate(ALL_OF_NODES)}
 
 _Link: TypeAlias = tuple[ErrorKey, ErrorKey]
 """An error, and another one that explains it."""
@@ -117,7 +123,7 @@ class ErrorCauses:
 
     def is_built_in(self, key: ErrorKey) -> bool:
         """Tell whether a part has an error without a word in the model file."""
-        return key.error in (OF_NODES if key.part in self._model.nodes else OF_EVERY_PART)
+        return key.error in (ALL_OF_NODES if key.part in self._model.nodes else OF_EVERY_PART)
 
     def is_reported(self, key: ErrorKey) -> bool:
         """Tell whether an error is declared, and others find it and report it."""

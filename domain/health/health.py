@@ -9,6 +9,7 @@ from domain.events.health import (
     ErrorAcknowledged,
     ErrorCleared,
     ErrorRaised,
+    SignalNotRead,
     SignalPending,
     SignalRead,
     SignalSettled,
@@ -21,7 +22,7 @@ from domain.health.error_list import ErrorList
 from domain.health.robot_errors import RobotErrors
 from domain.health.signals import DECLARED_BIT, ESTOP, SignalSettings
 from domain.health.state_manager import HealthChanges, StateManager
-from domain.inputs import AcknowledgeRequest, Readings, Restored
+from domain.inputs import AcknowledgeRequest, Readings, Restored, SourceFault
 from domain.kept import KeptError
 from domain.outbox import Outbox
 from domain.snapshot import (
@@ -86,6 +87,7 @@ class Health(Concern):
         """Return the handler of each class of input."""
         return {
             Readings: self.take_readings,
+            SourceFault: self.take_fault,
             AcknowledgeRequest: self.acknowledge,
             Restored: self.restore,
         }
@@ -107,6 +109,11 @@ class Health(Concern):
         finally:
             self._manager.is_late = False
 
+    @property
+    def is_late(self) -> bool:
+        """Tell whether the current input was heard late by our own fault."""
+        return self._manager.is_late
+
     def take_readings(self, readings: Readings, now: Instant) -> None:
         """Accept readings, and decide at once; one that releases a stop is in the audit trail.
 
@@ -121,6 +128,18 @@ class Health(Concern):
         sender = readings.actor.address or readings.source
         for signal in released:
             self._outbox.emit(WriteAnswered("READING", f"/signals/{signal}", _TAKEN, sender))
+
+    def take_fault(self, fault: SourceFault, now: Instant) -> None:
+        """Take why a source gives no reading of a signal; only what is new is told.
+
+        Raises:
+            UnknownSignalError: The signal is not declared.
+        """
+        is_new = self._manager.is_new_fault(fault)
+        self._outbox.begin(now, SignalNotRead(fault.signal, fault.source, fault.reason))
+        if is_new:
+            self._outbox.record_input()
+            self._tell(self._manager.note_fault(fault, now), now)
 
     def acknowledge(self, request: AcknowledgeRequest, now: Instant) -> None:
         """Acknowledge an error, so that it clears once its cause is gone.

@@ -17,6 +17,7 @@ from domain.health.built_in_errors import (
     DEVIATES,
     ERROR_PROCESSING,
     INVARIANT_BROKEN,
+    OF_CHECKPOINTS,
     PARAMETERS_DRIFTED,
     UNREACHABLE,
 )
@@ -62,7 +63,24 @@ class PartErrors(Concern):
     it is how each node of each robot begins.
     """
 
-    def __init__(self, parts: Parts, errors: ErrorList, outbox: Outbox, start: Instant) -> None:
+    def __init__(
+        self,
+        parts: Parts,
+        errors: ErrorList,
+        outbox: Outbox,
+        start: Instant,
+        with_checkpoints: Container[PartName] = (),
+    ) -> None:
+        """Begin with all nodes unheard.
+
+        Args:
+            parts: Whose errors these are.
+            errors: Where they are noted.
+            outbox: Where they are told.
+            start: The current time.
+            with_checkpoints: Nodes whose checkpoints are supervised.
+        """
+        self._with_checkpoints = with_checkpoints
         self._parts = parts
         self._errors = errors
         self._outbox = outbox
@@ -158,6 +176,22 @@ class PartErrors(Concern):
         self._raise(part, INVARIANT_BROKEN, Found(_ACTIVE, message), now, cause)
         return not was_on
 
+    def note_checkpoints(
+        self, node: PartName, error: str, found: Found | None, now: Instant
+    ) -> None:
+        """Raise an error of the checkpoints of a node, or clear it.
+
+        Args:
+            node: The node.
+            error: Which error.
+            found: What is wrong; None: nothing is.
+            now: The current time.
+        """
+        if found is None:
+            self._clear(node, error)
+        else:
+            self._raise(node, error, found, now)
+
     def wake_at(self) -> Instant | None:
         """Return when a deviation becomes an error; None: none will."""
         return self._deadlines.next()
@@ -216,7 +250,10 @@ class PartErrors(Concern):
 
     def names_of(self, part: PartName) -> Iterable[str]:
         """Return the errors that a part can have, apart from those of signals."""
-        return self._errors.causes.names_of(part)
+        names = self._errors.causes.names_of(part)
+        if part not in self._with_checkpoints:
+            return names
+        return dict.fromkeys((*names, *OF_CHECKPOINTS))
 
     @property
     def unheard(self) -> Container[PartName]:

@@ -21,7 +21,7 @@ from domain.health.signals import (
     Recovery,
     SignalSettings,
 )
-from domain.inputs import Reading
+from domain.inputs import Reading, SourceFault
 from domain.snapshot import SignalView
 from domain.timebase import Duration, Instant, to_seconds
 
@@ -52,6 +52,8 @@ class SignalMonitor:
         self._counted: Duration = 0
         """How long it had counted when the error was raised."""
         self._engaged_since: Instant | None = None
+        self.fault: SourceFault | None = None
+        """The last failure of a source that it did not end by a reading."""
         self._measured_before = ""
         """What an earlier run had measured of the error that it left; empty: it left none."""
         self._facts = MappingProxyType(settings.facts())
@@ -77,10 +79,17 @@ class SignalMonitor:
             now: When it arrived.
         """
         self.readings.take(reading, source, now)
+        if self.fault is not None and self.fault.source == source:
+            self.fault = None
         if not self._met_by_readings():
             self._counting_since = now if self._counts_last_good else None
         elif self._counting_since is None:
             self._counting_since = now
+        self.judge(now)
+
+    def note_fault(self, fault: SourceFault, now: Instant) -> None:
+        """Take why a source gives no reading; the signal becomes stale in its own time."""
+        self.fault = fault
         self.judge(now)
 
     def set_engaged(self, since: Instant | None, now: Instant) -> None:
@@ -166,7 +175,8 @@ class SignalMonitor:
             threshold = self._cause.threshold
             yield self._reason(self._value_slot, message, value, threshold)
         if self._stale_slot.cause is not None:
-            message = stale_reason(self.settings, is_seen=self.readings.newest is not None)
+            is_seen = self.readings.newest is not None
+            message = stale_reason(self.settings, self._fault_reason, is_seen=is_seen)
             limit = to_seconds(self.settings.stale_after)
             yield self._reason(self._stale_slot, message, threshold=limit)
         elif self._stale_slot.error is not None:
@@ -222,7 +232,12 @@ class SignalMonitor:
             skewed=newest.skewed if newest else False,
             needs_acknowledgement=self._value_slot.waits_for_acknowledgement,
             settings=self._facts,
+            source_fault=self._fault_reason or None,
         )
+
+    @property
+    def _fault_reason(self) -> str:
+        return "" if self.fault is None else self.fault.reason
 
     # --- what is judged --------------------------------------------------------------------------
 

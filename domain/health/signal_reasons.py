@@ -53,11 +53,17 @@ def pressed_reason(readings: HeldReadings, spec: SignalSpec) -> str:
     return f"{_label(spec)} is pressed (source{'s' if len(sources) > 1 else ''} {named})"
 
 
-def stale_reason(settings: SignalSettings, *, is_seen: bool) -> str:
-    """Return that there is no reading yet, or none that is recent enough."""
-    if not is_seen:
-        return f"no reading of {settings.spec.name} yet"
-    return f"no reading of {settings.spec.name} for {_duration(settings.stale_after)}"
+def stale_reason(settings: SignalSettings, fault: str = "", *, is_seen: bool) -> str:
+    """Return that there is no reading yet, or none that is recent enough.
+
+    Args:
+        settings: Settings of the signal.
+        fault: Why its source gives none; empty: it does not say.
+        is_seen: Whether there ever was one.
+    """
+    since = f"for {_duration(settings.stale_after)}" if is_seen else "yet"
+    stale = f"no reading of {settings.spec.name} {since}"
+    return f"{stale}: {fault}" if fault else stale
 
 
 def kept_reason(settings: SignalSettings, slot: ErrorSlot) -> str:

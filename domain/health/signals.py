@@ -66,6 +66,11 @@ def signal_name(name: str) -> str:
     return name.lstrip("/")
 
 
+def stale_error(name: str) -> str:
+    """Return the error of a signal of its own that is stale."""
+    return f"{name.upper()}_STALE"
+
+
 class Recovery(StrEnum):
     """How an error clears once its cause is gone."""
 
@@ -257,18 +262,18 @@ class SignalSettings:
         """
         if self.severity.stops_task:
             return ErrorKey(None, STALE_DATA)
-        return ErrorKey(self.part, f"{self.spec.name.upper()}_STALE")
+        return ErrorKey(self.part, stale_error(self.spec.name))
 
     def can_raise(self) -> dict[str, Raisable]:
         """Return the errors that it can raise, by name."""
         stale, sets_bit = self.stale_key, self.severity.stops_task
         raisable = {}
+        for bound in self.bounds:
+            raisable[bound.error] = Raisable(self.key(bound), bound.bit if sets_bit else 0)
         if sets_bit:
             raisable[stale.error] = Raisable(stale, STALE_DATA_BIT)
         elif self.stale_after:
             raisable[stale.error] = Raisable(stale, 0)
-        for bound in self.bounds:
-            raisable[bound.error] = Raisable(self.key(bound), bound.bit if sets_bit else 0)
         return raisable
 
     def is_worse(self, value: SignalValue, held: SignalValue) -> bool:

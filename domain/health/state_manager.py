@@ -22,7 +22,7 @@ from domain.health.error_registry import ErrorChanges, ErrorRegistry
 from domain.health.held_readings import HeldReadings
 from domain.health.signal_monitor import SignalMonitor
 from domain.health.signals import ESTOP_SIGNAL, STALE_DATA, SignalSettings
-from domain.inputs import Reading, Readings
+from domain.inputs import Reading, Readings, SourceFault
 from domain.kept import KeptError
 from domain.snapshot import ErrorKey, SignalView, SystemState, SystemStateView, TaskStatus
 from domain.timebase import Instant, to_seconds
@@ -174,6 +174,20 @@ class StateManager:
                 self._touched(reading.signal).receive(reading, readings.source, now)
         return self._build(gathered)
 
+    def is_new_fault(self, fault: SourceFault) -> bool:
+        """Tell whether it is not yet known that a source gives no reading, for this reason.
+
+        Raises:
+            UnknownSignalError: The signal is not declared.
+        """
+        return self._monitor(fault.signal).fault != fault
+
+    def note_fault(self, fault: SourceFault, now: Instant) -> HealthChanges:
+        """Take why a source gives no reading of a signal."""
+        with self._gathering(now) as gathered:
+            self._touched(fault.signal).note_fault(fault, now)
+        return self._build(gathered)
+
     def set_emergency_stop(self, since: Instant | None, now: Instant) -> HealthChanges:
         """Raise ESTOP for the emergency stop, which no reading releases, or remove that cause.
 
@@ -198,7 +212,7 @@ class StateManager:
         monitor = self._monitors.get(kept.signal)
         if monitor is None:
             return f"there is no signal {kept.signal} any more"
-        if not monitor.waits_with(kept.error):
+        if monitor.settings.part != kept.part or not monitor.waits_with(kept.error):
             return f"{kept.signal} has no such error to acknowledge any more"
         return ""
 

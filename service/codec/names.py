@@ -22,6 +22,8 @@ NAMES: Mapping[type, str] = {
     inputs.NodeReport: "node_report",
     inputs.NodeAnswer: "node_answer",
     inputs.Readings: "readings",
+    inputs.CheckpointReport: "checkpoint_report",
+    inputs.SourceFault: "source_fault",
     inputs.VehicleReport: "vehicle_report",
     inputs.DriveStatus: "drive_status",
     inputs.BackendStatus: "backend_status",

@@ -25,6 +25,7 @@ from service.files.parameter_file import scalar_value
 from service.files.robot_settings import ChangesBlock, NodeBlock, SignalsBlock
 from service.files.ros2_block import Ros2Block
 from service.files.settings_block import SettingsBlock, bare_names
+from service.files.signal_faults import Fault, faults_of_signals
 from service.files.vehicle_block import VehicleBlock
 from service.files.yaml_tree import Mapping, Node, Scalar, Sequence, finding_at, in_order, read_tree
 
@@ -153,7 +154,7 @@ def robot_settings_of(data: AnyMapping[str, object], model: SmhModel) -> RobotSe
     for name in settings.nodes:
         if name not in model.nodes:
             raise InvalidValueError(_no_node(name, model), _pointer("nodes", name))
-    for keys, _, message in _faults_of_topics(settings):
+    for keys, _, message in _faults(settings, model):
         raise InvalidValueError(message, _pointer(*keys))
     return settings
 
@@ -192,12 +193,15 @@ def _settings(
         if name not in model.nodes:
             place = _place(root, ("nodes", name))
             findings.append(finding_at(place, "UNKNOWN_NODE", _no_node(name, model)))
-    for keys, code, message in _faults_of_topics(settings):
+    for keys, code, message in _faults(settings, model):
         findings.append(finding_at(_place(root, keys), code, message))
     return settings
 
 
-def _faults_of_topics(settings: RobotSettings) -> Iterator[tuple[tuple[str, ...], str, str]]:
+def _faults(settings: RobotSettings, model: SmhModel) -> Iterator[Fault]:
+    """Yield what is wrong with signals and their topics; each value is valid by itself."""
+    for keys, code, message in faults_of_signals(settings.signals, model):
+        yield ("signals", *keys), code, message
     kinds = {signal.spec.name: signal.spec.kind for signal in settings.to_signal_settings()}
     for keys, code, message in settings.ros2.faults(kinds):
         yield ("ros2", *keys), code, message

@@ -19,7 +19,10 @@ from domain.health.signals import (
     SignalSettings,
     SignalSpec,
     default_signals,
+    stale_error,
 )
+from domain.snapshot import Severity
+from domain.state_and_mode import PartName
 from domain.timebase import Duration, seconds
 from service.files.settings_block import Number, Seconds, SettingsBlock, bare_names
 from service.files.source_block import MISSED_PERIODS, SourceBlock
@@ -130,6 +133,11 @@ class DeclaredSignal(AnySignal):
     for_s: Seconds = 0.0
     """Time in seconds after the first bad reading until the error is raised. A good reading, or a
     stale signal, begins it anew."""
+    part: str | None = None
+    """The system or node whose error it is. Default: the robot's own."""
+    severity: Literal["warning", "urgent", "critical", "fatal"] = "critical"
+    """How bad the error is. Below critical it sets no bit of the error code, so that the robot is
+    not in ERROR; and the signal, once stale, has an error of its own, such as MAP_AGE_STALE."""
 
     @model_validator(mode="after")
     def _is_whole(self) -> Self:
@@ -157,8 +165,25 @@ class DeclaredSignal(AnySignal):
         spec = SignalSpec(
             name, SignalKind.NUMBER, self.unit, self.label, self.minimum, self.maximum
         )
-        settings = SignalSettings(spec, tuple(self._bounds()))
+        settings = SignalSettings(
+            spec,
+            tuple(self._bounds()),
+            part=None if self.part is None else PartName(self.part.lstrip("/")),
+            severity=Severity(self.severity),
+        )
         return self.applied_to(general.applied_to(settings))
+
+    def errors(self, name: str) -> Iterator[str]:
+        """Yield the names of its errors among all errors; not that of stale data.
+
+        Args:
+            name: Name of the signal.
+        """
+        own = [] if self.error is None else [self.error]
+        if not Severity(self.severity).stops_task:
+            own.append(stale_error(name))
+        for error in own:
+            yield error if self.part is None else f"{self.part.lstrip('/')}.{error}"
 
     def _bounds(self) -> Iterator[Bound]:
         comparison = Comparison.BELOW if self.above is None else Comparison.ABOVE
@@ -239,9 +264,10 @@ class SignalsBlock(SettingsBlock):
     def _errors_have_names_of_their_own(self) -> Self:
         taken = {STALE_DATA} | {c.error for s in default_signals() for c in s.bounds}
         for name, signal in self.further.items():
-            if signal.error in taken:
-                raise ValueError(f"{signal.error} of {name} is already the name of another error")
-            taken |= {signal.error} if signal.error else set()
+            for error in signal.errors(name):
+                if error in taken:
+                    raise ValueError(f"{error} of {name} is already the name of another error")
+                taken.add(error)
         return self
 
 

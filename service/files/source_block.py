@@ -188,7 +188,7 @@ class GpioBlock(SettingsBlock):
     """Seconds between two readings."""
 
 
-class _RegisterBlock(SettingsBlock):
+class RegisterBlock(SettingsBlock):
     """A whole number in the registers of a device, with scale and offset."""
 
     size_bytes: Annotated[int, Field(ge=1, le=4)] = 2
@@ -216,7 +216,7 @@ class _RegisterBlock(SettingsBlock):
         return self
 
 
-class I2cBlock(_RegisterBlock):
+class I2cBlock(RegisterBlock):
     """A register of a device on an I2C bus; requires `pip install 'pilothouse[i2c]'`.
 
     For a device whose driver is in the kernel, read its file instead.
@@ -230,7 +230,7 @@ class I2cBlock(_RegisterBlock):
     """Number of the register."""
 
 
-class SpiBlock(_RegisterBlock):
+class SpiBlock(RegisterBlock):
     """A number from a device on an SPI bus; requires `pip install 'pilothouse[spi]'`."""
 
     bus: Annotated[int, Field(ge=0, le=255)]

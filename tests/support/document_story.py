@@ -172,6 +172,7 @@ _HEALTH = (
     ),
     Asked("POST /signals/{signal}", "The battery is flat", BATTERY, body={"value": 0.42}),
     Asked("GET /errors", "Those that are on", query={"active": "true"}),
+    Asked("GET /analysis", "No error follows from others"),
     Asked("GET /systems/{part}/why", "All is well", ACTUATOR),
     Asked("GET /nodes/{part}/why", "All is well", BASE),
     Asked("GET /systems/{part}/errors", "All is well", ACTUATOR),

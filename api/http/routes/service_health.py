@@ -125,6 +125,10 @@ def _warnings(supervisor: Supervisor, *, exposed: bool) -> Iterator[WarningJson]
         if signal.skewed:
             message = f"the clock of the sender of {name} differs from ours by more than 1 s"
             yield WarningJson(code="CLOCK_SKEW", message=message)
+    for source in supervisor.sources:
+        for name, why in source.faults.items():
+            message = f"{source.name} does not read {name}: {why}"
+            yield WarningJson(code="SOURCE_FAILS", message=message)
     lost = supervisor.core.driving.holds.get(VEHICLE_HOLD)
     if lost is not None:
         yield WarningJson(code="NO_POSE", message=lost.reason)

@@ -52,6 +52,7 @@ from domain.events.health import (
     ErrorRaised,
     ErrorReported,
     PropagationNotSeen,
+    SignalNotRead,
     SignalPending,
     SignalRead,
     SignalSettled,
@@ -270,6 +271,9 @@ EVENTS: Mapping[str, tuple[object, ...]] = {
         SignalRead(source="ros", values={"battery_level": 12.5, "estop": True, "gear": "R"}),
     ),
     "signal.settled": (SignalSettled(signal="battery_level", error="LOW_BATTERY", stale=True),),
+    "signal.not_read": (
+        SignalNotRead(signal="disk", source="os disk /", reason='Größe ≤ 3 — "gripper\\jam"'),
+    ),
     "signal.skewed": (SignalSkewed(signal="battery_level"),),
     "propagation.not_seen": (
         PropagationNotSeen(

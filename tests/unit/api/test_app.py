@@ -45,6 +45,7 @@ CONTRACT = {
     "/system_state": {"get"},
     "/errors": {"get"},
     "/errors/{error}/acknowledge": {"post"},
+    "/analysis": {"get"},
     "/emergency_stop": {"get", "put"},
     "/mock": {"get"},
     "/mock/{signal}": {"patch"},

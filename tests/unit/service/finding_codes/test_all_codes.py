@@ -8,6 +8,7 @@ from tests.support.shared import PROJECT
 _SOURCES = ("service/files", "domain/conditions", "domain/parts/lint")
 _MODULES = (
     "domain/parts/errors_check.py",
+    "domain/parts/reactions_check.py",
     "domain/parts/settings_check.py",
     "domain/parts/system_model.py",
 )
