@@ -81,6 +81,7 @@ class PartErrors(Concern):
             with_checkpoints: Nodes whose checkpoints are supervised.
         """
         self._with_checkpoints = with_checkpoints
+        self.model = parts.model
         self._parts = parts
         self._errors = errors
         self._outbox = outbox

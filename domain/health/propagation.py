@@ -5,7 +5,7 @@ again in the same step.
 """
 
 import heapq
-from collections.abc import Container, Iterable
+from collections.abc import Collection, Container, Iterable
 
 from domain.actor import Actor
 from domain.concern import Concern
@@ -255,14 +255,12 @@ class Propagation(Concern):
         self._deadlines.clear(key)
         self._pending.pop(key, None)
         self._present.add(key)
-        was_on = self._errors.is_on(key)
-        self._errors.note(key, found, now)
-        if was_on:
-            return
-        if self._is_unheard(key):
-            self._silent.add(key)
+        if self._errors.is_on(key) or not self._are_unheard(self._errors.explanation_of(key)[1]):
+            self._errors.raise_(key, found, now, cause)
         else:
-            self._errors.tell_raised(key, cause)
+            self._silent.add(key)
+            self._errors.take_as_start(key)
+            self._errors.note(key, found, now)
 
     def _clear(self, key: ErrorKey, cause: int | None) -> None:
         self._deadlines.clear(key)
@@ -286,8 +284,11 @@ class Propagation(Concern):
 
     def _is_unheard(self, key: ErrorKey) -> bool:
         """Tell whether an error goes back to nothing but nodes that were never heard of."""
-        roots = self._errors.view(key).roots or (key,)
-        return all(root.error == UNREACHABLE and root.part in self._unheard for root in roots)
+        return self._are_unheard(self._errors.view(key).roots or (key,))
+
+    def _are_unheard(self, roots: Collection[ErrorKey]) -> bool:
+        are_so = all(root.error == UNREACHABLE and root.part in self._unheard for root in roots)
+        return bool(roots) and are_so
 
     def _tell_not_seen(self, effect: ErrorKey, cause: ErrorKey) -> None:
         own = self._causes.declared[effect]
