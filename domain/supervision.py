@@ -24,9 +24,12 @@ from domain.health.announcing import Announcing
 from domain.health.checkpoint_errors import CheckpointErrors
 from domain.health.checkpoints import CheckpointSettings
 from domain.health.emergency_stop import EmergencyStop
+from domain.health.error_causes import ErrorCauses
 from domain.health.health import Health
 from domain.health.mode_limits import ModeLimits
 from domain.health.part_errors import PartErrors
+from domain.health.propagation import Propagation
+from domain.health.reported_errors import ReportedErrors
 from domain.health.signals import SignalSettings, default_signals
 from domain.inputs import ChangeRequest, Input, TimePassed
 from domain.lifecycle import Transition
@@ -95,7 +98,8 @@ class Supervision:
         self._now = start
         outbox = self._outbox = Outbox()
         self._parts = Parts(model, self._outbox)
-        self._health = Health(settings.signals, self._outbox, start)
+        causes = ErrorCauses(model)
+        self._health = Health(settings.signals, self._outbox, start, causes)
         self._emergency_stop = EmergencyStop(self._health, self._outbox)
         self.driving = Driving(
             settings.tasks, settings.vehicle, self._health, self._emergency_stop, outbox, start
@@ -139,10 +143,13 @@ class Supervision:
         """Return what else raises errors of parts, what conditions then say, and who is told."""
         parts, health, errors, outbox = self._parts, self._health, self._part_errors, self._outbox
         announcing = Announcing(health, errors, self.conditions, outbox, start)
+        propagation = Propagation(health.error_list, self.conditions, errors.unheard, outbox, start)
         return (
+            ReportedErrors(self.model, health.error_list, outbox),
             CheckpointErrors(settings.checkpoints, parts, health, errors, outbox),
             # It evaluates all conditions, and so comes last of those that watch some.
             FactChanges(self.conditions, parts, self.driving, outbox),
+            propagation,
             announcing,
         )
 

@@ -51,6 +51,8 @@ from domain.events.health import (
     ErrorAcknowledged,
     ErrorCleared,
     ErrorRaised,
+    ErrorReported,
+    PropagationNotSeen,
     SignalNotRead,
     SignalPending,
     SignalRead,
@@ -164,6 +166,7 @@ EVENTS: Mapping[str, tuple[object, ...]] = {
     "error.cleared": (
         ErrorCleared(error="LOW_BATTERY"),
         ErrorCleared(error="DEVIATES", part=PartName("arm")),
+        ErrorCleared(error="SILENT", part=PartName("left/arm"), root_cause=False),
     ),
     "error.raised": (
         ErrorRaised(error="LOW_BATTERY", message="12.5 % < 20 %", value=12.5, threshold=12.5),
@@ -173,6 +176,23 @@ EVENTS: Mapping[str, tuple[object, ...]] = {
             value="inactive",
             threshold="active.FAST",
             part=PartName("arm"),
+        ),
+        ErrorRaised(
+            error="SILENT",
+            message="not part('left/arm').reachable",
+            value=None,
+            threshold=None,
+            part=PartName("left/arm"),
+            root_cause=False,
+        ),
+    ),
+    "error.reported": (
+        ErrorReported(
+            part=PartName("left/arm"),
+            error="JAMMED",
+            active=True,
+            message='Größe ≤ 3 — "gripper\\jam"',
+            value=12.5,
         ),
     ),
     "goal.ended": (GoalEnded(goal=GoalId(5), succeeded=True, reason='Größe ≤ 3 — "gripper\\jam"'),),
@@ -268,6 +288,15 @@ EVENTS: Mapping[str, tuple[object, ...]] = {
         SignalNotRead(signal="disk", source="os disk /", reason='Größe ≤ 3 — "gripper\\jam"'),
     ),
     "signal.skewed": (SignalSkewed(signal="battery_level"),),
+    "propagation.not_seen": (
+        PropagationNotSeen(
+            error="LATE",
+            part=PartName("mapper"),
+            cause_error="SILENT",
+            cause_part=PartName("left/arm"),
+            within_s=2.0,
+        ),
+    ),
     "rule.not_applied": (
         RuleNotApplied(
             part=PartName("left/arm"),
