@@ -93,16 +93,16 @@ class Supervision:
         self.model = model
         self._now = start
         outbox = self._outbox = Outbox()
-        self._parts = Parts(model, self._outbox)
-        self._health = Health(settings.signals, self._outbox, start)
+        parts = self._parts = Parts(model, outbox)
+        health = self._health = Health(settings.signals, outbox, start)
         self._emergency_stop = EmergencyStop(self._health, self._outbox)
         self.driving = Driving(
             settings.tasks, settings.vehicle, self._health, self._emergency_stop, outbox, start
         )
         storage = Storage(self._outbox)
         self._robot_state = RobotState(self._health, self.driving, storage, self._outbox)
-        self._part_errors = PartErrors(
-            self._parts, self._health.error_list, outbox, start, settings.checkpoints
+        errors = self._part_errors = PartErrors(
+            parts, health.error_list, outbox, start, settings.checkpoints
         )
         self.facts = RobotFacts(self._parts, self._health, self.driving, self._part_errors.reason)
         """What conditions are evaluated over."""
@@ -118,15 +118,13 @@ class Supervision:
             self._parts,
             self._health,
             self._emergency_stop,
-            ModeLimits(settings.signals, self._parts, self._health, self._outbox),
+            ModeLimits(settings.signals, parts, health, outbox),
             self.driving,
             Standstill(self.driving, self._emergency_stop, self._outbox),
             storage,
             self._robot_state,
             self._part_errors,
-            CheckpointErrors(
-                settings.checkpoints, self._parts, self._health, self._part_errors, outbox
-            ),
+            CheckpointErrors(settings.checkpoints, parts, health, errors, outbox),
             FactChanges(self.conditions, self.driving, self._outbox),
             self._changing,
             *self._displacers(guards, settings.rules),

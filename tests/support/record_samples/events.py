@@ -50,6 +50,7 @@ from domain.events.health import (
     ErrorAcknowledged,
     ErrorCleared,
     ErrorRaised,
+    SignalLimitsChanged,
     SignalNotRead,
     SignalPending,
     SignalRead,
@@ -253,6 +254,10 @@ EVENTS: Mapping[str, tuple[object, ...]] = {
     "signal.settled": (SignalSettled(signal="battery_level", error="LOW_BATTERY", stale=True),),
     "signal.not_read": (
         SignalNotRead(signal="disk", source="os disk /", reason='Größe ≤ 3 — "gripper\\jam"'),
+    ),
+    "signal.limits_changed": (
+        SignalLimitsChanged(signal="load", because="left/arm.FAST", above=60.0),
+        SignalLimitsChanged(signal="load", because=None),
     ),
     "signal.skewed": (SignalSkewed(signal="battery_level"),),
     "rule.not_applied": (
