@@ -109,9 +109,7 @@ class Supervision:
         self.conditions = WatchedConditions(self.facts)
         """The conditions of the model, kept up to date; read only."""
         guards = Guards(model, self.conditions, start)
-        self._changing = Changing(
-            self._parts, self._health, self._part_errors, settings.changes, self._outbox, guards
-        )
+        self._changing = Changing(parts, health, errors, settings.changes, outbox, guards)
         # Driving stops the vehicle before the state is published and changes continue.
         self._concerns: tuple[Concern, ...] = (
             Restart(self._outbox),
@@ -125,7 +123,7 @@ class Supervision:
             self._robot_state,
             self._part_errors,
             CheckpointErrors(settings.checkpoints, parts, health, errors, outbox),
-            FactChanges(self.conditions, self.driving, self._outbox),
+            FactChanges(self.conditions, parts, self.driving, outbox),
             self._changing,
             *self._displacers(guards, settings.rules),
             Audit(self._outbox),
