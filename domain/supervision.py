@@ -97,33 +97,31 @@ class Supervision:
         self.model = model
         self._now = start
         outbox = self._outbox = Outbox()
-        self._parts = Parts(model, self._outbox)
+        parts = self._parts = Parts(model, outbox)
         causes = ErrorCauses(model)
-        self._health = Health(settings.signals, self._outbox, start, causes)
+        health = self._health = Health(settings.signals, outbox, start, causes)
         self._emergency_stop = EmergencyStop(self._health, self._outbox)
         self.driving = Driving(
             settings.tasks, settings.vehicle, self._health, self._emergency_stop, outbox, start
         )
         storage = Storage(self._outbox)
         self._robot_state = RobotState(self._health, self.driving, storage, self._outbox)
-        self._part_errors = PartErrors(
-            self._parts, self._health.error_list, outbox, start, settings.checkpoints
+        errors = self._part_errors = PartErrors(
+            parts, health.error_list, outbox, start, settings.checkpoints
         )
         self.facts = RobotFacts(self._parts, self._health, self.driving, self._part_errors.reason)
         """What conditions are evaluated over."""
         self.conditions = WatchedConditions(self.facts)
         """The conditions of the model, kept up to date; read only."""
         guards = Guards(model, self.conditions, start)
-        self._changing = Changing(
-            self._parts, self._health, self._part_errors, settings.changes, self._outbox, guards
-        )
+        self._changing = Changing(parts, health, errors, settings.changes, outbox, guards)
         # Driving stops the vehicle before the state is published and changes continue.
         self._concerns: tuple[Concern, ...] = (
             Restart(self._outbox),
             self._parts,
             self._health,
             self._emergency_stop,
-            ModeLimits(settings.signals, self._parts, self._health, self._outbox),
+            ModeLimits(settings.signals, parts, health, outbox),
             self.driving,
             Standstill(self.driving, self._emergency_stop, self._outbox),
             storage,

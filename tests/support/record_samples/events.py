@@ -53,6 +53,7 @@ from domain.events.health import (
     ErrorRaised,
     ErrorReported,
     PropagationNotSeen,
+    SignalLimitsChanged,
     SignalNotRead,
     SignalPending,
     SignalRead,
@@ -286,6 +287,10 @@ EVENTS: Mapping[str, tuple[object, ...]] = {
     "signal.settled": (SignalSettled(signal="battery_level", error="LOW_BATTERY", stale=True),),
     "signal.not_read": (
         SignalNotRead(signal="disk", source="os disk /", reason='Größe ≤ 3 — "gripper\\jam"'),
+    ),
+    "signal.limits_changed": (
+        SignalLimitsChanged(signal="load", because="left/arm.FAST", above=60.0),
+        SignalLimitsChanged(signal="load", because=None),
     ),
     "signal.skewed": (SignalSkewed(signal="battery_level"),),
     "propagation.not_seen": (
