@@ -20,6 +20,7 @@ from domain.conditions.watched import WatchedConditions
 from domain.events.service import TimeWasDue
 from domain.fact_changes import FactChanges
 from domain.findings import Blocker
+from domain.health.announcing import Announcing
 from domain.health.checkpoint_errors import CheckpointErrors
 from domain.health.checkpoints import CheckpointSettings
 from domain.health.emergency_stop import EmergencyStop
@@ -124,17 +125,26 @@ class Supervision:
             storage,
             self._robot_state,
             self._part_errors,
-            CheckpointErrors(
-                settings.checkpoints, self._parts, self._health, self._part_errors, outbox
-            ),
-            FactChanges(self.conditions, self._parts, self.driving, self._outbox),
+            *self._after_part_errors(settings, start),
             self._changing,
             *self._displacers(guards, settings.rules),
             Audit(self._outbox),
             Stalls(self._outbox),
         )
-        self._outbox.errors.clear()  # What is on from the start is no change.
         self._arrange()
+
+    def _after_part_errors(
+        self, settings: SupervisionSettings, start: Instant
+    ) -> tuple[Concern, ...]:
+        """Return what else raises errors of parts, what conditions then say, and who is told."""
+        parts, health, errors, outbox = self._parts, self._health, self._part_errors, self._outbox
+        announcing = Announcing(health, errors, self.conditions, outbox, start)
+        return (
+            CheckpointErrors(settings.checkpoints, parts, health, errors, outbox),
+            # It evaluates all conditions, and so comes last of those that watch some.
+            FactChanges(self.conditions, parts, self.driving, outbox),
+            announcing,
+        )
 
     def _displacers(self, guards: Guards, rules: RuleSettings) -> tuple[Concern, Concern]:
         """Return what sets targets in force, the stronger first; both displace by one object."""
@@ -148,6 +158,8 @@ class Supervision:
 
     def _arrange(self) -> None:
         """Note which concerns have to be asked when; most have nothing to do most of the time."""
+        self._health.error_list.mark_start()
+        self._outbox.errors.clear()  # What is on from the start is no change.
         self._takers = _takers(self._concerns)
         self._clocked = [c for c in self._concerns if _overrides(c, "wake_at")]
         self._settling = [c for c in self._concerns if _overrides(c, "settle")]

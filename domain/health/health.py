@@ -5,7 +5,6 @@ from contextlib import contextmanager
 
 from domain.concern import Concern, Takers
 from domain.events.health import (
-    ErrorAcknowledged,
     ErrorCleared,
     ErrorRaised,
     SignalLimitsChanged,
@@ -21,7 +20,7 @@ from domain.health.error_list import ErrorList
 from domain.health.robot_errors import RobotErrors
 from domain.health.signals import ESTOP, Comparison, ModeLimit, SignalSettings
 from domain.health.state_manager import HealthChanges, StateManager
-from domain.inputs import AcknowledgeRequest, Readings, Restored, SourceFault
+from domain.inputs import Readings, Restored, SourceFault
 from domain.kept import KeptError
 from domain.outbox import Outbox
 from domain.snapshot import (
@@ -71,7 +70,6 @@ class Health(Concern):
         return {
             Readings: self.take_readings,
             SourceFault: self.take_fault,
-            AcknowledgeRequest: self.acknowledge,
             Restored: self.restore,
         }
 
@@ -124,16 +122,14 @@ class Health(Concern):
             self._outbox.record_input()
             self._tell(self._manager.note_fault(fault, now), now)
 
-    def acknowledge(self, request: AcknowledgeRequest, now: Instant) -> None:
-        """Acknowledge an error, so that it clears once its cause is gone.
+    def acknowledge(self, key: ErrorKey, now: Instant) -> None:
+        """Acknowledge an error, so that its signal clears it once its cause is gone.
 
-        Raises:
-            UnknownErrorNameError: There is no error of this name.
+        For an error that no signal raises, this has no effect.
         """
-        self._outbox.begin(now, ErrorAcknowledged(request.error), request.actor)
-        key = ErrorKey(None, request.error)
-        self._tell(self._manager.acknowledge(key, now), now)
-        self._robot_errors.follow_acknowledgement(key, now)
+        if key in self._manager.keys:
+            self._tell(self._manager.acknowledge(key, now), now)
+            self._robot_errors.follow_acknowledgement(key, now)
 
     def press_stop(self, since: Instant | None, now: Instant) -> None:
         """Raise ESTOP for the emergency stop, or remove that cause.
