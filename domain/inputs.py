@@ -10,6 +10,7 @@ from domain.kept import Kept
 from domain.lifecycle import LifecycleState, Transition
 from domain.parameters import Parameters, ParameterValue
 from domain.paths.path import Path
+from domain.reaction_terms import Arm
 from domain.state_and_mode import ModeName, PartName
 from domain.timebase import Duration, Instant
 from domain.vehicle import DriveCommand, Point, VehicleState
@@ -231,6 +232,26 @@ class AcknowledgeRequest:
 
 
 @dataclass(frozen=True, slots=True)
+class ArmRequest:
+    """Let a reaction act, only tell when it would, or neither."""
+
+    part: PartName
+    reaction: str
+    arm: Arm
+    reason: str = ""
+    actor: Actor = NOBODY
+
+
+@dataclass(frozen=True, slots=True)
+class AcknowledgeReactionRequest:
+    """Acknowledge a reaction that waits for it, or that acted too often."""
+
+    part: PartName
+    reaction: str
+    actor: Actor = NOBODY
+
+
+@dataclass(frozen=True, slots=True)
 class TaskRequest:
     """Submit a task: follow a path. It replaces the current task, if any."""
 
@@ -324,6 +345,8 @@ Input: TypeAlias = (
     | CancelRequest
     | EmergencyStopRequest
     | AcknowledgeRequest
+    | ArmRequest
+    | AcknowledgeReactionRequest
     | DriveRequest
     | Restored
 )

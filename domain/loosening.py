@@ -3,7 +3,9 @@
 from collections.abc import Collection
 
 from domain.inputs import (
+    AcknowledgeReactionRequest,
     AcknowledgeRequest,
+    ArmRequest,
     CancelRequest,
     CancelTaskRequest,
     EmergencyStopRequest,
@@ -41,6 +43,8 @@ def may_loosen(given: Input, *, is_stopped: bool, holds: Collection[str]) -> boo
         case TransitionRequest(transition=transition):
             return transition in _RAISING
         case TaskRequest() | AcknowledgeRequest() | ModeRequest() | ParametersRequest():
+            return True
+        case ArmRequest() | AcknowledgeReactionRequest():
             return True
         case HoldRequest() | CancelRequest() | CancelTaskRequest():
             return False

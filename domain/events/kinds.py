@@ -3,7 +3,7 @@
 from collections.abc import Iterator, Mapping
 from types import ModuleType
 
-from domain.events import changes, driving, health, parts, service, targets
+from domain.events import changes, driving, health, parts, reactions, service, targets
 from domain.events.event import Event
 
 
@@ -17,6 +17,7 @@ def _kinds(*modules: ModuleType) -> Iterator[type[Event]]:
 EVENTS: Mapping[str, type[Event]] = {
     kind.kind: kind
     for kind in sorted(
-        _kinds(parts, changes, health, driving, service, targets), key=lambda item: item.kind
+        _kinds(parts, changes, health, driving, reactions, service, targets),
+        key=lambda item: item.kind,
     )
 }

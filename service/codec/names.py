@@ -40,6 +40,8 @@ NAMES: Mapping[type, str] = {
     inputs.CancelRequest: "cancel_request",
     inputs.EmergencyStopRequest: "emergency_stop_request",
     inputs.AcknowledgeRequest: "acknowledge_request",
+    inputs.ArmRequest: "arm_request",
+    inputs.AcknowledgeReactionRequest: "acknowledge_reaction_request",
     inputs.TaskRequest: "task_request",
     inputs.CancelTaskRequest: "cancel_task_request",
     inputs.HoldRequest: "hold_request",
@@ -61,6 +63,7 @@ NAMES: Mapping[type, str] = {
     kept.KeptError: "kept_error",
     kept.KeptFailedChange: "kept_failed_change",
     kept.KeptHold: "kept_hold",
+    kept.KeptReaction: "kept_reaction",
     kept.KeptTask: "kept_task",
     kept.KeptProgress: "kept_progress",
     # Events have the name that clients know as well.
