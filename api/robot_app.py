@@ -21,6 +21,7 @@ from api.http.metrics import Metrics
 from api.http.problem_handlers import add_problem_handlers
 from api.http.routes import (
     analysis,
+    announcing,
     changes,
     emergency_stop,
     errors,
@@ -29,6 +30,7 @@ from api.http.routes import (
     inference,
     mock,
     model,
+    monitors,
     parameters,
     parts,
     service_health,
@@ -55,8 +57,10 @@ _RESOURCES = (
     model.router,
     inference.router,
     signals.router,
+    monitors.router,
     system_state.router,
     errors.router,
+    announcing.router,
     analysis.router,
     emergency_stop.router,
     mock.router,
@@ -85,7 +89,8 @@ def _resources() -> list[BaseRoute]:
     for resource in _RESOURCES:
         router.include_router(resource)
     for prefix in ("systems", "nodes"):
-        router.include_router(parts.router, prefix=f"/{prefix}", tags=[prefix])
+        for resource in (announcing.part_router, parts.router):
+            router.include_router(resource, prefix=f"/{prefix}", tags=[prefix])
     return router.routes
 
 

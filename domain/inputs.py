@@ -12,8 +12,11 @@ from domain.parameters import Parameters, ParameterValue
 from domain.paths.path import Path
 from domain.reaction_terms import Arm
 from domain.state_and_mode import ModeName, PartName
-from domain.timebase import Duration, Instant
+from domain.timebase import Duration, Instant, seconds
 from domain.vehicle import DriveCommand, Point, VehicleState
+
+MAX_SHELF = seconds(8 * 3_600)
+"""How long an error may be shelved: a shift. Source: ISA-18.2, shelving is for a limited time."""
 
 SignalValue: TypeAlias = bool | float | str
 """Value of a boolean, numeric or enumerated signal, in this order."""
@@ -225,10 +228,35 @@ class EmergencyStopRequest:
 
 @dataclass(frozen=True, slots=True)
 class AcknowledgeRequest:
-    """Acknowledge an error, so that it clears once its cause is gone."""
+    """Acknowledge an error: somebody has seen it, and it may clear once its cause is gone."""
 
     error: str
     actor: Actor = NOBODY
+    part: PartName | None = None
+    """None: the error is the robot's own."""
+
+
+@dataclass(frozen=True, slots=True)
+class ShelveRequest:
+    """Do not announce an error for a time; its state, its bit and its reactions stay."""
+
+    error: str
+    for_: Duration
+    """At most `MAX_SHELF`."""
+    reason: str
+    actor: Actor = NOBODY
+    part: PartName | None = None
+    """None: the error is the robot's own."""
+
+
+@dataclass(frozen=True, slots=True)
+class UnshelveRequest:
+    """Announce an error again; without effect if it is not shelved."""
+
+    error: str
+    actor: Actor = NOBODY
+    part: PartName | None = None
+    """None: the error is the robot's own."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -347,6 +375,8 @@ Input: TypeAlias = (
     | AcknowledgeRequest
     | ArmRequest
     | AcknowledgeReactionRequest
+    | ShelveRequest
+    | UnshelveRequest
     | DriveRequest
     | Restored
 )

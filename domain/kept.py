@@ -9,6 +9,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import TypeAlias
 
+from domain.findings import Fact
 from domain.identifiers import ChangeId, TaskId
 from domain.lifecycle import LifecycleState, Transition
 from domain.parameters import ParameterValue
@@ -118,6 +119,56 @@ class KeptError:
 
 
 @dataclass(frozen=True, slots=True)
+class KeptUnacknowledged:
+    """An error that was raised, whether it is still on or not, and that nobody acknowledged."""
+
+    part: PartName | None
+    """None: the robot's own."""
+    error: str
+    message: str
+    """What was found when it was raised."""
+    since: Instant
+    """When it was raised."""
+    value: Fact = None
+    threshold: Fact = None
+
+    @property
+    def name(self) -> str:
+        """Return its name among those of its kind."""
+        return _of_part(self.part, self.error)
+
+
+@dataclass(frozen=True, slots=True)
+class KeptShelf:
+    """An error that somebody shelved for a time."""
+
+    part: PartName | None
+    """None: the robot's own."""
+    error: str
+    until: Instant
+    """As long as the service runs; `KeptClock` tells how long it did not."""
+    reason: str
+    by: str
+
+    @property
+    def name(self) -> str:
+        """Return its name among those of its kind."""
+        return _of_part(self.part, self.error)
+
+
+@dataclass(frozen=True, slots=True)
+class KeptClock:
+    """The time up to which the service ran, for what does not run down while it is down."""
+
+    at: Instant
+
+    @property
+    def name(self) -> str:
+        """Return its name among those of its kind; there is one."""
+        return ""
+
+
+@dataclass(frozen=True, slots=True)
 class KeptFailedChange:
     """The last change of a part that ended did so without success."""
 
@@ -218,12 +269,20 @@ class KeptProgress:
         return self.task
 
 
+def _of_part(part: PartName | None, error: str) -> str:
+    """Return the name of an error among those of all parts; None: the robot's own."""
+    return error if part is None else f"{part}.{error}"
+
+
 Kept: TypeAlias = (
     KeptTarget
     | KeptEffectiveTarget
     | KeptChange
     | KeptEmergencyStop
     | KeptError
+    | KeptUnacknowledged
+    | KeptShelf
+    | KeptClock
     | KeptFailedChange
     | KeptHold
     | KeptReaction

@@ -14,8 +14,10 @@ from domain.inputs import (
     ModeRequest,
     ParametersRequest,
     ReleaseRequest,
+    ShelveRequest,
     TaskRequest,
     TransitionRequest,
+    UnshelveRequest,
 )
 from domain.lifecycle import Transition
 
@@ -42,10 +44,12 @@ def may_loosen(given: Input, *, is_stopped: bool, holds: Collection[str]) -> boo
             return owner in holds
         case TransitionRequest(transition=transition):
             return transition in _RAISING
-        case TaskRequest() | AcknowledgeRequest() | ModeRequest() | ParametersRequest():
+        case TaskRequest() | AcknowledgeRequest() | ShelveRequest():
             return True
         case ArmRequest() | AcknowledgeReactionRequest():
             return True
-        case HoldRequest() | CancelRequest() | CancelTaskRequest():
+        case ModeRequest() | ParametersRequest():
+            return True
+        case HoldRequest() | CancelRequest() | CancelTaskRequest() | UnshelveRequest():
             return False
     raise TypeError(f"{type(given).__name__} is no request")

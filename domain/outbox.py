@@ -95,6 +95,11 @@ class Outbox:
         return self._next_event
 
     @property
+    def now(self) -> Instant:
+        """Return the time of the current input."""
+        return self._at
+
+    @property
     def actor(self) -> Actor:
         """Return who sent the current input."""
         return self._actor

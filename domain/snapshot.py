@@ -247,6 +247,26 @@ class SignalView:
 
 
 @dataclass(frozen=True, slots=True)
+class MonitorView:
+    """One monitor: what is computed, and which limits are in force."""
+
+    signal: str
+    of: str
+    statistic: str
+    window: Duration | None
+    """How long a reading stays in the window; None: until `size` newer ones have come."""
+    size: int | None
+    filled: float
+    """How much of the window has passed, from 0 to 1."""
+    value: float | None
+    """None: unknown."""
+    limits: Mapping[str, float]
+    """By `above`, `below` and `clear_threshold`."""
+    limits_because: str | None
+    """Which of the limits by mode these are; None: they are the same in all modes."""
+
+
+@dataclass(frozen=True, slots=True)
 class SystemStateView:
     """State of the robot with its reasons; error code and state always match."""
 
@@ -288,11 +308,16 @@ class ErrorState(StrEnum):
     """Active, and an operator has acknowledged it."""
     LATCHED = "latched"
     """Its cause is gone, and an operator has yet to acknowledge it."""
+    RETURNED = "returned"
+    """It ended by itself, and nobody has acknowledged that it was there; it is not on."""
 
     @property
     def is_on(self) -> bool:
         """Tell whether the error is raised."""
-        return self not in (ErrorState.NORMAL, ErrorState.PENDING)
+        return self in _ARE_ON
+
+
+_ARE_ON = frozenset({ErrorState.ACTIVE, ErrorState.ACKNOWLEDGED, ErrorState.LATCHED})
 
 
 class ErrorKey(NamedTuple):
@@ -306,6 +331,38 @@ class ErrorKey(NamedTuple):
     def name(self) -> str:
         """Return its name among all errors, such as `BATTERY_LOW` or `drive_base.UNREACHABLE`."""
         return self.error if self.part is None else f"{self.part}.{self.error}"
+
+
+@dataclass(frozen=True, slots=True)
+class ShelfView:
+    """An error is shelved: it is not announced for a time."""
+
+    until: Instant
+    reason: str
+    by: str
+
+
+@dataclass(frozen=True, slots=True)
+class ErrorMarks:
+    """What is told about the announcing of an error; it changes no state, bit or reaction."""
+
+    shelf: ShelfView | None = None
+    """None: it is not shelved."""
+    suppressed: bool = False
+    """The model silences it as things are now."""
+    chattering: bool = False
+    """It was raised and ended too often of late."""
+    calming: Duration | None = None
+    """For how long its cause would have to be gone before it clears, to be calm; None: it is
+    calm, or nothing is known of that."""
+
+    @property
+    def is_silenced(self) -> bool:
+        """Tell whether it is shelved or suppressed."""
+        return self.suppressed or self.shelf is not None
+
+
+NO_MARKS = ErrorMarks()
 
 
 @dataclass(frozen=True, slots=True)
@@ -325,6 +382,14 @@ class ErrorView:
     """When it was raised, or when it began to be pending; None: it is normal."""
     count: int
     """How often it was raised, in this run of the service."""
+    ended: Instant | None = None
+    """When its cause was gone; None: it is present, or that is not known."""
+    marks: ErrorMarks = NO_MARKS
+
+    @property
+    def is_open(self) -> bool:
+        """Tell whether an operator may want to see it: it is not normal, or it is shelved."""
+        return self.state is not ErrorState.NORMAL or self.marks.shelf is not None
 
 
 @dataclass(frozen=True, slots=True)

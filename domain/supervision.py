@@ -20,10 +20,12 @@ from domain.conditions.watched import WatchedConditions
 from domain.events.service import TimeWasDue
 from domain.fact_changes import FactChanges
 from domain.findings import Blocker
+from domain.health.announcing import Announcing
 from domain.health.checkpoint_errors import CheckpointErrors
 from domain.health.checkpoints import CheckpointSettings
 from domain.health.emergency_stop import EmergencyStop
 from domain.health.health import Health
+from domain.health.mode_limits import ModeLimits
 from domain.health.part_errors import PartErrors
 from domain.health.signals import SignalSettings, default_signals
 from domain.inputs import ChangeRequest, Input, TimePassed
@@ -34,7 +36,7 @@ from domain.parts.parts import Parts
 from domain.parts.system_model import SmhModel
 from domain.reactions.displacing import Displacing
 from domain.reactions.fallbacks import Fallbacks
-from domain.reactions.reaction import reactions_of
+from domain.reactions.reaction import Reaction, reactions_of
 from domain.reactions.reactions import Reactions
 from domain.reactions.rules import Rules
 from domain.reactions.settings import RuleSettings
@@ -47,6 +49,7 @@ from domain.snapshot import (
     ErrorKey,
     ErrorView,
     ModeView,
+    MonitorView,
     ParameterView,
     PartView,
     PlanView,
@@ -115,7 +118,46 @@ class Supervision:
             self._parts, self._health, self._part_errors, settings.changes, self._outbox, guards
         )
         displacing = Displacing(self._parts, self._changing, outbox)
-        self._reactions = Reactions(
+        self._reactions = self._reactions_by(displacing, reactions, guards, start)
+        # Driving stops the vehicle before the state is published and changes continue.
+        self._concerns: tuple[Concern, ...] = (
+            Restart(self._outbox),
+            self._parts,
+            self._health,
+            self._emergency_stop,
+            ModeLimits(settings.signals, self._parts, self._health, self._outbox),
+            self.driving,
+            Standstill(self.driving, self._emergency_stop, self._outbox),
+            storage,
+            self._robot_state,
+            self._part_errors,
+            *self._after_part_errors(settings, start),
+            self._changing,
+            # What sets targets in force, the stronger first.
+            self._reactions,
+            *self._displacers(guards, settings.rules, displacing),
+            Audit(self._outbox),
+            Stalls(self._outbox),
+        )
+        self._arrange()
+
+    def _after_part_errors(
+        self, settings: SupervisionSettings, start: Instant
+    ) -> tuple[Concern, ...]:
+        """Return what else raises errors of parts, what conditions then say, and who is told."""
+        parts, health, errors, outbox = self._parts, self._health, self._part_errors, self._outbox
+        announcing = Announcing(health, errors, self.conditions, outbox, start)
+        return (
+            CheckpointErrors(settings.checkpoints, parts, health, errors, outbox),
+            # It evaluates all conditions, and so comes last of those that watch some.
+            FactChanges(self.conditions, parts, self.driving, outbox),
+            announcing,
+        )
+
+    def _reactions_by(
+        self, displacing: Displacing, reactions: list[Reaction], guards: Guards, start: Instant
+    ) -> Reactions:
+        return Reactions(
             reactions,
             self._parts,
             self._changing,
@@ -124,33 +166,9 @@ class Supervision:
             self.driving,
             guards,
             displacing,
-            outbox,
+            self._outbox,
             start,
         )
-        # Driving stops the vehicle before the state is published and changes continue.
-        self._concerns: tuple[Concern, ...] = (
-            Restart(self._outbox),
-            self._parts,
-            self._health,
-            self._emergency_stop,
-            self.driving,
-            Standstill(self.driving, self._emergency_stop, self._outbox),
-            storage,
-            self._robot_state,
-            self._part_errors,
-            CheckpointErrors(
-                settings.checkpoints, self._parts, self._health, self._part_errors, outbox
-            ),
-            FactChanges(self.conditions, self.driving, self._outbox),
-            self._changing,
-            # What sets targets in force, the stronger first.
-            self._reactions,
-            *self._displacers(guards, settings.rules, displacing),
-            Audit(self._outbox),
-            Stalls(self._outbox),
-        )
-        self._outbox.errors.clear()  # What is on from the start is no change.
-        self._arrange()
 
     def _displacers(
         self, guards: Guards, rules: RuleSettings, displacing: Displacing
@@ -164,6 +182,8 @@ class Supervision:
 
     def _arrange(self) -> None:
         """Note which concerns have to be asked when; most have nothing to do most of the time."""
+        self._health.error_list.mark_start()
+        self._outbox.errors.clear()  # What is on from the start is no change.
         self._takers = _takers(self._concerns)
         self._clocked = [c for c in self._concerns if _overrides(c, "wake_at")]
         self._settling = [c for c in self._concerns if _overrides(c, "settle")]
@@ -332,6 +352,10 @@ class Supervision:
     def signals(self) -> Mapping[str, SignalView]:
         """Return all signals."""
         return self._health.signals()
+
+    def monitors(self) -> tuple[MonitorView, ...]:
+        """Return the monitors, as of the last input."""
+        return tuple(self._health.monitors(self._now))
 
     def error(self, key: ErrorKey) -> ErrorView:
         """Return one error, as `Outputs.errors` names it."""

@@ -7,8 +7,9 @@ from collections.abc import Callable
 
 from pydantic_core import to_json
 
+from domain.events.announcing import chatter_words
 from domain.snapshot import ErrorView
-from domain.timebase import Instant
+from domain.timebase import Instant, to_seconds
 
 
 def error_text(view: ErrorView, show: Callable[[Instant], str]) -> str:
@@ -18,16 +19,18 @@ def error_text(view: ErrorView, show: Callable[[Instant], str]) -> str:
         view: Of the error.
         show: Returns an instant as RFC 3339.
     """
-    key, since = view.key, view.since
+    key, since, ended, marks = view.key, view.since, view.ended, view.marks
+    shelf = marks.shelf
     shown = {
         "error": key.error,
         "part": key.part,
         "severity": str(view.severity),
         "state": str(view.state),
-        # Nothing shelves, suppresses or causes an error: each is its own root.
-        "shelved_until_at": None,
-        "suppressed": False,
-        "chattering": False,
+        "shelved_until_at": None if shelf is None else show(shelf.until),
+        "shelved_because": None if shelf is None else shelf.reason,
+        "suppressed": marks.suppressed,
+        "chattering": marks.chattering,
+        # Nothing causes an error: each is its own root.
         "root_cause": True,
         "first_out": view.first_out,
         "caused_by": [],
@@ -36,7 +39,16 @@ def error_text(view: ErrorView, show: Callable[[Instant], str]) -> str:
         "value": view.value,
         "threshold": view.threshold,
         "since_at": None if since is None else show(since),
+        "ended_at": None if ended is None else show(ended),
         "count": view.count,
-        "hint": None,
+        "hint": _hint(view),
     }
     return to_json(shown, inf_nan_mode="null").decode()
+
+
+def _hint(view: ErrorView) -> str | None:
+    """Return what would help; None: nothing is known of that."""
+    if not view.marks.chattering:
+        return None
+    calming = view.marks.calming
+    return chatter_words(None if calming is None else to_seconds(calming))

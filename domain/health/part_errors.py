@@ -83,6 +83,7 @@ class PartErrors(Concern):
             with_checkpoints: Nodes whose checkpoints are supervised.
         """
         self._with_checkpoints = with_checkpoints
+        self.model = parts.model
         self._parts = parts
         self._errors = errors
         self._outbox = outbox
@@ -374,7 +375,7 @@ class PartErrors(Concern):
         was_on = self._errors.is_on(key)
         if was_on or error == DEVIATES:
             self._errors.note(key, NORMAL, 0)
-        if was_on:
+        if was_on and not self._errors.is_on(key):
             self._outbox.emit(ErrorCleared(error, part), cause)
 
     def _note(self, part: PartName, error: str, found: Found, since: Instant) -> None:

@@ -6,7 +6,7 @@ parts: a system may have ten thousand of them.
 """
 
 from bisect import bisect_left, insort
-from collections.abc import Callable, Iterable
+from collections.abc import Callable
 from dataclasses import dataclass
 
 from domain.lifecycle import LifecycleState

@@ -37,7 +37,9 @@ class Order:
     @property
     def blocked(self) -> list[PartName]:
         """Return the nodes that wait for others; this looks at all of them."""
-        return [] if self._scope is None else [node for node in self._scope.nodes if self.waits(node)]
+        return (
+            [] if self._scope is None else [node for node in self._scope.nodes if self.waits(node)]
+        )
 
     @property
     def stages(self) -> int:

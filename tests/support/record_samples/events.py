@@ -2,6 +2,7 @@
 
 from collections.abc import Mapping
 
+from domain.events.announcing import ErrorChattering, ErrorShelved, ErrorUnshelved
 from domain.events.changes import (
     BackendAvailable,
     BackendUnavailable,
@@ -157,6 +158,18 @@ EVENTS: Mapping[str, tuple[object, ...]] = {
     "error.acknowledged": (
         ErrorAcknowledged(error="LOW_BATTERY"),
         ErrorAcknowledged(error="DEVIATES", part=PartName("arm")),
+    ),
+    "error.chattering": (
+        ErrorChattering(error="LOW_BATTERY", clear_for_s=None),
+        ErrorChattering(error="DEVIATES", clear_for_s=12.5, part=PartName("arm")),
+    ),
+    "error.shelved": (
+        ErrorShelved(error="LOW_BATTERY", for_s=12.5, reason='Größe ≤ 3 — "gripper\\jam"'),
+        ErrorShelved(error="DEVIATES", for_s=12.5, reason="noise", part=PartName("arm")),
+    ),
+    "error.unshelved": (
+        ErrorUnshelved(error="LOW_BATTERY"),
+        ErrorUnshelved(error="DEVIATES", part=PartName("arm")),
     ),
     "error.cleared": (
         ErrorCleared(error="LOW_BATTERY"),

@@ -27,11 +27,13 @@ from domain.inputs import (
     ReportBacklog,
     Restored,
     ServiceStall,
+    ShelveRequest,
     SourceFault,
     StorageStatus,
     TaskRequest,
     TimePassed,
     TransitionRequest,
+    UnshelveRequest,
     VehicleReport,
     WriteRecord,
 )
@@ -213,6 +215,29 @@ INPUTS: Mapping[str, tuple[object, ...]] = {
             error="LOW_BATTERY", actor=Actor(name="ada", way="http", address="10.0.0.7")
         ),
         AcknowledgeRequest(error="LOW_BATTERY", actor=Actor(name="", way="", address="")),
+        AcknowledgeRequest(
+            error="DEVIATES",
+            actor=Actor(name="ada", way="http", address="10.0.0.7"),
+            part=PartName("arm"),
+        ),
+    ),
+    "shelve_request": (
+        ShelveRequest(
+            error="DEVIATES",
+            for_=600_000_000_000,
+            reason='Größe ≤ 3 — "gripper\\jam"',
+            actor=Actor(name="ada", way="http", address="10.0.0.7"),
+            part=PartName("arm"),
+        ),
+        ShelveRequest(error="LOW_BATTERY", for_=1, reason="noise", actor=Actor(), part=None),
+    ),
+    "unshelve_request": (
+        UnshelveRequest(
+            error="DEVIATES",
+            actor=Actor(name="ada", way="http", address="10.0.0.7"),
+            part=PartName("arm"),
+        ),
+        UnshelveRequest(error="LOW_BATTERY", actor=Actor(), part=None),
     ),
     "arm_request": (
         ArmRequest(

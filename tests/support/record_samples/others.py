@@ -12,6 +12,7 @@ from domain.inputs import TimePassed
 from domain.kept import (
     Keeping,
     KeptChange,
+    KeptClock,
     KeptEffectiveTarget,
     KeptEmergencyStop,
     KeptError,
@@ -19,8 +20,10 @@ from domain.kept import (
     KeptHold,
     KeptProgress,
     KeptReaction,
+    KeptShelf,
     KeptTarget,
     KeptTask,
+    KeptUnacknowledged,
 )
 from domain.lifecycle import LifecycleState, Transition
 from domain.reaction_terms import Arm
@@ -200,6 +203,37 @@ OTHERS: Mapping[str, tuple[object, ...]] = {
             part=PartName("lidar"),
         ),
     ),
+    "kept_unacknowledged": (
+        KeptUnacknowledged(
+            part=PartName("arm"),
+            error="DEVIATES",
+            message="12.5 % < 20 %",
+            since=1764420000123456789,
+            value="active.SLOW",
+            threshold=12.5,
+        ),
+        KeptUnacknowledged(
+            part=None,
+            error="LOW_BATTERY",
+            message="12.5 % < 20 %",
+            since=1764420000123456789,
+            value=None,
+            threshold=None,
+        ),
+    ),
+    "kept_shelf": (
+        KeptShelf(
+            part=PartName("arm"),
+            error="DEVIATES",
+            until=1764420000123456789,
+            reason='Größe ≤ 3 — "gripper\\jam"',
+            by="ada",
+        ),
+        KeptShelf(
+            part=None, error="LOW_BATTERY", until=1764420000123456789, reason="noise", by="ada"
+        ),
+    ),
+    "kept_clock": (KeptClock(at=1764420000123456789),),
     "kept_failed_change": (
         KeptFailedChange(
             part=PartName("arm"),

@@ -7,11 +7,11 @@ from typing import cast
 import pytest
 
 from domain.events.event import RecordedEvent
+from domain.events.health import ErrorAcknowledged
 from domain.events.service import TimeWasDue
 from domain.health.health import Health
 from domain.health.signals import Recovery, SignalSettings, default_signals
 from domain.inputs import (
-    AcknowledgeRequest,
     Reading,
     Readings,
     Restored,
@@ -22,7 +22,7 @@ from domain.kept import KeptError
 from domain.outbox import Outbox, Outputs
 from domain.restart import Restart
 from domain.robot_state import RobotState
-from domain.snapshot import TaskStatus
+from domain.snapshot import ErrorKey, TaskStatus
 from domain.storage import Storage
 from domain.tasks.driving import Driving
 from domain.timebase import Instant, seconds
@@ -55,7 +55,8 @@ class Robot:
         return self._taken()
 
     def acknowledge(self, error: str) -> list[RecordedEvent]:
-        self.health.acknowledge(AcknowledgeRequest(error), self.now)
+        self.outbox.begin(self.now, ErrorAcknowledged(error))
+        self.health.acknowledge(ErrorKey(None, error), self.now)
         return self._taken()
 
     def restore(self, *kept: KeptError) -> list[RecordedEvent]:
