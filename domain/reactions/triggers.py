@@ -149,7 +149,7 @@ class Triggers:
         unheard = self._unheard.get(reaction)
         if unheard and now < self._heard_by:
             facts = self._parts.facts
-            unheard -= {node for node in unheard if facts[node].reachable is not None}
+            unheard -= {node for node in unheard if facts[node].reachable}
             return Truth.UNKNOWN if unheard else truth
         return truth
 
