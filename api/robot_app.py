@@ -33,6 +33,7 @@ from api.http.routes import (
     monitors,
     parameters,
     parts,
+    reactions,
     service_health,
     signals,
     storage,
@@ -60,6 +61,7 @@ _RESOURCES = (
     monitors.router,
     system_state.router,
     errors.router,
+    reactions.router,
     announcing.router,
     analysis.router,
     emergency_stop.router,
@@ -89,7 +91,7 @@ def _resources() -> list[BaseRoute]:
     for resource in _RESOURCES:
         router.include_router(resource)
     for prefix in ("systems", "nodes"):
-        for resource in (announcing.part_router, parts.router):
+        for resource in (announcing.part_router, reactions.part_router, parts.router):
             router.include_router(resource, prefix=f"/{prefix}", tags=[prefix])
     return router.routes
 

@@ -39,6 +39,8 @@ from domain.parts.parts import Parts
 from domain.parts.system_model import SmhModel
 from domain.reactions.displacing import Displacing
 from domain.reactions.fallbacks import Fallbacks
+from domain.reactions.reaction import Reaction, reactions_of
+from domain.reactions.reactions import Reactions
 from domain.reactions.rules import Rules
 from domain.reactions.settings import RuleSettings
 from domain.restart import Restart
@@ -54,6 +56,7 @@ from domain.snapshot import (
     ParameterView,
     PartView,
     PlanView,
+    ReactionView,
     SignalView,
     SystemStateView,
 )
@@ -114,7 +117,10 @@ class Supervision:
         self.conditions = WatchedConditions(self.facts)
         """The conditions of the model, kept up to date; read only."""
         guards = Guards(model, self.conditions, start)
+        reactions = reactions_of(model, self.conditions, start)
         self._changing = Changing(parts, health, errors, settings.changes, outbox, guards)
+        displacing = Displacing(parts, self._changing, outbox)
+        self._reactions = self._reactions_by(displacing, reactions, guards, start)
         # Driving stops the vehicle before the state is published and changes continue.
         self._concerns: tuple[Concern, ...] = (
             Restart(self._outbox),
@@ -129,7 +135,9 @@ class Supervision:
             self._part_errors,
             *self._after_part_errors(settings, start),
             self._changing,
-            *self._displacers(guards, settings.rules),
+            # What sets targets in force, the stronger first.
+            self._reactions,
+            *self._displacers(guards, settings.rules, displacing),
             Audit(self._outbox),
             Stalls(self._outbox),
         )
@@ -151,10 +159,26 @@ class Supervision:
             announcing,
         )
 
-    def _displacers(self, guards: Guards, rules: RuleSettings) -> tuple[Concern, Concern]:
-        """Return what sets targets in force, the stronger first; both displace by one object."""
+    def _reactions_by(
+        self, displacing: Displacing, reactions: list[Reaction], guards: Guards, start: Instant
+    ) -> Reactions:
+        return Reactions(
+            reactions,
+            self._parts,
+            self._changing,
+            self._health,
+            self._emergency_stop,
+            self.driving,
+            guards,
+            displacing,
+            self._outbox,
+            start,
+        )
+
+    def _displacers(
+        self, guards: Guards, rules: RuleSettings, displacing: Displacing
+    ) -> tuple[Concern, Concern]:
         parts, changing, health, outbox = self._parts, self._changing, self._health, self._outbox
-        displacing = Displacing(parts, changing, outbox)
         errors = self._part_errors
         return (
             Fallbacks(parts, changing, health, errors, guards, displacing, outbox),
@@ -352,6 +376,22 @@ class Supervision:
         """Yield the errors of one part, those that signals raise last; the model must have it."""
         yield from self._part_errors.views_of(part)
         yield from self._health.error_views(part)
+
+    def reaction(self, key: str) -> ReactionView:
+        """Return one reaction, as `Outputs.reactions` names it."""
+        return self._reactions.view_of(key)
+
+    def reaction_of(self, part: PartName, name: str) -> ReactionView:
+        """Return one reaction of a part.
+
+        Raises:
+            UnknownReactionError: The part has no reaction of this name.
+        """
+        return self._reactions.view(part, name)
+
+    def reactions(self) -> Mapping[str, ReactionView]:
+        """Return all reactions by their names, in the order of the file."""
+        return {view.name: view for view in self._reactions.views()}
 
     def open_errors(self) -> Mapping[str, ErrorView]:
         """Return the errors that are not normal, by their names."""

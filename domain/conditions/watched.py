@@ -6,7 +6,7 @@ from itertools import chain
 
 from domain.conditions.condition import Condition
 from domain.conditions.evaluation import Truth, compare, truth_of
-from domain.conditions.explanation import explain
+from domain.conditions.explanation import explain, explain_true
 from domain.conditions.facts import Facts
 from domain.conditions.tree import Comparison, Subject, Topic, TopicKind, Value, comparisons
 from domain.findings import Blocker
@@ -158,6 +158,12 @@ class WatchedConditions:
         found = explain(condition, self._facts, self._since_of_leaf)
         return tuple(replace(b, since=since) if b.since is None else b for b in found)
 
+    def explain_true(self, condition: Condition) -> tuple[Blocker, ...]:
+        """Return why a condition that is watched is not false; empty: it is."""
+        since = self._watched[condition.text].since
+        found = explain_true(condition, self._facts, self._since_of_leaf)
+        return tuple(replace(b, since=since) if b.since is None else b for b in found)
+
     # --- inside ----------------------------------------------------------------------------------
 
     def _leaf(self, comparison: Comparison, now: Instant) -> _Leaf:
@@ -173,5 +179,7 @@ class WatchedConditions:
     def _truth_of(self, condition: Condition) -> Truth:
         return truth_of(condition.root, lambda leaf: self._leaves[leaf.text].truth)
 
-    def _since_of_leaf(self, leaf: Comparison) -> Instant:
-        return self._leaves[leaf.text].since
+    def _since_of_leaf(self, leaf: Comparison) -> Instant | None:
+        """Return since when a comparison has its value; of one that is turned round, None."""
+        watched = self._leaves.get(leaf.text)
+        return None if watched is None else watched.since

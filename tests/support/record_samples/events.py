@@ -69,6 +69,15 @@ from domain.events.parts import (
     NodeUnreachable,
     PartActualChanged,
 )
+from domain.events.reactions import (
+    ReactionAcknowledged,
+    ReactionActing,
+    ReactionArmRequested,
+    ReactionEnded,
+    ReactionExhausted,
+    ReactionOverruled,
+    ReactionWouldAct,
+)
 from domain.events.service import (
     NotRestored,
     ServiceRestored,
@@ -86,6 +95,7 @@ from domain.events.targets import (
 )
 from domain.identifiers import ChangeId, GoalId, TaskId
 from domain.lifecycle import LifecycleState, Transition
+from domain.reaction_terms import Action, Arm
 from domain.snapshot import Because, StepStatus, SystemState
 from domain.state_and_mode import ModeName, PartName, StateAndMode
 from tests.support.record_samples.pieces import PARAMETERS
@@ -302,6 +312,55 @@ EVENTS: Mapping[str, tuple[object, ...]] = {
             within_s=2.0,
         ),
     ),
+    "reaction.acting": (
+        ReactionActing(
+            part=PartName("left/arm"),
+            reaction="LIMP",
+            action=Action.MODE,
+            reason='Größe ≤ 3 — "gripper\\jam"',
+        ),
+    ),
+    "reaction.ended": (
+        ReactionEnded(
+            part=PartName("left/arm"),
+            reaction="LIMP",
+            action=Action.MODE,
+            reason='Größe ≤ 3 — "gripper\\jam"',
+        ),
+    ),
+    "reaction.would_act": (
+        ReactionWouldAct(
+            part=PartName("left/arm"),
+            reaction="LIMP",
+            action=Action.MODE,
+            reason='Größe ≤ 3 — "gripper\\jam"',
+        ),
+    ),
+    "reaction.overruled": (
+        ReactionOverruled(
+            part=PartName("left/arm"),
+            reaction="LIMP",
+            action=Action.MODE,
+            reason='Größe ≤ 3 — "gripper\\jam"',
+        ),
+    ),
+    "reaction.exhausted": (
+        ReactionExhausted(
+            part=PartName("left/arm"),
+            reaction="LIMP",
+            action=Action.HOLD,
+            reason='Größe ≤ 3 — "gripper\\jam"',
+        ),
+    ),
+    "reaction.arm_requested": (
+        ReactionArmRequested(
+            part=PartName("left/arm"),
+            reaction="LIMP",
+            arm=Arm.DISARMED,
+            reason='Größe ≤ 3 — "gripper\\jam"',
+        ),
+    ),
+    "reaction.acknowledged": (ReactionAcknowledged(part=PartName("left/arm"), reaction="LIMP"),),
     "rule.not_applied": (
         RuleNotApplied(
             part=PartName("left/arm"),
@@ -327,6 +386,15 @@ EVENTS: Mapping[str, tuple[object, ...]] = {
             rule=None,
             reason='Größe ≤ 3 — "gripper\\jam"',
         ),
+        DisplacementBegan(
+            part=PartName("left/arm"),
+            target=StateAndMode(state=LifecycleState.ACTIVE, mode=ModeName("SLOW")),
+            was=None,
+            because=Because.REACTION,
+            rule=None,
+            reason='Größe ≤ 3 — "gripper\\jam"',
+            reaction="LIMP",
+        ),
     ),
     "target.displacement_ended": (
         DisplacementEnded(
@@ -345,6 +413,15 @@ EVENTS: Mapping[str, tuple[object, ...]] = {
             rule=None,
             reason='Größe ≤ 3 — "gripper\\jam"',
         ),
+        DisplacementEnded(
+            part=PartName("left/arm"),
+            target=StateAndMode(state=LifecycleState.ACTIVE, mode=ModeName("SLOW")),
+            was=StateAndMode(state=LifecycleState.ACTIVE, mode=ModeName("SLOW")),
+            because=Because.REACTION,
+            rule=None,
+            reason='Größe ≤ 3 — "gripper\\jam"',
+            reaction="LIMP",
+        ),
     ),
     "target.displacement_stays": (
         DisplacementStays(
@@ -360,6 +437,14 @@ EVENTS: Mapping[str, tuple[object, ...]] = {
             because=Because.INVARIANT,
             rule=None,
             reason='Größe ≤ 3 — "gripper\\jam"',
+        ),
+        DisplacementStays(
+            part=PartName("left/arm"),
+            target=StateAndMode(state=LifecycleState.ACTIVE, mode=ModeName("SLOW")),
+            because=Because.REACTION,
+            rule=None,
+            reason='Größe ≤ 3 — "gripper\\jam"',
+            reaction="LIMP",
         ),
     ),
     "system_state.changed": (

@@ -6,7 +6,9 @@ from math import inf, nan
 from domain.actor import Actor
 from domain.identifiers import ChangeId, GoalId
 from domain.inputs import (
+    AcknowledgeReactionRequest,
     AcknowledgeRequest,
+    ArmRequest,
     BackendStatus,
     CancelRequest,
     CancelTaskRequest,
@@ -37,6 +39,7 @@ from domain.inputs import (
     WriteRecord,
 )
 from domain.lifecycle import LifecycleState, Transition
+from domain.reaction_terms import Arm
 from domain.state_and_mode import ModeName, PartName
 from domain.vehicle import DriveCommand, Point, Pose, VehicleState
 from tests.support.record_samples.pieces import KEPT, PARAMETERS, PATH
@@ -247,6 +250,34 @@ INPUTS: Mapping[str, tuple[object, ...]] = {
             actor=Actor(name="ada", way="http", address="10.0.0.7"),
         ),
         ErrorReport(part=None, error="JAMMED", active=False),
+    ),
+    "arm_request": (
+        ArmRequest(
+            part=PartName("left/arm"),
+            reaction="LIMP",
+            arm=Arm.PASSIVE,
+            reason='Größe ≤ 3 — "gripper\\jam"',
+            actor=Actor(name="ada", way="http", address="10.0.0.7"),
+        ),
+        ArmRequest(
+            part=PartName("left/arm"),
+            reaction="LIMP",
+            arm=Arm.PASSIVE,
+            reason="",
+            actor=Actor(name="", way="", address=""),
+        ),
+    ),
+    "acknowledge_reaction_request": (
+        AcknowledgeReactionRequest(
+            part=PartName("left/arm"),
+            reaction="LIMP",
+            actor=Actor(name="ada", way="http", address="10.0.0.7"),
+        ),
+        AcknowledgeReactionRequest(
+            part=PartName("left/arm"),
+            reaction="LIMP",
+            actor=Actor(name="", way="", address=""),
+        ),
     ),
     "task_request": (
         TaskRequest(
