@@ -22,6 +22,7 @@ from api.http.problem_handlers import add_problem_handlers
 from api.http.routes import (
     analysis,
     changes,
+    checkpoints,
     emergency_stop,
     errors,
     example_tracks,
@@ -51,6 +52,7 @@ _RESOURCES = (
     openapi_router,
     # Before the parts: the path of a part matches everything below /nodes.
     parameters.router,
+    checkpoints.router,
     changes.router,
     model.router,
     inference.router,

@@ -2,6 +2,7 @@
 
 from collections.abc import Iterable, Iterator, Mapping
 from contextlib import contextmanager
+from itertools import chain
 
 from domain.concern import Concern, Takers
 from domain.events.health import (
@@ -22,7 +23,7 @@ from domain.health.state_manager import HealthChanges, StateManager
 from domain.inputs import AcknowledgeRequest, Readings, Restored
 from domain.kept import KeptError
 from domain.outbox import Outbox
-from domain.snapshot import ErrorKey, ErrorView, SignalView, SystemStateView, TaskStatus
+from domain.snapshot import ErrorKey, ErrorView, Severity, SignalView, SystemStateView, TaskStatus
 from domain.state_and_mode import PartName
 from domain.timebase import Instant
 
@@ -160,6 +161,11 @@ class Health(Concern):
         """
         for key in self._keys_of.get(part, ()):
             yield self.error_list.view(key)
+
+    def severities(self) -> Mapping[ErrorKey, Severity]:
+        """Return the errors that signals raise, with their severities; ESTOP is one of them."""
+        keys = chain.from_iterable(self._keys_of.values())
+        return {key: self.error_list.view(key).severity for key in keys}
 
     @property
     def is_stopped(self) -> bool:

@@ -16,7 +16,8 @@ import httpx
 
 from api.documents.examples import Examples, Exchange, StreamExample
 from api.http.problems import MEDIA_TYPE
-from tests.support.document_story import CSV, JSON, STORY, Asked
+from domain.supervision import SupervisionSettings
+from tests.support.document_story import CHECKPOINTS, CSV, JSON, STORY, Asked
 from tests.support.good import GOOD
 from tests.support.http_robot import HttpRobot, http_robot
 from tests.support.manual_clock import ManualClock
@@ -35,7 +36,7 @@ _PARSED = (JSON, MEDIA_TYPE)
 
 async def record() -> Examples:
     """Let the story happen, and return what was asked, answered and streamed."""
-    async with http_robot() as robot:
+    async with http_robot(settings=SupervisionSettings(checkpoints=CHECKPOINTS)) as robot:
         await robot.pass_time(1)
         requests = [
             _exchange(asked, await _answer_of_a_record(asked))

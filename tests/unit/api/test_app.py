@@ -34,6 +34,7 @@ CONTRACT = {
     "/nodes/{part}/why": {"get"},
     "/nodes/{part}/errors": {"get"},
     "/nodes/{part}/parameters": {"get", "patch"},
+    "/nodes/{part}/checkpoints/{checkpoint}": {"post"},
     "/changes": {"get"},
     "/changes/{change}": {"get", "delete"},
     "/model": {"get"},
