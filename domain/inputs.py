@@ -75,6 +75,16 @@ class CheckpointReport:
 
 
 @dataclass(frozen=True, slots=True)
+class SourceFault:
+    """A source gives no reading of a signal; one from the same source ends that."""
+
+    signal: str
+    source: str
+    """As in `Readings`."""
+    reason: str
+
+
+@dataclass(frozen=True, slots=True)
 class VehicleReport:
     """Pose and motion of the vehicle, from its localization."""
 
@@ -299,6 +309,7 @@ Input: TypeAlias = (
     | NodeAnswer
     | Readings
     | CheckpointReport
+    | SourceFault
     | VehicleReport
     | DriveStatus
     | BackendStatus

@@ -1,6 +1,6 @@
 """What conditions can name on a robot: the parts of its model, its signals and their errors."""
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from typing import Protocol
 
 from domain.conditions.vocabulary import Kind, PartTerms, Terms, Vocabulary
@@ -45,30 +45,36 @@ def vocabulary_of(
         is_complete: All signals are known; False: a robot file may declare more.
     """
     known = tuple(signals)
+    of_signals = _errors_of(known)
+
+    def errors(part: PartName, built_in: tuple[str, ...]) -> tuple[str, ...]:
+        own = (*model.errors.get(part, ()), *of_signals.get(part, ()))
+        # Most parts have none of their own, and share one tuple.
+        return tuple(dict.fromkeys((*built_in, *own))) if own else built_in
+
     parts = {
-        str(name): _terms_of_node(node, _with(_OF_NODES, model.errors.get(name)))
+        str(name): _terms_of_node(node, errors(name, _OF_NODES))
         for name, node in model.nodes.items()
     }
     for name, system in model.systems.items():
-        modes = tuple(map(str, system.modes))
-        own = _with(_OF_EVERY_PART, model.errors.get(name))
+        modes, own = tuple(map(str, system.modes)), errors(name, _OF_EVERY_PART)
         parts[str(name)] = PartTerms(is_node=False, modes=modes, errors=own)
-    errors = [bound.error for signal in known for bound in signal.bounds]
     return Vocabulary(
         parts,
         {signal.spec.name: _terms_of_signal(signal.spec) for signal in known},
-        (*dict.fromkeys(errors), STALE_DATA),
+        (*dict.fromkeys(of_signals.get(None, ())), STALE_DATA),
         is_complete,
     )
 
 
-def _with(
-    built_in: tuple[str, ...], declared: Mapping[str, DeclaredError] | None
-) -> tuple[str, ...]:
-    """Return all errors of a part; most parts declare none, and share one tuple."""
-    return (
-        (*built_in, *(name for name in declared if name not in built_in)) if declared else built_in
-    )
+def _errors_of(signals: Iterable[SignalSettings]) -> Mapping[PartName | None, Sequence[str]]:
+    """Return by part the errors that signals raise, but stale data; None: the robot's own."""
+    errors: dict[PartName | None, list[str]] = {}
+    for signal in signals:
+        for key, _ in signal.can_raise().values():
+            if key.error != STALE_DATA:
+                errors.setdefault(key.part, []).append(key.error)
+    return errors
 
 
 def _terms_of_node(node: NodeModel, errors: tuple[str, ...]) -> PartTerms:

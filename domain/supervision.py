@@ -24,6 +24,7 @@ from domain.health.checkpoint_errors import CheckpointErrors
 from domain.health.checkpoints import CheckpointSettings
 from domain.health.emergency_stop import EmergencyStop
 from domain.health.health import Health
+from domain.health.mode_limits import ModeLimits
 from domain.health.part_errors import PartErrors
 from domain.health.signals import SignalSettings, default_signals
 from domain.inputs import ChangeRequest, Input, TimePassed
@@ -45,6 +46,7 @@ from domain.snapshot import (
     ErrorKey,
     ErrorView,
     ModeView,
+    MonitorView,
     ParameterView,
     PartView,
     PlanView,
@@ -116,6 +118,7 @@ class Supervision:
             self._parts,
             self._health,
             self._emergency_stop,
+            ModeLimits(settings.signals, self._parts, self._health, self._outbox),
             self.driving,
             Standstill(self.driving, self._emergency_stop, self._outbox),
             storage,
@@ -124,7 +127,7 @@ class Supervision:
             CheckpointErrors(
                 settings.checkpoints, self._parts, self._health, self._part_errors, outbox
             ),
-            FactChanges(self.conditions, self.driving, self._outbox),
+            FactChanges(self.conditions, self._parts, self.driving, self._outbox),
             self._changing,
             *self._displacers(guards, settings.rules),
             Audit(self._outbox),
@@ -313,6 +316,10 @@ class Supervision:
     def signals(self) -> Mapping[str, SignalView]:
         """Return all signals."""
         return self._health.signals()
+
+    def monitors(self) -> tuple[MonitorView, ...]:
+        """Return the monitors, as of the last input."""
+        return tuple(self._health.monitors(self._now))
 
     def error(self, key: ErrorKey) -> ErrorView:
         """Return one error, as `Outputs.errors` names it."""

@@ -15,11 +15,19 @@ from domain.inputs import (
     NodeReport,
     Readings,
     ReportBacklog,
+    SourceFault,
     VehicleReport,
 )
 
 BackendMessage: TypeAlias = (
-    NodeReport | NodeAnswer | BackendStatus | ReportBacklog | Readings | VehicleReport | DriveStatus
+    NodeReport
+    | NodeAnswer
+    | BackendStatus
+    | ReportBacklog
+    | Readings
+    | SourceFault
+    | VehicleReport
+    | DriveStatus
 )
 Deliver: TypeAlias = Callable[[BackendMessage], None]
 
@@ -69,7 +77,7 @@ class VehicleBackend(Adapter, Protocol):
 
 
 class SignalSource(Adapter, Protocol):
-    """A source of signal readings; it delivers `Readings`."""
+    """A source of signal readings; it delivers `Readings`, or `SourceFault` if it has none."""
 
 
 class RobotBackend(Adapter, Protocol):

@@ -275,7 +275,7 @@ class Changes:
     def _forbidden(self, pursuit: Pursuit) -> str | None:
         """Return which guard keeps a node from its next step; None: none does."""
         change = self._log[pursuit.change]
-        if pursuit.rollback or not change.guarded:
+        if pursuit.rollback or change.unguarded is None:
             return None
         broken = self._guarded.forbids(change, pursuit.node)
         if broken is not None and change.failure is None:
@@ -286,9 +286,8 @@ class Changes:
 
     def _set_out(self, change: Change, now: Instant) -> None:
         """Start the nodes that wait for no other; foresee the steps of those that do."""
-        blocked = change.order.blocked
-        free = [node for node in change.goals if node not in blocked] if blocked else change.goals
-        if blocked:
+        free = [node for node in change.goals if not change.order.waits(node)]
+        if len(free) < len(change.goals):
             for node in islice(change.goals, STARTS_AT_ONCE):
                 self._steps.foresee(change.pursue(node))
         self._steps.add(change, free)

@@ -9,6 +9,8 @@ from domain.events.health import (
     ErrorAcknowledged,
     ErrorCleared,
     ErrorRaised,
+    SignalLimitsChanged,
+    SignalNotRead,
     SignalPending,
     SignalRead,
     SignalSettled,
@@ -18,12 +20,20 @@ from domain.events.service import NotRestored, WriteAnswered
 from domain.findings import Blocker
 from domain.health.error_list import ErrorList
 from domain.health.robot_errors import RobotErrors
-from domain.health.signals import ESTOP, SignalSettings
+from domain.health.signals import ESTOP, Comparison, ModeLimit, SignalSettings
 from domain.health.state_manager import HealthChanges, StateManager
-from domain.inputs import AcknowledgeRequest, Readings, Restored
+from domain.inputs import AcknowledgeRequest, Readings, Restored, SourceFault
 from domain.kept import KeptError
 from domain.outbox import Outbox
-from domain.snapshot import ErrorKey, ErrorView, Severity, SignalView, SystemStateView, TaskStatus
+from domain.snapshot import (
+    ErrorKey,
+    ErrorView,
+    MonitorView,
+    Severity,
+    SignalView,
+    SystemStateView,
+    TaskStatus,
+)
 from domain.state_and_mode import PartName
 from domain.timebase import Instant
 
@@ -62,6 +72,7 @@ class Health(Concern):
         """Return the handler of each class of input."""
         return {
             Readings: self.take_readings,
+            SourceFault: self.take_fault,
             AcknowledgeRequest: self.acknowledge,
             Restored: self.restore,
         }
@@ -103,6 +114,18 @@ class Health(Concern):
         for signal in released:
             self._outbox.emit(WriteAnswered("READING", f"/signals/{signal}", _TAKEN, sender))
 
+    def take_fault(self, fault: SourceFault, now: Instant) -> None:
+        """Take why a source gives no reading of a signal; only what is new is told.
+
+        Raises:
+            UnknownSignalError: The signal is not declared.
+        """
+        is_new = self._manager.is_new_fault(fault)
+        self._outbox.begin(now, SignalNotRead(fault.signal, fault.source, fault.reason))
+        if is_new:
+            self._outbox.record_input()
+            self._tell(self._manager.note_fault(fault, now), now)
+
     def acknowledge(self, request: AcknowledgeRequest, now: Instant) -> None:
         """Acknowledge an error, so that it clears once its cause is gone.
 
@@ -122,6 +145,22 @@ class Health(Concern):
             now: The current time.
         """
         self._tell(self._manager.set_emergency_stop(since, now), now)
+
+    def set_limit(self, signal: str, limit: ModeLimit | None, now: Instant) -> None:
+        """Put another limit of a signal in force, since a part is in another mode.
+
+        Args:
+            signal: Of which limits by mode are declared.
+            limit: One of them; None: no value is bad.
+            now: The current time.
+        """
+        bound = None if limit is None else limit.bound
+        threshold = None if bound is None else float(bound.threshold)
+        is_above = bound is not None and bound.comparison is Comparison.ABOVE
+        above, below = (threshold, None) if is_above else (None, threshold)
+        because = None if limit is None else limit.name
+        self._outbox.emit(SignalLimitsChanged(signal, because, above, below))
+        self._tell(self._manager.set_limit(signal, limit, now), now)
 
     def restore(self, restored: Restored, now: Instant) -> None:
         """Raise the errors again that nobody acknowledged, before anything is read."""
@@ -191,6 +230,10 @@ class Health(Concern):
         """Return all signals in the order of declaration; the same object until one changes."""
         return self._manager.signals()
 
+    def monitors(self, now: Instant) -> Iterator[MonitorView]:
+        """Yield the monitors in the order of declaration."""
+        return self._manager.monitors(now)
+
     def system_state(self, task_status: TaskStatus) -> SystemStateView:
         """Return the state of the robot for a given task status."""
         return self._manager.system_state(task_status)
@@ -215,15 +258,15 @@ class Health(Concern):
         self._robot_errors.follow(changes, now)
         self._outbox.signals |= changes.signals
         for signal in changes.signals:
-            self._keep(self._manager.signal(signal))
+            self._keep(signal)
 
-    def _keep(self, signal: SignalView) -> None:
+    def _keep(self, name: str) -> None:
         """Keep the error of a signal from when it waits for an acknowledgement until it does not.
 
         With what was measured when it began to: later readings are not worth a write each.
         """
-        name, kept = signal.signal, self._kept.get(signal.signal)
-        waits = signal.error if signal.needs_acknowledgement else None
+        state, kept = self._manager.state(name), self._kept.get(name)
+        waits = state.error if state.needs_acknowledgement else None
         key = None if waits is None else self._key(name, waits)
         if key == kept:
             return

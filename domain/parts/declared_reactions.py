@@ -26,6 +26,29 @@ class Action(StrEnum):
     EMERGENCY_STOP = "emergency_stop"
     """Engages the emergency stop, which a person releases."""
 
+    @property
+    def has_target(self) -> bool:
+        """Tell whether it sets a target of its part."""
+        return self in (Action.MODE, Action.STATE)
+
+    @property
+    def has_budget(self) -> bool:
+        """Tell whether it moves its part, so that a reaction may do it only so often.
+
+        Of several reactions of a part that do, the strongest one acts.
+        """
+        return self in (Action.MODE, Action.STATE, Action.RESTART)
+
+    @property
+    def holds(self) -> bool:
+        """Tell whether it keeps tasks from running while it lasts."""
+        return self in (Action.HOLD, Action.STOP)
+
+    @property
+    def strength(self) -> int:
+        """Return its place in the order of strength, from 0."""
+        return tuple(Action).index(self)
+
 
 class Arm(StrEnum):
     """Whether a reaction may act."""

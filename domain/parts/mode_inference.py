@@ -18,7 +18,7 @@ from domain.lifecycle import LifecycleState
 from domain.parameters import same_value
 from domain.parts.convergence import Convergence, bottom_up, is_there
 from domain.parts.node_facts import NodeFacts
-from domain.parts.system_inference import SystemInference, by_bytes, parents_of
+from domain.parts.system_inference import SystemInference, by_bytes
 from domain.parts.system_model import NodeModel, SmhModel
 from domain.snapshot import Actual
 from domain.state_and_mode import DEFAULT_MODE, ModeName, PartName, StateAndMode
@@ -33,7 +33,7 @@ class ModeInference:
         self._facts = {name: NodeFacts() for name in model.nodes}
         self._targets: dict[PartName, StateAndMode] = {}
         self._systems = {name: SystemInference(system) for name, system in model.systems.items()}
-        self._parents = parents_of(model.systems.values())
+        self._parents = model.parents
         self._by_rank = {
             name: sorted(node.modes, key=lambda mode: (mode != DEFAULT_MODE, by_bytes(mode)))
             for name, node in model.nodes.items()

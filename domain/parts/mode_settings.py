@@ -31,6 +31,22 @@ class TransitionSettings:
     deadline: Duration | None = None
     """Of the whole change; None: only its steps have deadlines."""
     on_failure: OnFailure = OnFailure.CONTINUE
+    followers: Mapping[PartName, tuple[PartName, ...]] = field(
+        init=False, compare=False, repr=False
+    )
+    """The parts that wait for a part: `after` the other way round."""
+
+    def __post_init__(self) -> None:
+        """Note who waits for whom, each once."""
+        after = {part: tuple(dict.fromkeys(before)) for part, before in self.after.items()}
+        followers: dict[PartName, list[PartName]] = {}
+        for part, before in after.items():
+            for name in before:
+                followers.setdefault(name, []).append(part)
+        object.__setattr__(self, "after", after)
+        object.__setattr__(
+            self, "followers", {part: tuple(names) for part, names in followers.items()}
+        )
 
 
 @dataclass(frozen=True, slots=True)
@@ -46,3 +62,8 @@ class ModeSettings:
     fallback: ModeName | None = None
     """The mode that replaces this one while an invariant is broken."""
     transition: TransitionSettings = field(default_factory=TransitionSettings)
+
+    @property
+    def guards(self) -> tuple[Condition, ...]:
+        """Return all guards."""
+        return (*self.requires, *self.invariants)

@@ -6,7 +6,7 @@ parts: a system may have ten thousand of them.
 """
 
 from bisect import bisect_left, insort
-from collections.abc import Callable, Iterable
+from collections.abc import Callable
 from dataclasses import dataclass
 
 from domain.lifecycle import LifecycleState
@@ -242,12 +242,3 @@ def _undecidable(reason: str) -> Actual:
 
 def _take_out(ordered: list[int], number: int) -> None:
     del ordered[bisect_left(ordered, number)]
-
-
-def parents_of(systems: Iterable[SystemModel]) -> dict[PartName, tuple[PartName, ...]]:
-    """Return the systems that name each part; parts that none names are left out."""
-    found: dict[PartName, list[PartName]] = {}
-    for system in systems:
-        for part in system.named_parts:
-            found.setdefault(part, []).append(system.name)
-    return {part: tuple(parents) for part, parents in found.items()}

@@ -21,6 +21,7 @@ from domain.parts.declared_errors import DeclaredError
 from domain.parts.declared_reactions import DeclaredReaction
 from domain.parts.errors_check import error_circles
 from domain.parts.mode_settings import ModeSettings
+from domain.parts.reactions_check import all_reactions, check_reactions
 from domain.parts.settings_check import check_settings
 from domain.state_and_mode import DEFAULT_MODE, ModeName, PartName, StateAndMode
 
@@ -69,16 +70,18 @@ class SystemModel:
     empty for a system without parts.
     """
     rules: tuple[Rule, ...] = ()
+    named_parts: tuple[PartName, ...] = field(init=False, compare=False, repr=False)
+    """The parts that any mode names, also those that `__DEFAULT__` does not."""
+
+    def __post_init__(self) -> None:
+        """Note which parts are named."""
+        named = dict.fromkeys(part for wanted in self.modes.values() for part in wanted)
+        object.__setattr__(self, "named_parts", tuple(named))
 
     @property
     def parts(self) -> tuple[PartName, ...]:
         """Return the parts of this system: those of `__DEFAULT__`, in the order of the file."""
         return tuple(self.modes.get(DEFAULT_MODE, ()))
-
-    @property
-    def named_parts(self) -> tuple[PartName, ...]:
-        """Return the parts that any mode names, also those that `__DEFAULT__` does not."""
-        return tuple(dict.fromkeys(part for wanted in self.modes.values() for part in wanted))
 
 
 @dataclass(frozen=True)
@@ -102,6 +105,10 @@ class SmhModel:
     """Reactions by part and name, in the order of the file."""
     ancestors: Mapping[PartName, tuple[PartName, ...]] = field(init=False)
     """Every system that a part belongs to, directly or indirectly; children before parents."""
+    parents: Mapping[PartName, tuple[PartName, ...]] = field(init=False)
+    """The systems that name each part, in the order of the file; what none names is left out."""
+    shared_parts: tuple[PartName, ...] = field(init=False)
+    """The parts that several systems name."""
 
     def __post_init__(self) -> None:
         """Check the model, then freeze it."""
@@ -112,9 +119,14 @@ class SmhModel:
         object.__setattr__(self, "systems", MappingProxyType(_shared(self.nodes, self.systems)))
         object.__setattr__(self, "mode_settings", MappingProxyType(dict(self.mode_settings)))
         object.__setattr__(self, "errors", MappingProxyType(dict(self.errors)))
+        object.__setattr__(self, "reactions", MappingProxyType(dict(self.reactions)))
         object.__setattr__(
             self, "ancestors", MappingProxyType(_ancestors(self.systems, self.nodes))
         )
+        parents = _parents(self.systems.values())
+        shared = tuple(part for part, systems in parents.items() if len(systems) > 1)
+        object.__setattr__(self, "parents", MappingProxyType(parents))
+        object.__setattr__(self, "shared_parts", shared)
 
     def _errors_of_settings(self) -> list[Finding]:
         findings: list[Finding] = []
@@ -122,6 +134,9 @@ class SmhModel:
             parts = self.systems[part].named_parts if part in self.systems else ()
             findings.extend(check_settings(part, settings, self.modes_of(part), parts))
         findings.extend(error_circles(self.errors))
+        modes_of = {part: self.modes_of(part) for part in self.reactions}
+        reactions = all_reactions(self.reactions)
+        findings.extend(check_reactions(reactions, modes_of, self.nodes, self.errors))
         return findings
 
     @property
@@ -131,8 +146,8 @@ class SmhModel:
 
     @property
     def has_conditions(self) -> bool:
-        """Tell whether any mode has a guard, or any error is declared."""
-        if self.errors:
+        """Tell whether anything in it depends on a condition."""
+        if any(self.errors.values()) or any(self.reactions.values()):
             return True
         settings = chain.from_iterable(by_mode.values() for by_mode in self.mode_settings.values())
         return any(own.requires or own.invariants for own in settings)
@@ -372,6 +387,15 @@ class _Hierarchy:
         """Return a system with too many levels below it; None: there is none. Needs no cycles."""
         heights = self.heights()
         return next((name for name in self.order if heights[name] > MAX_LEVELS), None)
+
+
+def _parents(systems: Iterable[SystemModel]) -> dict[PartName, tuple[PartName, ...]]:
+    """Return the systems that name each part; parts that none names are left out."""
+    found: dict[PartName, list[PartName]] = {}
+    for system in systems:
+        for part in system.named_parts:
+            found.setdefault(part, []).append(system.name)
+    return {part: tuple(parents) for part, parents in found.items()}
 
 
 def _ancestors(

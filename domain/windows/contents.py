@@ -4,6 +4,9 @@ from collections import deque
 
 from domain.timebase import Duration, Instant
 
+NEVER: Instant = 1 << 63
+"""Later than any clock tells."""
+
 
 class Contents:
     """The readings of a window, oldest first; at most so many that memory is bounded.
@@ -23,6 +26,8 @@ class Contents:
         self.start = start
         self.heard_at = start
         """Arrival of the newest reading, whether it is still held or not; the start before one."""
+        self.next_leaves_at: Instant = NEVER
+        """When the oldest reading leaves by time alone."""
         self._size = size
         self._times: deque[Instant] = deque()
         self._values: deque[float] = deque()
@@ -38,25 +43,31 @@ class Contents:
         """Return the arrival of the oldest reading; there is one."""
         return self._times[0]
 
+    @property
+    def is_full(self) -> bool:
+        """Tell whether there is no room for another reading."""
+        return len(self._times) >= self._size
+
     def append(self, at: Instant, value: float) -> None:
         """Take in a reading; there is room for it."""
+        if not self._times and self.length is not None:
+            self.next_leaves_at = at + self.length
         self._times.append(at)
         self._values.append(value)
         self.heard_at = at
 
-    def pop_for_next(self) -> tuple[Instant, float] | None:
-        """Remove the oldest reading if the next one needs its place; None: there is room."""
-        if len(self._times) < self._size:
-            return None
+    def pop(self) -> tuple[Instant, float]:
+        """Remove the oldest reading, whose time is over; return when it arrived and its value."""
+        at = self._times.popleft()
+        if self.length is not None:
+            self.next_leaves_at = self._times[0] + self.length if self._times else NEVER
+        return at, self._values.popleft()
+
+    def make_room(self) -> tuple[Instant, float]:
+        """Remove the oldest reading for the next one, as `pop` does."""
         if self.length is not None:
             self._lost_at = self._times[0]
-        return self._times.popleft(), self._values.popleft()
-
-    def pop_expired(self, now: Instant) -> tuple[Instant, float] | None:
-        """Remove the oldest reading if its time is over; None: it is not, or there is none."""
-        if self.length is None or not self._times or self._times[0] > now - self.length:
-            return None
-        return self._times.popleft(), self._values.popleft()
+        return self.pop()
 
     def is_complete(self, now: Instant) -> bool:
         """Tell whether no reading is missing that belongs into the window."""

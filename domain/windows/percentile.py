@@ -21,6 +21,10 @@ class _Half:
         self._sign = sign
         self._heap: list[tuple[float, int]] = []
 
+    def __len__(self) -> int:
+        """Return how many numbers are kept, including those that have left."""
+        return len(self._heap)
+
     def push(self, number: float, place: int) -> None:
         """Add a number."""
         heapq.heappush(self._heap, (self._sign * number, self._sign * place))
@@ -70,6 +74,11 @@ class Percentile(Measure):
         self._high = _Half(1)
         self._entered = 0
         self._left = 0
+
+    @property
+    def entries(self) -> int:
+        """Return how many numbers are kept, a bounded multiple of the readings of the window."""
+        return len(self._low) + len(self._high)
 
     def enter(self, at: Instant, value: float) -> None:
         """Take in a reading."""

@@ -40,11 +40,12 @@ class Window:
             at: When it arrived.
             value: Finite.
         """
-        self._drop_expired(at)
-        removed = self._contents.pop_for_next()
-        if removed is not None:
-            self._measure.leave(*removed)
-        self._contents.append(at, value)
+        contents = self._contents
+        if contents.next_leaves_at <= at:
+            self._drop_expired(at)
+        if contents.is_full:
+            self._measure.leave(*contents.make_room())
+        contents.append(at, value)
         self._measure.enter(at, value)
 
     def value(self, now: Instant) -> float | None:
@@ -101,8 +102,8 @@ class Window:
         return self._contents.filled(now)
 
     def _drop_expired(self, now: Instant) -> None:
-        while (removed := self._contents.pop_expired(now)) is not None:
-            self._measure.leave(*removed)
+        while self._contents.next_leaves_at <= now:
+            self._measure.leave(*self._contents.pop())
 
     def _is_known(self, now: Instant) -> bool:
         if self._needs_all and not self._contents.is_complete(now):

@@ -23,6 +23,7 @@ NAMES: Mapping[type, str] = {
     inputs.NodeAnswer: "node_answer",
     inputs.Readings: "readings",
     inputs.CheckpointReport: "checkpoint_report",
+    inputs.SourceFault: "source_fault",
     inputs.VehicleReport: "vehicle_report",
     inputs.DriveStatus: "drive_status",
     inputs.BackendStatus: "backend_status",

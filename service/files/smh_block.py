@@ -16,6 +16,8 @@ MODE_SETTINGS = "mode_settings"
 """The block about guards and order of modes."""
 ERRORS = "errors"
 """The block about errors of the part."""
+REACTIONS = "reactions"
+"""The block about what the robot does while something is so."""
 
 _RESERVED_NAMES = frozenset(("state", "states", "mode", "modes", "parameters"))
 
@@ -70,6 +72,8 @@ class SmhBlock:
         """The lines of `mode_settings`."""
         self.errors: list[Setting] = [s for s in extensions if s.path[0] == ERRORS]
         """The lines of `errors`."""
+        self.reactions: list[Setting] = [s for s in extensions if s.path[0] == REACTIONS]
+        """The lines of `reactions`."""
         for parameter in source.parameters:
             self._sort(parameter)
         self.is_node = self._tell_kind()

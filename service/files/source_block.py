@@ -94,7 +94,7 @@ class OsBlock(SettingsBlock):
     is that to the time server. Without a measurement, such as that of the temperature on a virtual
     machine, the signal becomes stale."""
     process: _Name | None = None
-    """Name of processes, as in /proc/PID/comm; what several have is added up."""
+    """Name of processes, as `top` shows it; what several have is added up."""
     cgroup: _Cgroup | None = None
     """Control group (version 2), such as system.slice/ros.service."""
     path: _Path = "/"
@@ -102,7 +102,7 @@ class OsBlock(SettingsBlock):
     interface: _Name | None = None
     """Network interface. Default: all but the loopback interface."""
     sensor: _Name | None = None
-    """Temperature sensor, as /sys/class/hwmon/*/name or its label has it. Default: the hottest."""
+    """Name or label of a temperature sensor, as `sensors` shows it. Default: the hottest one."""
     period_s: _SlowPeriod | None = None
     """Seconds between two readings. Default: 1; of disks, temperatures, the clock and of processes
     10."""
@@ -188,7 +188,7 @@ class GpioBlock(SettingsBlock):
     """Seconds between two readings."""
 
 
-class _RegisterBlock(SettingsBlock):
+class RegisterBlock(SettingsBlock):
     """A whole number in the registers of a device, with scale and offset."""
 
     size_bytes: Annotated[int, Field(ge=1, le=4)] = 2
@@ -216,7 +216,7 @@ class _RegisterBlock(SettingsBlock):
         return self
 
 
-class I2cBlock(_RegisterBlock):
+class I2cBlock(RegisterBlock):
     """A register of a device on an I2C bus; requires `pip install 'pilothouse[i2c]'`.
 
     For a device whose driver is in the kernel, read its file instead.
@@ -230,7 +230,7 @@ class I2cBlock(_RegisterBlock):
     """Number of the register."""
 
 
-class SpiBlock(_RegisterBlock):
+class SpiBlock(RegisterBlock):
     """A number from a device on an SPI bus; requires `pip install 'pilothouse[spi]'`."""
 
     bus: Annotated[int, Field(ge=0, le=255)]

@@ -30,6 +30,7 @@ from domain.inputs import (
     NodeReport,
     Restored,
     ServiceStall,
+    SourceFault,
     StorageStatus,
     WriteRecord,
 )
@@ -223,6 +224,10 @@ def a_full_disk() -> list[RecordedEvent]:
     return told(full, StorageStatus(available=True))
 
 
+def a_lost_sensor() -> list[RecordedEvent]:
+    return told(SourceFault("temperature", "file /sys/class/thermal", "No such file"))
+
+
 def a_restart() -> list[RecordedEvent]:
     kept = (
         KeptTarget(PartName("gripper"), StateAndMode(LifecycleState.ACTIVE), 1),
@@ -306,6 +311,7 @@ def test_events_that_happen_are_listed_with_what_they_carry() -> None:
         a_stall,
         a_restart,
         a_full_disk,
+        a_lost_sensor,
         a_lost_arm,
         a_wait,
         a_step_left_out,

@@ -50,6 +50,7 @@ from domain.events.health import (
     ErrorAcknowledged,
     ErrorCleared,
     ErrorRaised,
+    SignalNotRead,
     SignalPending,
     SignalRead,
     SignalSettled,
@@ -252,6 +253,9 @@ EVENTS: Mapping[str, tuple[object, ...]] = {
         SignalRead(source="ros", values={"battery_level": 12.5, "estop": True, "gear": "R"}),
     ),
     "signal.settled": (SignalSettled(signal="battery_level", error="LOW_BATTERY", stale=True),),
+    "signal.not_read": (
+        SignalNotRead(signal="disk", source="os disk /", reason='Größe ≤ 3 — "gripper\\jam"'),
+    ),
     "signal.skewed": (SignalSkewed(signal="battery_level"),),
     "rule.not_applied": (
         RuleNotApplied(

@@ -26,6 +26,7 @@ from domain.inputs import (
     ReportBacklog,
     Restored,
     ServiceStall,
+    SourceFault,
     StorageStatus,
     TaskRequest,
     TimePassed,
@@ -109,6 +110,9 @@ INPUTS: Mapping[str, tuple[object, ...]] = {
                 steering_angle_rad=0.0625,
             )
         ),
+    ),
+    "source_fault": (
+        SourceFault(signal="disk", source="os disk /", reason='Größe ≤ 3 — "gripper\\jam"'),
     ),
     "drive_status": (
         DriveStatus(available=True, reason='Größe ≤ 3 — "gripper\\jam"'),

@@ -180,6 +180,13 @@ OTHERS: Mapping[str, tuple[object, ...]] = {
             since=1764420000123456789,
             message="12.5 % < 20 %",
         ),
+        KeptError(
+            signal="scan_rate",
+            error="SCAN_SLOW",
+            since=1764420000123456789,
+            message="scan rate 3 Hz is below 8 Hz",
+            part=PartName("lidar"),
+        ),
     ),
     "kept_failed_change": (
         KeptFailedChange(

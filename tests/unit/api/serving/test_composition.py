@@ -114,6 +114,38 @@ def test_nothing_set_is_a_robot_file_without_content() -> None:
     assert RobotSettings().mock is None
 
 
+SOURCES = """\
+signals:
+  cpu: {unit: "%", source: {os: {what: cpu_percent}}}
+  battery_level: {source: {file: {path: /sys/class/power_supply/BAT0/capacity, scale: 0.01}}}
+  load: {unit: kg, source: {http: {period_s: 5}}}
+"""
+
+
+def test_the_sources_of_a_robot_file_are_run_and_the_mock_leaves_their_signals_alone(
+    robot: Path,
+) -> None:
+    robot.write_text(SOURCES)
+    supervisor = composed(ServeOptions(robot=robot)).supervisor
+
+    assert [(source.name, source.signals) for source in supervisor.sources] == [
+        ("os", ("cpu",)),
+        ("file /sys/class/power_supply/BAT0/capacity", ("battery_level",)),
+    ]
+    assert supervisor.readings.mock is not None
+    published = {signal.signal for signal in supervisor.readings.mock.view() if signal.publishing}
+    assert published == {"estop", "gps_accuracy", "signal_strength", "temperature"}
+
+
+@pytest.mark.usefixtures("_ros")
+@pytest.mark.parametrize("mocked", [True, False])
+def test_a_robot_in_ros_2_has_its_sources_too(robot: Path, mocked: bool) -> None:
+    robot.write_text("backend: ros2\n" + SOURCES)
+    supervisor = composed(ServeOptions(robot=robot, mock_signals=mocked)).supervisor
+
+    assert len(supervisor.sources) == 2
+
+
 # --- ROS 2 ---------------------------------------------------------------------------------------
 
 

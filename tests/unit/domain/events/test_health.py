@@ -10,6 +10,7 @@ from domain.events.health import (
     ErrorAcknowledged,
     ErrorCleared,
     ErrorRaised,
+    SignalNotRead,
     SignalPending,
     SignalRead,
     SignalSettled,
@@ -30,6 +31,10 @@ IDLE, ERROR = SystemState.IDLE, SystemState.ERROR
         (SystemStateChanged(IDLE, ERROR, (), 0), "ERROR -> IDLE"),
         (SystemStateChanged(ERROR, ERROR, ("ESTOP",), 2), "ERROR: ESTOP"),
         (SignalRead("gps", {"gps_accuracy": 20.0}), "gps_accuracy 20.0 (source gps)"),
+        (
+            SignalNotRead("disk", "os disk /", "no answer within 1 s"),
+            "no reading of disk from os disk /: no answer within 1 s",
+        ),
         (
             SignalPending("gps_accuracy", "GPS_LOST"),
             "gps_accuracy is bad; GPS_LOST follows if it lasts",

@@ -93,7 +93,7 @@ def test_an_acknowledgement_reaches_the_source_of_the_error() -> None:
     assert registry.errors == (DOOR,)
     registry.acknowledge(KEY, 1)
     assert registry.renew().cleared == (KEY,)
-    assert registry.errors == ()
+    assert not registry.errors
 
 
 def test_an_error_that_two_sources_raise_is_on_until_both_are_done() -> None:
@@ -107,7 +107,7 @@ def test_an_error_that_two_sources_raise_is_on_until_both_are_done() -> None:
     back.is_open = False
     registry.touch(1)
     registry.renew()
-    assert registry.errors == ()
+    assert not registry.errors
 
 
 def test_only_sources_that_were_touched_or_are_due_are_looked_at() -> None:

@@ -10,7 +10,14 @@ from domain.events.event import RecordedEvent
 from domain.events.service import TimeWasDue
 from domain.health.health import Health
 from domain.health.signals import Recovery, SignalSettings, default_signals
-from domain.inputs import AcknowledgeRequest, Reading, Readings, Restored, SignalValue
+from domain.inputs import (
+    AcknowledgeRequest,
+    Reading,
+    Readings,
+    Restored,
+    SignalValue,
+    SourceFault,
+)
 from domain.kept import KeptError
 from domain.outbox import Outbox, Outputs
 from domain.restart import Restart
@@ -41,6 +48,10 @@ class Robot:
     def read(self, stamp: int | None = None, /, **values: SignalValue) -> list[RecordedEvent]:
         items = tuple(Reading(name, value, stamp) for name, value in values.items())
         self.health.take_readings(Readings(items, "test"), self.now)
+        return self._taken()
+
+    def fail(self, reason: str) -> list[RecordedEvent]:
+        self.health.take_fault(SourceFault("temperature", "file", reason), self.now)
         return self._taken()
 
     def acknowledge(self, error: str) -> list[RecordedEvent]:
@@ -213,6 +224,15 @@ def test_silence_has_no_cause_but_time(health: Robot) -> None:
     raised = _only(health.pass_time(3), "error.raised")
     assert raised.data["error"] == "STALE_DATA"
     assert health.root(raised) == "time.passed"
+
+
+def test_why_a_source_gives_no_reading_is_told_once_until_it_changes(health: Robot) -> None:
+    told = _only(health.fail("no such file"), "signal.not_read")
+    assert told.data == {"signal": "temperature", "source": "file", "reason": "no such file"}
+    assert health.last.signals == {"temperature"}
+
+    assert health.fail("no such file") == []
+    _only(health.fail("permission denied"), "signal.not_read")
 
 
 def test_a_sender_whose_clock_is_off_is_told_once(health: Robot) -> None:
