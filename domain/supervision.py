@@ -399,8 +399,7 @@ class Supervision:
 
     def error_graph(self) -> ErrorGraph:
         """Return the critical and fatal errors, and the errors that they follow from."""
-        own = {view.key: view.severity for view in self._health.error_views()}
-        return error_graph(self.model, own)
+        return error_graph(self.model, self._health.severities())
 
     @property
     def parts_with_errors(self) -> Mapping[str, int]:

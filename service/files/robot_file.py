@@ -13,6 +13,7 @@ from pydantic import Field, ValidationError, field_validator
 from domain.changes.settings import ChangeSettings
 from domain.errors import InvalidValueError, PilothouseError, UnknownPartError, near_match
 from domain.findings import Finding
+from domain.health.checkpoints import CheckpointSettings
 from domain.health.signals import ESTOP_SIGNAL, SignalSettings
 from domain.navigation import NavigationSettings
 from domain.parts.system_model import SmhModel
@@ -114,6 +115,14 @@ class RobotSettings(SettingsBlock):
             transition_deadline=seconds(self.changes.transition_deadline_s),
             parameters_deadline=seconds(self.changes.parameters_deadline_s),
         )
+
+    def to_checkpoint_settings(self) -> dict[PartName, CheckpointSettings]:
+        """Return what is supervised of the checkpoints of nodes."""
+        return {
+            PartName(name): node.checkpoints.to_domain()
+            for name, node in self.nodes.items()
+            if node.checkpoints is not None
+        }
 
     def to_vehicle_limits(self) -> VehicleLimits:
         """Return the limits of the vehicle."""

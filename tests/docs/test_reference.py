@@ -20,6 +20,7 @@ from domain.actor import Actor
 from domain.changes.admission import ADVISORY
 from domain.events.event import RecordedEvent
 from domain.events.kinds import EVENTS
+from domain.health.checkpoints import CheckpointSettings
 from domain.health.signals import (
     Bound,
     Comparison,
@@ -31,6 +32,7 @@ from domain.health.signals import (
 )
 from domain.inputs import (
     BackendStatus,
+    CheckpointReport,
     DriveStatus,
     Input,
     ModeRequest,
@@ -280,6 +282,18 @@ def a_lost_arm() -> list[RecordedEvent]:
     return robot.events
 
 
+def a_step_left_out() -> list[RecordedEvent]:
+    """A node reports a checkpoint that is not the next one."""
+    order = CheckpointSettings(order={"sense": ("plan",), "plan": ("act",)})
+    core = Supervision(actuation_model(), SupervisionSettings(checkpoints={BASE: order}), 0)
+    inputs = (
+        NodeReport(BASE, LifecycleState.ACTIVE),
+        CheckpointReport(BASE, "sense"),
+        CheckpointReport(BASE, "act"),
+    )
+    return [event for given in inputs for event in core.handle(given, 1).events]
+
+
 def a_wait() -> list[RecordedEvent]:
     """A request waits until the battery is charged."""
     robot = CoreRobot(guarded_model())
@@ -329,6 +343,7 @@ def test_events_that_happen_are_listed_with_what_they_carry() -> None:
         a_mode_with_other_limits,
         a_lost_arm,
         a_wait,
+        a_step_left_out,
         the_examples,
     )
     for event in (event for story in stories for event in story()):

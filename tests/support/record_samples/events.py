@@ -62,6 +62,7 @@ from domain.events.health import (
     SystemStateChanged,
 )
 from domain.events.parts import (
+    CheckpointReached,
     DeviationBegan,
     DeviationEnded,
     NodeReachable,
@@ -266,6 +267,7 @@ EVENTS: Mapping[str, tuple[object, ...]] = {
             reason='Größe ≤ 3 — "gripper\\jam"',
         ),
     ),
+    "checkpoint.reached": (CheckpointReached(node=PartName("left/arm"), checkpoint="cycle"),),
     "part.deviation_ended": (
         DeviationEnded(
             part=PartName("arm"),

@@ -12,6 +12,7 @@ from domain.inputs import (
     BackendStatus,
     CancelRequest,
     CancelTaskRequest,
+    CheckpointReport,
     DriveStatus,
     EmergencyStopRequest,
     ErrorReport,
@@ -61,6 +62,18 @@ INPUTS: Mapping[str, tuple[object, ...]] = {
             parameters=None,
             reachable=None,
             has_lifecycle=None,
+        ),
+    ),
+    "checkpoint_report": (
+        CheckpointReport(
+            node=PartName("left/arm"),
+            checkpoint="cycle",
+            actor=Actor(name="ada", way="http", address="10.0.0.7"),
+        ),
+        CheckpointReport(
+            node=PartName("left/arm"),
+            checkpoint="cycle",
+            actor=Actor(name="", way="", address=""),
         ),
     ),
     "node_answer": (
