@@ -24,9 +24,12 @@ from domain.health.announcing import Announcing
 from domain.health.checkpoint_errors import CheckpointErrors
 from domain.health.checkpoints import CheckpointSettings
 from domain.health.emergency_stop import EmergencyStop
+from domain.health.error_causes import ErrorCauses
 from domain.health.health import Health
 from domain.health.mode_limits import ModeLimits
 from domain.health.part_errors import PartErrors
+from domain.health.propagation import Propagation
+from domain.health.reported_errors import ReportedErrors
 from domain.health.signals import SignalSettings, default_signals
 from domain.inputs import ChangeRequest, Input, TimePassed
 from domain.lifecycle import Transition
@@ -94,32 +97,31 @@ class Supervision:
         self.model = model
         self._now = start
         outbox = self._outbox = Outbox()
-        self._parts = Parts(model, self._outbox)
-        self._health = Health(settings.signals, self._outbox, start)
+        parts = self._parts = Parts(model, outbox)
+        causes = ErrorCauses(model)
+        health = self._health = Health(settings.signals, outbox, start, causes)
         self._emergency_stop = EmergencyStop(self._health, self._outbox)
         self.driving = Driving(
             settings.tasks, settings.vehicle, self._health, self._emergency_stop, outbox, start
         )
         storage = Storage(self._outbox)
         self._robot_state = RobotState(self._health, self.driving, storage, self._outbox)
-        self._part_errors = PartErrors(
-            self._parts, self._health.error_list, outbox, start, settings.checkpoints
+        errors = self._part_errors = PartErrors(
+            parts, health.error_list, outbox, start, settings.checkpoints
         )
         self.facts = RobotFacts(self._parts, self._health, self.driving, self._part_errors.reason)
         """What conditions are evaluated over."""
         self.conditions = WatchedConditions(self.facts)
         """The conditions of the model, kept up to date; read only."""
         guards = Guards(model, self.conditions, start)
-        self._changing = Changing(
-            self._parts, self._health, self._part_errors, settings.changes, self._outbox, guards
-        )
+        self._changing = Changing(parts, health, errors, settings.changes, outbox, guards)
         # Driving stops the vehicle before the state is published and changes continue.
         self._concerns: tuple[Concern, ...] = (
             Restart(self._outbox),
             self._parts,
             self._health,
             self._emergency_stop,
-            ModeLimits(settings.signals, self._parts, self._health, self._outbox),
+            ModeLimits(settings.signals, parts, health, outbox),
             self.driving,
             Standstill(self.driving, self._emergency_stop, self._outbox),
             storage,
@@ -139,10 +141,13 @@ class Supervision:
         """Return what else raises errors of parts, what conditions then say, and who is told."""
         parts, health, errors, outbox = self._parts, self._health, self._part_errors, self._outbox
         announcing = Announcing(health, errors, self.conditions, outbox, start)
+        propagation = Propagation(health.error_list, self.conditions, errors.unheard, outbox, start)
         return (
+            ReportedErrors(self.model, health.error_list, outbox),
             CheckpointErrors(settings.checkpoints, parts, health, errors, outbox),
             # It evaluates all conditions, and so comes last of those that watch some.
             FactChanges(self.conditions, parts, self.driving, outbox),
+            propagation,
             announcing,
         )
 

@@ -74,6 +74,9 @@ ARM = {"part": "manipulator"}
 BATTERY = {"signal": "battery_level"}
 OPERATOR = {"owner": "operator"}
 
+LOW_BATTERY = {"error": "BATTERY_LOW"}
+KNOWN = {"for_s": 600, "reason": "the charger is being mended"}
+
 _MODES_AND_STATES = (
     Asked("GET /systems", "After the start"),
     Asked("GET /nodes", "After the start"),
@@ -178,7 +181,31 @@ _HEALTH = (
     Asked("GET /nodes/{part}/why", "All is well", BASE),
     Asked("GET /systems/{part}/errors", "All is well", ACTUATOR),
     Asked("GET /nodes/{part}/errors", "All is well", BASE),
-    Asked("POST /errors/{error}/acknowledge", "A flat battery", {"error": "BATTERY_LOW"}),
+    Asked("PUT /errors/{error}/shelf", "For ten minutes", LOW_BATTERY, body=KNOWN),
+    Asked("DELETE /errors/{error}/shelf", "Announce it again", LOW_BATTERY),
+    Asked("POST /errors/{error}/acknowledge", "A flat battery", LOW_BATTERY),
+    *(
+        asked
+        for kind, part in (("systems", ACTUATOR), ("nodes", BASE))
+        for asked in (
+            Asked(
+                f"PUT /{kind}/{{part}}/errors/{{error}}/shelf",
+                "For ten minutes",
+                {**part, "error": "DEVIATES"},
+                body=KNOWN,
+            ),
+            Asked(
+                f"DELETE /{kind}/{{part}}/errors/{{error}}/shelf",
+                "Announce it again",
+                {**part, "error": "DEVIATES"},
+            ),
+            Asked(
+                f"POST /{kind}/{{part}}/errors/{{error}}/acknowledge",
+                "It is seen",
+                {**part, "error": "DEVIATES"},
+            ),
+        )
+    ),
     Asked(
         "POST /signals",
         "Two at once, from a named sender",

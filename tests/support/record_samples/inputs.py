@@ -12,6 +12,7 @@ from domain.inputs import (
     CancelTaskRequest,
     DriveStatus,
     EmergencyStopRequest,
+    ErrorReport,
     GoalFeedback,
     GoalResult,
     HoldRequest,
@@ -235,6 +236,17 @@ INPUTS: Mapping[str, tuple[object, ...]] = {
             part=PartName("arm"),
         ),
         UnshelveRequest(error="LOW_BATTERY", actor=Actor(), part=None),
+    ),
+    "error_report": (
+        ErrorReport(
+            part=PartName("left/arm"),
+            error="JAMMED",
+            active=True,
+            message='Größe ≤ 3 — "gripper\\jam"',
+            value=12.5,
+            actor=Actor(name="ada", way="http", address="10.0.0.7"),
+        ),
+        ErrorReport(part=None, error="JAMMED", active=False),
     ),
     "task_request": (
         TaskRequest(

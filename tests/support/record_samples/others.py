@@ -19,6 +19,7 @@ from domain.kept import (
     KeptFailedChange,
     KeptHold,
     KeptProgress,
+    KeptReport,
     KeptShelf,
     KeptTarget,
     KeptTask,
@@ -228,6 +229,15 @@ OTHERS: Mapping[str, tuple[object, ...]] = {
             change=ChangeId("3"),
             message="change 3 failed: 12.5 % < 20 %",
             status="failed",
+            since=1764420000123456789,
+        ),
+    ),
+    "kept_report": (
+        KeptReport(
+            part=PartName("left/arm"),
+            error="JAMMED",
+            message='Größe ≤ 3 — "gripper\\jam"',
+            value=12.5,
             since=1764420000123456789,
         ),
     ),
