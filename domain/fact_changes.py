@@ -1,6 +1,6 @@
 """Notes which facts an input changed, and evaluates the conditions that name them."""
 
-from collections.abc import Hashable, Iterable, Mapping, Set
+from collections.abc import Iterable, Iterator, Mapping, Set
 from typing import TypeVar
 
 from domain.concern import Concern, Takers
@@ -8,12 +8,13 @@ from domain.conditions.tree import Topic, TopicKind
 from domain.conditions.watched import WatchedConditions
 from domain.inputs import NodeReport
 from domain.outbox import Outbox
-from domain.snapshot import ErrorKey
+from domain.parts.parts import Parts
+from domain.snapshot import Actual, ErrorKey
 from domain.state_and_mode import PartName
 from domain.tasks.driving import Driving
 from domain.timebase import Instant
 
-KeyT = TypeVar("KeyT", bound=Hashable)
+_Key = TypeVar("_Key", str, PartName, ErrorKey)
 
 _ROBOT, _TASK, _VEHICLE = map(Topic, (TopicKind.ROBOT, TopicKind.TASK, TopicKind.VEHICLE))
 
@@ -21,11 +22,14 @@ _ROBOT, _TASK, _VEHICLE = map(Topic, (TopicKind.ROBOT, TopicKind.TASK, TopicKind
 class FactChanges(Concern):
     """Touches the topics that changed, and nothing else; without conditions it costs nothing."""
 
-    def __init__(self, watched: WatchedConditions, driving: Driving, outbox: Outbox) -> None:
+    def __init__(
+        self, watched: WatchedConditions, parts: Parts, driving: Driving, outbox: Outbox
+    ) -> None:
         """Follow what changes.
 
         Args:
             watched: All conditions; none is added later.
+            parts: Their states and modes are named by conditions.
             driving: Whose holds are named by conditions.
             outbox: Tells what the current input changed so far.
         """
@@ -36,10 +40,17 @@ class FactChanges(Concern):
         self._is_idle = not topics
         self._signals = _by_name(topics, TopicKind.SIGNAL)
         self._parts = _by_name(topics, TopicKind.PART)
-        self._errors = {
-            ErrorKey(PartName(topic.part) if topic.part else None, topic.name): topic
-            for topic in topics
-            if topic.kind is TopicKind.ERROR
+        self._converging = watched.parts_named_by("converged")
+        self._actuals = parts.inference.actuals
+        self._ancestors = parts.model.ancestors
+        self._told: dict[str, Actual] = {}
+        """Actual state and mode of each named part as they were evaluated last."""
+        self._reported: set[str] = set()
+        """Nodes that reported since the last `settle`, and the systems above them."""
+        errors = [topic for topic in topics if topic.kind is TopicKind.ERROR]
+        self._robot_errors = [topic for topic in errors if not topic.part]
+        self._part_errors = {
+            ErrorKey(PartName(topic.part), topic.name): topic for topic in errors if topic.part
         }
         self._holds = [topic for topic in topics if topic.kind is TopicKind.HOLD]
         self._seen: object = None
@@ -52,17 +63,22 @@ class FactChanges(Concern):
 
     def _take_report(self, report: NodeReport, now: Instant) -> None:
         """Touch a node that reports parameters: they may change nothing else about it."""
-        topic = self._parts.get(report.node) if report.parameters else None
-        if topic is not None:
+        topic = self._parts.get(report.node)
+        if topic is not None and report.parameters:
             self._watched.touch(topic)
+        if self._parts:
+            self._reported.update((report.node, *self._ancestors[report.node]))
 
     def settle(self, now: Instant) -> bool:
         """Evaluate the conditions that name what changed; return whether one has another value."""
         if self._is_idle:
             return False
-        self._touch_named(self._outbox.signals, self._signals)
-        self._touch_named(self._outbox.parts, self._parts)
-        self._touch_named(self._outbox.errors, self._errors)
+        self._touch(_named(self._outbox.signals, self._signals))
+        self._touch_parts()
+        if self._outbox.errors:
+            # Errors of the robot are few. Of its parts, each may have some.
+            self._touch(self._robot_errors)
+            self._touch(_named(self._outbox.errors, self._part_errors))
         if (holds := self._driving.holds) is not self._seen:
             # A pose that is too old sets a hold.
             self._touch((*self._holds, _VEHICLE))
@@ -75,14 +91,33 @@ class FactChanges(Concern):
             self._touch((_VEHICLE,))
         return bool(self._watched.renew(now))
 
-    def _touch_named(self, changed: Set[KeyT], named: Mapping[KeyT, Topic]) -> None:
-        """Touch what is in both; the smaller one may be far smaller."""
-        names = changed if len(changed) < len(named) else named
-        self._touch(named[name] for name in names if name in changed and name in named)
+    def _touch_parts(self) -> None:
+        """Touch the parts about which more changed than their targets.
+
+        A request gives ten thousand of them other targets. A condition cannot name these, but it
+        can name whether a part has converged.
+        """
+        if self._outbox.parts and self._parts:
+            actuals, told = self._actuals, self._told
+            for topic in _named(self._outbox.parts, self._parts):
+                name = PartName(topic.name)
+                is_same = told.get(name) is actuals[name]
+                if not is_same or name in self._reported or name in self._converging:
+                    told[name] = actuals[name]
+                    self._watched.touch(topic)
+        self._reported.clear()
 
     def _touch(self, topics: Iterable[Topic]) -> None:
         for topic in topics:
             self._watched.touch(topic)
+
+
+def _named(changed: Set[_Key], named: Mapping[_Key, Topic]) -> Iterator[Topic]:
+    """Yield what is in both; the smaller one may be far smaller."""
+    if len(changed) < len(named):
+        yield from (named[key] for key in changed if key in named)
+    else:
+        yield from (topic for key, topic in named.items() if key in changed)
 
 
 def _by_name(topics: Iterable[Topic], kind: TopicKind) -> dict[str, Topic]:

@@ -244,6 +244,26 @@ class SignalView:
 
 
 @dataclass(frozen=True, slots=True)
+class MonitorView:
+    """One monitor: what is computed, and which limits are in force."""
+
+    signal: str
+    of: str
+    statistic: str
+    window: Duration | None
+    """How long a reading stays in the window; None: until `size` newer ones have come."""
+    size: int | None
+    filled: float
+    """How much of the window has passed, from 0 to 1."""
+    value: float | None
+    """None: unknown."""
+    limits: Mapping[str, float]
+    """By `above`, `below` and `clear_threshold`."""
+    limits_because: str | None
+    """Which of the limits by mode these are; None: they are the same in all modes."""
+
+
+@dataclass(frozen=True, slots=True)
 class SystemStateView:
     """State of the robot with its reasons; error code and state always match."""
 

@@ -26,6 +26,7 @@ from domain.health.checkpoints import CheckpointSettings
 from domain.health.emergency_stop import EmergencyStop
 from domain.health.error_causes import ErrorCauses
 from domain.health.health import Health
+from domain.health.mode_limits import ModeLimits
 from domain.health.part_errors import PartErrors
 from domain.health.propagation import Propagation
 from domain.health.reported_errors import ReportedErrors
@@ -49,6 +50,7 @@ from domain.snapshot import (
     ErrorKey,
     ErrorView,
     ModeView,
+    MonitorView,
     ParameterView,
     PartView,
     PlanView,
@@ -121,6 +123,7 @@ class Supervision:
             self._parts,
             self._health,
             self._emergency_stop,
+            ModeLimits(settings.signals, self._parts, self._health, self._outbox),
             self.driving,
             Standstill(self.driving, self._emergency_stop, self._outbox),
             storage,
@@ -145,7 +148,7 @@ class Supervision:
             ReportedErrors(self.model, health.error_list, outbox),
             CheckpointErrors(settings.checkpoints, parts, health, errors, outbox),
             # It evaluates all conditions, and so comes last of those that watch some.
-            FactChanges(self.conditions, self.driving, outbox),
+            FactChanges(self.conditions, parts, self.driving, outbox),
             propagation,
             announcing,
         )
@@ -332,6 +335,10 @@ class Supervision:
     def signals(self) -> Mapping[str, SignalView]:
         """Return all signals."""
         return self._health.signals()
+
+    def monitors(self) -> tuple[MonitorView, ...]:
+        """Return the monitors, as of the last input."""
+        return tuple(self._health.monitors(self._now))
 
     def error(self, key: ErrorKey) -> ErrorView:
         """Return one error, as `Outputs.errors` names it."""

@@ -17,7 +17,7 @@ from domain.timebase import Instant
 from service.clock import Clock
 from service.composite import CompositeRobot
 from service.files.model_file import LoadedModel, load_model, with_signals
-from service.files.robot_file import RobotSettings, read_robot_file
+from service.files.robot_file import RobotSettings, read_robot_file, written_out
 from service.files.ros2_block import Ros2Block
 from service.files.text_file import read_text_file
 from service.keeper import NO_STORES, Stores
@@ -98,7 +98,7 @@ class RobotFiles:
     loaded: LoadedModel
     settings: RobotSettings
     text: str
-    """Of the robot file; empty: there is none."""
+    """Of the robot file, with what it includes written out; empty: there is none."""
 
 
 def read_files(options: ServeOptions) -> RobotFiles:
@@ -115,6 +115,7 @@ def read_files(options: ServeOptions) -> RobotFiles:
     if options.robot:
         text = read_text_file(options.robot)
         settings = read_robot_file(text, loaded.model)
+        text = written_out(text)
         loaded = with_signals(loaded, settings.to_signal_settings())
     return RobotFiles(robot_name(settings.name, model), loaded, settings, text)
 

@@ -148,10 +148,8 @@ class ChangeAdmission:
 
     def guard_blockers(self, part: PartName, goal: ChangeGoal) -> list[Blocker]:
         """Return the guards that do not hold, of the requested part first."""
-        guarded = self._guards.of(goal.targets)
-        if not guarded:
-            return []
-        found = islice(self._guards.blockers(guarded, goal.targets), MAX_BLOCKERS)
+        failing = self._guards.failing(goal.targets.keys())
+        found = islice(self._guards.blockers(failing, goal.targets), MAX_BLOCKERS)
         return [replace(blocker, path=self._path_of_guard(part, blocker)) for blocker in found]
 
     def _path_of_guard(self, part: PartName, blocker: Blocker) -> tuple[str, ...]:

@@ -275,7 +275,7 @@ class Changes:
     def _forbidden(self, pursuit: Pursuit) -> str | None:
         """Return which guard keeps a node from its next step; None: none does."""
         change = self._log[pursuit.change]
-        if pursuit.rollback or not change.guarded:
+        if pursuit.rollback or change.unguarded is None:
             return None
         broken = self._guarded.forbids(change, pursuit.node)
         if broken is not None and change.failure is None:

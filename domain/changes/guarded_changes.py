@@ -33,14 +33,14 @@ class GuardedChanges:
         return self._due
 
     def add(self, change: Change, unguarded: Collection[PartName] = ()) -> None:
-        """Judge a change, if it has guards, until it is dropped.
+        """Judge a change, if it may have guards, until it is dropped.
 
         Args:
-            change: Of its parts, those whose target mode has guards are judged.
+            change: Its parts are judged by the guards of their target modes.
             unguarded: Parts of which the guards do not count.
         """
-        change.guarded = frozenset(self._guards.of(change.targets)).difference(unguarded)
-        if change.guarded:
+        if change.targets and not self._guards.are_none:
+            change.unguarded = frozenset(unguarded)
             self._running[change.id], self._revision = change, None
 
     def drop(self, change: Change) -> None:
@@ -57,7 +57,8 @@ class GuardedChanges:
         found: list[tuple[Change, str]] = []
         dues: list[Instant] = []
         for change in self._running.values():
-            parts = sorted(change.guarded)
+            assert change.unguarded is not None
+            parts = sorted(set(self._guards.failing(change.targets.keys())) - change.unguarded)
             blocker, due = self._guards.broken_for_too_long(parts, change.targets, now)
             if blocker is not None:
                 found.append((change, blocker.message))
@@ -69,6 +70,7 @@ class GuardedChanges:
     def forbids(self, change: Change, node: PartName) -> str | None:
         """Return which guard keeps a node from its next step; None: none does."""
         parts = (*reversed(self._model.ancestors[node]), node)
-        guarded = [part for part in parts if part in change.guarded]
+        left_out = change.unguarded or frozenset()
+        guarded = [part for part in parts if part in change.targets and part not in left_out]
         broken = next(self._guards.blockers_of_step(guarded, change.targets), None)
         return None if broken is None else broken.message

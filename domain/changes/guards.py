@@ -1,7 +1,8 @@
 """The guards of modes: what must be true for a part to enter a mode, and to stay in it."""
 
-from collections.abc import Callable, Iterable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping, Set
 from dataclasses import replace
+from itertools import chain
 
 from domain.conditions.condition import Condition
 from domain.conditions.evaluation import Truth
@@ -29,16 +30,49 @@ class Guards:
         """
         self._model = model
         self._watched = watched
-        settings = [each for own in model.mode_settings.values() for each in own.values()]
-        watched.watch((g for each in settings for g in (*each.requires, *each.invariants)), now)
+        self._of_parts = {
+            part: tuple(dict.fromkeys(guard for own in modes.values() for guard in own.guards))
+            for part, modes in model.mode_settings.items()
+        }
+        """The guards of all modes of each part, in the order of the model file."""
+        self._parts_of: dict[str, list[PartName]] = {}
+        """The parts that a guard belongs to, by its text."""
+        for part, guards in self._of_parts.items():
+            for guard in guards:
+                self._parts_of.setdefault(guard.text, []).append(part)
+        self._rank = {part: number for number, part in enumerate(self._of_parts)}
+        watched.watch(chain.from_iterable(self._of_parts.values()), now)
+        self._changed = watched.follow()
+        every = chain.from_iterable(self._of_parts.values())
+        self._failing = {g.text for g in every if watched.truth(g) is not Truth.TRUE}
+        """The guards that are not known to be true."""
+        self._moved: set[PartName] = set()
+        """Parts of which a guard got another value since somebody asked for them."""
 
-    def of(self, targets: Mapping[PartName, StateAndMode]) -> tuple[PartName, ...]:
-        """Return the parts whose target mode has guards, in the order of the model file."""
-        return tuple(
-            part
-            for part in self._model.mode_settings
-            if (target := targets.get(part)) is not None and _guarded(self._settings(part, target))
-        )
+    @property
+    def are_none(self) -> bool:
+        """Tell whether no mode has a guard."""
+        return not self._parts_of
+
+    def failing(self, parts: Set[PartName]) -> list[PartName]:
+        """Return the parts of which a guard, of any mode, is not true; in the order of the file.
+
+        A large robot has many guards, of which most hold most of the time.
+        """
+        self._follow()
+        texts, found = self._failing, parts
+        if len(texts) < len(parts):
+            found = parts & {part for text in texts for part in self._parts_of[text]}
+        else:
+            of_parts = self._of_parts
+            found = {p for p in parts if any(g.text in texts for g in of_parts.get(p, ()))}
+        return sorted(found, key=self._rank.__getitem__)
+
+    def take_moved(self) -> set[PartName]:
+        """Return the parts of which a guard got another value since the last call."""
+        self._follow()
+        moved, self._moved = self._moved, set()
+        return moved
 
     def blockers(
         self, parts: Iterable[PartName], targets: Mapping[PartName, StateAndMode]
@@ -122,6 +156,18 @@ class Guards:
                     return blocker, None
         return None, due
 
+    def _follow(self) -> None:
+        """Take over which guards got another value."""
+        for text, guard in self._changed.items():
+            if text not in self._parts_of:
+                continue
+            self._moved.update(self._parts_of[text])
+            if self._watched.truth(guard) is Truth.TRUE:
+                self._failing.discard(text)
+            else:
+                self._failing.add(text)
+        self._changed.clear()
+
     def _settings(self, part: PartName, target: StateAndMode) -> ModeSettings:
         """Return the settings of the mode that a target enters; of none, the defaults."""
         if target.state is not LifecycleState.ACTIVE:
@@ -167,7 +213,3 @@ class Guards:
 
 
 _UNGUARDED = ModeSettings()
-
-
-def _guarded(settings: ModeSettings) -> bool:
-    return bool(settings.requires or settings.invariants)

@@ -195,8 +195,8 @@ class Change:
     schedule: Schedule = field(default_factory=Schedule)
     durations: Durations = field(default_factory=Durations)
     """Of all changes together."""
-    guarded: frozenset[PartName] = frozenset()
-    """Parts whose target mode has guards."""
+    unguarded: frozenset[PartName] | None = None
+    """Parts of which the guards do not count; None: there are no guards."""
     status: ChangeStatus = ChangeStatus.RUNNING
     reason: str | None = None
     ended_at: Instant | None = None

@@ -2,12 +2,13 @@
 
 from collections.abc import Collection, Iterable
 from dataclasses import dataclass, field, replace
+from itertools import chain
 
 from domain.conditions.condition import Condition
 from domain.conditions.evaluation import Truth, compare, truth_of
 from domain.conditions.explanation import explain
 from domain.conditions.facts import Facts
-from domain.conditions.tree import Comparison, Subject, Topic, Value, comparisons
+from domain.conditions.tree import Comparison, Subject, Topic, TopicKind, Value, comparisons
 from domain.findings import Blocker
 from domain.timebase import Instant
 
@@ -21,8 +22,6 @@ class _Watched:
     since: Instant
     broken_since: Instant | None
     """Since when it is false or unknown; None: it is true."""
-    followers: "list[dict[str, Condition]]" = field(default_factory=list)
-    """Where it is noted that its value changed."""
 
 
 @dataclass(slots=True)
@@ -51,6 +50,8 @@ class WatchedConditions:
         self._by_topic: dict[Topic, dict[Subject, list[_Leaf]]] = {}
         self._touched: dict[Topic, None] = {}
         """In the order in which they were touched."""
+        self._followers: list[dict[str, Condition]] = []
+        """Of each who follows, the conditions whose value changed since it looked last, by text."""
         self.revision = 0
         """Rises whenever a condition gets another value."""
 
@@ -58,6 +59,15 @@ class WatchedConditions:
     def topics(self) -> Collection[Topic]:
         """Return what the conditions name."""
         return self._by_topic.keys()
+
+    def parts_named_by(self, attribute: str) -> frozenset[str]:
+        """Return the parts of which a condition names this attribute."""
+        subjects = chain.from_iterable(self._by_topic.values())
+        return frozenset(
+            subject.topic.name
+            for subject in subjects
+            if subject.topic.kind is TopicKind.PART and subject.attribute == attribute
+        )
 
     def watch(self, conditions: Iterable[Condition], now: Instant) -> None:
         """Add conditions, and evaluate them; those that are watched already stay as they are.
@@ -77,18 +87,14 @@ class WatchedConditions:
             for leaf in leaves.values():
                 leaf.conditions.append(watched)
 
-    def follow(self, conditions: Iterable[Condition], now: Instant) -> dict[str, Condition]:
-        """Add conditions; return where those whose value changed are noted by their text.
+    def follow(self) -> dict[str, Condition]:
+        """Return what will hold each condition whose value changed, by its text.
 
-        Whoever follows them removes them from there. At first, all of them are in it.
+        Whoever follows looks at it, and empties it.
         """
-        noted: dict[str, Condition] = {}
-        for condition in conditions:
-            if condition.text not in noted:
-                self.watch((condition,), now)
-                noted[condition.text] = condition
-                self._watched[condition.text].followers.append(noted)
-        return noted
+        changed: dict[str, Condition] = {}
+        self._followers.append(changed)
+        return changed
 
     def touch(self, topic: Topic) -> None:
         """Note that something about a topic changed."""
@@ -120,8 +126,8 @@ class WatchedConditions:
                 elif watched.broken_since is None:
                     watched.broken_since = now
                 changed.append(watched.condition)
-                for noted in watched.followers:
-                    noted[watched.condition.text] = watched.condition
+        for follower in self._followers:
+            follower.update((condition.text, condition) for condition in changed)
         self.revision += len(changed)
         return tuple(changed)
 

@@ -86,6 +86,25 @@ class SignalSkewed(Event):
         return f"the clock of the sender of {self.signal} differs from ours by more than 1 s"
 
 
+@dataclass(frozen=True, slots=True)
+class SignalLimitsChanged(Event):
+    """Other limits of a signal are in force, since a part is in another mode."""
+
+    kind = "signal.limits_changed"
+
+    signal: str
+    because: str | None
+    """Part and mode, as the robot file says, or `default`; None: no limits are in force."""
+    above: float | None = None
+    below: float | None = None
+
+    def _words(self) -> str:
+        limits = ((word, getattr(self, word)) for word in ("above", "below"))
+        told = [f"{word} {limit:g}" for word, limit in limits if limit is not None]
+        bad = f"{self.signal} is bad {told[0]}" if told else f"no value of {self.signal} is bad"
+        return because(bad, self.because or "none of its limits applies")
+
+
 _TOLD_ALREADY = frozenset({"UNREACHABLE", "CHANGE_FAILED"})
 """Errors of parts that follow at once from an event that a short list shows."""
 

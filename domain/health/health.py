@@ -8,6 +8,7 @@ from domain.concern import Concern, Takers
 from domain.events.health import (
     ErrorCleared,
     ErrorRaised,
+    SignalLimitsChanged,
     SignalNotRead,
     SignalPending,
     SignalRead,
@@ -19,7 +20,13 @@ from domain.findings import Blocker
 from domain.health.error_causes import NO_CAUSES, ErrorCauses
 from domain.health.error_list import ErrorList
 from domain.health.robot_errors import RobotErrors
-from domain.health.signals import DECLARED_BIT, ESTOP, SignalSettings
+from domain.health.signals import (
+    DECLARED_BIT,
+    ESTOP,
+    Comparison,
+    ModeLimit,
+    SignalSettings,
+)
 from domain.health.state_manager import HealthChanges, StateManager
 from domain.inputs import Readings, Restored, SourceFault
 from domain.kept import KeptError
@@ -27,6 +34,7 @@ from domain.outbox import Outbox
 from domain.snapshot import (
     ErrorKey,
     ErrorView,
+    MonitorView,
     SignalView,
     SystemState,
     SystemStateView,
@@ -157,6 +165,22 @@ class Health(Concern):
         """
         self._tell(self._manager.set_emergency_stop(since, now), now)
 
+    def set_limit(self, signal: str, limit: ModeLimit | None, now: Instant) -> None:
+        """Put another limit of a signal in force, since a part is in another mode.
+
+        Args:
+            signal: Of which limits by mode are declared.
+            limit: One of them; None: no value is bad.
+            now: The current time.
+        """
+        bound = None if limit is None else limit.bound
+        threshold = None if bound is None else float(bound.threshold)
+        is_above = bound is not None and bound.comparison is Comparison.ABOVE
+        above, below = (threshold, None) if is_above else (None, threshold)
+        because = None if limit is None else limit.name
+        self._outbox.emit(SignalLimitsChanged(signal, because, above, below))
+        self._tell(self._manager.set_limit(signal, limit, now), now)
+
     def restore(self, restored: Restored, now: Instant) -> None:
         """Raise the errors again that nobody acknowledged, before anything is read."""
         errors = []
@@ -233,6 +257,10 @@ class Health(Concern):
         """Return all signals in the order of declaration; the same object until one changes."""
         return self._manager.signals()
 
+    def monitors(self, now: Instant) -> Iterator[MonitorView]:
+        """Yield the monitors in the order of declaration."""
+        return self._manager.monitors(now)
+
     def system_state(self, task_status: TaskStatus) -> SystemStateView:
         """Return the state of the robot for a given task status."""
         view = self._manager.system_state(task_status)
@@ -267,15 +295,15 @@ class Health(Concern):
         self._robot_errors.follow(changes, now)
         self._outbox.signals |= changes.signals
         for signal in changes.signals:
-            self._keep(self._manager.signal(signal))
+            self._keep(signal)
 
-    def _keep(self, signal: SignalView) -> None:
+    def _keep(self, name: str) -> None:
         """Keep the error of a signal from when it waits for an acknowledgement until it does not.
 
         With what was measured when it began to: later readings are not worth a write each.
         """
-        name, kept = signal.signal, self._kept.get(signal.signal)
-        waits = signal.error if signal.needs_acknowledgement else None
+        state, kept = self._manager.state(name), self._kept.get(name)
+        waits = state.error if state.needs_acknowledgement else None
         key = None if waits is None else self._key(name, waits)
         if key == kept:
             return

@@ -60,7 +60,9 @@ class Propagation(Concern):
             for condition in (own.when, own.unless):
                 if condition is not None:
                     self._users.setdefault(condition.text, []).append(key)
-        self._changed = watched.follow(self._conditions(), start)
+        watched.watch(self._conditions(), start)
+        self._changed = watched.follow()
+        self._changed.update((each.text, each) for each in self._conditions())
         self._heap: list[tuple[Place, ErrorKey]] = []
         self._queued = set[ErrorKey]()
         self._origin: tuple[int, Actor] | None = None
@@ -134,7 +136,7 @@ class Propagation(Concern):
         """Queue the errors whose conditions have other values."""
         if self._changed:
             for text in self._changed:
-                for key in self._users[text]:
+                for key in self._users.get(text, ()):
                     self._push(key)
             self._changed.clear()
 

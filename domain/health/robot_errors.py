@@ -20,7 +20,8 @@ class RobotErrors:
         """The signal whose value raises an error; staleness is of no value."""
         for signal in manager.signals():
             settings = manager.settings(signal)
-            self._signal_of |= {settings.key(bound): signal for bound in settings.bounds}
+            for error in settings.value_errors:
+                self._signal_of[ErrorKey(settings.part, error)] = signal
             for key, _ in settings.can_raise().values():
                 errors.declare(key, settings.severity)
         for key in manager.keys:

@@ -43,6 +43,18 @@ def value_reason(
     return f"{_label(spec)} is {said}, not {good} for {time}"
 
 
+def unknown_reason(settings: SignalSettings, bound: Bound, last: SignalValue) -> str:
+    """Return why an error of a monitor is still active although its value is unknown.
+
+    Args:
+        settings: Settings of the monitor.
+        bound: The bound whose error is active.
+        last: The last value that was known.
+    """
+    was = value_reason(settings, bound, last, 0)
+    return f"{was} as last known; too few readings of it now"
+
+
 def pressed_reason(readings: HeldReadings, spec: SignalSpec) -> str:
     """Return who presses a stop, such as "e-stop is pressed (source api)"."""
     sources = [held.source for held in readings.pressing]

@@ -20,11 +20,20 @@ from domain.errors import (
 from domain.findings import Blocker
 from domain.health.error_registry import ErrorChanges, ErrorRegistry
 from domain.health.held_readings import HeldReadings
-from domain.health.signal_monitor import SignalMonitor
-from domain.health.signals import ESTOP_SIGNAL, STALE_DATA, SignalSettings
+from domain.health.monitor_graph import faults_of_monitors, fed_by, number_of
+from domain.health.signal_monitor import SignalMonitor, SignalState
+from domain.health.signals import ESTOP_SIGNAL, STALE_DATA, ModeLimit, SignalSettings
+from domain.health.window_monitor import WindowMonitor
 from domain.inputs import Reading, Readings, SourceFault
 from domain.kept import KeptError
-from domain.snapshot import ErrorKey, SignalView, SystemState, SystemStateView, TaskStatus
+from domain.snapshot import (
+    ErrorKey,
+    MonitorView,
+    SignalView,
+    SystemState,
+    SystemStateView,
+    TaskStatus,
+)
 from domain.timebase import Instant, to_seconds
 
 
@@ -93,9 +102,10 @@ class _Gathered:
         self.errors.update(changes.explained)
         self.state_changed = True
 
-    def add_view(self, before: SignalView, after: SignalView, settings: SignalSettings) -> None:
+    def add_signal(self, before: SignalState, monitor: SignalMonitor) -> None:
         """Add what became of a signal."""
-        name = after.signal
+        after, settings = monitor.state, monitor.settings
+        name = settings.spec.name
         self.signals.add(name)
         if before.pending_error != after.pending_error:
             if before.pending_error is not None:
@@ -126,15 +136,22 @@ class StateManager:
         """
         declared = tuple(settings)
         _check_declared(declared)
-        self._monitors = {item.spec.name: SignalMonitor(item, start) for item in declared}
+        self._monitors = {item.spec.name: _monitor_of(item, start) for item in declared}
+        self._windows = {
+            name: monitor
+            for name, monitor in self._monitors.items()
+            if isinstance(monitor, WindowMonitor)
+        }
+        self._fed = fed_by(declared)
+        """By signal, the monitors that its readings go to."""
         self._position = {name: position for position, name in enumerate(self._monitors)}
         """By signal, its position in the registry."""
         self._names = tuple(self._monitors)
         self._registry = ErrorRegistry(self._monitors.values())
         self.is_late = False
         """While set, deadlines that passed are not judged: what has arrived is taken in first."""
-        self._views = {name: monitor.view for name, monitor in self._monitors.items()}
-        """As they were told last."""
+        self._told = {name: monitor.state for name, monitor in self._monitors.items()}
+        """As the signals were when they were told last."""
         self._shown: Mapping[str, SignalView] | None = None
         """A copy of the views; None: to be made when somebody asks."""
 
@@ -170,8 +187,21 @@ class StateManager:
         """Process readings that passed `check`."""
         checked = self._checked(readings)
         with self._gathering(now) as gathered:
+            fed: dict[str, None] = {}
             for reading in checked:
-                self._touched(reading.signal).receive(reading, readings.source, now)
+                monitor = self._touched(reading.signal)
+                monitor.receive(reading, readings.source, now)
+                if reading.signal in self._fed:
+                    value = number_of(monitor.settings.spec, reading.value)
+                    self._feed(reading.signal, value, now, fed)
+            for name in fed:
+                self._touched(name).judge(now)
+        return self._build(gathered)
+
+    def set_limit(self, signal: str, limit: ModeLimit | None, now: Instant) -> HealthChanges:
+        """Put another limit of a signal in force, one of its settings; None: none is."""
+        with self._gathering(now) as gathered:
+            self._touched(signal).set_limit(limit, now)
         return self._build(gathered)
 
     def is_new_fault(self, fault: SourceFault) -> bool:
@@ -294,6 +324,10 @@ class StateManager:
         """Return the settings of a declared signal."""
         return self._monitors[name].settings
 
+    def state(self, name: str) -> SignalState:
+        """Return what can change about a declared signal; cheaper than its view."""
+        return self._monitors[name].state
+
     def signal(self, name: str) -> SignalView:
         """Return one signal; the same object until it changes.
 
@@ -305,8 +339,13 @@ class StateManager:
     def signals(self) -> Mapping[str, SignalView]:
         """Return all signals in the order of declaration; the same object until one changes."""
         if self._shown is None:
-            self._shown = MappingProxyType(dict(self._views))
+            views = {name: monitor.view for name, monitor in self._monitors.items()}
+            self._shown = MappingProxyType(views)
         return self._shown
+
+    def monitors(self, now: Instant) -> Iterator[MonitorView]:
+        """Yield the monitors in the order of declaration."""
+        return (monitor.monitor_view(now) for monitor in self._windows.values())
 
     # --- inside ----------------------------------------------------------------------------------
 
@@ -319,9 +358,22 @@ class StateManager:
     def _checked(self, readings: Readings) -> list[Reading]:
         checked = []
         for reading in readings.items:
-            value = self._monitor(reading.signal).settings.spec.checked(reading.value)
+            settings = self._monitor(reading.signal).settings
+            if settings.monitor is not None:
+                words = f"{reading.signal} is computed from {settings.monitor.of}; post that"
+                raise InvalidValueError(words, reading.signal)
+            value = settings.spec.checked(reading.value)
             checked.append(Reading(reading.signal, value, reading.stamp))
         return checked
+
+    def _feed(self, signal: str, value: float, now: Instant, fed: dict[str, None]) -> None:
+        """Hand a value to the monitors of a signal, and theirs to those that they feed."""
+        for name in self._fed[signal]:
+            monitor = self._windows[name]
+            monitor.feed(value, now)
+            fed[name] = None
+            if name in self._fed and (computed := monitor.window.value(now)) is not None:
+                self._feed(name, computed, now, fed)
 
     def _touched(self, name: str) -> SignalMonitor:
         """Return a monitor that is about to change."""
@@ -342,10 +394,10 @@ class StateManager:
         """Gather what became of the signals that were touched; the others are as they were."""
         for position in self._registry.touched():
             name = self._names[position]
-            before, monitor = self._views[name], self._monitors[name]
-            if monitor.view is not before:
-                gathered.add_view(before, monitor.view, monitor.settings)
-                self._views[name] = monitor.view
+            before, monitor = self._told[name], self._monitors[name]
+            if monitor.state is not before:
+                gathered.add_signal(before, monitor)
+                self._told[name] = monitor.state
                 self._shown = None
         changes = self._registry.renew()
         if changes.explained:
@@ -355,17 +407,25 @@ class StateManager:
         return gathered.build(self._registry.order)
 
 
+def _monitor_of(settings: SignalSettings, start: Instant) -> SignalMonitor:
+    if settings.monitor is None:
+        return SignalMonitor(settings, start)
+    return WindowMonitor(settings, settings.monitor, start)
+
+
 def _check_declared(declared: tuple[SignalSettings, ...]) -> None:
     """Reject duplicate names of signals or errors, and a missing e-stop."""
     names = [item.spec.name for item in declared]
     errors = [STALE_DATA]
     for item in declared:
-        errors += (item.key(bound).name for bound in item.bounds)
+        errors += (ErrorKey(item.part, error).name for error in item.value_errors)
         if item.stale_key.error != STALE_DATA:
             errors.append(item.stale_key.name)
     for kind, given in (("signal", names), ("error", errors)):
         twice = [name for name, times in Counter(given).items() if times > 1]
         if twice:
             raise InvalidValueError(f"{kind} {min(twice)} is declared twice", min(twice))
+    for fault in faults_of_monitors(declared):
+        raise InvalidValueError(fault.message, f"{fault.signal}/{fault.key}")
     if ESTOP_SIGNAL not in names:
         raise InvalidValueError(f"signal {ESTOP_SIGNAL} is not declared", ESTOP_SIGNAL)

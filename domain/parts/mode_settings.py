@@ -62,3 +62,8 @@ class ModeSettings:
     fallback: ModeName | None = None
     """The mode that replaces this one while an invariant is broken."""
     transition: TransitionSettings = field(default_factory=TransitionSettings)
+
+    @property
+    def guards(self) -> tuple[Condition, ...]:
+        """Return all guards."""
+        return (*self.requires, *self.invariants)

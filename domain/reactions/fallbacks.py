@@ -75,7 +75,7 @@ class Fallbacks(Concern):
         """When a broken invariant has outlasted its grace."""
         self._due: set[PartName] = set()
         self._revision: int | None = None
-        """That of the guards when they were judged last; None: they have to be."""
+        """That of the guards when they were judged last; None: all parts have to be judged."""
         self._unknown_from: Instant = 0
         """From when on an unknown invariant counts: a restarted service has to hear first."""
         self._was_stopped = False
@@ -130,13 +130,22 @@ class Fallbacks(Concern):
         return self._returns.act(now) or has_moved
 
     def _to_review(self) -> list[PartName]:
-        """Return the parts of which something changed, all if a guard did; outer systems first."""
-        due, self._due = self._due, set()
-        if self._revision != self._guards.revision:
-            self._revision = self._guards.revision
+        """Return the parts of which something changed that may matter; outer systems first.
+
+        That are those with a guard that does not hold, or did not. Of a large robot, only few are:
+        a request, or a guard that many parts have, must not look at all others.
+        """
+        review, self._due = self._due, set()
+        moved, known = self._guards.take_moved(), self._acting.keys() | self._broken.keys()
+        seen, self._revision = self._revision, self._guards.revision
+        if seen is None:
             return list(self._rank)
-        touched = self._rank.keys() & self._outbox.parts
-        return sorted(due | touched, key=self._rank.__getitem__)
+        if seen != self._revision:
+            review |= known
+        touched = self._rank.keys() & (moved | self._outbox.parts)
+        review |= touched & known
+        review.update(self._guards.failing(touched))
+        return sorted(review, key=self._rank.__getitem__)
 
     def _follow_requests(self, parts: Iterable[PartName]) -> bool:
         """Note which displacements have ended; return whether a request ended one."""

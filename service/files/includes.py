@@ -31,8 +31,8 @@ class InvalidIncludeError(InvalidValueError):
 class Merged:
     """A robot file with what it includes."""
 
-    data: Mapping[str, Any]
-    """As plain values."""
+    data: Any
+    """As plain values; `include` is still there."""
     _own: Mapping[str, Any]
     _origins: Mapping[Keys, int]
     """Which item of `include` brought a signal."""
@@ -44,7 +44,7 @@ class Merged:
         return keys if origin is None or _has(self._own, keys) else (INCLUDE, origin)
 
 
-def with_includes(own: Mapping[str, Any]) -> Merged:
+def with_includes(own: object) -> Merged:
     """Return the plain values of a robot file with those of the templates that it includes.
 
     What the file itself says about a signal goes before what a template says.
@@ -53,7 +53,10 @@ def with_includes(own: Mapping[str, Any]) -> Merged:
         InvalidIncludeError: A template or parameter is unknown, one is missing, or two templates
             bring the same signal.
     """
-    merged: dict[str, Any] = {key: value for key, value in own.items() if key != INCLUDE}
+    if not isinstance(own, Mapping):
+        # What is no mapping is told by the validation that follows.
+        return Merged(own, {}, {})
+    merged = dict(own)
     origins: dict[Keys, int] = {}
     for place, name, parameters in _items(own.get(INCLUDE, [])):
         try:
@@ -108,7 +111,6 @@ def _put_below(data: dict[str, Any], keys: tuple[str, ...], settings: Mapping[st
     for key in keys[:-1]:
         below = data.get(key)
         if below is not None and not isinstance(below, Mapping):
-            # What is no mapping is told by the validation that follows.
             return
         data[key] = dict(below or {})
         data = data[key]

@@ -13,64 +13,17 @@ from pydantic import ConfigDict, Field, model_validator
 from domain.health.signals import (
     STALE_DATA,
     Bound,
-    Comparison,
-    Recovery,
-    SignalKind,
     SignalSettings,
-    SignalSpec,
     default_signals,
-    stale_error,
+    signal_name,
 )
-from domain.snapshot import Severity
-from domain.state_and_mode import PartName
 from domain.timebase import Duration, seconds
+from service.files.declared_signal import STALE_BETWEEN, AnySignal, DeclaredSignal
 from service.files.settings_block import Number, Seconds, SettingsBlock, bare_names
 from service.files.source_block import MISSED_PERIODS, SourceBlock
 
 _SignalName: TypeAlias = Annotated[str, Field(pattern=r"^[a-z][a-z0-9_]{0,63}$")]
-_ErrorName: TypeAlias = Annotated[str, Field(pattern=r"^[A-Z][A-Z0-9_]{0,63}$")]
-
-
-_STALE_BETWEEN = "stale_after_s is shorter than the period of the source"
-
-
-class AnySignal(SettingsBlock):
-    """Settings of every signal."""
-
-    stale_after_s: Seconds | None = None
-    """Age in seconds above which a reading is stale; 0 turns staleness off. Default: as set for all
-    signals."""
-    min_on_s: Seconds | None = None
-    """Minimum time in seconds that an error of this signal stays active. Default: 0.2."""
-    recovery: Literal["automatic", "acknowledge"] | None = None
-    """Whether an error clears when its cause is gone, or only after it was acknowledged as well.
-    Default: automatic."""
-    source: SourceBlock | None = None
-    """What the service itself reads the signal from. Default: readings are posted, or come from a
-    topic of ROS 2. Without effect in simulations, which open nothing."""
-
-    @model_validator(mode="after")
-    def _is_not_always_stale(self) -> Self:
-        if self.source is not None and 0 < (self.stale_after_s or 0) < self.source.period_s:
-            raise ValueError(f"{_STALE_BETWEEN}, {self.source.period_s:g} s")
-        return self
-
-    def applied_to(self, settings: SignalSettings) -> SignalSettings:
-        """Return `settings` with the values that are set here.
-
-        Raises:
-            InvalidValueError: A threshold is out of range, or on the wrong side of the other one.
-        """
-        return replace(
-            settings,
-            bounds=tuple(self._bound(bound) for bound in settings.bounds),
-            stale_after=_duration(self.stale_after_s, settings.stale_after),
-            min_on=_duration(self.min_on_s, settings.min_on),
-            recovery=Recovery(self.recovery) if self.recovery else settings.recovery,
-        )
-
-    def _bound(self, bound: Bound) -> Bound:
-        return bound
+_DEFAULT_UNITS = {settings.spec.name: settings.spec.unit for settings in default_signals()}
 
 
 class NumberSignal(AnySignal):
@@ -111,88 +64,6 @@ class StrengthSignal(AnySignal):
         return replace(bound, for_=_duration(own, bound.for_))
 
 
-class DeclaredSignal(AnySignal):
-    """A further numeric signal and its error condition."""
-
-    unit: str = Field(default="", max_length=32)
-    """Unit of its values, for display."""
-    label: str = Field(default="", max_length=64)
-    """Its name in messages. Default: the name of the signal."""
-    minimum: Number | None = None
-    """A reading below this is rejected."""
-    maximum: Number | None = None
-    """A reading above this is rejected."""
-    error: _ErrorName | None = None
-    """Name of its error; requires `above` or `below`."""
-    above: Number | None = None
-    """A value above this is an error."""
-    below: Number | None = None
-    """A value below this is an error."""
-    clear_threshold: Number | None = None
-    """Threshold at which an active error clears. Default: `above` or `below`."""
-    for_s: Seconds = 0.0
-    """Time in seconds after the first bad reading until the error is raised. A good reading, or a
-    stale signal, begins it anew."""
-    part: str | None = None
-    """The system or node whose error it is. Default: the robot's own."""
-    severity: Literal["warning", "urgent", "critical", "fatal"] = "critical"
-    """How bad the error is. Below critical it sets no bit of the error code, so that the robot is
-    not in ERROR; and the signal, once stale, has an error of its own, such as MAP_AGE_STALE."""
-
-    @model_validator(mode="after")
-    def _is_whole(self) -> Self:
-        limits = sum(limit is not None for limit in (self.above, self.below))
-        if limits > 1:
-            raise ValueError("above and below are mutually exclusive")
-        if (self.error is None) != (limits == 0):
-            raise ValueError("error requires above or below, and above and below require error")
-        if limits == 0 and (self.clear_threshold is not None or self.for_s):
-            raise ValueError("clear_threshold and for_s require error")
-        if self.minimum is not None and self.maximum is not None and self.minimum > self.maximum:
-            raise ValueError("minimum is above maximum")
-        return self
-
-    def declared(self, name: str, general: AnySignal) -> SignalSettings:
-        """Return the settings of the signal for the core.
-
-        Args:
-            name: Name of the signal.
-            general: Settings of all signals, for those that are not set here.
-
-        Raises:
-            InvalidValueError: A threshold is outside of minimum and maximum, or on the wrong side.
-        """
-        spec = SignalSpec(
-            name, SignalKind.NUMBER, self.unit, self.label, self.minimum, self.maximum
-        )
-        settings = SignalSettings(
-            spec,
-            tuple(self._bounds()),
-            part=None if self.part is None else PartName(self.part.lstrip("/")),
-            severity=Severity(self.severity),
-        )
-        return self.applied_to(general.applied_to(settings))
-
-    def errors(self, name: str) -> Iterator[str]:
-        """Yield the names of its errors among all errors; not that of stale data.
-
-        Args:
-            name: Name of the signal.
-        """
-        own = [] if self.error is None else [self.error]
-        if not Severity(self.severity).stops_task:
-            own.append(stale_error(name))
-        for error in own:
-            yield error if self.part is None else f"{self.part.lstrip('/')}.{error}"
-
-    def _bounds(self) -> Iterator[Bound]:
-        comparison = Comparison.BELOW if self.above is None else Comparison.ABOVE
-        threshold = self.below if self.above is None else self.above
-        if self.error is not None and threshold is not None:
-            for_ = seconds(self.for_s)
-            yield Bound(self.error, comparison, threshold, self.clear_threshold, for_)
-
-
 class SignalsBlock(SettingsBlock):
     """Settings of the default signals; every other key declares a further signal."""
 
@@ -225,9 +96,31 @@ class SignalsBlock(SettingsBlock):
             for signal, settings in self._default_ones()
         )
         further = (
-            signal.declared(name, self._general(signal)) for name, signal in self.further.items()
+            signal.declared(name, self._general(signal), self._unit_of(name))
+            for name, signal in self.further.items()
         )
         return (*usual, *further)
+
+    def _unit_of(self, name: str) -> str:
+        """Return the unit of a signal; that of a monitor follows from what it is computed from."""
+        way = self._way_to_root(name)
+        unit = _DEFAULT_UNITS.get(way[-1], "")
+        for step in reversed(way):
+            if step in self.further:
+                unit = self.further[step].unit_with(unit)
+        return unit
+
+    def root_of(self, name: str) -> str:
+        """Return the signal whose readings a monitor is computed from, maybe through others."""
+        return self._way_to_root(name)[-1]
+
+    def _way_to_root(self, name: str) -> list[str]:
+        way = [name]
+        while (signal := self.further.get(way[-1])) is not None and signal.of is not None:
+            way.append(signal_name(signal.of))
+            if way[-1] in way[:-1]:
+                break  # In a circle, which is told elsewhere.
+        return way
 
     def _general(self, signal: AnySignal) -> AnySignal:
         """Return the settings of all signals; without any, those that suit the source of one."""
@@ -257,7 +150,7 @@ class SignalsBlock(SettingsBlock):
         for name, source in self.sources.items():
             own = getattr(self, name).stale_after_s
             if own is None and 0 < (self.stale_after_s or 0) < source.period_s:
-                raise ValueError(f"{_STALE_BETWEEN} of {name}, {source.period_s:g} s")
+                raise ValueError(f"{STALE_BETWEEN} of {name}, {source.period_s:g} s")
         return self
 
     @model_validator(mode="after")

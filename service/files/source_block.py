@@ -2,7 +2,7 @@
 
 from typing import Annotated, Literal, Self, TypeAlias
 
-from pydantic import Field, model_validator
+from pydantic import ConfigDict, Field, model_validator
 
 from service.files.settings_block import Number, SettingsBlock
 
@@ -94,7 +94,7 @@ class OsBlock(SettingsBlock):
     is that to the time server. Without a measurement, such as that of the temperature on a virtual
     machine, the signal becomes stale."""
     process: _Name | None = None
-    """Name of processes, as in /proc/PID/comm; what several have is added up."""
+    """Name of processes, as `top` shows it; what several have is added up."""
     cgroup: _Cgroup | None = None
     """Control group (version 2), such as system.slice/ros.service."""
     path: _Path = "/"
@@ -102,7 +102,7 @@ class OsBlock(SettingsBlock):
     interface: _Name | None = None
     """Network interface. Default: all but the loopback interface."""
     sensor: _Name | None = None
-    """Temperature sensor, as /sys/class/hwmon/*/name or its label has it. Default: the hottest."""
+    """Name or label of a temperature sensor, as `sensors` shows it. Default: the hottest one."""
     period_s: _SlowPeriod | None = None
     """Seconds between two readings. Default: 1; of disks, temperatures, the clock and of processes
     10."""
@@ -256,6 +256,8 @@ class HttpBlock(SettingsBlock):
 
 class SourceBlock(SettingsBlock):
     """Where the readings of a signal come from: exactly one of these."""
+
+    model_config = ConfigDict(json_schema_extra={"minProperties": 1, "maxProperties": 1})
 
     os: OsBlock | None = None
     """A quantity of the computer."""

@@ -170,6 +170,7 @@ _HEALTH = (
         body={"value": 30.0, "publishing": True},
         then_s=1,
     ),
+    Asked("GET /monitors", "How fast the battery runs down"),
     Asked("POST /signals/{signal}", "The battery is flat", BATTERY, body={"value": 0.42}),
     Asked("GET /errors", "Those that are on", query={"active": "true"}),
     Asked("GET /analysis", "No error follows from others"),

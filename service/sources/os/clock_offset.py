@@ -31,9 +31,9 @@ def clock_offset_s() -> float:
     return _of_kernel()
 
 
-def _of_chrony(run: Callable[..., "subprocess.CompletedProcess[str]"] = subprocess.run) -> float:
+def _of_chrony() -> float:
     try:
-        done = run(
+        done = subprocess.run(
             (_CHRONYC, "-n", "-c", "tracking"),
             capture_output=True,
             check=False,
@@ -51,7 +51,7 @@ def _of_chrony(run: Callable[..., "subprocess.CompletedProcess[str]"] = subproce
     return abs(float(fields[_OFFSET]))
 
 
-class _Timex(ctypes.Structure):
+class Timex(ctypes.Structure):
     """Source: Linux, adjtimex(2)."""
 
     _fields_ = (  # type: ignore[mutable-override]  # ctypes takes any sequence
@@ -65,24 +65,33 @@ class _Timex(ctypes.Structure):
     )
 
 
-_STA_UNSYNC, _STA_NANO = 0x0040, 0x2000
+STA_UNSYNC, STA_NANO = 0x0040, 0x2000
 
 
 def _of_kernel() -> float:
     """Return the offset that the kernel still has to correct, as a time service told it."""
-    timex = _Timex()
-    try:
-        adjtimex = ctypes.CDLL(None, use_errno=True).adjtimex
-    except AttributeError as error:
-        raise SourceError("no time service can be asked on this system") from error
-    if adjtimex(ctypes.byref(timex)) < 0:
+    timex = Timex()
+    if _adjtimex()(ctypes.byref(timex)) < 0:
         number = ctypes.get_errno()
         raise OSError(number, os.strerror(number), "adjtimex")
-    return _offset_in(timex)
+    return offset_in(timex)
 
 
-def _offset_in(timex: _Timex) -> float:
-    if timex.status & _STA_UNSYNC:
+def _adjtimex() -> Callable[[object], int]:
+    try:
+        found: Callable[[object], int] = ctypes.CDLL(None, use_errno=True).adjtimex
+    except AttributeError as error:
+        raise SourceError("this system does not tell how far its clock is off") from error
+    return found
+
+
+def offset_in(timex: Timex) -> float:
+    """Return the magnitude of the offset that the kernel told, in seconds.
+
+    Raises:
+        SourceError: Nothing synchronises the clock.
+    """
+    if timex.status & STA_UNSYNC:
         raise SourceError(_NOT_SYNCHRONISED)
-    unit = 1e-9 if timex.status & _STA_NANO else 1e-6
+    unit = 1e-9 if timex.status & STA_NANO else 1e-6
     return abs(float(timex.offset)) * unit

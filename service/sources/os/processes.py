@@ -30,7 +30,7 @@ class Processes:
     def reader(self, what: str) -> Callable[[], float | None]:
         """Return what reads a quantity."""
         readers: dict[str, Callable[[], float | None]] = {
-            "processes": lambda: float(len(self._found())),
+            "processes": lambda: float(len(self.found())),
             "cpu_percent": self._cpu_percent,
             "memory_percent": lambda: 100.0 * self._memory() / psutil.virtual_memory().total,
             "memory_bytes": self._memory,
@@ -39,11 +39,11 @@ class Processes:
         }
         return readers[what]
 
-    def _found(self) -> list[psutil.Process]:
+    def found(self) -> list[psutil.Process]:
         """Return the processes, each the same object as before."""
         found = {}
         for pid in psutil.pids():
-            if _comm(pid) == self._name[:_LONGEST_COMM]:
+            if comm_of(pid) == self._name[:_LONGEST_COMM]:
                 with suppress(psutil.NoSuchProcess):
                     known = self._known.get(pid)
                     process = known if known and known.is_running() else psutil.Process(pid)
@@ -58,7 +58,7 @@ class Processes:
         Raises:
             SourceError: There is none: no data, which is not a bad value.
         """
-        found = self._found()
+        found = self.found()
         if not found:
             raise SourceError(f"no process is named {self._name}")
         return found
@@ -96,7 +96,7 @@ def _without_ended(
             raise SourceError(f"process {process.pid} belongs to another user") from error
 
 
-def _comm(pid: int) -> str:
+def comm_of(pid: int) -> str:
     """Return the name of a process, at a tenth of the cost of asking psutil; empty: it ended."""
     try:
         return Path(f"/proc/{pid}/comm").read_text(errors="replace").rstrip("\n")

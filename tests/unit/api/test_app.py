@@ -46,6 +46,7 @@ CONTRACT = {
     "/signals": {"get", "post"},
     "/signals/{signal}": {"get", "post"},
     "/signals/{signal}/history": {"get"},
+    "/monitors": {"get"},
     "/system_state": {"get"},
     "/errors": {"get"},
     "/errors/{error}/acknowledge": {"post"},

@@ -7,14 +7,18 @@ from domain.conditions.evaluation import Truth
 from domain.conditions.watched import WatchedConditions
 from domain.fact_changes import FactChanges
 from domain.inputs import ModeRequest, NodeReport
+from domain.lifecycle import LifecycleState
 from domain.outbox import Outbox
 from domain.parts.mode_settings import ModeSettings
+from domain.parts.parts import Parts
 from domain.parts.system_model import SmhModel
 from domain.simulation.node_settings import Fault
+from domain.snapshot import ErrorKey
+from domain.state_and_mode import StateAndMode
 from tests.support.core_robot import CoreRobot
 from tests.support.good import GOOD
 from tests.support.guards import SetFacts
-from tests.support.models import ACTUATION, BASE, FAST, PERFORMANCE, actuation_model
+from tests.support.models import ACTUATION, ARM, BASE, FAST, PERFORMANCE, actuation_model
 
 GUARDS = (
     "battery_level >= 0.3",
@@ -101,7 +105,38 @@ def test_a_hold_is_followed(robot: CoreRobot) -> None:
 def test_without_conditions_nothing_is_done() -> None:
     watched = WatchedConditions(SetFacts())
     robot = CoreRobot(actuation_model())
-    assert not FactChanges(watched, robot.core.driving, Outbox()).settle(0)
+    parts = Parts(robot.core.model, Outbox())
+    assert not FactChanges(watched, parts, robot.core.driving, Outbox()).settle(0)
+
+
+def test_another_target_touches_only_what_names_convergence() -> None:
+    facts, outbox, robot = SetFacts(), Outbox(), CoreRobot(actuation_model())
+    parts, watched = Parts(robot.core.model, outbox), WatchedConditions(facts)
+    state, there = Condition("drive_base.state == active"), Condition("manipulator.converged")
+    watched.watch([state, there], 0)
+    changes = FactChanges(watched, parts, robot.core.driving, outbox)
+    outbox.parts = {BASE, ARM}
+    changes.settle(0)
+
+    facts.values = {"drive_base": "active", "manipulator": True}
+    parts.ask({BASE: StateAndMode(LifecycleState.INACTIVE)})
+    outbox.parts = {BASE, ARM}
+    changes.settle(1)
+    assert watched.truth(there) is Truth.TRUE
+    assert watched.truth(state) is Truth.UNKNOWN, "its state was not looked at again"
+
+
+def test_an_error_touches_only_what_names_it() -> None:
+    facts, outbox, robot = SetFacts(), Outbox(), CoreRobot(actuation_model())
+    watched = WatchedConditions(facts)
+    base, arm = Condition("drive_base.errors.DEVIATES"), Condition("manipulator.errors.DEVIATES")
+    watched.watch([base, arm], 0)
+    changes = FactChanges(watched, Parts(robot.core.model, outbox), robot.core.driving, outbox)
+    facts.values = {"DEVIATES": True}
+    outbox.errors = {ErrorKey(BASE, "DEVIATES")}
+    changes.settle(0)
+    assert watched.truth(base) is Truth.TRUE
+    assert watched.truth(arm) is Truth.UNKNOWN
 
 
 def test_a_parameter_reaches_its_guard_though_nothing_else_about_the_node_changed() -> None:

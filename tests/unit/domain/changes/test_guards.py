@@ -12,7 +12,7 @@ from domain.parts.system_model import SmhModel
 from domain.state_and_mode import PartName
 from domain.timebase import seconds
 from tests.support.guards import SetFacts
-from tests.support.models import ACTUATION, BASE, FAST, PERFORMANCE, SLOW, active, inactive
+from tests.support.models import ACTUATION, ARM, BASE, FAST, PERFORMANCE, SLOW, active, inactive
 from tests.support.models import actuation_model as plain_model
 
 CHARGED, COOL = Condition("battery_level >= 0.3"), Condition("temperature < 50")
@@ -49,11 +49,34 @@ class Guarded:
         return [(b.code, b.path[0]) for b in self.guards.blockers(parts, TARGETS)]
 
 
-def test_only_parts_whose_target_mode_has_guards_are_guarded() -> None:
-    guards = Guarded().guards
-    assert guards.of(TARGETS) == (ACTUATION, BASE)
-    assert guards.of({ACTUATION: active(PERFORMANCE), BASE: active(SLOW)}) == (ACTUATION,)
-    assert guards.of({ACTUATION: inactive(), BASE: inactive()}) == ()
+def test_only_parts_with_a_guard_that_does_not_hold_have_to_be_looked_at() -> None:
+    robot = Guarded()
+    assert robot.guards.failing({ACTUATION, BASE, ARM}) == []
+    robot.set(5, battery_level=0.2)
+    assert robot.guards.failing({ACTUATION, BASE, ARM}) == [ACTUATION]
+    robot.set(6, temperature=60.0)
+    assert robot.guards.failing({ACTUATION, BASE, ARM}) == [ACTUATION, BASE]
+    assert robot.guards.failing({BASE}) == [BASE]
+    robot.set(7, temperature=20.0)
+    assert robot.guards.failing({ACTUATION, BASE, ARM}) == [ACTUATION]
+
+
+def test_only_guards_of_the_target_mode_count() -> None:
+    robot = Guarded()
+    robot.set(5, temperature=60.0)
+    assert len(list(robot.guards.blockers((BASE,), {BASE: active(FAST)}))) == 1
+    assert not list(robot.guards.blockers((BASE,), {BASE: active(SLOW)}))
+    assert not list(robot.guards.blockers((BASE,), {BASE: inactive()}))
+
+
+def test_whoever_asks_learns_once_which_parts_have_a_guard_that_changed() -> None:
+    robot = Guarded()
+    assert robot.guards.take_moved() == set()
+    robot.set(5, battery_level=0.2)
+    assert robot.guards.take_moved() == {ACTUATION}
+    assert robot.guards.take_moved() == set()
+    robot.set(6, battery_level=0.9, temperature=60.0)
+    assert robot.guards.take_moved() == {ACTUATION, BASE}
 
 
 def test_a_mode_can_be_entered_while_all_its_guards_are_true() -> None:

@@ -41,6 +41,25 @@ def test_a_reading_renews_the_conditions_that_name_it_and_tells_which_changed() 
     assert (watched.since(low), watched.since(other)) == (seconds(3), 0)
 
 
+def test_whoever_follows_learns_what_changed_since_they_looked() -> None:
+    facts = ToldFacts({"battery_level": 0.5})
+    low, high = Condition("battery_level < 0.3"), Condition("battery_level > 0.9")
+    watched = WatchedConditions(facts)
+    watched.watch([low, high], 0)
+    changed = watched.follow()
+
+    facts.observed["battery_level"] = 0.2
+    watched.touch(BATTERY)
+    watched.renew(1)
+    assert changed == {low.text: low}
+
+
+def test_parts_of_which_an_attribute_is_named_are_known() -> None:
+    watched = WatchedConditions(ToldFacts({}))
+    watched.watch([Condition("drive_base.converged or lidar.state == active")], 0)
+    assert watched.parts_named_by("converged") == {"drive_base"}
+
+
 def test_nothing_changes_before_something_is_touched() -> None:
     facts = ToldFacts({"battery_level": 0.5})
     low = Condition("battery_level < 0.3")

@@ -9,7 +9,7 @@ from domain.lifecycle import LifecycleState
 from domain.parts.mode_settings import ModeSettings, TransitionSettings
 from domain.parts.system_model import EVERY_MODE, NodeModel, SmhModel, SystemModel
 from domain.plans.order import Order, order_of
-from domain.state_and_mode import DEFAULT_MODE, PartName, StateAndMode
+from domain.state_and_mode import DEFAULT_MODE, ModeName, PartName, StateAndMode
 
 ACTIVE = StateAndMode(LifecycleState.ACTIVE)
 
@@ -125,6 +125,32 @@ def test_orders_of_systems_that_share_nodes_and_exclude_each_other_do_not_count(
     order = _order(model)
     assert not order.blocked
     assert _stages(model) == {"a": 0, "b": 0}
+
+
+def test_a_part_is_waited_for_past_one_without_nodes_inside_a_system() -> None:
+    model = _model(NESTED, {"robot": {"arm": ["legs"]}, "legs": {"right": ["left"]}})
+    assert _order(model, "right").after(PartName("arm")) == ("left",)
+
+
+def test_a_node_that_only_another_mode_names_is_waited_for() -> None:
+    legs, arm, extra = PartName("legs"), PartName("arm"), PartName("extra")
+    fast = ModeName("FAST")
+    wants = {
+        DEFAULT_MODE: {PartName("left"): ACTIVE},
+        fast: {PartName("left"): ACTIVE, extra: ACTIVE},
+    }
+    model = _model({"robot": ["legs", "arm"], "legs": ["left"]}, {"robot": {"arm": ["legs"]}})
+    model = SmhModel(
+        {**model.nodes, extra: NodeModel(extra, {})},
+        {**model.systems, legs: SystemModel(legs, wants)},
+        model.mode_settings,
+    )
+    nodes = (PartName("left"), extra, arm)
+    order = order_of(
+        model, PartName("robot"), nodes, lambda name: model.settings_of(name, None).transition
+    )
+    assert order.done(PartName("left")) == []
+    assert order.done(extra) == [arm]
 
 
 # --- any order -----------------------------------------------------------------------------------

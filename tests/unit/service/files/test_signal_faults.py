@@ -21,7 +21,7 @@ def test_the_error_of_a_signal_may_be_that_of_a_part_with_a_severity() -> None:
         "signals: {scan_rate: {below: 8, error: SCAN_SLOW, part: /drive_base, severity: urgent}}"
     )
     assert (scan.part, scan.severity) == ("drive_base", Severity.URGENT)
-    assert scan.key(scan.bounds[0]).name == "drive_base.SCAN_SLOW"
+    assert scan.value_errors == ("SCAN_SLOW",)
     assert scan.stale_key == ErrorKey(PartName("drive_base"), "SCAN_RATE_STALE")
 
 

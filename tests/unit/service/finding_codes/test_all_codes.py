@@ -7,6 +7,7 @@ from tests.support.shared import PROJECT
 
 _SOURCES = ("service/files", "domain/conditions", "domain/parts/lint")
 _MODULES = (
+    "domain/health/monitor_graph.py",
     "domain/parts/errors_check.py",
     "domain/parts/reactions_check.py",
     "domain/parts/settings_check.py",
