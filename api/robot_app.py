@@ -24,6 +24,7 @@ from api.http.routes import (
     announcing,
     changes,
     emergency_stop,
+    error_reports,
     errors,
     example_tracks,
     holds,
@@ -61,6 +62,7 @@ _RESOURCES = (
     system_state.router,
     errors.router,
     announcing.router,
+    error_reports.router,
     analysis.router,
     emergency_stop.router,
     mock.router,
@@ -89,7 +91,7 @@ def _resources() -> list[BaseRoute]:
     for resource in _RESOURCES:
         router.include_router(resource)
     for prefix in ("systems", "nodes"):
-        for resource in (announcing.part_router, parts.router):
+        for resource in (announcing.part_router, error_reports.part_router, parts.router):
             router.include_router(resource, prefix=f"/{prefix}", tags=[prefix])
     return router.routes
 

@@ -178,6 +178,24 @@ _HEALTH = (
     Asked("GET /nodes/{part}/why", "All is well", BASE),
     Asked("GET /systems/{part}/errors", "All is well", ACTUATOR),
     Asked("GET /nodes/{part}/errors", "All is well", BASE),
+    Asked(
+        "POST /systems/{part}/errors/{error}",
+        "One that Pilothouse finds itself",
+        ACTUATOR | {"error": "DEVIATES"},
+        body={"active": True, "message": "the arm is elsewhere"},
+    ),
+    Asked(
+        "POST /nodes/{part}/errors/{error}",
+        "One that Pilothouse finds itself",
+        BASE | {"error": "UNREACHABLE"},
+        body={"active": False},
+    ),
+    Asked(
+        "POST /errors/{error}",
+        "One of the robot itself",
+        {"error": "BATTERY_LOW"},
+        body={"active": False},
+    ),
     Asked("POST /errors/{error}/acknowledge", "A flat battery", {"error": "BATTERY_LOW"}),
     Asked(
         "POST /signals",
