@@ -23,6 +23,7 @@ from api.http.routes import (
     analysis,
     announcing,
     changes,
+    checkpoints,
     emergency_stop,
     errors,
     example_tracks,
@@ -33,6 +34,7 @@ from api.http.routes import (
     monitors,
     parameters,
     parts,
+    reactions,
     service_health,
     signals,
     storage,
@@ -53,6 +55,7 @@ _RESOURCES = (
     openapi_router,
     # Before the parts: the path of a part matches everything below /nodes.
     parameters.router,
+    checkpoints.router,
     changes.router,
     model.router,
     inference.router,
@@ -60,6 +63,7 @@ _RESOURCES = (
     monitors.router,
     system_state.router,
     errors.router,
+    reactions.router,
     announcing.router,
     analysis.router,
     emergency_stop.router,
@@ -89,7 +93,7 @@ def _resources() -> list[BaseRoute]:
     for resource in _RESOURCES:
         router.include_router(resource)
     for prefix in ("systems", "nodes"):
-        for resource in (announcing.part_router, parts.router):
+        for resource in (announcing.part_router, reactions.part_router, parts.router):
             router.include_router(resource, prefix=f"/{prefix}", tags=[prefix])
     return router.routes
 

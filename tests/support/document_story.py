@@ -3,6 +3,8 @@
 from dataclasses import dataclass, field
 from typing import Any
 
+from domain.health.checkpoints import CheckpointSettings
+from domain.state_and_mode import PartName
 from tests.support.http_robot import ACTUATION
 
 JSON = "application/json"
@@ -76,6 +78,8 @@ OPERATOR = {"owner": "operator"}
 
 LOW_BATTERY = {"error": "BATTERY_LOW"}
 KNOWN = {"for_s": 600, "reason": "the charger is being mended"}
+CHECKPOINTS = {PartName("drive_base"): CheckpointSettings(order={"sense": ("act",)})}
+"""What the robot of the story supervises of its nodes."""
 
 _MODES_AND_STATES = (
     Asked("GET /systems", "After the start"),
@@ -106,6 +110,11 @@ _MODES_AND_STATES = (
     Asked("GET /nodes/{part}/mode", "In a mode", BASE),
     Asked("GET /nodes/{part}/modes", "What can be entered", BASE),
     Asked("GET /nodes/{part}/parameters", "In a mode", BASE),
+    Asked(
+        "POST /nodes/{part}/checkpoints/{checkpoint}",
+        "In its order",
+        {**BASE, "checkpoint": "sense"},
+    ),
     Asked(
         "PATCH /nodes/{part}/parameters",
         "Set by hand",
