@@ -22,7 +22,7 @@ MAX_CUT_SETS = 10_000
 MAX_LISTED = 100_000
 """Minimal cut sets of all top events together."""
 
-MAX_STEPS = 20_000_000
+MAX_STEPS = 10_000_000
 """Unions and comparisons of sets for all cut sets, and again for those of few events: about a
 second each."""
 
