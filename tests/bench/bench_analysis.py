@@ -28,8 +28,8 @@ def test_cut_sets_of_small_and_large_robots() -> None:
         "analysis",
         "Fault trees",
         f"The minimal cut sets of all errors of a robot: of an example, {ROUNDS} times; of "
-        f"{ROBOTS} random graphs of {ERRORS} errors each, {ERRORS - BASIC} of which follow from any or from "
-        "all of some others; and of an error with 10^10 cut sets.",
+        f"{ROBOTS} random graphs of {ERRORS} errors each, {ERRORS - BASIC} of which follow from "
+        "any or from all of some others; and of an error with 10^10 cut sets.",
         rows,
         asked="below 100 ms for an example, and below 5 s for 200 errors.",
         notes=["`in_part` counts errors with too many cut sets to list all of them."],
