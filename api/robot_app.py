@@ -21,6 +21,7 @@ from api.http.metrics import Metrics
 from api.http.problem_handlers import add_problem_handlers
 from api.http.routes import (
     analysis,
+    announcing,
     changes,
     checkpoints,
     emergency_stop,
@@ -33,6 +34,7 @@ from api.http.routes import (
     monitors,
     parameters,
     parts,
+    reactions,
     service_health,
     signals,
     storage,
@@ -61,6 +63,8 @@ _RESOURCES = (
     monitors.router,
     system_state.router,
     errors.router,
+    reactions.router,
+    announcing.router,
     analysis.router,
     emergency_stop.router,
     mock.router,
@@ -89,7 +93,8 @@ def _resources() -> list[BaseRoute]:
     for resource in _RESOURCES:
         router.include_router(resource)
     for prefix in ("systems", "nodes"):
-        router.include_router(parts.router, prefix=f"/{prefix}", tags=[prefix])
+        for resource in (announcing.part_router, reactions.part_router, parts.router):
+            router.include_router(resource, prefix=f"/{prefix}", tags=[prefix])
     return router.routes
 
 

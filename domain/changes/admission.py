@@ -14,6 +14,7 @@ from domain.errors import BlockedError, IllegalTransitionError
 from domain.findings import Blocker
 from domain.inputs import ChangeRequest, ModeRequest, TransitionRequest
 from domain.lifecycle import LifecycleState, Transition, arrival, is_legal_request
+from domain.parts.claims import Claims
 from domain.parts.node_doubts import IN_DOUBT, UNKNOWN_STATE, UNREACHABLE, doubt_of
 from domain.parts.node_facts import NodeFacts
 from domain.parts.system_model import SmhModel
@@ -30,11 +31,16 @@ class ChangeAdmission:
     """Judges requests by the current facts about the nodes."""
 
     def __init__(
-        self, model: SmhModel, facts: Mapping[PartName, NodeFacts], guards: Guards
+        self,
+        model: SmhModel,
+        facts: Mapping[PartName, NodeFacts],
+        guards: Guards,
+        claims: Claims,
     ) -> None:
         self._model = model
         self._facts = facts
         self._guards = guards
+        self._claims = claims
         self._goals = NodeGoals(model)
 
     def admit(self, request: ChangeRequest, estop: Sequence[Blocker]) -> ChangeGoal:
@@ -142,6 +148,8 @@ class ChangeAdmission:
         doubts = (self._doubt(part, node, goal.nodes[node], resting) for node in doubtful)
         blockers = list(islice(filter(None, doubts), MAX_BLOCKERS))
         blockers = [*self.guard_blockers(part, goal), *blockers]
+        if not resting:
+            blockers = [*self._claims.against(part, goal.targets), *blockers]
         if estop and self.would_activate(goal):
             blockers = [replace(why, path=(part, *why.path)) for why in estop] + blockers
         return tuple(blockers[:MAX_BLOCKERS])

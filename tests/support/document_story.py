@@ -76,6 +76,8 @@ ARM = {"part": "manipulator"}
 BATTERY = {"signal": "battery_level"}
 OPERATOR = {"owner": "operator"}
 
+LOW_BATTERY = {"error": "BATTERY_LOW"}
+KNOWN = {"for_s": 600, "reason": "the charger is being mended"}
 CHECKPOINTS = {PartName("drive_base"): CheckpointSettings(order={"sense": ("act",)})}
 """What the robot of the story supervises of its nodes."""
 
@@ -188,7 +190,31 @@ _HEALTH = (
     Asked("GET /nodes/{part}/why", "All is well", BASE),
     Asked("GET /systems/{part}/errors", "All is well", ACTUATOR),
     Asked("GET /nodes/{part}/errors", "All is well", BASE),
-    Asked("POST /errors/{error}/acknowledge", "A flat battery", {"error": "BATTERY_LOW"}),
+    Asked("PUT /errors/{error}/shelf", "For ten minutes", LOW_BATTERY, body=KNOWN),
+    Asked("DELETE /errors/{error}/shelf", "Announce it again", LOW_BATTERY),
+    Asked("POST /errors/{error}/acknowledge", "A flat battery", LOW_BATTERY),
+    *(
+        asked
+        for kind, part in (("systems", ACTUATOR), ("nodes", BASE))
+        for asked in (
+            Asked(
+                f"PUT /{kind}/{{part}}/errors/{{error}}/shelf",
+                "For ten minutes",
+                {**part, "error": "DEVIATES"},
+                body=KNOWN,
+            ),
+            Asked(
+                f"DELETE /{kind}/{{part}}/errors/{{error}}/shelf",
+                "Announce it again",
+                {**part, "error": "DEVIATES"},
+            ),
+            Asked(
+                f"POST /{kind}/{{part}}/errors/{{error}}/acknowledge",
+                "It is seen",
+                {**part, "error": "DEVIATES"},
+            ),
+        )
+    ),
     Asked(
         "POST /signals",
         "Two at once, from a named sender",

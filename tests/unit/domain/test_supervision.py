@@ -29,6 +29,7 @@ from domain.events.event import RecordedEvent
 from domain.health.signals import Recovery, default_signals
 from domain.identifiers import ChangeId
 from domain.inputs import (
+    MAX_SHELF,
     AcknowledgeRequest,
     BackendStatus,
     CancelRequest,
@@ -44,10 +45,12 @@ from domain.inputs import (
     ParametersRequest,
     Reading,
     Readings,
+    ShelveRequest,
     SignalValue,
     SourceFault,
     TimePassed,
     TransitionRequest,
+    UnshelveRequest,
     VehicleReport,
     WriteRecord,
 )
@@ -115,6 +118,13 @@ REFUSED: list[tuple[Input, type[PilothouseError]]] = [
     (ParametersRequest(BASE, {"max_speed": 1}), InvalidValueError),
     (CancelRequest(ChangeId("c99")), UnknownChangeError),
     (AcknowledgeRequest("NO_SUCH"), UnknownErrorNameError),
+    (AcknowledgeRequest("NO_SUCH", part=BASE), UnknownErrorNameError),
+    (AcknowledgeRequest("DEVIATES", part=GRIPPER), UnknownPartError),
+    (ShelveRequest("NO_SUCH", 1, "noise"), UnknownErrorNameError),
+    (ShelveRequest("ESTOP", 0, "noise"), InvalidValueError),
+    (ShelveRequest("ESTOP", MAX_SHELF + 1, "noise"), InvalidValueError),
+    (ShelveRequest("ESTOP", 1, "  "), InvalidValueError),
+    (UnshelveRequest("NO_SUCH"), UnknownErrorNameError),
 ]
 
 
