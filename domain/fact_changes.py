@@ -62,11 +62,20 @@ class FactChanges(Concern):
 
     def _take_report(self, report: NodeReport, now: Instant) -> None:
         """Touch a node that reports parameters: they may change nothing else about it."""
+        self._watched.may_have_changed = True
         topic = self._parts.get(report.node)
         if topic is not None and report.parameters:
             self._watched.touch(topic)
         if self._parts:
             self._reported.update((report.node, *self._ancestors[report.node]))
+
+    def wake_at(self) -> Instant | None:
+        """Return when time alone changes a fact: the concerns before know."""
+        return None
+
+    def pass_time(self, now: Instant) -> None:
+        """Note that a signal may have become stale."""
+        self._watched.may_have_changed = True
 
     def settle(self, now: Instant) -> bool:
         """Evaluate the conditions that name what changed; return whether one has another value."""

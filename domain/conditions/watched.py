@@ -52,6 +52,8 @@ class WatchedConditions:
         """In the order in which they were touched."""
         self._followers: list[dict[str, Condition]] = []
         """Of each who follows, the conditions whose value changed since it looked last, by text."""
+        self.may_have_changed = False
+        """Whether facts may have changed since the last `renew`."""
         self.revision = 0
         """Rises whenever a condition gets another value."""
 
@@ -106,6 +108,7 @@ class WatchedConditions:
 
         They come in the order in which they were touched, and then in which they were added.
         """
+        self.may_have_changed = False
         doubtful: dict[str, _Watched] = {}
         touched, self._touched = self._touched, {}
         for topic in touched:

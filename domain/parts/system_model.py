@@ -19,6 +19,7 @@ from domain.lifecycle import LifecycleState
 from domain.parameters import Parameters
 from domain.parts.declared_errors import DeclaredError
 from domain.parts.declared_reactions import DeclaredReaction
+from domain.parts.invariant_circles import invariant_circles
 from domain.parts.mode_settings import ModeSettings
 from domain.parts.settings_check import check_settings
 from domain.state_and_mode import DEFAULT_MODE, ModeName, PartName, StateAndMode
@@ -105,7 +106,7 @@ class SmhModel:
     """Every system that a part belongs to, directly or indirectly; children before parents."""
     parents: Mapping[PartName, tuple[PartName, ...]] = field(init=False)
     """The systems that name each part, in the order of the file; what none names is left out."""
-    shared_parts: tuple[PartName, ...] = field(init=False)
+    shared_parts: frozenset[PartName] = field(init=False)
     """The parts that several systems name."""
 
     def __post_init__(self) -> None:
@@ -120,7 +121,7 @@ class SmhModel:
             self, "ancestors", MappingProxyType(_ancestors(self.systems, self.nodes))
         )
         parents = _parents(self.systems.values())
-        shared = tuple(part for part, systems in parents.items() if len(systems) > 1)
+        shared = frozenset(part for part, systems in parents.items() if len(systems) > 1)
         object.__setattr__(self, "parents", MappingProxyType(parents))
         object.__setattr__(self, "shared_parts", shared)
 
@@ -129,6 +130,7 @@ class SmhModel:
         for part, settings in self.mode_settings.items():
             parts = self.systems[part].named_parts if part in self.systems else ()
             findings.extend(check_settings(part, settings, self.modes_of(part), parts))
+        findings.extend(invariant_circles(self.mode_settings, self.errors))
         return findings
 
     @property
