@@ -20,7 +20,10 @@ from api.http.limits import USUAL_LIMITS, ServiceLimits
 from api.http.metrics import Metrics
 from api.http.problem_handlers import add_problem_handlers
 from api.http.routes import (
+    analysis,
+    announcing,
     changes,
+    checkpoints,
     emergency_stop,
     errors,
     example_tracks,
@@ -28,8 +31,10 @@ from api.http.routes import (
     inference,
     mock,
     model,
+    monitors,
     parameters,
     parts,
+    reactions,
     service_health,
     signals,
     storage,
@@ -50,12 +55,17 @@ _RESOURCES = (
     openapi_router,
     # Before the parts: the path of a part matches everything below /nodes.
     parameters.router,
+    checkpoints.router,
     changes.router,
     model.router,
     inference.router,
     signals.router,
+    monitors.router,
     system_state.router,
     errors.router,
+    reactions.router,
+    announcing.router,
+    analysis.router,
     emergency_stop.router,
     mock.router,
     tasks.router,
@@ -83,7 +93,8 @@ def _resources() -> list[BaseRoute]:
     for resource in _RESOURCES:
         router.include_router(resource)
     for prefix in ("systems", "nodes"):
-        router.include_router(parts.router, prefix=f"/{prefix}", tags=[prefix])
+        for resource in (announcing.part_router, reactions.part_router, parts.router):
+            router.include_router(resource, prefix=f"/{prefix}", tags=[prefix])
     return router.routes
 
 

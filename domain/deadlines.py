@@ -9,6 +9,10 @@ from domain.timebase import Instant
 KeyT = TypeVar("KeyT", bound=Hashable)
 
 
+_SPARE = 64
+"""Replaced deadlines that a queue holds at least before it is tidied."""
+
+
 class Deadlines(Generic[KeyT]):
     """At most one deadline per key; finding the next one needs no search."""
 
@@ -17,11 +21,19 @@ class Deadlines(Generic[KeyT]):
         self._heap: list[tuple[Instant, int, KeyT]] = []
         self._count = 0
 
+    def __contains__(self, key: KeyT) -> bool:
+        """Tell whether a key has a deadline."""
+        return key in self._at
+
     def set(self, key: KeyT, at: Instant) -> None:
         """Set the deadline of `key`; it replaces an earlier one."""
         self._count += 1
         self._at[key] = (at, self._count)
         heapq.heappush(self._heap, (at, self._count, key))
+        if len(self._heap) > 2 * len(self._at) + _SPARE:
+            # A deadline that is put off with each reading would fill the memory before it comes.
+            self._heap = [(at, count, key) for key, (at, count) in self._at.items()]
+            heapq.heapify(self._heap)
 
     def clear(self, key: KeyT) -> None:
         """Remove the deadline of `key`, if any."""

@@ -13,6 +13,7 @@ from domain.identifiers import ChangeId, TaskId
 from domain.inputs import ChangeRequest, SignalValue
 from domain.lifecycle import LifecycleState, Transition
 from domain.parameters import ParameterValue
+from domain.reaction_terms import Action, Arm, ReactionState, Until
 from domain.state_and_mode import ModeName, PartName, StateAndMode
 from domain.timebase import Duration, Instant
 from domain.vehicle import DriveCommand, Point, VehicleState
@@ -77,6 +78,8 @@ class EffectiveTarget:
     """Id of the event that recorded why it differs; None: it is the requested one."""
     blockers: tuple[Blocker, ...] = ()
     """Why the requested target is not in force; empty: it is."""
+    reaction: str | None = None
+    """Name of the reaction that set it; None: no reaction did."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -239,6 +242,28 @@ class SignalView:
     needs_acknowledgement: bool
     """`error` ends only after an operator has acknowledged it, and nobody has yet."""
     settings: Mapping[str, Fact]
+    source_fault: str | None = None
+    """Why a source gives no reading; None: none has said so since its last reading."""
+
+
+@dataclass(frozen=True, slots=True)
+class MonitorView:
+    """One monitor: what is computed, and which limits are in force."""
+
+    signal: str
+    of: str
+    statistic: str
+    window: Duration | None
+    """How long a reading stays in the window; None: until `size` newer ones have come."""
+    size: int | None
+    filled: float
+    """How much of the window has passed, from 0 to 1."""
+    value: float | None
+    """None: unknown."""
+    limits: Mapping[str, float]
+    """By `above`, `below` and `clear_threshold`."""
+    limits_because: str | None
+    """Which of the limits by mode these are; None: they are the same in all modes."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -266,6 +291,11 @@ class Severity(StrEnum):
     FATAL = "fatal"
     """It needs hands; the robot is in ERROR."""
 
+    @property
+    def stops_task(self) -> bool:
+        """Tell whether an error of this severity sets a bit, and so the robot is in ERROR."""
+        return self in (Severity.CRITICAL, Severity.FATAL)
+
 
 class ErrorState(StrEnum):
     """State of an error. Source: ISA-18.2, states of an alarm."""
@@ -278,11 +308,16 @@ class ErrorState(StrEnum):
     """Active, and an operator has acknowledged it."""
     LATCHED = "latched"
     """Its cause is gone, and an operator has yet to acknowledge it."""
+    RETURNED = "returned"
+    """It ended by itself, and nobody has acknowledged that it was there; it is not on."""
 
     @property
     def is_on(self) -> bool:
         """Tell whether the error is raised."""
-        return self not in (ErrorState.NORMAL, ErrorState.PENDING)
+        return self in _ARE_ON
+
+
+_ARE_ON = frozenset({ErrorState.ACTIVE, ErrorState.ACKNOWLEDGED, ErrorState.LATCHED})
 
 
 class ErrorKey(NamedTuple):
@@ -296,6 +331,38 @@ class ErrorKey(NamedTuple):
     def name(self) -> str:
         """Return its name among all errors, such as `BATTERY_LOW` or `drive_base.UNREACHABLE`."""
         return self.error if self.part is None else f"{self.part}.{self.error}"
+
+
+@dataclass(frozen=True, slots=True)
+class ShelfView:
+    """An error is shelved: it is not announced for a time."""
+
+    until: Instant
+    reason: str
+    by: str
+
+
+@dataclass(frozen=True, slots=True)
+class ErrorMarks:
+    """What is told about the announcing of an error; it changes no state, bit or reaction."""
+
+    shelf: ShelfView | None = None
+    """None: it is not shelved."""
+    suppressed: bool = False
+    """The model silences it as things are now."""
+    chattering: bool = False
+    """It was raised and ended too often of late."""
+    calming: Duration | None = None
+    """For how long its cause would have to be gone before it clears, to be calm; None: it is
+    calm, or nothing is known of that."""
+
+    @property
+    def is_silenced(self) -> bool:
+        """Tell whether it is shelved or suppressed."""
+        return self.suppressed or self.shelf is not None
+
+
+NO_MARKS = ErrorMarks()
 
 
 @dataclass(frozen=True, slots=True)
@@ -315,6 +382,56 @@ class ErrorView:
     """When it was raised, or when it began to be pending; None: it is normal."""
     count: int
     """How often it was raised, in this run of the service."""
+    caused_by: "tuple[ErrorKey, ...]" = ()
+    """The errors that explain it: those of its causes that are on, or were last."""
+    roots: "tuple[ErrorKey, ...]" = ()
+    """The errors that it goes back to through its causes; empty: it is a root itself."""
+    hint: str = ""
+    """What to do about it; empty: nobody said."""
+
+    ended: Instant | None = None
+    """When its cause was gone; None: it is present, or that is not known."""
+    marks: ErrorMarks = NO_MARKS
+
+    @property
+    def is_root(self) -> bool:
+        """Tell whether no other error explains it."""
+        return not self.roots
+
+    @property
+    def is_open(self) -> bool:
+        """Tell whether an operator may want to see it: it is not normal, or it is shelved."""
+        return self.state is not ErrorState.NORMAL or self.marks.shelf is not None
+
+
+@dataclass(frozen=True, slots=True)
+class ReactionView:
+    """One reaction of a part."""
+
+    reaction: str
+    part: PartName
+    arm: Arm
+    state: ReactionState
+    action: Action
+    target: StateAndMode | None
+    since: Instant | None
+    """Since when it stands so; None: since the start."""
+    blockers: tuple[Blocker, ...]
+    """What calls for it, or what keeps it from acting."""
+    left: int | None
+    """How often it may act before its budget is used up; None: at any time."""
+    when: str
+    """Its condition."""
+    lasts: Duration
+    """How long its condition has to be true."""
+    until: Until
+    waits_for: str
+    """What has to happen next, in words."""
+
+    @property
+    def name(self) -> str:
+        """Return its name among those of all parts, such as `vehicle.LIMP`."""
+        return f"{self.part}.{self.reaction}"
 
 
 @dataclass(frozen=True, slots=True)

@@ -11,15 +11,25 @@ from domain.commands import Drive, NodeCommand
 from domain.inputs import (
     BackendStatus,
     DriveStatus,
+    ErrorReport,
     NodeAnswer,
     NodeReport,
     Readings,
     ReportBacklog,
+    SourceFault,
     VehicleReport,
 )
 
 BackendMessage: TypeAlias = (
-    NodeReport | NodeAnswer | BackendStatus | ReportBacklog | Readings | VehicleReport | DriveStatus
+    NodeReport
+    | NodeAnswer
+    | BackendStatus
+    | ReportBacklog
+    | Readings
+    | SourceFault
+    | ErrorReport
+    | VehicleReport
+    | DriveStatus
 )
 Deliver: TypeAlias = Callable[[BackendMessage], None]
 
@@ -69,7 +79,7 @@ class VehicleBackend(Adapter, Protocol):
 
 
 class SignalSource(Adapter, Protocol):
-    """A source of signal readings; it delivers `Readings`."""
+    """A source of signal readings; it delivers `Readings`, or `SourceFault` if it has none."""
 
 
 class RobotBackend(Adapter, Protocol):

@@ -32,6 +32,7 @@ from service.ports import RobotBackend
 from service.readings import DirectReadings, ReadingInput, Submit
 from service.refused_readings import RefusedReadings
 from service.running import run_forever
+from service.source_status import SourceStatus
 from service.storage.journal import NOTHING_KEPT, Journal, Step, StorageStatus
 from service.storage.trends.sampling import Sampling
 from service.submitter import Submitter
@@ -58,6 +59,7 @@ class Supervisor:
         simulated: Sequence[str] = (),
         events: EventLog | None = None,
         stores: Stores = NO_STORES,
+        sources: Sequence[SourceStatus] = (),
     ) -> None:
         """Prepare; nothing runs yet.
 
@@ -70,6 +72,7 @@ class Supervisor:
             simulated: The simulated pieces of the robot, as in `Frame`.
             events: The event log; None: a new one.
             stores: Keep what must survive a restart, and bring it back.
+            sources: How the sources of its own signals are doing.
         """
         self.core: Supervision = onboard.core
         """Only for reading; inputs go through `submit`."""
@@ -77,6 +80,7 @@ class Supervisor:
         self.started_at = clock.now()
         """Start of this run of the service, and of its epoch."""
         self.simulated = tuple(simulated)
+        self.sources = tuple(sources)
         self.journal, self.trends = stores.journal, stores.trends
         """What keeps what must survive a restart, and the history of signals; None: nothing."""
         self._sampling = _sampling(stores, onboard.core)

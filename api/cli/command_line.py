@@ -13,8 +13,10 @@ from collections.abc import Sequence
 from typing import NoReturn
 
 from api.cli.commands import (
+    analyse,
     change,
     check,
+    errors,
     export,
     monitor,
     profile,
@@ -37,9 +39,11 @@ _COMMANDS = (
     serve.COMMAND,
     monitor.COMMAND,
     check.COMMAND,
+    analyse.COMMAND,
     change.MODE,
     change.STATE,
     why.WHY,
+    errors.ERRORS,
     task.COMMAND,
     simulate.COMMAND,
     profile.COMMAND,
@@ -52,7 +56,9 @@ examples:
   pilothouse serve                        run with the built-in simulated robot
   pilothouse monitor                      watch it in this terminal
   pilothouse check robot.yaml             check a model file
+  pilothouse analyse robot.yaml           find single points of failure
   pilothouse serve robot.yaml --port 9000 supervise it, with simulated nodes
+  pilothouse errors                       list what is wrong, roots first
   pilothouse mode actuation PERFORMANCE   change a mode, and follow the steps
   pilothouse state drive_base deactivate  request a lifecycle transition
   pilothouse task track.csv --preview     preview the waypoints of a task

@@ -62,7 +62,7 @@ async def _ended_task(client: ServiceClient, task: Json, report: "_Report") -> J
     """Follow a task until it ends, and return it; None: the service shows another task.
 
     Raises:
-        ServiceProblemError: The service was restarted, or denied access.
+        ServiceProblemError: The service was restarted and kept nothing, or denied access.
         NoAnswerError: The service cannot be reached any more.
     """
     follower = _Follower(task, report)
@@ -91,8 +91,8 @@ class _Report:
             self._reported = status
             self._say(f"task {task['id']} at {distance_text(task)}: {status}")
 
-    def alarm(self, task: Json, message: str) -> None:
-        """Report that the vehicle should stand and does not; this line stays on a terminal."""
+    def remark(self, task: Json, message: str) -> None:
+        """Report something besides the progress; this line stays on a terminal."""
         self._line.erase()
         self._say(f"task {task['id']}: {message}")
 
@@ -118,6 +118,7 @@ class _Follower:
         self._speed_mps: float | None = None
         self._alarm: str | None = None
         self._epoch: str | None = None
+        self._boot = 0
         self._why_lost = ""
         self._giving_up: asyncio.TimerHandle | None = None
 
@@ -125,7 +126,7 @@ class _Follower:
         """Wait until there is nothing to follow any more.
 
         Raises:
-            ServiceProblemError: The service was restarted.
+            ServiceProblemError: The service was restarted, and kept nothing.
             NoAnswerError: The service cannot be reached any more.
         """
         await self.ended
@@ -136,7 +137,7 @@ class _Follower:
             return
         match message["type"]:
             case "hello":
-                self._check_epoch(message["epoch"])
+                self._check_epoch(message["epoch"], message["boot"])
             case "state":
                 self._keep_following()
                 self._take_state(message)
@@ -149,12 +150,17 @@ class _Follower:
             loop = asyncio.get_running_loop()
             self._giving_up = loop.call_later(_PATIENCE_S, self._give_up)
 
-    def _check_epoch(self, epoch: str) -> None:
-        """End if the service was restarted: the new process may reuse the id of our task."""
-        if self._epoch not in (None, epoch):
+    def _check_epoch(self, epoch: str, boot: int) -> None:
+        """Report a restart of the service; end if it kept nothing, since ids begin again then."""
+        before, self._epoch = self._epoch, epoch
+        is_kept, self._boot = boot > self._boot, boot
+        if before in (None, epoch):
+            return
+        if is_kept:
+            self._report.remark(self._task, "the service was restarted")
+        else:
             problem = {"detail": "the service was restarted"}
             self.ended.set_exception(ServiceProblemError(problem))
-        self._epoch = epoch
 
     def _take_state(self, frame: Json) -> None:
         if "vehicle" in frame:
@@ -175,7 +181,7 @@ class _Follower:
         found = vehicle.get("still_moving")
         before, self._alarm = self._alarm, found and found["message"]
         if self._alarm not in (None, before):
-            self._report.alarm(self._task, self._alarm)
+            self._report.remark(self._task, self._alarm)
 
     def _keep_following(self) -> None:
         if self._giving_up is not None:

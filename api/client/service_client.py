@@ -18,6 +18,7 @@ from api.client.outcomes import (
     token_hint,
 )
 
+_DURABLE = "Pilothouse-Durable"
 _TIMEOUT = httpx.Timeout(10.0, connect=3.0)
 
 
@@ -33,6 +34,7 @@ class ServiceClient:
         """
         self.address = address
         """URL of the service, and the token."""
+        self._is_volatile = False
         self._http = httpx.Client(
             base_url=address.url,
             timeout=_TIMEOUT,
@@ -105,6 +107,7 @@ class ServiceClient:
             raise no_connection(url, error) from error
         except httpx.HTTPError as error:
             raise NoAnswerError(f"no answer from {url}: {error}") from error
+        self._is_volatile |= response.headers.get(_DURABLE) == "false"
         if response.status_code == httpx.codes.NO_CONTENT:
             return {}
         try:
@@ -118,6 +121,19 @@ class ServiceClient:
         if response.is_error:
             raise ServiceProblemError(answer)
         return answer
+
+    def why_forgotten(self) -> str:
+        """Return why a restart of the service would forget what was asked of it.
+
+        Empty: it would not, or the service was told to store nothing.
+
+        Raises:
+            ServiceProblemError: The service denied access.
+            NoAnswerError: The service did not answer.
+        """
+        if not self._is_volatile:
+            return ""
+        return str(self.call("GET", "/storage")["reason"] or "")
 
 
 @contextmanager

@@ -1,6 +1,7 @@
 """Prometheus metrics, read from the supervisor when they are scraped."""
 
-from collections.abc import Iterable, Iterator
+from collections import Counter
+from collections.abc import Iterable, Iterator, Sequence
 from itertools import islice
 
 from prometheus_client import CollectorRegistry, Histogram
@@ -9,9 +10,10 @@ from prometheus_client.metrics_core import Metric
 from prometheus_client.registry import Collector
 
 from api.http.gate.refusals import COUNTED, Refusals
-from domain.snapshot import ChangeStatus, SystemState
+from domain.snapshot import ChangeStatus, Severity, SystemState
 from domain.timebase import to_seconds
 from service.refused_readings import WAYS
+from service.source_status import SourceStatus
 from service.supervisor import Supervisor
 
 _MAX_PARTS = 1_000
@@ -67,6 +69,13 @@ class _RobotCollector(Collector):
             "Number of parts that have an error, by error",
             "error",
             ((error, float(count)) for error, count in core.parts_with_errors.items()),
+        )
+        on = Counter(view.severity for view in core.open_errors().values() if view.state.is_on)
+        yield _gauge(
+            "pilothouse_errors",
+            "Number of errors that are on, of the robot and of its parts, by severity",
+            "severity",
+            ((str(severity), float(on[severity])) for severity in Severity),
         )
         deviating = (name for name, part in core.parts().items() if not part.converged)
         yield _gauge(
@@ -136,6 +145,7 @@ class _ServiceCollector(Collector):
         for way in WAYS:
             refused.add_metric([way], self._supervisor.refused_readings.counts[way])
         yield refused
+        yield from _of_sources(self._supervisor.sources)
         yield from self._storage()
 
     def _storage(self) -> Iterator[Metric]:
@@ -154,6 +164,32 @@ class _ServiceCollector(Collector):
         lost.add_metric(["inputs"], status.lost_inputs)
         lost.add_metric(["events"], status.lost_events)
         yield lost
+
+
+def _of_sources(sources: Sequence[SourceStatus]) -> Iterator[Metric]:
+    read = CounterMetricFamily(
+        "pilothouse_source_reads", "Accepted readings, by source", labels=["source"]
+    )
+    failed = CounterMetricFamily(
+        "pilothouse_source_failures",
+        "Readings that a source could not give, or that were rejected, by source",
+        labels=["source"],
+    )
+    for source in sources:
+        read.add_metric([source.name], source.reads)
+        failed.add_metric([source.name], source.failures)
+    yield read
+    yield failed
+    yield _gauge(
+        "pilothouse_source_duration_seconds",
+        "Time that the last measurement of a source took",
+        "source",
+        (
+            (source.name, to_seconds(source.duration))
+            for source in sources
+            if source.duration is not None
+        ),
+    )
 
 
 class _GateCollector(Collector):

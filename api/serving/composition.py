@@ -13,15 +13,18 @@ from api.http.limits import ServiceLimits
 from api.serving.data_folder import MEMORY, data_folder, robot_name
 from api.simulation.simulation_job import SimulatedParts
 from domain.simulation.mock_signals import MockSignals
+from domain.timebase import Instant
 from service.clock import Clock
 from service.composite import CompositeRobot
 from service.files.model_file import LoadedModel, load_model, with_signals
-from service.files.robot_file import RobotSettings, read_robot_file
+from service.files.robot_file import RobotSettings, read_robot_file, written_out
 from service.files.ros2_block import Ros2Block
 from service.files.text_file import read_text_file
 from service.keeper import NO_STORES, Stores
 from service.onboard_parts import make_onboard
+from service.ports import RobotBackend, SignalSource
 from service.ros.backend.backend import Ros2Backend
+from service.ros.backend.diagnostics import TYPE as DIAGNOSTICS
 from service.ros.gateway import RosGateway
 from service.ros.graph.graph import RosGraph, UnknownTypeError
 from service.ros.interface.interface import RosInterface
@@ -29,6 +32,8 @@ from service.simulation.from_settings import make_simulated_robot
 from service.simulation.mock_source import MockSource
 from service.simulation.remembering import memories_of, memory_in
 from service.simulation.simulated import SimulatedBackend
+from service.source_status import SourceStatus
+from service.sources.from_settings import make_sources
 from service.start_task import submit_start_task
 from service.storage.journal import Boot
 from service.storage.memory import MemoryJournal
@@ -94,7 +99,7 @@ class RobotFiles:
     loaded: LoadedModel
     settings: RobotSettings
     text: str
-    """Of the robot file; empty: there is none."""
+    """Of the robot file, with what it includes written out; empty: there is none."""
 
 
 def read_files(options: ServeOptions) -> RobotFiles:
@@ -111,6 +116,7 @@ def read_files(options: ServeOptions) -> RobotFiles:
     if options.robot:
         text = read_text_file(options.robot)
         settings = read_robot_file(text, loaded.model)
+        text = written_out(text)
         loaded = with_signals(loaded, settings.to_signal_settings())
     return RobotFiles(robot_name(settings.name, model), loaded, settings, text)
 
@@ -183,11 +189,20 @@ def _with_simulated(
     simulated = make_simulated_robot(loaded.model, robot, now, mock=mocked, memory=memory)
     for left in simulated.left_out:
         log.warning("left out: %s", left)
+    _leave_to_sources(robot, simulated.mock, now)
     backend = SimulatedBackend(simulated, clock)
+    whole, status = _with_sources(loaded, robot, clock, backend, (backend,))
     onboard = make_onboard(loaded.model, robot, now)
     stores = replace(stores, memories=memories_of(simulated))
     supervisor = Supervisor(
-        loaded, onboard, clock, backend, backend.readings, simulated.what, stores=stores
+        loaded,
+        onboard,
+        clock,
+        whole,
+        backend.readings,
+        simulated.what,
+        stores=stores,
+        sources=status,
     )
     limits, parts = ServiceLimits.of(robot.limits), SimulatedParts(onboard, simulated)
     return Composition(supervisor, limits, simulated=parts)
@@ -208,16 +223,48 @@ def _with_ros2(
     ros = Ros2Backend(loaded.model, robot, graph, clock)
     onboard = make_onboard(loaded.model, robot, now)
     if mocked:
-        mock = MockSource(MockSignals(now), clock)
-        backend = CompositeRobot(dict.fromkeys(loaded.model.nodes, ros), ros, (ros, mock))
+        signals = MockSignals(now)
+        _leave_to_sources(robot, signals, now)
+        mock = MockSource(signals, clock)
+        backend, status = _with_sources(loaded, robot, clock, ros, (ros, mock))
         supervisor = Supervisor(
-            loaded, onboard, clock, backend, mock.readings, ("signals",), stores=stores
+            loaded,
+            onboard,
+            clock,
+            backend,
+            mock.readings,
+            ("signals",),
+            stores=stores,
+            sources=status,
         )
     else:
-        supervisor = Supervisor(loaded, onboard, clock, ros, stores=stores)
+        backend, status = _with_sources(loaded, robot, clock, ros, (ros,))
+        supervisor = Supervisor(loaded, onboard, clock, backend, stores=stores, sources=status)
     mapped = {block.topic for block in robot.ros2.signals.values()}
     gateway = RosGateway(RosInterface(supervisor), graph, mapped)
     return Composition(supervisor, ServiceLimits.of(robot.limits), gateway)
+
+
+def _with_sources(
+    loaded: LoadedModel,
+    robot: RobotSettings,
+    clock: Clock,
+    backend: SimulatedBackend | Ros2Backend,
+    signals: tuple[SignalSource, ...],
+) -> tuple[RobotBackend, tuple[SourceStatus, ...]]:
+    """Return a backend with the sources of the robot file, and how those are doing."""
+    sources = make_sources(robot, clock)
+    if sources is not None:
+        signals = (*signals, sources)
+    nodes = dict.fromkeys(loaded.model.nodes, backend)
+    return CompositeRobot(nodes, backend, signals), () if sources is None else sources.status
+
+
+def _leave_to_sources(robot: RobotSettings, mock: MockSignals | None, now: Instant) -> None:
+    """Let the mock not publish the signals that have a source: they are real."""
+    for signal in robot.signals.sources:
+        if mock is not None and mock.holds(signal):
+            mock.set_publishing(signal, publishing=False, now=now)
 
 
 def _require_types(graph: RosGraph, topics: Ros2Block) -> None:
@@ -228,8 +275,11 @@ def _require_types(graph: RosGraph, topics: Ros2Block) -> None:
         UnknownFieldError: A type does not have the field for the value of a signal.
     """
     named = [signal.type for signal in topics.signals.values()]
+    named += [statistic.type for statistic in topics.statistics.values()]
     if topics.command is not None:
         named.append(topics.command.type)
+    if topics.diagnostics is not None:
+        named.append(DIAGNOSTICS)
     for type_name in named:
         if not graph.has_type(type_name):
             raise UnknownTypeError(type_name)

@@ -72,6 +72,7 @@ _WARNINGS = {
     "NO_AUTHENTICATION": "Anyone who can reach the service may use it.",
     "NO_DRIVE": "Drive commands do not reach the vehicle, so tasks are held.",
     "NO_POSE": "No current pose of the vehicle, so tasks are held.",
+    "SOURCE_FAILS": "The source of a signal gives no reading, or one that the signal cannot have.",
 }
 
 _INTRODUCTION = """\

@@ -6,7 +6,7 @@ from docs.generate.markdown import code, page, table
 from service.finding_codes.file_codes import ALL_FILES, ROBOT_FILES, WAYPOINT_FILES
 from service.finding_codes.finding_code import FindingCode
 from service.finding_codes.model_codes import MODES, PARTS, RULES, YAML
-from service.finding_codes.settings_codes import CONDITIONS, SETTINGS
+from service.finding_codes.settings_codes import CONDITIONS, ERRORS, REACTIONS, SETTINGS
 
 _INTRODUCTION = """\
 `pilothouse check MODEL`, `POST /model/check` and the start of the service report all errors at
@@ -17,11 +17,14 @@ Pilothouse reads every file that the C++ of micro-ROS system_modes accepts, exce
 the C++ would crash or that it would misread. In the tables, *C++* names the behaviour of that
 implementation."""
 _SETTINGS = """\
-Extensions are keys beside `type`, `parts`, `modes` and `rules` of a part, such as `mode_settings`.
-C++ ignores what they mean."""
+Extensions are keys beside `type`, `parts`, `modes` and `rules` of a part: `mode_settings`, `errors`
+and `reactions`. C++ ignores what they mean."""
+_ERRORS = """\
+The block `errors` of a part has the codes of settings and conditions, and these."""
 _CONDITIONS = """\
-Conditions stand in `requires` and `invariants`. A finding points at the character inside the
-condition, or at its start where it is folded over several lines."""
+Conditions stand in `requires` and `invariants` of modes, and in the `errors` and `reactions` of
+parts. A finding points at the character inside the condition, or at its start where it is folded
+over several lines."""
 _ROBOT_FILES = """\
 Robot files have the codes of YAML, `UNKNOWN_KEY`, `INVALID_VALUE`, `UNKNOWN_SIGNAL` and this one.
 [robot-file.schema.json](robot-file.schema.json) lists all keys."""
@@ -41,6 +44,8 @@ def findings_page() -> str:
         *_section("Modes", "", MODES),
         *_section("Rules", "", RULES),
         *_section("Settings of modes, and other extensions", _SETTINGS, SETTINGS),
+        *_section("Errors of parts", _ERRORS, ERRORS),
+        *_section("Reactions", "", REACTIONS),
         *_section("Conditions", _CONDITIONS, CONDITIONS),
         *_section("Robot files", _ROBOT_FILES, ROBOT_FILES),
         *_section("Waypoint files", _WAYPOINT_FILES, WAYPOINT_FILES),

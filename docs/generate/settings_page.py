@@ -80,7 +80,10 @@ def _rows(
     """Yield a row for each key below a block, its inner blocks written with dots."""
     for key, schema in document.blocks(block):
         name = prefix + (key or _NAME_OF_ANY.get(section, "<name>"))
-        if _is_block(schema):
+        if key == "source" and not prefix.startswith(_NAME_OF_ANY["signals"]):
+            words = f"{joined(schema['description'])} As {code('<other>.source')}."
+            yield code(name), "block", "", "", words
+        elif _is_block(schema):
             yield code(name), "block", "", "", joined(schema.get("description", ""))
             yield from _rows(document, schema, section, f"{name}.", usual)
         else:
@@ -102,6 +105,8 @@ def _type(schema: Schema) -> str:
         return ", ".join(map(code, schema["enum"]))
     if "const" in schema:
         return code(schema["const"])
+    if "anyOf" in schema:
+        return " or ".join(_type(kind) for kind in schema["anyOf"] if kind.get("type") != "null")
     kind = str(schema.get("type", "any")).replace("string", "text")
     limits = [
         f"{sign} {schema[key]:,.12g}"

@@ -14,6 +14,7 @@ from domain.errors import BlockedError, IllegalTransitionError
 from domain.findings import Blocker
 from domain.inputs import ChangeRequest, ModeRequest, TransitionRequest
 from domain.lifecycle import LifecycleState, Transition, arrival, is_legal_request
+from domain.parts.claims import Claims
 from domain.parts.node_doubts import UNKNOWN_STATE, UNREACHABLE, doubt_of
 from domain.parts.node_facts import NodeFacts
 from domain.parts.system_model import SmhModel
@@ -35,6 +36,7 @@ class ChangeAdmission:
         facts: Mapping[PartName, NodeFacts],
         doubtful: Set[PartName],
         guards: Guards,
+        claims: Claims,
     ) -> None:
         """Judge requests from here on.
 
@@ -43,11 +45,13 @@ class ChangeAdmission:
             facts: Facts about all nodes.
             doubtful: Nodes in a state that is unknown, or that they do not leave; kept up to date.
             guards: Of all modes.
+            claims: What reactions keep in force.
         """
         self._model = model
         self._facts = facts
         self._doubtful = doubtful
         self._guards = guards
+        self._claims = claims
         self._goals = NodeGoals(model)
 
     def admit(self, request: ChangeRequest, estop: Sequence[Blocker]) -> ChangeGoal:
@@ -157,6 +161,8 @@ class ChangeAdmission:
         doubts = (self._doubt(part, node, goal.nodes[node], resting) for node in doubtful)
         blockers = list(islice(filter(None, doubts), MAX_BLOCKERS))
         blockers = [*self.guard_blockers(part, goal), *blockers]
+        if not resting:
+            blockers = [*self._claims.against(part, goal.targets), *blockers]
         if estop and self.would_activate(goal):
             blockers = [replace(why, path=(part, *why.path)) for why in estop] + blockers
         return tuple(blockers[:MAX_BLOCKERS])

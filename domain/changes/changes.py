@@ -121,7 +121,8 @@ class Changes:
     def restore(self, restored: Restored, now: Instant) -> None:
         """Set the targets that were kept, and end the changes that the restart interrupted."""
         self._log.count_from(restored.next_change)
-        self._parts.ask(self._kept_targets.restore(restored.kept))
+        for targets in self._kept_targets.restore(restored.kept):
+            self._parts.ask(targets)
         for change in ended_by_restart(restored.kept, now):
             self._log.add(change)
             self._outbox.forget(KeptChange, change.id)

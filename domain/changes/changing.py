@@ -65,7 +65,7 @@ class Changing(Concern):
         self._outbox = outbox
         self._guards = guards
         self._admission = ChangeAdmission(
-            parts.model, parts.facts, parts.inference.doubtful, guards
+            parts.model, parts.facts, parts.inference.doubtful, guards, parts.claims
         )
         self._changes = Changes(parts, settings, outbox, health, guards, part_errors)
         self._whys = Whys(parts, self._admission, health)

@@ -96,18 +96,19 @@ def terms_of(subject: Subject, vocabulary: Vocabulary) -> Terms | Fault:
         terms = vocabulary.parts.get(part or name)
         if terms is None:
             return _unknown(subject, "part", part or name, tuple(vocabulary.parts))
-        return _terms_of_part(subject, terms)
+        return _terms_of_part(subject, terms, vocabulary.is_complete)
     if kind is TopicKind.VEHICLE:
         return _NUMBER
     return _FIXED[kind, subject.attribute]
 
 
-def _terms_of_part(subject: Subject, part: PartTerms) -> Terms | Fault:
+def _terms_of_part(subject: Subject, part: PartTerms, is_complete: bool) -> Terms | Fault:
     kind, name, owner = subject.topic
     if kind is TopicKind.ERROR:
         if name in part.errors:
             return _BOOLEAN
-        return _unknown(subject, f"error of {owner}", name, part.errors)
+        # That of a signal of the robot file may be an error of a part.
+        return _unknown(subject, f"error of {owner}", name, part.errors, is_complete)
     if subject.attribute == "mode":
         if part.modes:
             return Terms(Kind.WORD, words=part.modes, code="UNKNOWN_MODE")

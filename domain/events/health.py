@@ -27,6 +27,22 @@ class SignalRead(Event):
 
 
 @dataclass(frozen=True, slots=True)
+class SignalNotRead(Event):
+    """A source gives no reading of a signal, which becomes stale unless another one does."""
+
+    kind = "signal.not_read"
+    is_input = True
+    is_notable = False
+
+    signal: str
+    source: str
+    reason: str
+
+    def _words(self) -> str:
+        return because(f"no reading of {self.signal} from {self.source}", self.reason)
+
+
+@dataclass(frozen=True, slots=True)
 class SignalPending(Event):
     """A signal is bad; an error follows unless it recovers in time."""
 
@@ -70,6 +86,26 @@ class SignalSkewed(Event):
         return f"the clock of the sender of {self.signal} differs from ours by more than 1 s"
 
 
+@dataclass(frozen=True, slots=True)
+class SignalLimitsChanged(Event):
+    """Other limits of a signal are in force, since a part is in another mode."""
+
+    kind = "signal.limits_changed"
+    is_notable = False
+
+    signal: str
+    because: str | None
+    """Part and mode, as the robot file says, or `default`; None: no limits are in force."""
+    above: float | None = None
+    below: float | None = None
+
+    def _words(self) -> str:
+        limits = ((word, getattr(self, word)) for word in ("above", "below"))
+        told = [f"{word} {limit:g}" for word, limit in limits if limit is not None]
+        bad = f"{self.signal} is bad {told[0]}" if told else f"no value of {self.signal} is bad"
+        return because(bad, self.because or "none of its limits applies")
+
+
 _TOLD_ALREADY = frozenset({"UNREACHABLE", "CHANGE_FAILED"})
 """Errors of parts that follow at once from an event that a short list shows."""
 
@@ -86,14 +122,16 @@ class ErrorRaised(Event):
     threshold: Fact
     part: PartName | None = None
     """None: the robot's own."""
+    root_cause: bool = True
+    """No other error explains it."""
 
     def _words(self) -> str:
         return f"{ErrorKey(self.part, self.error).name}: {self.message}"
 
     @property
     def notable(self) -> bool:
-        """Tell whether no other event of a short list says the same."""
-        return self.part is None or self.error not in _TOLD_ALREADY
+        """Tell whether no other event of a short list says the same, or explains it."""
+        return self.part is None or (self.root_cause and self.error not in _TOLD_ALREADY)
 
 
 @dataclass(frozen=True, slots=True)
@@ -105,6 +143,8 @@ class ErrorCleared(Event):
     error: str
     part: PartName | None = None
     """As in `error.raised`."""
+    root_cause: bool = True
+    """No other error explained it."""
 
     def _words(self) -> str:
         return f"{ErrorKey(self.part, self.error).name} cleared"
@@ -112,7 +152,44 @@ class ErrorCleared(Event):
     @property
     def notable(self) -> bool:
         """As of `error.raised`."""
-        return self.part is None or self.error not in _TOLD_ALREADY
+        return self.part is None or (self.root_cause and self.error not in _TOLD_ALREADY)
+
+
+@dataclass(frozen=True, slots=True)
+class ErrorReported(Event):
+    """Somebody reports an error of a part, or that it is over."""
+
+    kind = "error.reported"
+    is_input = True
+
+    part: PartName
+    error: str
+    active: bool
+    message: str
+    value: Fact
+
+    def _words(self) -> str:
+        name = ErrorKey(self.part, self.error).name
+        return because(f"{name} reported", self.message) if self.active else f"{name} reported over"
+
+
+@dataclass(frozen=True, slots=True)
+class PropagationNotSeen(Event):
+    """An error should have led to another one by now, and did not: a detection may be broken."""
+
+    kind = "propagation.not_seen"
+
+    error: str
+    part: PartName
+    cause_error: str
+    cause_part: PartName | None
+    """None: it is an error of the robot itself."""
+    within_s: float
+
+    def _words(self) -> str:
+        cause = ErrorKey(self.cause_part, self.cause_error).name
+        name = ErrorKey(self.part, self.error).name
+        return f"{cause} has been on for {self.within_s:g} s without {name}"
 
 
 @dataclass(frozen=True, slots=True)

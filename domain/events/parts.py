@@ -33,6 +33,21 @@ class NodeReported(Event):
 
 
 @dataclass(frozen=True, slots=True)
+class CheckpointReached(Event):
+    """A node reports that its program passes a checkpoint."""
+
+    kind = "checkpoint.reached"
+    is_input = True
+    is_notable = False
+
+    node: PartName
+    checkpoint: str
+
+    def _words(self) -> str:
+        return f"{self.node} reached {self.checkpoint}"
+
+
+@dataclass(frozen=True, slots=True)
 class NodeReachable(Event):
     """A node is reachable, for the first time or again."""
 

@@ -11,6 +11,10 @@ PARAMETERS_DRIFTED = "PARAMETERS_DRIFTED"
 DEVIATES = "DEVIATES"
 CHANGE_FAILED = "CHANGE_FAILED"
 INVARIANT_BROKEN = "INVARIANT_BROKEN"
+CHECKPOINT_TOO_FEW = "CHECKPOINT_TOO_FEW"
+CHECKPOINT_TOO_MANY = "CHECKPOINT_TOO_MANY"
+CHECKPOINT_LATE = "CHECKPOINT_LATE"
+CHECKPOINT_WRONG_ORDER = "CHECKPOINT_WRONG_ORDER"
 
 OF_EVERY_PART: Mapping[str, Severity] = MappingProxyType(
     {
@@ -31,7 +35,25 @@ OF_NODES: Mapping[str, Severity] = MappingProxyType(
 )
 """The errors of nodes, in the order in which they are shown."""
 
+OF_CHECKPOINTS: Mapping[str, Severity] = MappingProxyType(
+    {
+        CHECKPOINT_TOO_FEW: Severity.WARNING,
+        CHECKPOINT_TOO_MANY: Severity.WARNING,
+        CHECKPOINT_LATE: Severity.WARNING,
+        CHECKPOINT_WRONG_ORDER: Severity.WARNING,
+    }
+)
+"""The errors of nodes whose checkpoints are supervised, besides those of every node."""
+
+ALL_OF_NODES: Mapping[str, Severity] = MappingProxyType({**OF_NODES, **OF_CHECKPOINTS})
+"""The errors that any node may have without a word in the model file."""
+
 
 def severity_of(key: ErrorKey) -> Severity:
-    """Return the severity of an error; each of the robot itself sets a bit, and so ERROR."""
-    return Severity.CRITICAL if key.part is None else OF_NODES[key.error]
+    """Return the severity of an error of which nothing else is said.
+
+    Each of the robot itself sets a bit, and so ERROR.
+    """
+    if key.part is None:
+        return Severity.CRITICAL
+    return ALL_OF_NODES.get(key.error, Severity.WARNING)

@@ -2,12 +2,15 @@
 
 from collections.abc import Iterable, Iterator, Mapping
 from contextlib import contextmanager
+from dataclasses import replace
+from itertools import chain
 
 from domain.concern import Concern, Takers
 from domain.events.health import (
-    ErrorAcknowledged,
     ErrorCleared,
     ErrorRaised,
+    SignalLimitsChanged,
+    SignalNotRead,
     SignalPending,
     SignalRead,
     SignalSettled,
@@ -15,16 +18,28 @@ from domain.events.health import (
 )
 from domain.events.service import NotRestored, WriteAnswered
 from domain.findings import Blocker
+from domain.health.error_causes import NO_CAUSES, ErrorCauses
 from domain.health.error_list import ErrorList
 from domain.health.robot_errors import RobotErrors
-from domain.health.signals import ESTOP, SignalSettings
+from domain.health.signals import DECLARED_BIT, ESTOP, Comparison, ModeLimit, SignalSettings
 from domain.health.state_manager import HealthChanges, StateManager
-from domain.inputs import AcknowledgeRequest, Readings, Restored
+from domain.inputs import Readings, Restored, SourceFault
 from domain.kept import KeptError
 from domain.outbox import Outbox
-from domain.snapshot import ErrorKey, ErrorView, SignalView, SystemStateView, TaskStatus
+from domain.snapshot import (
+    ErrorKey,
+    ErrorView,
+    MonitorView,
+    Severity,
+    SignalView,
+    SystemState,
+    SystemStateView,
+    TaskStatus,
+)
+from domain.state_and_mode import PartName
 from domain.timebase import Instant
 
+_ESTOP = ErrorKey(None, ESTOP)
 _TAKEN = 200
 """Status of a request that was accepted, as in HTTP."""
 
@@ -35,18 +50,38 @@ class Health(Concern):
     The cause of an error that time alone raised is the first bad reading, not the clock.
     """
 
-    def __init__(self, signals: Iterable[SignalSettings], outbox: Outbox, start: Instant) -> None:
+    def __init__(
+        self,
+        signals: Iterable[SignalSettings],
+        outbox: Outbox,
+        start: Instant,
+        causes: ErrorCauses = NO_CAUSES,
+    ) -> None:
+        """Begin with no readings.
+
+        Args:
+            signals: Settings of all signals.
+            outbox: Receives events.
+            start: The current time; the times of silent signals count from here.
+            causes: Which errors of parts explain which.
+        """
         self._manager = StateManager(signals, start)
         self._outbox = outbox
-        self.error_list = ErrorList(outbox)
+        self.error_list = ErrorList(outbox, causes)
         """All errors; later concerns note those of parts there."""
         self._robot_errors = RobotErrors(self._manager, self.error_list, start)
-        self._pending: dict[str, int] = {}
+        self._keys_of: dict[PartName | None, list[ErrorKey]] = {}
+        """By part, the errors that signals raise; None: the robot's own."""
+        for key in self._manager.keys:
+            self._keys_of.setdefault(key.part, []).append(key)
+        self._pending: dict[ErrorKey, int] = {}
         """By error, the event that recorded it as pending."""
-        self._kept: dict[str, str] = {}
+        self._kept: dict[str, ErrorKey] = {}
         """By signal, the error that is kept, since it waits for an acknowledgement."""
-        self.decided_by: int | None = None
-        """The newest event that raised or cleared an error; None: there was none yet."""
+        self._decided_by: int | None = None
+        """The newest event that raised or cleared an error of a signal."""
+        self._seen: tuple[tuple[Blocker, ...], tuple[Blocker, ...]] = ((), ())
+        self._all_reasons: tuple[Blocker, ...] = ()
 
     # --- what happens ----------------------------------------------------------------------------
 
@@ -55,7 +90,7 @@ class Health(Concern):
         """Return the handler of each class of input."""
         return {
             Readings: self.take_readings,
-            AcknowledgeRequest: self.acknowledge,
+            SourceFault: self.take_fault,
             Restored: self.restore,
         }
 
@@ -76,6 +111,11 @@ class Health(Concern):
         finally:
             self._manager.is_late = False
 
+    @property
+    def is_late(self) -> bool:
+        """Tell whether the current input was heard late by our own fault."""
+        return self._manager.is_late
+
     def take_readings(self, readings: Readings, now: Instant) -> None:
         """Accept readings, and decide at once; one that releases a stop is in the audit trail.
 
@@ -91,15 +131,26 @@ class Health(Concern):
         for signal in released:
             self._outbox.emit(WriteAnswered("READING", f"/signals/{signal}", _TAKEN, sender))
 
-    def acknowledge(self, request: AcknowledgeRequest, now: Instant) -> None:
-        """Acknowledge an error, so that it clears once its cause is gone.
+    def take_fault(self, fault: SourceFault, now: Instant) -> None:
+        """Take why a source gives no reading of a signal; only what is new is told.
 
         Raises:
-            UnknownErrorNameError: There is no error of this name.
+            UnknownSignalError: The signal is not declared.
         """
-        self._outbox.begin(now, ErrorAcknowledged(request.error), request.actor)
-        self._tell(self._manager.acknowledge(request.error, now), now)
-        self._robot_errors.follow_acknowledgement(request.error, now)
+        is_new = self._manager.is_new_fault(fault)
+        self._outbox.begin(now, SignalNotRead(fault.signal, fault.source, fault.reason))
+        if is_new:
+            self._outbox.record_input()
+            self._tell(self._manager.note_fault(fault, now), now)
+
+    def acknowledge(self, key: ErrorKey, now: Instant) -> None:
+        """Acknowledge an error, so that its signal clears it once its cause is gone.
+
+        For an error that no signal raises, this has no effect.
+        """
+        if key in self._manager.keys:
+            self._tell(self._manager.acknowledge(key, now), now)
+            self._robot_errors.follow_acknowledgement(key, now)
 
     def press_stop(self, since: Instant | None, now: Instant) -> None:
         """Raise ESTOP for the emergency stop, or remove that cause.
@@ -109,6 +160,22 @@ class Health(Concern):
             now: The current time.
         """
         self._tell(self._manager.set_emergency_stop(since, now), now)
+
+    def set_limit(self, signal: str, limit: ModeLimit | None, now: Instant) -> None:
+        """Put another limit of a signal in force, since a part is in another mode.
+
+        Args:
+            signal: Of which limits by mode are declared.
+            limit: One of them; None: no value is bad.
+            now: The current time.
+        """
+        bound = None if limit is None else limit.bound
+        threshold = None if bound is None else float(bound.threshold)
+        is_above = bound is not None and bound.comparison is Comparison.ABOVE
+        above, below = (threshold, None) if is_above else (None, threshold)
+        because = None if limit is None else limit.name
+        self._outbox.emit(SignalLimitsChanged(signal, because, above, below))
+        self._tell(self._manager.set_limit(signal, limit, now), now)
 
     def restore(self, restored: Restored, now: Instant) -> None:
         """Raise the errors again that nobody acknowledged, before anything is read."""
@@ -121,31 +188,56 @@ class Health(Concern):
                 self._outbox.emit(NotRestored(f"the error {kept.error}", reason))
             else:
                 errors.append(kept)
-                self._kept[kept.signal] = kept.error
+                self._kept[kept.signal] = ErrorKey(kept.part, kept.error)
         if errors:
             self._tell(self._manager.restore(errors, now), now)
 
     # --- what can be seen ------------------------------------------------------------------------
 
     @property
+    def decided_by(self) -> int | None:
+        """Return the newest event that raised or cleared an error that sets a bit; None: none."""
+        known = (self._decided_by, self.error_list.severe.decided_by)
+        return max((event for event in known if event is not None), default=None)
+
+    @property
     def errors(self) -> tuple[str, ...]:
-        """Return the active errors, in the order of their bits."""
-        return self._manager.errors
+        """Return the names of the active errors that set a bit: those of signals by their bits."""
+        names = self.error_list.severe.names
+        return (*self._manager.errors, *names) if names else self._manager.errors
 
     @property
     def reasons(self) -> tuple[Blocker, ...]:
-        """Return why errors are active, the most urgent first; the same object until it changes."""
-        return self._manager.reasons
+        """Return why errors that set a bit are active, the most urgent first.
 
-    def error_views(self) -> Iterator[ErrorView]:
-        """Yield the errors of the robot, also those that were never raised, by their bits."""
-        for name in self._manager.names:
-            yield self.error_list.view(ErrorKey(None, name))
+        The same object until it changes.
+        """
+        of_parts = self.error_list.severe.reasons(self.error_list.view)
+        if not of_parts:
+            return self._manager.reasons
+        seen = (self._manager.reasons, of_parts)
+        if seen[0] is not self._seen[0] or seen[1] is not self._seen[1]:
+            self._seen, self._all_reasons = seen, (*seen[0], *seen[1])
+        return self._all_reasons
+
+    def error_views(self, part: PartName | None = None) -> Iterator[ErrorView]:
+        """Yield the errors that signals raise, also those that were never raised, by their bits.
+
+        Args:
+            part: Whose errors; None: the robot's own.
+        """
+        for key in self._keys_of.get(part, ()):
+            yield self.error_list.view(key)
+
+    def severities(self) -> Mapping[ErrorKey, Severity]:
+        """Return the errors that signals raise, with their severities; ESTOP is one of them."""
+        keys = chain.from_iterable(self._keys_of.values())
+        return {key: self.error_list.view(key).severity for key in keys}
 
     @property
     def is_stopped(self) -> bool:
         """Tell whether ESTOP is active: no node may be activated."""
-        return ESTOP in self._manager.errors
+        return self._manager.is_on(_ESTOP)
 
     @property
     def stop_reasons(self) -> tuple[Blocker, ...]:
@@ -166,9 +258,23 @@ class Health(Concern):
         """Return all signals in the order of declaration; the same object until one changes."""
         return self._manager.signals()
 
+    def monitors(self, now: Instant) -> Iterator[MonitorView]:
+        """Yield the monitors in the order of declaration."""
+        return self._manager.monitors(now)
+
     def system_state(self, task_status: TaskStatus) -> SystemStateView:
         """Return the state of the robot for a given task status."""
-        return self._manager.system_state(task_status)
+        view = self._manager.system_state(task_status)
+        if not self.error_list.severe.names:
+            return view
+        code = view.error_code | DECLARED_BIT
+        return replace(
+            view,
+            state=SystemState.ERROR,
+            error_code=code,
+            errors=self.errors,
+            reasons=self.reasons,
+        )
 
     # --- inside ----------------------------------------------------------------------------------
 
@@ -176,35 +282,40 @@ class Health(Concern):
         """Record changes as events, causes first."""
         emit = self._outbox.emit
         for signal, error in changes.pending:
-            self._pending[error] = emit(SignalPending(signal, error))
+            self._pending[self._key(signal, error)] = emit(SignalPending(signal, error))
         for signal, error, stale in changes.settled:
             emit(SignalSettled(signal, error, stale))
-            self._pending.pop(error, None)
+            self._pending.pop(self._key(signal, error), None)
         for signal in changes.skewed:
             emit(SignalSkewed(signal))
-        for reason in changes.raised:
-            raised = ErrorRaised(reason.code, reason.message, reason.value, reason.threshold)
-            self.decided_by = emit(raised, self._pending.pop(reason.code, None))
-        for error in changes.cleared:
-            self.decided_by = emit(ErrorCleared(error))
+        for key, why in changes.raised:
+            raised = ErrorRaised(key.error, why.message, why.value, why.threshold, key.part)
+            self._decided_by = emit(raised, self._pending.pop(key, None))
+        for key in changes.cleared:
+            self._decided_by = emit(ErrorCleared(key.error, key.part))
         self._robot_errors.follow(changes, now)
         self._outbox.signals |= changes.signals
         for signal in changes.signals:
-            self._keep(self._manager.signal(signal))
+            self._keep(signal)
 
-    def _keep(self, signal: SignalView) -> None:
+    def _keep(self, name: str) -> None:
         """Keep the error of a signal from when it waits for an acknowledgement until it does not.
 
         With what was measured when it began to: later readings are not worth a write each.
         """
-        name, kept = signal.signal, self._kept.get(signal.signal)
-        error = signal.error if signal.needs_acknowledgement else None
-        if error == kept:
+        state, kept = self._manager.state(name), self._kept.get(name)
+        waits = state.error if state.needs_acknowledgement else None
+        key = None if waits is None else self._key(name, waits)
+        if key == kept:
             return
         if kept is not None:
-            self._outbox.forget(KeptError, kept)
+            self._outbox.forget(KeptError, kept.name)
             del self._kept[name]
-        if error is not None:
-            why = next(reason for reason in self._manager.reasons if reason.code == error)
-            self._outbox.keep(KeptError(name, error, why.since or 0, why.message))
-            self._kept[name] = error
+        if key is not None:
+            why = self._manager.reason(key)
+            self._outbox.keep(KeptError(name, key.error, why.since or 0, why.message, key.part))
+            self._kept[name] = key
+
+    def _key(self, signal: str, error: str) -> ErrorKey:
+        """Return which error of a signal is meant."""
+        return ErrorKey(self._manager.settings(signal).part, error)

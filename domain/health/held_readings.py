@@ -3,7 +3,7 @@
 The age of a reading counts from its arrival. The sender's stamp only orders its readings.
 """
 
-from dataclasses import dataclass
+from typing import NamedTuple
 
 from domain.health.signals import SignalSettings
 from domain.inputs import Reading, SignalValue
@@ -19,9 +19,8 @@ FURTHER_SOURCES = "further sources"
 """Source shared by all that come when `MAX_SOURCES` press a stop already."""
 
 
-@dataclass(frozen=True, slots=True)
-class HeldReading:
-    """The last reading of one source."""
+class HeldReading(NamedTuple):
+    """The last reading of one source; a tuple, since there are thousands a second."""
 
     value: SignalValue
     source: str
@@ -52,14 +51,14 @@ class HeldReadings:
     """
 
     def __init__(self, settings: SignalSettings) -> None:
-        self._settings = settings
+        self.settings = settings
         self._by_source: dict[str, HeldReading] = {}
         self.newest: HeldReading | None = None
         """The reading that arrived last, from any source."""
 
     def copy(self) -> "HeldReadings":
         """Return a copy for a trial."""
-        copy = HeldReadings(self._settings)
+        copy = HeldReadings(self.settings)
         copy._by_source = dict(self._by_source)
         copy.newest = self.newest
         return copy
@@ -74,7 +73,7 @@ class HeldReadings:
     @property
     def pressing(self) -> tuple[HeldReading, ...]:
         """Return the readings that press a stop, the oldest first; empty for other signals."""
-        if not self._settings.spec.is_stop:
+        if not self.settings.spec.is_stop:
             return ()
         pressing = [held for held in self._by_source.values() if held.value is True]
         return tuple(sorted(pressing, key=lambda held: (held.since, held.source)))
@@ -92,8 +91,8 @@ class HeldReadings:
             return None
         if reading.stamp >= held.newest_stamp:
             return None
-        presses = self._settings.spec.is_stop and reading.value is True
-        if presses or self._settings.is_worse(reading.value, held.value):
+        presses = self.settings.spec.is_stop and reading.value is True
+        if presses or self.settings.is_worse(reading.value, held.value):
             return None
         return held.newest_stamp - reading.stamp
 
@@ -130,7 +129,7 @@ class HeldReadings:
 
     def _key(self, source: str) -> str:
         """Return under which name the readings of a source are held."""
-        if not self._settings.spec.is_stop:
+        if not self.settings.spec.is_stop:
             return ""
         if source in self._by_source:
             return source

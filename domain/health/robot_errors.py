@@ -1,70 +1,64 @@
 """The robot's own errors in the list of all errors, as the state manager decides them."""
 
-from collections.abc import Iterable
-
-from domain.findings import Blocker
 from domain.health.error_list import NORMAL, ErrorList, Found
-from domain.health.signals import Recovery
 from domain.health.state_manager import HealthChanges, StateManager
 from domain.snapshot import ErrorKey, ErrorState, SignalView
 from domain.timebase import Instant
 
 
 class RobotErrors:
-    """Follows the state manager; it decides nothing."""
+    """Follows the state manager; it decides nothing.
+
+    Among them are the errors of parts that signals raise.
+    """
 
     def __init__(self, manager: StateManager, errors: ErrorList, start: Instant) -> None:
         """Note the errors that are on from the start, of signals that were never seen."""
         self._manager = manager
         self._errors = errors
-        self._note(manager.errors, start)
+        self._signal_of: dict[ErrorKey, str] = {}
+        """The signal whose value raises an error; staleness is of no value."""
+        for signal in manager.signals():
+            settings = manager.settings(signal)
+            for error in settings.value_errors:
+                self._signal_of[ErrorKey(settings.part, error)] = signal
+            for key, _ in settings.can_raise().values():
+                errors.declare(key, settings.severity)
+        for key in manager.keys:
+            self._note(key, start)
 
     def follow(self, changes: HealthChanges, now: Instant) -> None:
         """Note the errors that a call of the state manager changed, or whose reasons it did."""
-        affected = {error for _, error in changes.pending}
-        affected |= {error for _, error, _ in changes.settled}
-        if changes.state_changed:
-            affected |= {reason.code for reason in changes.raised}
-            affected |= {*changes.cleared, *self._manager.errors}
-        if affected:
-            self._note((error for error in self._manager.names if error in affected), now)
+        for key in changes.errors:
+            self._note(key, now)
 
-    def follow_acknowledgement(self, error: str, now: Instant) -> None:
+    def follow_acknowledgement(self, error: ErrorKey, now: Instant) -> None:
         """Note an error that may have been acknowledged."""
-        self._note((error,), now)
+        self._note(error, now)
 
-    def _note(self, names: Iterable[str], now: Instant) -> None:
-        signals = self._manager.signals().values()
-        pending = {view.pending_error: view.pending_since for view in signals}
-        for name in names:
-            since = now
-            if name in self._manager.errors:
-                reason = self._reason(name)
-                acting = [view for view in signals if view.error == name]
-                found = Found(
-                    self._state(name, acting), reason.message, reason.value, reason.threshold
-                )
-                since = now if reason.since is None else reason.since
-            elif name in pending:
-                found = Found(ErrorState.PENDING)
-                since = pending[name] or now
-            else:
-                found = NORMAL
-            self._errors.note(ErrorKey(None, name), found, since)
+    def _note(self, key: ErrorKey, now: Instant) -> None:
+        signal = self._signal_of.get(key)
+        view = None if signal is None else self._manager.signal(signal)
+        found, since = NORMAL, now
+        if self._manager.is_on(key):
+            reason = self._manager.reason(key)
+            state, lingers = self._state(key, view)
+            found = Found(state, reason.message, reason.value, reason.threshold, lingers)
+            since = now if reason.since is None else reason.since
+        elif view is not None and view.pending_error == key.error:
+            found = Found(ErrorState.PENDING)
+            since = view.pending_since or now
+        self._errors.note(key, found, since)
 
-    def _reason(self, error: str) -> Blocker:
-        """Return the most urgent reason of an active error."""
-        return next(reason for reason in self._manager.reasons if reason.code == error)
-
-    def _state(self, error: str, acting: list[SignalView]) -> ErrorState:
-        """Return the state of an active error.
+    def _state(self, key: ErrorKey, view: SignalView | None) -> tuple[ErrorState, bool]:
+        """Return whether an error that is on is latched, and whether it lingers without a cause.
 
         Args:
-            error: Its name.
-            acting: The signals whose error it is.
+            key: The error.
+            view: The signal whose value raised it; None: it is of staleness.
         """
-        if any(view.needs_acknowledgement for view in acting):
-            is_present = error in self._manager.present
-            return ErrorState.ACTIVE if is_present else ErrorState.LATCHED
-        needs_it = any(view.settings["recovery"] == str(Recovery.ACKNOWLEDGE) for view in acting)
-        return ErrorState.ACKNOWLEDGED if needs_it else ErrorState.ACTIVE
+        if self._manager.is_present(key):
+            return ErrorState.ACTIVE, False
+        if view is not None and view.needs_acknowledgement:
+            return ErrorState.LATCHED, False
+        return ErrorState.ACTIVE, True

@@ -2,6 +2,7 @@
 
 from collections.abc import Iterator, Mapping
 from types import MappingProxyType
+from typing import NamedTuple
 
 from domain.findings import Blocker, Fact
 from domain.health.error_slot import ErrorSlot
@@ -15,20 +16,38 @@ from domain.health.signal_reasons import (
 )
 from domain.health.signals import (
     ESTOP,
-    STALE_DATA,
-    STALE_DATA_BIT,
     Bound,
     CountsFrom,
+    ModeLimit,
+    Raisable,
     Recovery,
     SignalSettings,
 )
-from domain.inputs import Reading
+from domain.inputs import Reading, SignalValue, SourceFault
 from domain.snapshot import SignalView
 from domain.timebase import Duration, Instant, to_seconds
 
 
+class SignalState(NamedTuple):
+    """What can change about a signal; a tuple, since there are thousands a second."""
+
+    value: SignalValue | None
+    source: str | None
+    received_at: Instant | None
+    stamp: Instant | None
+    stale: bool
+    error: str | None
+    pending_error: str | None
+    pending_since: Instant | None
+    pending_needs: Duration | None
+    skewed: bool
+    needs_acknowledgement: bool
+    settings: Mapping[str, Fact]
+    source_fault: str | None
+
+
 class SignalMonitor:
-    """One signal and its two errors: that of its value, and STALE_DATA.
+    """One signal and its two errors: that of its value, and that it is stale.
 
     The result follows from the readings and from the instant of the last `judge`. The caller must
     call `judge` at each `wake_at`, before anything else that happens then or later.
@@ -42,8 +61,12 @@ class SignalMonitor:
     """
 
     def __init__(self, settings: SignalSettings, start: Instant) -> None:
-        self.settings = settings
-        self.readings = HeldReadings(settings)
+        self.limit = next((limit for limit in settings.limits if limit.part is None), None)
+        """Which of the limits by mode is in force; until modes are known, that of the others."""
+        self.settings = settings.with_limit(self.limit) if settings.limits else settings
+        self.readings = HeldReadings(self.settings)
+        name, part = settings.spec.name, settings.part
+        self._path = (name,) if part is None else (part, name)
         self._counts_last_good = settings.counts_from is CountsFrom.LAST_GOOD
         self._counting_since = start if self._counts_last_good else None
         """From here on "for" counts; None: nothing counts."""
@@ -51,20 +74,24 @@ class SignalMonitor:
         self._counted: Duration = 0
         """How long it had counted when the error was raised."""
         self._engaged_since: Instant | None = None
+        self.fault: SourceFault | None = None
+        """The last failure of a source that it did not end by a reading."""
         self._measured_before = ""
         """What an earlier run had measured of the error that it left; empty: it left none."""
-        self._facts = MappingProxyType(settings.facts())
-        self.bits: Mapping[str, int] = MappingProxyType(
-            {STALE_DATA: STALE_DATA_BIT, **{c.error: c.bit for c in settings.bounds}}
-        )
-        """The errors that it can raise, with their bits."""
+        self._facts: Mapping[str, Fact] = MappingProxyType(self._make_facts())
+        self._stale = settings.stale_key.error
+        self._waiting: tuple[Bound, ...] = ()
+        """Bounds that are met and will become the cause when they are due."""
+        self.can_raise: Mapping[str, Raisable] = MappingProxyType(settings.can_raise())
+        """The errors that it can raise, by name."""
         self._value_slot = ErrorSlot(settings.min_on, settings.recovery)
         self._stale_slot = ErrorSlot(settings.min_on, Recovery.AUTOMATIC)
         if settings.stale_after:
             # No minimum time: the first reading clears it at once.
-            self._stale_slot.begin_with(STALE_DATA, start)
-        self.view = self._make_view(start)
+            self._stale_slot.begin_with(self._stale, start)
+        self.state = self._make_state(self._is_stale(start))
         """The same object until something changes."""
+        self._view: SignalView | None = None
 
     # --- what happens ----------------------------------------------------------------------------
 
@@ -77,10 +104,13 @@ class SignalMonitor:
             now: When it arrived.
         """
         self.readings.take(reading, source, now)
-        if not self._met_by_readings():
-            self._counting_since = now if self._counts_last_good else None
-        elif self._counting_since is None:
-            self._counting_since = now
+        if self.fault is not None and self.fault.source == source:
+            self.fault = None
+        self._judge(self._count(now), now)
+
+    def note_fault(self, fault: SourceFault, now: Instant) -> None:
+        """Take why a source gives no reading; the signal becomes stale in its own time."""
+        self.fault = fault
         self.judge(now)
 
     def set_engaged(self, since: Instant | None, now: Instant) -> None:
@@ -109,8 +139,29 @@ class SignalMonitor:
 
     def waits_with(self, error: str) -> bool:
         """Tell whether an error of this name, once raised, waits for an acknowledgement."""
-        has_it = any(bound.error == error for bound in self.settings.bounds)
+        has_it = error in self.settings.value_errors
         return has_it and self.settings.recovery is Recovery.ACKNOWLEDGE
+
+    def set_limit(self, limit: ModeLimit | None, now: Instant) -> None:
+        """Put another limit in force, and judge the value that is held anew.
+
+        "For" counts from here. An error that is on stays so if the value is beyond the new limit.
+
+        Args:
+            limit: One of the settings; None: no value is bad.
+            now: The current time.
+        """
+        self.limit = limit
+        self.settings = self.settings.with_limit(limit)
+        self.readings.settings = self.settings
+        self._facts = MappingProxyType(self._make_facts())
+        was_on, self._cause, self._counting_since = self._cause is not None, None, None
+        met, is_unknown = self._met_by_readings(), self.readings.value is None
+        if was_on and self.settings.bounds and (met or is_unknown):
+            self._cause = self.settings.bounds[0]
+        elif met:
+            self._counting_since = now
+        self.judge(now)
 
     def acknowledge(self, error: str, now: Instant) -> None:
         """Acknowledge `error` if it is the active one."""
@@ -120,27 +171,53 @@ class SignalMonitor:
 
     def judge(self, now: Instant) -> None:
         """Evaluate the readings as of `now`."""
-        if not self._counts_last_good and self._is_stale(now):
-            # What is not heard is not known to be bad.
-            self._counting_since = None
-        cause = self._find_cause(now)
-        if cause is not self._cause:
-            self._cause = cause
-            self._counted = 0 if self._counting_since is None else now - self._counting_since
-        self._value_slot.update(None if cause is None else cause.error, now)
-        self._stale_slot.update(STALE_DATA if self._is_stale(now) else None, now)
-        view = self._make_view(now)
-        if view != self.view:
-            self.view = view
+        self._judge(self._met_by_readings(), now)
 
     def wake_at(self) -> Instant | None:
         """Return the next instant at which time alone changes something; None: never."""
         since = self._counting_since
-        due = [] if since is None else [since + bound.for_ for bound in self._waiting()]
+        due = [] if since is None else [since + bound.for_ for bound in self._waiting]
         others = (self._stale_at(), self._value_slot.wake_at, self._stale_slot.wake_at)
         return min((*due, *(at for at in others if at is not None)), default=None)
 
+    def _count(self, now: Instant) -> list[Bound]:
+        """Begin to count if the value is bad, and cease to if not; return the bounds it meets."""
+        met = self._met_by_readings()
+        if not met:
+            self._counting_since = now if self._counts_last_good else None
+        elif self._counting_since is None:
+            self._counting_since = now
+        return met
+
+    def _judge(self, met: list[Bound], now: Instant) -> None:
+        """Evaluate the readings as of `now`, of which it is known which bounds they meet."""
+        is_stale = self._is_stale(now)
+        if is_stale and not self._counts_last_good:
+            # What is not heard is not known to be bad.
+            self._counting_since = None
+        if self._engaged_since is not None:
+            met = list(self.settings.bounds)
+        cause = self._find_cause(met, now)
+        if cause is not self._cause:
+            self._cause = cause
+            self._counted = 0 if self._counting_since is None else now - self._counting_since
+        self._value_slot.update(None if cause is None else cause.error, now)
+        self._stale_slot.update(self._stale if is_stale else None, now)
+        self._waiting = () if self._counting_since is None else tuple(self._before_cause(met))
+        state = self._make_state(is_stale)
+        if state != self.state:
+            self.state = state
+            self._view = None
+
     # --- what can be seen ------------------------------------------------------------------------
+
+    @property
+    def view(self) -> SignalView:
+        """Return the signal; the same object until something changes."""
+        if self._view is None:
+            spec = self.settings.spec
+            self._view = SignalView(spec.name, unit=spec.unit, **self.state._asdict())
+        return self._view
 
     @property
     def errors(self) -> frozenset[str]:
@@ -166,7 +243,8 @@ class SignalMonitor:
             threshold = self._cause.threshold
             yield self._reason(self._value_slot, message, value, threshold)
         if self._stale_slot.cause is not None:
-            message = stale_reason(self.settings, is_seen=self.readings.newest is not None)
+            is_seen = self.readings.newest is not None
+            message = stale_reason(self.settings, self._fault_reason, is_seen=is_seen)
             limit = to_seconds(self.settings.stale_after)
             yield self._reason(self._stale_slot, message, threshold=limit)
         elif self._stale_slot.error is not None:
@@ -196,33 +274,42 @@ class SignalMonitor:
         return Blocker(
             code=slot.error or "",
             message=message,
-            path=(self.settings.spec.name,),
+            path=self._path,
             value=value,
             threshold=threshold,
             since=slot.since if since is None else since,
             refuses=slot.error == ESTOP,
         )
 
-    def _make_view(self, now: Instant) -> SignalView:
+    def _make_facts(self) -> dict[str, Fact]:
+        facts = self.settings.facts()
+        if self.settings.limits:
+            facts["limits_because"] = None if self.limit is None else self.limit.name
+        return facts
+
+    def _make_state(self, is_stale: bool) -> SignalState:
         newest = self.readings.newest
         pressing = self.readings.pressing
-        coming = min(self._waiting(), key=lambda bound: bound.for_, default=None)
-        return SignalView(
-            signal=self.settings.spec.name,
-            value=self.readings.value,
-            unit=self.settings.spec.unit,
-            source=pressing[0].source if pressing else newest.source if newest else None,
-            received_at=newest.received_at if newest else None,
-            stamp=newest.stamp if newest else None,
-            stale=self._is_stale(now),
-            error=self._value_slot.error,
-            pending_error=coming.error if coming else None,
-            pending_since=self._counting_since if coming else None,
-            pending_needs=coming.for_ if coming else None,
-            skewed=newest.skewed if newest else False,
-            needs_acknowledgement=self._value_slot.waits_for_acknowledgement,
-            settings=self._facts,
+        coming = min(self._waiting, key=_needs, default=None)
+        return SignalState(
+            self.readings.value,
+            pressing[0].source if pressing else newest.source if newest else None,
+            newest.received_at if newest else None,
+            newest.stamp if newest else None,
+            is_stale,
+            self._value_slot.error,
+            coming.error if coming else None,
+            self._counting_since if coming else None,
+            coming.for_ if coming else None,
+            newest.skewed if newest else False,
+            self._value_slot.waits_for_acknowledgement,
+            self._facts,
+            self._fault_reason or None,
         )
+
+    @property
+    def _fault_reason(self) -> str:
+        return "" if self.fault is None else self.fault.reason
 
     # --- what is judged --------------------------------------------------------------------------
 
@@ -237,28 +324,20 @@ class SignalMonitor:
             if bound.is_met_by(value, error_is_on=bound is self._cause)
         ]
 
-    def _met(self) -> list[Bound]:
-        """Return the bounds that are met; an engaged emergency stop meets all."""
-        if self._engaged_since is not None:
-            return list(self.settings.bounds)
-        return self._met_by_readings()
-
     def _is_due(self, bound: Bound, now: Instant) -> bool:
         if self._engaged_since is not None:
             return True
         return self._counting_since is not None and now - self._counting_since >= bound.for_
 
-    def _find_cause(self, now: Instant) -> Bound | None:
+    def _find_cause(self, met: list[Bound], now: Instant) -> Bound | None:
         """Return the most urgent bound that is met and due, or is an error already."""
-        met = self._met()
         for bound in met:
             if bound is self._cause or self._is_due(bound, now):
                 return bound
         return met[0] if met and self._cause is not None else None
 
-    def _waiting(self) -> list[Bound]:
-        """Return the bounds that are met and will become the cause when they are due."""
-        met = self._met() if self._counting_since is not None else []
+    def _before_cause(self, met: list[Bound]) -> list[Bound]:
+        """Return the bounds that are met and more urgent than the cause."""
         return met[: met.index(self._cause)] if self._cause in met else met
 
     def _stale_at(self) -> Instant | None:
@@ -274,3 +353,7 @@ class SignalMonitor:
             return False
         newest = self.readings.newest
         return newest is None or now - newest.received_at > self.settings.stale_after
+
+
+def _needs(bound: Bound) -> Duration:
+    return bound.for_

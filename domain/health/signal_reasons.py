@@ -43,6 +43,18 @@ def value_reason(
     return f"{_label(spec)} is {said}, not {good} for {time}"
 
 
+def unknown_reason(settings: SignalSettings, bound: Bound, last: SignalValue) -> str:
+    """Return why an error of a monitor is still active although its value is unknown.
+
+    Args:
+        settings: Settings of the monitor.
+        bound: The bound whose error is active.
+        last: The last value that was known.
+    """
+    was = value_reason(settings, bound, last, 0)
+    return f"{was} as last known; too few readings of it now"
+
+
 def pressed_reason(readings: HeldReadings, spec: SignalSpec) -> str:
     """Return who presses a stop, such as "e-stop is pressed (source api)"."""
     sources = [held.source for held in readings.pressing]
@@ -53,11 +65,17 @@ def pressed_reason(readings: HeldReadings, spec: SignalSpec) -> str:
     return f"{_label(spec)} is pressed (source{'s' if len(sources) > 1 else ''} {named})"
 
 
-def stale_reason(settings: SignalSettings, *, is_seen: bool) -> str:
-    """Return that there is no reading yet, or none that is recent enough."""
-    if not is_seen:
-        return f"no reading of {settings.spec.name} yet"
-    return f"no reading of {settings.spec.name} for {_duration(settings.stale_after)}"
+def stale_reason(settings: SignalSettings, fault: str = "", *, is_seen: bool) -> str:
+    """Return that there is no reading yet, or none that is recent enough.
+
+    Args:
+        settings: Settings of the signal.
+        fault: Why its source gives none; empty: it does not say.
+        is_seen: Whether there ever was one.
+    """
+    since = f"for {_duration(settings.stale_after)}" if is_seen else "yet"
+    stale = f"no reading of {settings.spec.name} {since}"
+    return f"{stale}: {fault}" if fault else stale
 
 
 def kept_reason(settings: SignalSettings, slot: ErrorSlot) -> str:

@@ -5,13 +5,18 @@ declared with the same types.
 """
 
 import math
-from dataclasses import dataclass
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
 from enum import StrEnum
+from typing import NamedTuple
 
 from domain.errors import InvalidValueError
 from domain.findings import Fact
 from domain.inputs import SignalValue
+from domain.snapshot import ErrorKey, Severity
+from domain.state_and_mode import ModeName, PartName
 from domain.timebase import Duration, seconds, to_seconds
+from domain.windows.settings import WindowSettings
 
 ESTOP_SIGNAL = "estop"
 ESTOP = "ESTOP"
@@ -61,6 +66,11 @@ def asks_for_stop(value: object) -> bool:
 def signal_name(name: str) -> str:
     """Return the name of a signal without the leading slash of its topic in ROS."""
     return name.lstrip("/")
+
+
+def stale_error(name: str) -> str:
+    """Return the error of a signal of its own that is stale."""
+    return f"{name.upper()}_STALE"
 
 
 class Recovery(StrEnum):
@@ -199,6 +209,46 @@ class Bound:
         return excess if self.comparison is Comparison.ABOVE else -excess
 
 
+class Raisable(NamedTuple):
+    """An error that can be raised."""
+
+    key: ErrorKey
+    """Whose it is, and its name."""
+    bit: int
+    """Its bit in the error code; 0: it sets none, and the robot is not in ERROR because of it."""
+
+
+@dataclass(frozen=True, slots=True)
+class MonitorSettings:
+    """What the value of a monitor is computed from."""
+
+    of: str
+    """The signal, which may be a monitor as well."""
+    window: WindowSettings
+
+    def facts(self) -> dict[str, Fact]:
+        """Return the settings as plain values, with units in the names."""
+        length, size = self.window.length, self.window.size
+        window = ("window_n", size) if length is None else ("window_s", to_seconds(length))
+        return {"of": self.of, "statistic": str(self.window.statistic), window[0]: window[1]}
+
+
+@dataclass(frozen=True, slots=True)
+class ModeLimit:
+    """The bound of a signal while a part is in a mode."""
+
+    bound: Bound | None
+    """None: no value is bad."""
+    part: PartName | None = None
+    """None: in all modes of which nothing is said."""
+    mode: ModeName | None = None
+
+    @property
+    def name(self) -> str:
+        """Return in which mode it is in force, as the robot file says."""
+        return "default" if self.part is None else f"{self.part}.{self.mode}"
+
+
 @dataclass(frozen=True, slots=True)
 class SignalSettings:
     """A signal with its bounds and settings.
@@ -219,6 +269,15 @@ class SignalSettings:
     """Recovery of value errors; staleness always recovers automatically."""
     counts_from: CountsFrom = CountsFrom.FIRST_BAD
     """Where `for_` of the bounds begins."""
+    part: PartName | None = None
+    """Whose errors these are; None: the robot's own."""
+    severity: Severity = Severity.CRITICAL
+    """How bad its errors are, and that it is stale."""
+    monitor: MonitorSettings | None = None
+    """None: it is read, and not computed."""
+    limits: tuple[ModeLimit, ...] = ()
+    """Bounds by mode, of which the first that applies takes the place of `bounds`; all of them have
+    the same error."""
 
     def __post_init__(self) -> None:
         if len({bound.key for bound in self.bounds}) != len(self.bounds):
@@ -226,8 +285,45 @@ class SignalSettings:
         for duration, setting in ((self.stale_after, "stale_after_s"), (self.min_on, "min_on_s")):
             if duration < 0:
                 raise self._invalid(setting, "must not be negative")
-        for bound in self.bounds:
+        for bound in (*self.bounds, *self._bounds_of_modes()):
             self._check_bound(bound)
+
+    def with_limit(self, limit: ModeLimit | None) -> "SignalSettings":
+        """Return these settings while a limit is in force; None: none is."""
+        bound = None if limit is None else limit.bound
+        return replace(self, bounds=() if bound is None else (bound,))
+
+    def _bounds_of_modes(self) -> Iterator[Bound]:
+        return (limit.bound for limit in self.limits if limit.bound is not None)
+
+    @property
+    def value_errors(self) -> tuple[str, ...]:
+        """Return the errors that its values can raise, the most urgent first."""
+        bounds = (*self.bounds, *self._bounds_of_modes())
+        return tuple(dict.fromkeys(bound.error for bound in bounds))
+
+    @property
+    def stale_key(self) -> ErrorKey:
+        """Return which error it raises while it is stale.
+
+        Critical signals share one of the robot: what it cannot do without is not known.
+        """
+        if self.severity.stops_task:
+            return ErrorKey(None, STALE_DATA)
+        return ErrorKey(self.part, stale_error(self.spec.name))
+
+    def can_raise(self) -> dict[str, Raisable]:
+        """Return the errors that it can raise, by name."""
+        stale, sets_bit = self.stale_key, self.severity.stops_task
+        raisable = {}
+        for bound in (*self.bounds, *self._bounds_of_modes()):
+            key = ErrorKey(self.part, bound.error)
+            raisable[bound.error] = Raisable(key, bound.bit if sets_bit else 0)
+        if sets_bit:
+            raisable[stale.error] = Raisable(stale, STALE_DATA_BIT)
+        elif self.stale_after:
+            raisable[stale.error] = Raisable(stale, 0)
+        return raisable
 
     def is_worse(self, value: SignalValue, held: SignalValue) -> bool:
         """Tell whether `value` is worse than the one held."""
@@ -241,6 +337,8 @@ class SignalSettings:
                 facts[_prefixed(bound, "threshold")] = bound.threshold
                 facts[_prefixed(bound, "clear_threshold")] = bound.clear_limit
             facts[_prefixed(bound, "for_s")] = to_seconds(bound.for_)
+        if self.monitor is not None:
+            facts |= self.monitor.facts()
         facts |= {
             "stale_after_s": to_seconds(self.stale_after),
             "min_on_s": to_seconds(self.min_on),

@@ -4,10 +4,12 @@ Source: smart_polaris, `gem_state_manager`, whose error bits and thresholds are 
 there, decisions are made when a reading arrives or a time is reached, not at the next cycle.
 """
 
+from collections import Counter
 from collections.abc import Iterable, Iterator, Mapping
 from contextlib import contextmanager
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from types import MappingProxyType
+from typing import NamedTuple
 
 from domain.errors import (
     InvalidValueError,
@@ -16,14 +18,31 @@ from domain.errors import (
     UnknownSignalError,
 )
 from domain.findings import Blocker
-from domain.health.error_registry import ErrorRegistry
+from domain.health.error_registry import ErrorChanges, ErrorRegistry
 from domain.health.held_readings import HeldReadings
-from domain.health.signal_monitor import SignalMonitor
-from domain.health.signals import ESTOP_SIGNAL, STALE_DATA, SignalSettings
-from domain.inputs import Reading, Readings
+from domain.health.monitor_graph import faults_of_monitors, fed_by, number_of
+from domain.health.signal_monitor import SignalMonitor, SignalState
+from domain.health.signals import ESTOP_SIGNAL, STALE_DATA, ModeLimit, SignalSettings
+from domain.health.window_monitor import WindowMonitor
+from domain.inputs import Reading, Readings, SourceFault
 from domain.kept import KeptError
-from domain.snapshot import SignalView, SystemState, SystemStateView, TaskStatus
+from domain.snapshot import (
+    ErrorKey,
+    MonitorView,
+    SignalView,
+    SystemState,
+    SystemStateView,
+    TaskStatus,
+)
 from domain.timebase import Instant, to_seconds
+
+
+class Raised(NamedTuple):
+    """An error that was raised."""
+
+    key: ErrorKey
+    reason: Blocker
+    """Its most urgent reason."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -33,9 +52,8 @@ class HealthChanges:
     If an error is in both `raised` and `cleared`, it was cleared first if it is active now.
     """
 
-    raised: tuple[Blocker, ...] = ()
-    """The most urgent reason of each error that was raised."""
-    cleared: tuple[str, ...] = ()
+    raised: tuple[Raised, ...] = ()
+    cleared: tuple[ErrorKey, ...] = ()
     pending: tuple[tuple[str, str], ...] = ()
     """Signals and errors whose time began to count."""
     settled: tuple[tuple[str, str, bool], ...] = ()
@@ -45,43 +63,26 @@ class HealthChanges:
     """Signals whose view changed."""
     skewed: tuple[str, ...] = ()
     """Signals whose sender's clock now differs from ours."""
+    errors: tuple[ErrorKey, ...] = ()
+    """Errors that were raised or cleared, began or ceased to be pending, or have other reasons."""
     state_changed: bool = False
     """Whether errors or reasons changed."""
-
-
-@dataclass(frozen=True, slots=True)
-class _Seen:
-    """Errors, reasons and views at one moment."""
-
-    errors: tuple[str, ...]
-    reasons: tuple[Blocker, ...]
-    views: Mapping[str, SignalView]
 
 
 @dataclass(slots=True)
 class _Gathered:
     """Changes while they are being gathered."""
 
-    raised: list[Blocker] = field(default_factory=list)
-    cleared: list[str] = field(default_factory=list)
+    raised: list[Raised] = field(default_factory=list)
+    cleared: list[ErrorKey] = field(default_factory=list)
     pending: list[tuple[str, str]] = field(default_factory=list)
     settled: list[tuple[str, str, bool]] = field(default_factory=list)
     signals: set[str] = field(default_factory=set)
     skewed: list[str] = field(default_factory=list)
+    errors: set[ErrorKey] = field(default_factory=set)
     state_changed: bool = False
 
-    def add(self, before: _Seen, after: _Seen) -> None:
-        """Add the difference between two moments."""
-        for error in after.errors:
-            if error not in before.errors:
-                self.raised.append(next(r for r in after.reasons if r.code == error))
-        self.cleared += [error for error in before.errors if error not in after.errors]
-        for name, view in after.views.items():
-            if view is not before.views[name]:
-                self._add_view(before.views[name], view)
-        self.state_changed |= before.reasons != after.reasons
-
-    def build(self) -> HealthChanges:
+    def build(self, order: Mapping[ErrorKey, int]) -> HealthChanges:
         """Return the changes."""
         return HealthChanges(
             tuple(self.raised),
@@ -90,16 +91,29 @@ class _Gathered:
             tuple(self.settled),
             frozenset(self.signals),
             tuple(self.skewed),
+            tuple(sorted(self.errors, key=order.__getitem__)),
             self.state_changed,
         )
 
-    def _add_view(self, before: SignalView, after: SignalView) -> None:
-        name = after.signal
+    def add_errors(self, changes: ErrorChanges, registry: ErrorRegistry) -> None:
+        """Add what became of errors."""
+        self.raised += [Raised(key, registry.reason(key)) for key in changes.raised]
+        self.cleared += changes.cleared
+        self.errors.update(changes.explained)
+        self.state_changed = True
+
+    def add_signal(self, before: SignalState, monitor: SignalMonitor) -> None:
+        """Add what became of a signal."""
+        after, settings = monitor.state, monitor.settings
+        name = settings.spec.name
         self.signals.add(name)
         if before.pending_error != after.pending_error:
-            if before.pending_error not in (None, after.error):
-                self.settled.append((name, before.pending_error, after.stale))
+            if before.pending_error is not None:
+                self.errors.add(ErrorKey(settings.part, before.pending_error))
+                if before.pending_error != after.error:
+                    self.settled.append((name, before.pending_error, after.stale))
             if after.pending_error is not None:
+                self.errors.add(ErrorKey(settings.part, after.pending_error))
                 self.pending.append((name, after.pending_error))
         if after.skewed and not before.skewed:
             self.skewed.append(name)
@@ -122,13 +136,24 @@ class StateManager:
         """
         declared = tuple(settings)
         _check_declared(declared)
-        self._monitors = {item.spec.name: SignalMonitor(item, start) for item in declared}
+        self._monitors = {item.spec.name: _monitor_of(item, start) for item in declared}
+        self._windows = {
+            name: monitor
+            for name, monitor in self._monitors.items()
+            if isinstance(monitor, WindowMonitor)
+        }
+        self._fed = fed_by(declared)
+        """By signal, the monitors that its readings go to."""
+        self._position = {name: position for position, name in enumerate(self._monitors)}
+        """By signal, its position in the registry."""
+        self._names = tuple(self._monitors)
         self._registry = ErrorRegistry(self._monitors.values())
         self.is_late = False
         """While set, deadlines that passed are not judged: what has arrived is taken in first."""
-        self._seen = self._look()
-        self._wake_at = self._registry.next_wake()
-        """Cached, since every input of the core reads it."""
+        self._told = {name: monitor.state for name, monitor in self._monitors.items()}
+        """As the signals were when they were told last."""
+        self._shown: Mapping[str, SignalView] | None = None
+        """A copy of the views; None: to be made when somebody asks."""
 
     # --- what happens ----------------------------------------------------------------------------
 
@@ -162,9 +187,36 @@ class StateManager:
         """Process readings that passed `check`."""
         checked = self._checked(readings)
         with self._gathering(now) as gathered:
+            fed: dict[str, None] = {}
             for reading in checked:
-                self._monitors[reading.signal].receive(reading, readings.source, now)
-        return gathered.build()
+                monitor = self._touched(reading.signal)
+                monitor.receive(reading, readings.source, now)
+                if reading.signal in self._fed:
+                    value = number_of(monitor.settings.spec, reading.value)
+                    self._feed(reading.signal, value, now, fed)
+            for name in fed:
+                self._touched(name).judge(now)
+        return self._build(gathered)
+
+    def set_limit(self, signal: str, limit: ModeLimit | None, now: Instant) -> HealthChanges:
+        """Put another limit of a signal in force, one of its settings; None: none is."""
+        with self._gathering(now) as gathered:
+            self._touched(signal).set_limit(limit, now)
+        return self._build(gathered)
+
+    def is_new_fault(self, fault: SourceFault) -> bool:
+        """Tell whether it is not yet known that a source gives no reading, for this reason.
+
+        Raises:
+            UnknownSignalError: The signal is not declared.
+        """
+        return self._monitor(fault.signal).fault != fault
+
+    def note_fault(self, fault: SourceFault, now: Instant) -> HealthChanges:
+        """Take why a source gives no reading of a signal."""
+        with self._gathering(now) as gathered:
+            self._touched(fault.signal).note_fault(fault, now)
+        return self._build(gathered)
 
     def set_emergency_stop(self, since: Instant | None, now: Instant) -> HealthChanges:
         """Raise ESTOP for the emergency stop, which no reading releases, or remove that cause.
@@ -174,87 +226,107 @@ class StateManager:
             now: The current time.
         """
         with self._gathering(now) as gathered:
-            self._monitors[ESTOP_SIGNAL].set_engaged(since, now)
-        return gathered.build()
+            self._touched(ESTOP_SIGNAL).set_engaged(since, now)
+        return self._build(gathered)
 
     def restore(self, errors: Iterable[KeptError], now: Instant) -> HealthChanges:
         """Raise errors of an earlier run that passed `check_kept`; they wait as they did."""
         with self._gathering(now) as gathered:
             for kept in errors:
                 since = min(kept.since, now)
-                self._monitors[kept.signal].restore(kept.error, since, kept.message, now)
-        return gathered.build()
+                self._touched(kept.signal).restore(kept.error, since, kept.message, now)
+        return self._build(gathered)
 
     def check_kept(self, kept: KeptError) -> str:
         """Return in words why an error cannot be restored; empty: it can."""
         monitor = self._monitors.get(kept.signal)
         if monitor is None:
             return f"there is no signal {kept.signal} any more"
-        if not monitor.waits_with(kept.error):
+        if monitor.settings.part != kept.part or not monitor.waits_with(kept.error):
             return f"{kept.signal} has no such error to acknowledge any more"
         return ""
 
-    def acknowledge(self, error: str, now: Instant) -> HealthChanges:
+    def acknowledge(self, error: ErrorKey, now: Instant) -> HealthChanges:
         """Acknowledge an error: it clears once its cause is gone, which may be now.
 
         For an error that is not active, or that clears by itself, this has no effect.
 
         Raises:
-            UnknownErrorNameError: There is no error of this name.
+            UnknownErrorNameError: There is no such error.
         """
-        if error not in self._registry.names:
-            raise UnknownErrorNameError("error", error, self._registry.names)
+        if error not in self._registry.order:
+            names = tuple(key.name for key in self._registry.order)
+            raise UnknownErrorNameError("error", error.name, names)
         with self._gathering(now) as gathered:
             self._registry.acknowledge(error, now)
-        return gathered.build()
+        return self._build(gathered)
 
     def pass_time(self, now: Instant) -> HealthChanges:
         """Handle all deadlines up to `now`, each at its own instant."""
         with self._gathering(now) as gathered:
             pass
-        return gathered.build()
+        return self._build(gathered)
 
     def wake_at(self) -> Instant | None:
         """Return the earliest instant at which time alone changes something; None: never."""
-        return self._wake_at
+        return self._registry.next_wake()
 
     # --- what can be seen ------------------------------------------------------------------------
 
     @property
     def errors(self) -> tuple[str, ...]:
-        """Return the active errors, in the order of their bits."""
-        return self._seen.errors
+        """Return the names of the active errors that set a bit, in the order of their bits."""
+        return self._registry.errors
 
     @property
-    def names(self) -> tuple[str, ...]:
+    def keys(self) -> Iterable[ErrorKey]:
         """Return all errors that can be raised, in the order of their bits."""
-        return self._registry.names
-
-    @property
-    def present(self) -> frozenset[str]:
-        """Return the active errors whose cause is still present."""
-        return self._registry.present
+        return self._registry.order.keys()
 
     @property
     def reasons(self) -> tuple[Blocker, ...]:
-        """Return why errors are active, the most urgent first."""
-        return self._seen.reasons
+        """Return why errors that set a bit are active, the most urgent first.
+
+        The same object until it changes.
+        """
+        return self._registry.reasons
+
+    def is_on(self, error: ErrorKey) -> bool:
+        """Tell whether an error is active."""
+        return self._registry.is_on(error)
+
+    def is_present(self, error: ErrorKey) -> bool:
+        """Tell whether an error is active and its cause still present."""
+        return self._registry.is_present(error)
+
+    def reason(self, error: ErrorKey) -> Blocker:
+        """Return the most urgent reason of an active error."""
+        return self._registry.reason(error)
 
     def system_state(self, task_status: TaskStatus) -> SystemStateView:
         """Return the state of the robot with its reasons, the most urgent first.
 
-        ERROR while an error is active, else RUNNING while there is a task (also paused), else IDLE.
+        ERROR while an error is active that sets a bit, else RUNNING while there is a task (also
+        paused), else IDLE.
 
         Source: smart_polaris, `state_manager.cpp`.
         """
-        error_code = self._registry.code(self.errors)
+        error_code = self._registry.code
         if error_code:
             state = SystemState.ERROR
         elif task_status is TaskStatus.NO_TASK:
             state = SystemState.IDLE
         else:
             state = SystemState.RUNNING
-        return SystemStateView(state, error_code, self.errors, self._seen.reasons, task_status)
+        return SystemStateView(state, error_code, self.errors, self.reasons, task_status)
+
+    def settings(self, name: str) -> SignalSettings:
+        """Return the settings of a declared signal."""
+        return self._monitors[name].settings
+
+    def state(self, name: str) -> SignalState:
+        """Return what can change about a declared signal; cheaper than its view."""
+        return self._monitors[name].state
 
     def signal(self, name: str) -> SignalView:
         """Return one signal; the same object until it changes.
@@ -266,7 +338,14 @@ class StateManager:
 
     def signals(self) -> Mapping[str, SignalView]:
         """Return all signals in the order of declaration; the same object until one changes."""
-        return self._seen.views
+        if self._shown is None:
+            views = {name: monitor.view for name, monitor in self._monitors.items()}
+            self._shown = MappingProxyType(views)
+        return self._shown
+
+    def monitors(self, now: Instant) -> Iterator[MonitorView]:
+        """Yield the monitors in the order of declaration."""
+        return (monitor.monitor_view(now) for monitor in self._windows.values())
 
     # --- inside ----------------------------------------------------------------------------------
 
@@ -279,9 +358,27 @@ class StateManager:
     def _checked(self, readings: Readings) -> list[Reading]:
         checked = []
         for reading in readings.items:
-            value = self._monitor(reading.signal).settings.spec.checked(reading.value)
+            settings = self._monitor(reading.signal).settings
+            if settings.monitor is not None:
+                words = f"{reading.signal} is computed from {settings.monitor.of}; post that"
+                raise InvalidValueError(words, reading.signal)
+            value = settings.spec.checked(reading.value)
             checked.append(Reading(reading.signal, value, reading.stamp))
         return checked
+
+    def _feed(self, signal: str, value: float, now: Instant, fed: dict[str, None]) -> None:
+        """Hand a value to the monitors of a signal, and theirs to those that they feed."""
+        for name in self._fed[signal]:
+            monitor = self._windows[name]
+            monitor.feed(value, now)
+            fed[name] = None
+            if name in self._fed and (computed := monitor.window.value(now)) is not None:
+                self._feed(name, computed, now, fed)
+
+    def _touched(self, name: str) -> SignalMonitor:
+        """Return a monitor that is about to change."""
+        self._registry.touch(self._position[name])
+        return self._monitors[name]
 
     @contextmanager
     def _gathering(self, now: Instant) -> Iterator[_Gathered]:
@@ -294,27 +391,41 @@ class StateManager:
         self._gather(gathered)
 
     def _gather(self, gathered: _Gathered) -> None:
-        before = self._seen
-        now = self._look()
-        if all(view is before.views[name] for name, view in now.views.items()):
-            # Keep the mapping, so that its identity shows that nothing changed.
-            now = replace(now, views=before.views)
-        self._seen = now
-        self._wake_at = self._registry.next_wake()
-        gathered.add(before, now)
+        """Gather what became of the signals that were touched; the others are as they were."""
+        for position in self._registry.touched():
+            name = self._names[position]
+            before, monitor = self._told[name], self._monitors[name]
+            if monitor.state is not before:
+                gathered.add_signal(before, monitor)
+                self._told[name] = monitor.state
+                self._shown = None
+        changes = self._registry.renew()
+        if changes.explained:
+            gathered.add_errors(changes, self._registry)
 
-    def _look(self) -> _Seen:
-        views = {name: monitor.view for name, monitor in self._monitors.items()}
-        return _Seen(self._registry.errors(), self._registry.reasons(), MappingProxyType(views))
+    def _build(self, gathered: _Gathered) -> HealthChanges:
+        return gathered.build(self._registry.order)
+
+
+def _monitor_of(settings: SignalSettings, start: Instant) -> SignalMonitor:
+    if settings.monitor is None:
+        return SignalMonitor(settings, start)
+    return WindowMonitor(settings, settings.monitor, start)
 
 
 def _check_declared(declared: tuple[SignalSettings, ...]) -> None:
     """Reject duplicate names of signals or errors, and a missing e-stop."""
     names = [item.spec.name for item in declared]
-    errors = [STALE_DATA, *(c.error for item in declared for c in item.bounds)]
+    errors = [STALE_DATA]
+    for item in declared:
+        errors += (ErrorKey(item.part, error).name for error in item.value_errors)
+        if item.stale_key.error != STALE_DATA:
+            errors.append(item.stale_key.name)
     for kind, given in (("signal", names), ("error", errors)):
-        twice = sorted({name for name in given if given.count(name) > 1})
+        twice = [name for name, times in Counter(given).items() if times > 1]
         if twice:
-            raise InvalidValueError(f"{kind} {twice[0]} is declared twice", twice[0])
+            raise InvalidValueError(f"{kind} {min(twice)} is declared twice", min(twice))
+    for fault in faults_of_monitors(declared):
+        raise InvalidValueError(fault.message, f"{fault.signal}/{fault.key}")
     if ESTOP_SIGNAL not in names:
         raise InvalidValueError(f"signal {ESTOP_SIGNAL} is not declared", ESTOP_SIGNAL)

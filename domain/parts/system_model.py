@@ -19,8 +19,10 @@ from domain.lifecycle import LifecycleState
 from domain.parameters import Parameters
 from domain.parts.declared_errors import DeclaredError
 from domain.parts.declared_reactions import DeclaredReaction
+from domain.parts.errors_check import error_circles
 from domain.parts.invariant_circles import invariant_circles
 from domain.parts.mode_settings import ModeSettings
+from domain.parts.reactions_check import all_reactions, check_reactions
 from domain.parts.settings_check import check_settings
 from domain.state_and_mode import DEFAULT_MODE, ModeName, PartName, StateAndMode
 
@@ -117,6 +119,8 @@ class SmhModel:
         object.__setattr__(self, "nodes", MappingProxyType(dict(self.nodes)))
         object.__setattr__(self, "systems", MappingProxyType(_shared(self.nodes, self.systems)))
         object.__setattr__(self, "mode_settings", MappingProxyType(dict(self.mode_settings)))
+        object.__setattr__(self, "errors", MappingProxyType(dict(self.errors)))
+        object.__setattr__(self, "reactions", MappingProxyType(dict(self.reactions)))
         object.__setattr__(
             self, "ancestors", MappingProxyType(_ancestors(self.systems, self.nodes))
         )
@@ -131,6 +135,10 @@ class SmhModel:
             parts = self.systems[part].named_parts if part in self.systems else ()
             findings.extend(check_settings(part, settings, self.modes_of(part), parts))
         findings.extend(invariant_circles(self.mode_settings, self.errors))
+        findings.extend(error_circles(self.errors))
+        modes_of = {part: self.modes_of(part) for part in self.reactions}
+        reactions = all_reactions(self.reactions)
+        findings.extend(check_reactions(reactions, modes_of, self.nodes, self.errors))
         return findings
 
     @property
@@ -140,7 +148,9 @@ class SmhModel:
 
     @property
     def has_conditions(self) -> bool:
-        """Tell whether any mode has a guard."""
+        """Tell whether anything in it depends on a condition."""
+        if any(self.errors.values()) or any(self.reactions.values()):
+            return True
         settings = chain.from_iterable(by_mode.values() for by_mode in self.mode_settings.values())
         return any(own.requires or own.invariants for own in settings)
 

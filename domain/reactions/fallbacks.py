@@ -244,8 +244,11 @@ class Fallbacks(Concern):
     def _fallback_of(self, part: PartName, target: StateAndMode, now: Instant) -> Fallback | None:
         """Return what replaces a target; None: nothing does.
 
-        A fallback whose own invariants are broken is left out for its own fallback, if it has one.
+        Nothing replaces what a reaction has set. A fallback whose own invariants are broken is left
+        out for its own fallback, if it has one.
         """
+        if part in self._parts.beyond(Because.INVARIANT):
+            return None
         found, passed = None, {target.mode}
         mode = self._guards.fallback_of(part, target)
         while mode is not None and mode not in passed:

@@ -11,7 +11,7 @@ from domain.tasks.settings import TaskSettings
 from domain.timebase import seconds
 from domain.tracking.trackers import TRACKERS
 from service.files.csv_columns import column_names
-from service.files.robot_settings import Seconds, SettingsBlock
+from service.files.settings_block import Seconds, SettingsBlock
 
 Positive: TypeAlias = Annotated[float, Field(gt=0, le=1_000, allow_inf_nan=False)]
 SomeSeconds: TypeAlias = Annotated[float, Field(gt=0, le=86_400, allow_inf_nan=False)]

@@ -94,6 +94,7 @@ class _Reader:
                 self._read_line(path, key, value)
             elif not value.entries:
                 self._warn(key, f"{key.text} is an empty map, which ROS 2 rejects; leave it out")
+                self._read_line(path, key, None)
             elif depth == MAX_DEPTH:
                 self._stop(key, "TOO_DEEP", f"more than {MAX_DEPTH} levels of nested maps")
             else:

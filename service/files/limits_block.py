@@ -4,7 +4,7 @@ from typing import Annotated, TypeAlias
 
 from pydantic import Field
 
-from service.files.robot_settings import SettingsBlock
+from service.files.settings_block import SettingsBlock
 
 KIB = 1_024
 MIB = 1_024 * KIB

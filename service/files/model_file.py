@@ -12,12 +12,15 @@ from contextlib import contextmanager
 from dataclasses import dataclass, replace
 from pathlib import Path
 
-from domain.conditions.check import check
+from domain.conditions.check import Fault, check, terms_of
+from domain.conditions.tree import Subject, Topic, TopicKind
 from domain.conditions.vocabulary import Vocabulary
 from domain.errors import InvalidModelError
 from domain.findings import Finding
 from domain.health.signals import SignalSettings, default_signals
+from domain.parts.errors_check import error_circles
 from domain.parts.lint.model_lint import lint
+from domain.parts.reactions_check import all_reactions, check_reactions
 from domain.parts.system_model import EVERY_MODE, SmhModel, find_errors
 from domain.robot_vocabulary import vocabulary_of
 from service.files.extension import NAMES_OF_CPP, is_in_extension
@@ -126,9 +129,14 @@ def _read_all(
     known = default_signals() if signals is None else signals
     vocabulary = vocabulary_of(parts, known, is_complete=signals is not None)
     findings.extend(_faults_of_conditions(parts, source, vocabulary))
+    findings.extend(_faults_of_causes(parts, vocabulary))
     model = None
     if _has_errors(findings):
-        found = find_errors(parts.nodes, parts.systems)
+        found = [
+            *find_errors(parts.nodes, parts.systems),
+            *error_circles(parts.errors),
+            *_faults_of_reactions(parts),
+        ]
     else:
         model, found = _build(parts, vocabulary)
     findings.extend(map(places.placed, found))
@@ -138,7 +146,9 @@ def _read_all(
 def _build(parts: SmhParts, vocabulary: Vocabulary) -> tuple[SmhModel | None, list[Finding]]:
     """Return the model and its warnings, or its errors."""
     try:
-        model = SmhModel(parts.nodes, parts.systems, parts.mode_settings)
+        model = SmhModel(
+            parts.nodes, parts.systems, parts.mode_settings, parts.errors, parts.reactions
+        )
     except InvalidModelError as error:
         return None, list(error.findings)
     found = lint(model, vocabulary)
@@ -157,6 +167,23 @@ def _faults_of_conditions(
             place = source.place(own.place, own.shift + fault.column - 1)
             message = f"{own.where}: {fault.message}"
             yield finding_at(place, fault.code, message, own.part, fault.severity)
+
+
+def _faults_of_causes(parts: SmhParts, vocabulary: Vocabulary) -> Iterator[Finding]:
+    """Yield which causes are no errors, each at its place in the file."""
+    for own in parts.causes:
+        part, error = own.cause
+        found = terms_of(Subject(Topic(TopicKind.ERROR, error, part or "")), vocabulary)
+        if isinstance(found, Fault):
+            message = f"{own.where}: {found.message}"
+            yield finding_at(own.place, found.code, message, own.part, found.severity)
+
+
+def _faults_of_reactions(parts: SmhParts) -> Iterator[Finding]:
+    """Yield what is wrong with reactions, also while something else is."""
+    modes_of = {name: part.modes.keys() for name, part in (parts.nodes | parts.systems).items()}
+    reactions = all_reactions(parts.reactions)
+    return check_reactions(reactions, modes_of, parts.nodes, parts.errors)
 
 
 def _has_errors(findings: Iterable[Finding]) -> bool:

@@ -3,16 +3,18 @@
 The keys are documented in docs/reference/robot-file.schema.json.
 """
 
+import json
 from collections.abc import Iterator
 from collections.abc import Mapping as AnyMapping
-from typing import Annotated, Any, Literal
+from typing import Annotated, Any, Literal, TypeAlias
 
 from pydantic import Field, ValidationError, field_validator
 
 from domain.changes.settings import ChangeSettings
 from domain.errors import InvalidValueError, PilothouseError, UnknownPartError, near_match
 from domain.findings import Finding
-from domain.health.signals import SignalSettings
+from domain.health.checkpoints import CheckpointSettings
+from domain.health.signals import ESTOP_SIGNAL, SignalSettings
 from domain.navigation import NavigationSettings
 from domain.parts.system_model import SmhModel
 from domain.state_and_mode import PartName
@@ -20,18 +22,29 @@ from domain.tasks.settings import TaskSettings
 from domain.timebase import seconds
 from domain.vehicle import VehicleLimits
 from service.files.driving_block import DrivingBlock, StartTaskBlock
-from service.files.limits_block import LimitsBlock
-from service.files.parameter_file import scalar_value
-from service.files.robot_settings import (
-    ChangesBlock,
-    NodeBlock,
-    SettingsBlock,
-    SignalsBlock,
-    bare_names,
+from service.files.includes import (
+    INCLUDE,
+    MAX_INCLUDED,
+    InvalidIncludeError,
+    Keys,
+    Merged,
+    with_includes,
 )
+from service.files.limits_block import LimitsBlock
+from service.files.monitor_templates import Parameter, TemplateName
+from service.files.parameter_file import scalar_value
+from service.files.robot_settings import ChangesBlock, NodeBlock, SignalsBlock
 from service.files.ros2_block import Ros2Block
+from service.files.settings_block import SettingsBlock, bare_names
+from service.files.signal_faults import Fault, faults_of_signals
 from service.files.vehicle_block import VehicleBlock
 from service.files.yaml_tree import Mapping, Node, Scalar, Sequence, finding_at, in_order, read_tree
+
+Included: TypeAlias = (
+    TemplateName
+    | Annotated[dict[TemplateName, dict[str, Parameter]], Field(min_length=1, max_length=1)]
+)
+"""A template, and its parameters if there are any."""
 
 _WORDS = {"extra_forbidden": "unknown key", "model_type": "expected keys below"}
 
@@ -58,6 +71,9 @@ class RobotSettings(SettingsBlock):
     mock: bool | None = None
     """Whether to publish mock signals. Default: as `pilothouse serve` is started; with simulated
     nodes they are published."""
+    include: Annotated[list[Included], Field(max_length=MAX_INCLUDED)] = Field(default_factory=list)
+    """Templates of signals and monitors, each by its name, or by its name with parameters below it.
+    What the file itself says about a signal goes before what a template says."""
     signals: SignalsBlock = SignalsBlock()
     """Error conditions of signals."""
     nodes: dict[str, NodeBlock] = Field(default_factory=dict)
@@ -100,6 +116,14 @@ class RobotSettings(SettingsBlock):
             parameters_deadline=seconds(self.changes.parameters_deadline_s),
         )
 
+    def to_checkpoint_settings(self) -> dict[PartName, CheckpointSettings]:
+        """Return what is supervised of the checkpoints of nodes."""
+        return {
+            PartName(name): node.checkpoints.to_domain()
+            for name, node in self.nodes.items()
+            if node.checkpoints is not None
+        }
+
     def to_vehicle_limits(self) -> VehicleLimits:
         """Return the limits of the vehicle."""
         return self.vehicle.to_limits()
@@ -135,6 +159,19 @@ def read_robot_file(text: str, model: SmhModel) -> RobotSettings:
     return settings
 
 
+def written_out(text: str) -> str:
+    """Return a valid robot file with its templates in their place, as a log keeps it.
+
+    It means the same when a later release has other templates.
+    """
+    tree = read_tree(text)
+    data = _plain(tree.documents[0], []) if tree.documents else None
+    if not isinstance(data, dict) or not data.get(INCLUDE):
+        return text
+    merged = {key: value for key, value in with_includes(data).data.items() if key != INCLUDE}
+    return json.dumps(merged, ensure_ascii=False, indent=2) + "\n"
+
+
 def robot_settings_of(data: AnyMapping[str, object], model: SmhModel) -> RobotSettings:
     """Return settings that were sent as JSON; they must not name files.
 
@@ -146,20 +183,25 @@ def robot_settings_of(data: AnyMapping[str, object], model: SmhModel) -> RobotSe
             "start_task names a file; it is allowed only in a robot file", "/start_task"
         )
     try:
-        settings = RobotSettings.model_validate(data)
+        merged = with_includes(data)
+    except InvalidIncludeError as error:
+        raise InvalidValueError(error.message, _pointer(*error.keys)) from error
+    try:
+        settings = RobotSettings.model_validate(merged.data)
     except ValidationError as error:
         fault = error.errors(include_url=False, include_input=False)[0]
         words = _WORDS.get(fault["type"], fault["msg"].removeprefix("Value error, "))
-        raise InvalidValueError(words, _pointer(*fault["loc"])) from error
+        raise InvalidValueError(words, _pointer(*merged.place_of(fault["loc"]))) from error
     try:
         settings.to_signal_settings()
     except InvalidValueError as error:
-        raise InvalidValueError(error.message, f"/signals/{error.pointer}") from error
+        keys = ("signals", *error.pointer.split("/"))
+        raise InvalidValueError(error.message, _pointer(*merged.place_of(keys))) from error
     for name in settings.nodes:
         if name not in model.nodes:
             raise InvalidValueError(_no_node(name, model), _pointer("nodes", name))
-    for keys, _, message in _faults_of_topics(settings):
-        raise InvalidValueError(message, _pointer(*keys))
+    for keys, _, message in _faults(settings, model):
+        raise InvalidValueError(message, _pointer(*merged.place_of(keys)))
     return settings
 
 
@@ -181,31 +223,58 @@ def _settings(
 ) -> RobotSettings | None:
     """Return the settings, or None and findings."""
     try:
-        settings = RobotSettings.model_validate(data)
+        merged = with_includes(data)
+    except InvalidIncludeError as error:
+        findings.append(finding_at(_place(root, error.keys), "INVALID_VALUE", error.message))
+        return None
+    try:
+        settings = RobotSettings.model_validate(merged.data)
         settings.to_signal_settings()
     except ValidationError as error:
         findings.extend(
-            _complaint(root, fault["loc"], fault["type"], fault["msg"])
+            _complaint(root, merged, fault["loc"], fault["type"], fault["msg"])
             for fault in error.errors(include_url=False, include_input=False)
         )
         return None
     except InvalidValueError as error:
-        location = ("signals", *error.pointer.split("/"))
-        findings.append(finding_at(_place(root, location), "INVALID_VALUE", error.message))
+        place = _place(root, merged.place_of(("signals", *error.pointer.split("/"))))
+        findings.append(finding_at(place, "INVALID_VALUE", error.message))
         return None
     for name in settings.nodes:
         if name not in model.nodes:
             place = _place(root, ("nodes", name))
             findings.append(finding_at(place, "UNKNOWN_NODE", _no_node(name, model)))
-    for keys, code, message in _faults_of_topics(settings):
-        findings.append(finding_at(_place(root, keys), code, message))
+    for keys, code, message in _faults(settings, model):
+        findings.append(finding_at(_place(root, merged.place_of(keys)), code, message))
     return settings
 
 
-def _faults_of_topics(settings: RobotSettings) -> Iterator[tuple[tuple[str, ...], str, str]]:
+def _faults(settings: RobotSettings, model: SmhModel) -> Iterator[Fault]:
+    """Yield what is wrong with signals and their topics; each value is valid by itself."""
+    for keys, code, message in faults_of_signals(settings.signals, model):
+        yield ("signals", *keys), code, message
     kinds = {signal.spec.name: signal.spec.kind for signal in settings.to_signal_settings()}
-    for keys, code, message in settings.ros2.faults(kinds):
+    for keys, code, message in settings.ros2.faults(kinds, model):
         yield ("ros2", *keys), code, message
+    yield from _faults_of_two_sources(settings)
+
+
+def _faults_of_two_sources(settings: RobotSettings) -> Iterator[Fault]:
+    """Yield signals that have a topic beside what else gives their value."""
+    further = settings.signals.further
+    for key, named in (
+        ("signals", settings.ros2.signals),
+        ("statistics", settings.ros2.statistics),
+    ):
+        for name in named:
+            monitored = further[name].of if name in further else None
+            if monitored is not None:
+                message = f"{name} is a monitor: its value follows from {monitored}"
+                yield ("ros2", key, name), "INVALID_VALUE", message
+            # Several sources of a stop are kept apart; else the newest reading would count.
+            elif name in settings.signals.sources and name != ESTOP_SIGNAL:
+                message = f"{name} has a source under signals; remove one of them"
+                yield ("ros2", key, name), "INVALID_VALUE", message
 
 
 def _plain(node: Node | None, findings: list[Finding]) -> Any:  # noqa: ANN401  # as in JSON
@@ -225,17 +294,24 @@ def _plain(node: Node | None, findings: list[Finding]) -> Any:  # noqa: ANN401  
             return None
 
 
-def _complaint(root: Node, location: tuple[int | str, ...], kind: str, message: str) -> Finding:
+def _complaint(root: Node, merged: Merged, location: Keys, kind: str, message: str) -> Finding:
     where = ".".join(str(key) for key in location)
     words = _WORDS.get(kind, message.removeprefix("Value error, "))
     code = "UNKNOWN_KEY" if kind == "extra_forbidden" else "INVALID_VALUE"
-    return finding_at(_place(root, location), code, f"{where}: {words}" if where else words)
+    place = _place(root, merged.place_of(location))
+    return finding_at(place, code, f"{where}: {words}" if where else words)
 
 
-def _place(root: Node, location: tuple[int | str, ...]) -> Node:
+def _place(root: Node, location: Keys) -> Node:
     """Return the last node of the tree on the way to `location` that is in the file."""
     place, tree = root, root
     for step in location:
+        if isinstance(tree, Sequence) and isinstance(step, int):
+            item = tree.items[step]
+            if item is None:
+                break
+            place = tree = item
+            continue
         if not isinstance(tree, Mapping):
             break
         named = str(step).lstrip("/")

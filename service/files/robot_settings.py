@@ -4,82 +4,27 @@ A robot file and the `robot` of a simulation have the same keys. Omitted keys ke
 the core.
 """
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 from dataclasses import replace
-from typing import Annotated, Any, Literal, Self, TypeAlias
+from typing import Annotated, Literal, Self, TypeAlias
 
-from pydantic import BaseModel, ConfigDict, Field, model_validator
+from pydantic import ConfigDict, Field, model_validator
 
 from domain.health.signals import (
     STALE_DATA,
     Bound,
-    Comparison,
-    Recovery,
-    SignalKind,
     SignalSettings,
-    SignalSpec,
     default_signals,
+    signal_name,
 )
 from domain.timebase import Duration, seconds
-
-Seconds: TypeAlias = Annotated[float, Field(ge=0, le=86_400, allow_inf_nan=False)]
-Number: TypeAlias = Annotated[float, Field(allow_inf_nan=False)]
+from service.files.checkpoints_block import CheckpointsBlock
+from service.files.declared_signal import STALE_BETWEEN, AnySignal, DeclaredSignal
+from service.files.settings_block import Number, Seconds, SettingsBlock, bare_names
+from service.files.source_block import MISSED_PERIODS, SourceBlock
 
 _SignalName: TypeAlias = Annotated[str, Field(pattern=r"^[a-z][a-z0-9_]{0,63}$")]
-_ErrorName: TypeAlias = Annotated[str, Field(pattern=r"^[A-Z][A-Z0-9_]{0,63}$")]
-
-
-def bare_names(named: Mapping[str, Any]) -> dict[str, Any]:
-    """Return what is named, without the leading slashes that names have in ROS.
-
-    Raises:
-        ValueError: A name occurs both with and without one.
-    """
-    found: dict[str, Any] = {}
-    for name, value in named.items():
-        bare = name.lstrip("/")
-        if bare in found:
-            raise ValueError(f"{bare} is named twice, with and without a leading slash")
-        found[bare] = value
-    return found
-
-
-class SettingsBlock(BaseModel):
-    """A block of settings: strict, frozen, without unknown keys."""
-
-    model_config = ConfigDict(
-        strict=True, extra="forbid", frozen=True, use_attribute_docstrings=True
-    )
-
-
-class AnySignal(SettingsBlock):
-    """Settings of every signal."""
-
-    stale_after_s: Seconds | None = None
-    """Age in seconds above which a reading is stale; 0 turns staleness off. Default: as set for all
-    signals."""
-    min_on_s: Seconds | None = None
-    """Minimum time in seconds that an error of this signal stays active. Default: 0.2."""
-    recovery: Literal["automatic", "acknowledge"] | None = None
-    """Whether an error clears when its cause is gone, or only after it was acknowledged as well.
-    Default: automatic."""
-
-    def applied_to(self, settings: SignalSettings) -> SignalSettings:
-        """Return `settings` with the values that are set here.
-
-        Raises:
-            InvalidValueError: A threshold is out of range, or on the wrong side of the other one.
-        """
-        return replace(
-            settings,
-            bounds=tuple(self._bound(bound) for bound in settings.bounds),
-            stale_after=_duration(self.stale_after_s, settings.stale_after),
-            min_on=_duration(self.min_on_s, settings.min_on),
-            recovery=Recovery(self.recovery) if self.recovery else settings.recovery,
-        )
-
-    def _bound(self, bound: Bound) -> Bound:
-        return bound
+_DEFAULT_UNITS = {settings.spec.name: settings.spec.unit for settings in default_signals()}
 
 
 class NumberSignal(AnySignal):
@@ -120,66 +65,6 @@ class StrengthSignal(AnySignal):
         return replace(bound, for_=_duration(own, bound.for_))
 
 
-class DeclaredSignal(AnySignal):
-    """A further numeric signal and its error condition."""
-
-    unit: str = Field(default="", max_length=32)
-    """Unit of its values, for display."""
-    label: str = Field(default="", max_length=64)
-    """Its name in messages. Default: the name of the signal."""
-    minimum: Number | None = None
-    """A reading below this is rejected."""
-    maximum: Number | None = None
-    """A reading above this is rejected."""
-    error: _ErrorName | None = None
-    """Name of its error; requires `above` or `below`."""
-    above: Number | None = None
-    """A value above this is an error."""
-    below: Number | None = None
-    """A value below this is an error."""
-    clear_threshold: Number | None = None
-    """Threshold at which an active error clears. Default: `above` or `below`."""
-    for_s: Seconds = 0.0
-    """Time in seconds after the first bad reading until the error is raised. A good reading, or a
-    stale signal, begins it anew."""
-
-    @model_validator(mode="after")
-    def _is_whole(self) -> Self:
-        limits = sum(limit is not None for limit in (self.above, self.below))
-        if limits > 1:
-            raise ValueError("above and below are mutually exclusive")
-        if (self.error is None) != (limits == 0):
-            raise ValueError("error requires above or below, and above and below require error")
-        if limits == 0 and (self.clear_threshold is not None or self.for_s):
-            raise ValueError("clear_threshold and for_s require error")
-        if self.minimum is not None and self.maximum is not None and self.minimum > self.maximum:
-            raise ValueError("minimum is above maximum")
-        return self
-
-    def declared(self, name: str, general: AnySignal) -> SignalSettings:
-        """Return the settings of the signal for the core.
-
-        Args:
-            name: Name of the signal.
-            general: Settings of all signals, for those that are not set here.
-
-        Raises:
-            InvalidValueError: A threshold is outside of minimum and maximum, or on the wrong side.
-        """
-        spec = SignalSpec(
-            name, SignalKind.NUMBER, self.unit, self.label, self.minimum, self.maximum
-        )
-        settings = SignalSettings(spec, tuple(self._bounds()))
-        return self.applied_to(general.applied_to(settings))
-
-    def _bounds(self) -> Iterator[Bound]:
-        comparison = Comparison.BELOW if self.above is None else Comparison.ABOVE
-        threshold = self.below if self.above is None else self.above
-        if self.error is not None and threshold is not None:
-            for_ = seconds(self.for_s)
-            yield Bound(self.error, comparison, threshold, self.clear_threshold, for_)
-
-
 class SignalsBlock(SettingsBlock):
     """Settings of the default signals; every other key declares a further signal."""
 
@@ -207,13 +92,54 @@ class SignalsBlock(SettingsBlock):
 
     def to_domain(self) -> tuple[SignalSettings, ...]:
         """Return the settings of all signals; see `RobotSettings.to_signal_settings`."""
-        general = AnySignal(stale_after_s=self.stale_after_s)
         usual = (
-            getattr(self, settings.spec.name).applied_to(general.applied_to(settings))
-            for settings in default_signals()
+            signal.applied_to(self._general(signal).applied_to(settings))
+            for signal, settings in self._default_ones()
         )
-        further = (signal.declared(name, general) for name, signal in self.further.items())
+        further = (
+            signal.declared(name, self._general(signal), self._unit_of(name))
+            for name, signal in self.further.items()
+        )
         return (*usual, *further)
+
+    def _unit_of(self, name: str) -> str:
+        """Return the unit of a signal; that of a monitor follows from what it is computed from."""
+        way = self._way_to_root(name)
+        unit = _DEFAULT_UNITS.get(way[-1], "")
+        for step in reversed(way):
+            if step in self.further:
+                unit = self.further[step].unit_with(unit)
+        return unit
+
+    def root_of(self, name: str) -> str:
+        """Return the signal whose readings a monitor is computed from, maybe through others."""
+        return self._way_to_root(name)[-1]
+
+    def _way_to_root(self, name: str) -> list[str]:
+        way = [name]
+        while (signal := self.further.get(way[-1])) is not None and signal.of is not None:
+            way.append(signal_name(signal.of))
+            if way[-1] in way[:-1]:
+                break  # In a circle, which is told elsewhere.
+        return way
+
+    def _general(self, signal: AnySignal) -> AnySignal:
+        """Return the settings of all signals; without any, those that suit the source of one."""
+        stale_after_s = self.stale_after_s
+        if stale_after_s is None and signal.source is not None:
+            stale_after_s = MISSED_PERIODS * signal.source.period_s
+        return AnySignal(stale_after_s=stale_after_s)
+
+    def _default_ones(self) -> Iterator[tuple[AnySignal, SignalSettings]]:
+        for settings in default_signals():
+            yield getattr(self, settings.spec.name), settings
+
+    @property
+    def sources(self) -> dict[str, SourceBlock]:
+        """Return the sources by the names of their signals."""
+        default = {settings.spec.name: signal for signal, settings in self._default_ones()}
+        named = {**default, **self.further}
+        return {name: signal.source for name, signal in named.items() if signal.source is not None}
 
     @property
     def further(self) -> dict[str, DeclaredSignal]:
@@ -221,17 +147,26 @@ class SignalsBlock(SettingsBlock):
         return self.__pydantic_extra__
 
     @model_validator(mode="after")
+    def _none_is_always_stale(self) -> Self:
+        for name, source in self.sources.items():
+            own = getattr(self, name).stale_after_s
+            if own is None and 0 < (self.stale_after_s or 0) < source.period_s:
+                raise ValueError(f"{STALE_BETWEEN} of {name}, {source.period_s:g} s")
+        return self
+
+    @model_validator(mode="after")
     def _errors_have_names_of_their_own(self) -> Self:
         taken = {STALE_DATA} | {c.error for s in default_signals() for c in s.bounds}
         for name, signal in self.further.items():
-            if signal.error in taken:
-                raise ValueError(f"{signal.error} of {name} is already the name of another error")
-            taken |= {signal.error} if signal.error else set()
+            for error in signal.errors(name):
+                if error in taken:
+                    raise ValueError(f"{error} of {name} is already the name of another error")
+                taken.add(error)
         return self
 
 
 class NodeBlock(SettingsBlock):
-    """Settings of a node. All but `on_return` apply to simulated nodes only."""
+    """Settings of a node. All but `on_return` and `checkpoints` apply to simulated nodes only."""
 
     on_return: Literal["leave", "restore"] = "leave"
     """What happens when the node reappears and is not in its target state and mode: nothing, or a
@@ -250,6 +185,9 @@ class NodeBlock(SettingsBlock):
     """Duration of setting parameters, in seconds."""
     fault: Literal["slow", "refuse", "fail", "error", "silent", "die"] | None = None
     """Fault of the node from the start."""
+    checkpoints: CheckpointsBlock | None = None
+    """Places in its program that the node reports by POST /nodes/{node}/checkpoints/{name}, and
+    what is expected of them while it is active. Default: none are known."""
 
 
 class ChangesBlock(SettingsBlock):

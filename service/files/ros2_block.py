@@ -2,15 +2,23 @@
 
 import re
 from collections.abc import Iterator, Mapping
-from typing import Annotated, Literal, Self, TypeAlias
+from typing import Annotated, Literal, Self, TypeAlias, TypeVar
 
 from pydantic import AfterValidator, Field, field_validator, model_validator
 
 from domain.health.signals import SignalKind
-from service.files.robot_settings import Number, SettingsBlock, bare_names
+from domain.parts.system_model import SmhModel
+from domain.state_and_mode import PartName
+from service.files.settings_block import Number, SettingsBlock, bare_names
 
 NAV_SAT_FIX = "sensor_msgs/msg/NavSatFix"
 """The only type from which a signal is computed if no field is given."""
+
+StatusName: TypeAlias = Annotated[str, Field(min_length=1, max_length=256)]
+ReportedError: TypeAlias = Annotated[str, Field(pattern=r"^[^.].*\.[A-Z][A-Z0-9_]{0,63}$")]
+BlockT = TypeVar("BlockT")
+Fault: TypeAlias = tuple[tuple[str, ...], str, str]
+"""The keys that lead to a fault, its code and its message."""
 
 _TOPIC = r"^(/[A-Za-z_][A-Za-z0-9_]*)+$"
 _TYPE = r"^[a-z][a-z0-9_]*/msg/[A-Z][A-Za-z0-9]*$"
@@ -57,6 +65,7 @@ MessageType: TypeAlias = Annotated[
 FieldPath: TypeAlias = Annotated[
     str, AfterValidator(_field), Field(json_schema_extra={"pattern": _FIELD})
 ]
+Window: TypeAlias = Annotated[float, Field(gt=0, le=60, allow_inf_nan=False)]
 CommandType: TypeAlias = Literal[
     "geometry_msgs/msg/Twist",
     "geometry_msgs/msg/TwistStamped",
@@ -104,6 +113,38 @@ class SignalTopicBlock(SettingsBlock):
         return self
 
 
+class StatisticBlock(SettingsBlock):
+    """Statistic of a topic that a signal is read from; of the messages, only the stamp is read."""
+
+    topic: TopicName
+    """Full name of the topic."""
+    type: MessageType
+    """Message type of the topic."""
+    statistic: Literal["rate", "gap", "age"]
+    """`rate`: messages per second; `gap`: the longest time without a message, in s, the one to now
+    included; `age`: time since the stamp in the header of the newest message, in s, by the clocks
+    of both computers."""
+    window_s: Window | None = None
+    """Time over which rate and gap are measured, in s. Default: 5."""
+
+    @model_validator(mode="after")
+    def _has_a_window_only_if_it_needs_one(self) -> Self:
+        if self.statistic == "age" and self.window_s is not None:
+            raise ValueError("window_s is for rate and gap only; an age is that of one message")
+        return self
+
+
+class DiagnosticsBlock(SettingsBlock):
+    """Errors of parts that others report by `diagnostic_msgs/msg/DiagnosticArray`."""
+
+    topic: TopicName = "/diagnostics"
+    """Full name of the topic."""
+    errors: Annotated[dict[StatusName, ReportedError], Field(min_length=1)]
+    """By name of a status, such as `lidar_driver: Connection`, the error that it reports, such as
+    `lidar.LINK`; the model file declares it for its part, with neither `when` nor `caused_by`. It
+    is on while one of its statuses has another level than OK."""
+
+
 class OdometryBlock(SettingsBlock):
     """Topic of the vehicle's odometry."""
 
@@ -127,37 +168,71 @@ class Ros2Block(SettingsBlock):
 
     signals: dict[str, SignalTopicBlock] = Field(default_factory=dict)
     """Topics of signals by name of the signal: the five default ones and the declared ones."""
+    statistics: dict[str, StatisticBlock] = Field(default_factory=dict)
+    """Statistics of topics by name of the declared signal that has their value."""
+    diagnostics: DiagnosticsBlock | None = None
+    """Errors of parts that others report on a topic. Without it none are taken from there."""
     odometry: OdometryBlock | None = None
     """Topic of the vehicle's odometry. Without it the pose is unknown and no task runs."""
     command: CommandBlock | None = None
     """Topic of the drive commands. Without it no commands are published."""
 
-    @field_validator("signals")
+    @field_validator("signals", "statistics")
     @classmethod
-    def _without_leading_slashes(
-        cls, signals: dict[str, SignalTopicBlock]
-    ) -> dict[str, SignalTopicBlock]:
-        return bare_names(signals)
+    def _without_leading_slashes(cls, named: dict[str, BlockT]) -> dict[str, BlockT]:
+        return bare_names(named)
 
-    def faults(self, kinds: Mapping[str, SignalKind]) -> Iterator[tuple[tuple[str, ...], str, str]]:
-        """Yield what does not match the signals.
+    def faults(self, kinds: Mapping[str, SignalKind], model: SmhModel) -> Iterator[Fault]:
+        """Yield what does not match the signals and the model.
 
         Args:
             kinds: Kind of each signal by name.
-
-        Yields:
-            The keys that lead to the fault, its code and its message.
+            model: Its parts, and the errors that they declare.
         """
+        yield from self._faults_of_types()
+        yield from self._faults_of_signals(kinds)
+        yield from self._faults_of_diagnostics(model)
+        for name in self.statistics:
+            place = ("statistics", name)
+            if name in self.signals:
+                message = f"{name} has a topic under ros2.signals already"
+                yield place, "INVALID_VALUE", message
+            elif name not in kinds:
+                yield place, "UNKNOWN_SIGNAL", _undeclared(name)
+            elif kinds[name] is not SignalKind.NUMBER:
+                yield place, "INVALID_VALUE", f"a statistic is a number; {name} is not"
+
+    def _faults_of_diagnostics(self, model: SmhModel) -> Iterator[Fault]:
+        """Yield errors that cannot be reported: the model has none such, or they are detected."""
+        for status, name in (self.diagnostics.errors if self.diagnostics else {}).items():
+            place = ("diagnostics", "errors", status)
+            part, error = error_named(name)
+            if part not in model:
+                yield place, "UNKNOWN_PART", f"there is no part {part!r} that has {error}"
+                continue
+            declared = model.errors.get(part, {}).get(error)
+            if declared is None:
+                message = f"{part} declares no error {error} in the model file"
+                yield place, "UNKNOWN_ERROR", message
+            elif declared.when is not None or declared.caused_by:
+                message = f"{name} is found by other means, so nobody can report it"
+                yield place, "INVALID_VALUE", message
+
+    def _faults_of_types(self) -> Iterator[Fault]:
+        """Yield topics that are said to have several types."""
         types: dict[str, str] = {}
+        for key, blocks in (("signals", self.signals), ("statistics", self.statistics)):
+            for name, block in blocks.items():
+                if types.setdefault(block.topic, block.type) != block.type:
+                    message = f"{block.topic} has type {types[block.topic]} for another signal"
+                    yield (key, name, "type"), "INVALID_VALUE", message
+
+    def _faults_of_signals(self, kinds: Mapping[str, SignalKind]) -> Iterator[Fault]:
         for name, block in self.signals.items():
             place = ("signals", name)
-            if types.setdefault(block.topic, block.type) != block.type:
-                message = f"{block.topic} has type {types[block.topic]} for another signal"
-                yield (*place, "type"), "INVALID_VALUE", message
             kind = kinds.get(name)
             if kind is None:
-                message = f"there is no signal {name!r}; declare it under signals"
-                yield place, "UNKNOWN_SIGNAL", message
+                yield place, "UNKNOWN_SIGNAL", _undeclared(name)
                 continue
             for key in sorted({"scale", "offset"} & block.model_fields_set):
                 if kind is not SignalKind.NUMBER:
@@ -166,3 +241,13 @@ class Ros2Block(SettingsBlock):
             if "invert" in block.model_fields_set and kind is not SignalKind.BOOLEAN:
                 message = f"invert is for booleans only; {name} is not a boolean"
                 yield (*place, "invert"), "INVALID_VALUE", message
+
+
+def error_named(name: str) -> tuple[PartName, str]:
+    """Return the part and the error of a name such as `lidar.LINK`."""
+    part, _, error = name.lstrip("/").rpartition(".")
+    return PartName(part), error
+
+
+def _undeclared(name: str) -> str:
+    return f"there is no signal {name!r}; declare it under signals"

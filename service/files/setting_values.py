@@ -102,6 +102,23 @@ class SettingValues:
             self.reject(place, f"{where}: expected {least} to {LONGEST_S:,.0f} s, not {value}")
         return seconds(value)
 
+    def count(self, setting: Setting, where: str, most: int) -> int:
+        """Return a whole number from 1.
+
+        Args:
+            setting: The line.
+            where: The place in words, for messages.
+            most: Largest number.
+
+        Raises:
+            InvalidSettingError: It is not a whole number, or out of range.
+        """
+        place = setting.value or setting.key
+        value = scalar_value(place) if isinstance(place, Scalar) else None
+        if isinstance(value, bool) or not isinstance(value, int) or not 1 <= value <= most:
+            self.reject(place, f"{where}: expected a whole number from 1 to {most:,}")
+        return value
+
     def _text(self, item: Scalar, where: str) -> str:
         value = scalar_value(item)
         if not isinstance(value, str):

@@ -6,6 +6,7 @@ from itertools import chain
 
 from domain.conditions.condition import Condition
 from domain.findings import Finding
+from domain.snapshot import ErrorKey
 from domain.state_and_mode import DEFAULT_MODE, ModeName, PartName, part_name
 from service.files.extension import Setting, read_extensions
 from service.files.parameter_file import PARAMETERS_KEY, NodeParameters, Parameter
@@ -13,6 +14,10 @@ from service.files.yaml_tree import Node, Scalar, finding_at
 
 MODE_SETTINGS = "mode_settings"
 """The block about guards and order of modes."""
+ERRORS = "errors"
+"""The block about errors of the part."""
+REACTIONS = "reactions"
+"""The block about what the robot does while something is so."""
 
 _RESERVED_NAMES = frozenset(("state", "states", "mode", "modes", "parameters"))
 
@@ -31,10 +36,22 @@ class WrittenCondition:
     """Characters of the scalar before the condition."""
 
 
-class SmhBlock:
-    """The block of one part: its `type`, `parts`, `modes` and `rules`, and `mode_settings`.
+@dataclass(frozen=True, slots=True)
+class WrittenCause:
+    """An error that is named as a cause, with its place in the file."""
 
-    Other keys are ignored.
+    part: PartName
+    """The part whose block it stands in."""
+    where: str
+    """The place in words, for messages."""
+    cause: ErrorKey
+    place: Scalar
+
+
+class SmhBlock:
+    """The block of one part: its `type`, `parts`, `modes` and `rules`, and its extensions.
+
+    Keys that nobody knows are ignored.
     """
 
     def __init__(self, source: NodeParameters) -> None:
@@ -46,12 +63,17 @@ class SmhBlock:
         self.modes: dict[ModeName, list[tuple[str, Parameter]]] = {}
         """The lines of each mode: name below the mode, and the parameter."""
         self.conditions: list[WrittenCondition] = []
+        self.causes: list[WrittenCause] = []
         self.rules: dict[str, dict[str, Parameter]] = defaultdict(dict)
         self._misread: set[str] = set()
         extensions, findings = read_extensions(source)
         self.findings.extend(findings)
         self.settings: list[Setting] = [s for s in extensions if s.path[0] == MODE_SETTINGS]
         """The lines of `mode_settings`."""
+        self.errors: list[Setting] = [s for s in extensions if s.path[0] == ERRORS]
+        """The lines of `errors`."""
+        self.reactions: list[Setting] = [s for s in extensions if s.path[0] == REACTIONS]
+        """The lines of `reactions`."""
         for parameter in source.parameters:
             self._sort(parameter)
         self.is_node = self._tell_kind()

@@ -11,11 +11,15 @@ from dataclasses import dataclass, field
 
 from domain.findings import Finding
 from domain.parameters import ParameterValue
+from domain.parts.declared_errors import DeclaredError
+from domain.parts.declared_reactions import DeclaredReaction
 from domain.parts.mode_settings import ModeSettings
 from domain.parts.system_model import NodeModel, SystemModel
 from domain.state_and_mode import DEFAULT_MODE, ModeName, PartName, StateAndMode, part_name
 from service.files.parameter_file import PARAMETERS_KEY, NodeParameters, Parameter
-from service.files.smh_block import SmhBlock, WrittenCondition
+from service.files.smh_block import SmhBlock, WrittenCause, WrittenCondition
+from service.files.smh_errors import read_errors
+from service.files.smh_reactions import read_reactions
 from service.files.smh_settings import read_mode_settings
 from service.files.smh_values import fitted, read_part_name, read_rule, read_want
 from service.files.source_text import SourceText
@@ -33,7 +37,10 @@ class SmhParts:
     nodes: dict[PartName, NodeModel] = field(default_factory=dict)
     systems: dict[PartName, SystemModel] = field(default_factory=dict)
     mode_settings: dict[PartName, Mapping[ModeName, ModeSettings]] = field(default_factory=dict)
+    errors: dict[PartName, Mapping[str, DeclaredError]] = field(default_factory=dict)
+    reactions: dict[PartName, Mapping[str, DeclaredReaction]] = field(default_factory=dict)
     conditions: list[WrittenCondition] = field(default_factory=list)
+    causes: list[WrittenCause] = field(default_factory=list)
     findings: list[Finding] = field(default_factory=list)
 
 
@@ -64,6 +71,12 @@ def read_parts(sources: Mapping[str, NodeParameters], source: SourceText) -> Smh
         settings = read_mode_settings(block, known, source)
         if settings:
             parts.mode_settings[block.name] = settings
+        errors = read_errors(block, source)
+        if errors:
+            parts.errors[block.name] = errors
+        parts.causes.extend(block.causes)
+        if reactions := read_reactions(block, with_modes, source):
+            parts.reactions[block.name] = reactions
         parts.conditions.extend(block.conditions)
         parts.findings.extend(block.findings)
     return parts

@@ -6,7 +6,6 @@ from dataclasses import dataclass, field
 from typing import TypeVar
 
 from domain.conditions.condition import Condition
-from domain.conditions.lexer import ConditionSyntaxError
 from domain.errors import near_match, shortened
 from domain.findings import Finding
 from domain.parts.mode_settings import ModeSettings, OnFailure, TransitionSettings
@@ -16,7 +15,8 @@ from domain.state_and_mode import ModeName, PartName
 from domain.timebase import Duration
 from service.files.extension import Setting
 from service.files.setting_values import InvalidSettingError, SettingValues
-from service.files.smh_block import MODE_SETTINGS, SmhBlock, WrittenCondition
+from service.files.smh_block import MODE_SETTINGS, SmhBlock
+from service.files.smh_condition import read_condition
 from service.files.smh_order import ORDER_KEYS, SEQUENTIAL, Order, OrderReader
 from service.files.source_text import SourceText
 
@@ -163,6 +163,8 @@ class _Reader:
         key, *below = line.path[2:] or ("",)
         where = f"{self._block.name} in {mode}"
         if len(line.path) == 2:
+            if line.value is None:
+                return
             self._values.reject(line.key, f"{where}: expected settings below it", "NOT_A_BLOCK")
         if key not in _KEYS:
             self._complain_of_key(_KEYS, mode, key)
@@ -215,18 +217,9 @@ class _Reader:
 
     def _conditions(self, line: Setting, where: str) -> tuple[Condition, ...]:
         """Read conditions; one that cannot be read is reported and left out."""
-        written = []
-        for text, place in self._values.texts(line, where, MAX_CONDITIONS):
-            shift = len(text) - len(text.lstrip())
-            try:
-                condition = Condition.parse(text.strip())
-            except ConditionSyntaxError as error:
-                at = self._source.place(place, shift + error.column - 1)
-                self._block.complain(at, error.code, f"{where}: {error.message}")
-            else:
-                written.append(WrittenCondition(self._block.name, where, condition, place, shift))
-        self._block.conditions += written
-        return tuple(own.condition for own in written)
+        texts = self._values.texts(line, where, MAX_CONDITIONS)
+        read = (read_condition(self._block, self._source, where, *each) for each in texts)
+        return tuple(condition for condition in read if condition is not None)
 
     def _fallback(self, line: Setting, where: str) -> ModeName:
         text, place = self._values.text(line, where)

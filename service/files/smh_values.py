@@ -101,7 +101,7 @@ def _read_rule_target(
 ) -> StateAndMode | None:
     if line is None or line.value is None:
         return None
-    pair = _read_rule_pair(block, where, line.value, line.place)
+    pair = read_pair(block, where, line.value, line.place)
     return None if pair is None else fitted(pair, block.name, with_modes)
 
 
@@ -118,13 +118,21 @@ def _read_if_part(
     if len(items) > 2:
         block.warn(line.place, "INVALID_RULE", f"{where}: items after the first two are ignored")
     part = read_part_name(block, where, items[0], line.place)
-    pair = _read_rule_pair(block, where, items[1], line.place)
+    pair = read_pair(block, where, items[1], line.place)
     return None if pair is None else (part, fitted(pair, part, with_modes))
 
 
-def _read_rule_pair(
+def read_pair(
     block: SmhBlock, where: str, text: ParameterValue, place: Node
 ) -> StateAndMode | None:
+    """Read a state and mode as written in rules and reactions; None after reporting an error.
+
+    Args:
+        block: Receives findings.
+        where: The place in words, for messages.
+        text: Such as `active.FAST`.
+        place: Place of the text in the file.
+    """
     label, _, mode = text.partition(".") if isinstance(text, str) else (text, "", "")
     return _pair(block, where, label, mode, place)
 

@@ -5,7 +5,7 @@ from typing import Annotated, TypeAlias
 from pydantic import Field
 
 from domain.vehicle import VehicleLimits
-from service.files.robot_settings import Number, SettingsBlock
+from service.files.settings_block import Number, SettingsBlock
 
 Coordinate: TypeAlias = Annotated[float, Field(ge=-1e7, le=1e7, allow_inf_nan=False)]
 Rate: TypeAlias = Annotated[float, Field(gt=0, le=1_000, allow_inf_nan=False)]

@@ -19,6 +19,33 @@ SETTINGS = (
         "See the message.",
     ),
     FindingCode(
+        "DUPLICATE_ERROR",
+        ERROR,
+        "A signal of the robot file gives a part an error of a name that the part has already: a "
+        "built-in one, or one of the model file.",
+        "Use another name.",
+    ),
+    FindingCode(
+        "MONITOR_CYCLE",
+        ERROR,
+        "A monitor is computed from itself, directly or through others.",
+        "Let each chain of monitors begin at a signal that is read.",
+    ),
+    FindingCode(
+        "NOT_CHAINABLE",
+        ERROR,
+        "A monitor is computed from an `age`, a `gap` or a `stuck_for`: these grow in silence, and "
+        "a monitor takes one value per reading.",
+        "Compute it from the signal itself.",
+    ),
+    FindingCode(
+        "WINDOW_TOO_LARGE",
+        ERROR,
+        "With the period of its source, the window of a monitor holds more than 100,000 readings "
+        "(20,000 for `percentile`). Windows of posted readings that do are unknown at run time.",
+        "Shorten the window, or read the source less often.",
+    ),
+    FindingCode(
         "NOT_FOR_CPP",
         WARNING,
         "C++ would reject or misread the file: a null, an alias, an empty list or map, a list "
@@ -77,6 +104,88 @@ SETTINGS = (
         "The invariants of a fallback cannot hold either while an invariant of the mode is "
         "broken, or it activates the node that must be reachable.",
         "Choose another fallback, or weaken its invariants; `true` needs nothing.",
+    ),
+)
+
+ERRORS = (
+    FindingCode(
+        "INVALID_ERROR_NAME",
+        ERROR,
+        "The name of an error has other characters than capital letters, digits and "
+        "underscores, or more than 64, or does not begin with a letter.",
+        "Use another name, such as `SCAN_LATE`.",
+    ),
+    FindingCode(
+        "NAME_TAKEN",
+        ERROR,
+        "The name of an error is that of the emergency stop, or that of an error of a signal of "
+        "the same part.",
+        "Use another name.",
+    ),
+    FindingCode(
+        "BUILT_IN_ERROR",
+        ERROR,
+        "The settings of an error that parts have anyway, such as `UNREACHABLE`, say how it is "
+        "found or how it follows.",
+        "Leave the key out, or declare an error of another name.",
+    ),
+    FindingCode(
+        "ERROR_CIRCLE",
+        ERROR,
+        "An error depends on itself through `caused_by` or the conditions of errors; or a "
+        "`critical` or `fatal` one rests on the state of the robot, its task or the hold `error`, "
+        "which follow from it.",
+        "Remove one of the dependencies; the message names them.",
+    ),
+    FindingCode(
+        "NO_EFFECT",
+        WARNING,
+        "A key of an error has no effect beside the others: times without the condition that they "
+        "are for, or how an error follows that is found by its own condition.",
+        "Leave it out; the message says why.",
+    ),
+)
+
+REACTIONS = (
+    FindingCode(
+        "INCOMPLETE_REACTION",
+        ERROR,
+        "A reaction lacks `when`, `action`, the `target` of a mode or a state, or one of "
+        "`escalate_after_s` and `escalate_to`.",
+        "Add it.",
+    ),
+    FindingCode(
+        "INVALID_REACTION",
+        ERROR,
+        "The action cannot have this target, or has none; it cannot be done to this part, such as "
+        "the restart of a system; or it has a budget and may act at any time.",
+        "See the message.",
+    ),
+    FindingCode(
+        "DUPLICATE_REACTION",
+        ERROR,
+        "Two parts have a reaction of the same name.",
+        "Rename one: names are unique in a model.",
+    ),
+    FindingCode(
+        "UNKNOWN_REACTION",
+        ERROR,
+        "`escalate_to` names no reaction.",
+        "Correct the name.",
+    ),
+    FindingCode(
+        "REACTION_CIRCLE",
+        ERROR,
+        "A reaction escalates to itself, directly or through others.",
+        "Let escalations lead in one direction.",
+    ),
+    FindingCode(
+        "REACTION_RESTS_ON_ITSELF",
+        ERROR,
+        "What the reaction does changes what its condition looks at: its part's state, mode, "
+        "parameters or `converged`, its hold, `robot.state` or `task.status`. It would end as soon "
+        "as it acts, and begin again.",
+        "Name the cause itself, such as an error, or write `until: acknowledged`.",
     ),
 )
 

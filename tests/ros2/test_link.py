@@ -71,6 +71,27 @@ def test_what_is_no_domain_is_told(domain: str, monkeypatch: pytest.MonkeyPatch)
         make_link()
 
 
+async def test_messages_are_noticed_with_their_stamps_and_without_being_read(link: Link) -> None:
+    node = link.node("pilothouse", Lane.SENSORS)
+    heard: list[int | None] = []
+    node.watch_arrivals("/cloud", "sensor_msgs/msg/PointCloud2", heard.append)
+    node.watch_arrivals("/beat", EMPTY, heard.append)
+    talker = link.node("talker", Lane.GATEWAY)
+    cloud = talker.publisher("/cloud", "sensor_msgs/msg/PointCloud2", Qos.EVENTS)
+    beat = talker.publisher("/beat", EMPTY, Qos.EVENTS)
+
+    def told(stamp: int | None, publish: Any) -> bool:  # noqa: ANN401
+        publish()
+        return stamp in heard
+
+    stamped = {"header": {"stamp": {"sec": 1_700_000_000, "nanosec": 5}}, "data": [1, 2, 3]}
+    stamp_ns = 1_700_000_000_000_000_005
+    await until(lambda: told(stamp_ns, lambda: cloud.publish(stamped)), POLL_S)
+    await until(lambda: told(None, lambda: beat.publish({})), POLL_S)
+
+    assert set(heard) == {stamp_ns, None}
+
+
 async def test_both_events_of_a_transition_are_heard(link: Link) -> None:
     node = link.node("pilothouse", Lane.STATES)
     heard: list[str] = []

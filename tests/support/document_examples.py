@@ -16,7 +16,20 @@ import httpx
 
 from api.documents.examples import Examples, Exchange, StreamExample
 from api.http.problems import MEDIA_TYPE
-from tests.support.document_story import CSV, JSON, STORY, Asked
+from domain.health.signals import (
+    Bound,
+    Comparison,
+    MonitorSettings,
+    SignalKind,
+    SignalSettings,
+    SignalSpec,
+    default_signals,
+)
+from domain.snapshot import Severity
+from domain.supervision import SupervisionSettings
+from domain.timebase import seconds
+from domain.windows.settings import Statistic, WindowSettings
+from tests.support.document_story import CHECKPOINTS, CSV, JSON, STORY, Asked
 from tests.support.good import GOOD
 from tests.support.http_robot import HttpRobot, http_robot
 from tests.support.manual_clock import ManualClock
@@ -28,6 +41,16 @@ FILE = PROJECT / "api" / "documents" / "examples.json"
 EPOCH = "9f86d081884c7d65"
 """Instead of the epoch of a run, which is another one each time."""
 
+_BATTERY_SLOPE = SignalSettings(
+    SignalSpec("battery_slope", SignalKind.NUMBER, "1/s"),
+    (Bound("BATTERY_DRAINED", Comparison.BELOW, -0.01),),
+    stale_after=0,
+    severity=Severity.WARNING,
+    monitor=MonitorSettings(
+        "battery_level", WindowSettings(statistic=Statistic.SLOPE, length=seconds(30))
+    ),
+)
+_SETTINGS = SupervisionSettings((*default_signals(), _BATTERY_SLOPE), checkpoints=CHECKPOINTS)
 _EXCERPT_LINES = 4
 _METRICS = ("pilothouse_system_state", "pilothouse_task")
 _PARSED = (JSON, MEDIA_TYPE)
@@ -35,7 +58,7 @@ _PARSED = (JSON, MEDIA_TYPE)
 
 async def record() -> Examples:
     """Let the story happen, and return what was asked, answered and streamed."""
-    async with http_robot() as robot:
+    async with http_robot(settings=_SETTINGS) as robot:
         await robot.pass_time(1)
         requests = [
             _exchange(asked, await _answer_of_a_record(asked))

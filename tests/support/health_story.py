@@ -6,7 +6,7 @@ from dataclasses import replace
 from domain.health.signals import SignalSettings, default_signals
 from domain.health.state_manager import HealthChanges, StateManager
 from domain.inputs import Reading, Readings, SignalValue
-from domain.snapshot import TaskStatus
+from domain.snapshot import ErrorKey, TaskStatus
 from domain.timebase import seconds
 
 START = seconds(500)
@@ -41,7 +41,7 @@ class Robot:
         return self.health.pass_time(START + seconds(at_s))
 
     def acknowledge(self, at_s: float, error: str) -> HealthChanges:
-        return self.health.acknowledge(error, START + seconds(at_s))
+        return self.health.acknowledge(ErrorKey(None, error), START + seconds(at_s))
 
     def engage(self, at_s: float, engaged: bool = True) -> HealthChanges:
         now = START + seconds(at_s)

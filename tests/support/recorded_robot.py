@@ -20,6 +20,7 @@ from domain.inputs import (
     Restored,
     ServiceStall,
     SignalValue,
+    SourceFault,
     StorageStatus,
     TimePassed,
     TransitionRequest,
@@ -196,6 +197,9 @@ HAPPENINGS: tuple[Callable[[RecordedRobot, Random], object], ...] = (
     lambda robot, rng: robot.lose_pose(lost=rng.random() < 0.3),
     lambda robot, rng: robot.give(BackendStatus(rng.random() < 0.7, "no network")),
     lambda robot, rng: robot.give(DriveStatus(rng.random() < 0.7, "no driver")),
+    lambda robot, rng: robot.give(
+        SourceFault("temperature", rng.choice(["a", "b"]), rng.choice(["no bus", "no file"]))
+    ),
     lambda robot, rng: robot.give(StorageStatus(rng.random() < 0.5, "disk full")),
     lambda robot, rng: robot.give(ReportBacklog("ros", rng.choice((None, robot.now)))),
     lambda robot, rng: robot.give(WriteRecord("POST", "/tasks", 201, "10.0.0.7:5", ADA)),

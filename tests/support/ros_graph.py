@@ -13,7 +13,7 @@ from types import SimpleNamespace
 from typing import Any, TypeAlias
 
 from domain.errors import InvalidValueError
-from domain.timebase import seconds, to_seconds
+from domain.timebase import NANOSECONDS_PER_SECOND, seconds, to_seconds
 from domain.vehicle import DriveCommand
 from service.clock import since_epoch
 from service.pacing import Alarm
@@ -303,6 +303,19 @@ class FakeRosNode:
 
         self._graph._note(topic, type_name, qos)  # noqa: SLF001
         self._graph._listen(topic, qos, hear)  # noqa: SLF001
+
+    def watch_arrivals(
+        self, topic: str, type_name: str, hear: Callable[[int | None], None]
+    ) -> None:
+        """Hear when somebody publishes, with the stamp of the header, if there is one."""
+
+        def arrive(message: Message) -> None:
+            stamp = getattr(getattr(message, "header", None), "stamp", None)
+            sec, nanosec = getattr(stamp, "sec", 0), getattr(stamp, "nanosec", 0)
+            hear((sec * NANOSECONDS_PER_SECOND + nanosec) or None)
+
+        self._graph._note(topic, type_name, Qos.SENSOR)  # noqa: SLF001
+        self._graph._listen(topic, Qos.SENSOR, arrive)  # noqa: SLF001
 
     def watch_liveliness(
         self, topic: str, type_name: str, lease_s: float, take: Callable[[bool], None]

@@ -3,20 +3,15 @@
 import argparse
 import io
 import sys
-from pathlib import Path
-from typing import TYPE_CHECKING, Literal, TypeAlias
+from typing import Literal, TypeAlias
 
 from api.cli.commands.command import Command
 from api.terminal_text import complain
-
-if TYPE_CHECKING:
-    from api.cli.checked_file import CheckedFile
 
 VALID, INVALID, UNREADABLE = 0, 1, 2
 
 Form: TypeAlias = Literal["text", "json", "sarif"]
 
-_STANDARD_INPUT = Path("/dev/stdin")
 _TEXT = """\
 Check a model file: report all errors and warnings, with line and column.
 
@@ -55,11 +50,12 @@ def check(name: str, form: Form, robot: str | None = None) -> int:
         robot: Path of a robot file, or None.
     """
     from api.cli.checked_file import as_json, as_text
+    from api.cli.robot_files import read_robot_files
     from api.cli.sarif import as_sarif
     from service.files.text_file import UnreadableFileError
 
     try:
-        files = _checked(name, robot)
+        files = read_robot_files(name, robot).files
     except UnreadableFileError as error:
         complain(str(error))
         return UNREADABLE
@@ -74,33 +70,6 @@ def check(name: str, form: Form, robot: str | None = None) -> int:
         for line in as_text(files):
             print(line)
     return VALID if all(file.is_valid for file in files) else INVALID
-
-
-def _checked(name: str, robot: str | None) -> "list[CheckedFile]":
-    """Check a model, and the robot file with it; without a valid model the latter is not checked.
-
-    Raises:
-        UnreadableFileError: A file cannot be read.
-    """
-    from api.cli.checked_file import CheckedFile
-    from domain.errors import InvalidModelError
-    from service.files.model_file import check_model, read_model
-    from service.files.robot_file import InvalidRobotFileError, read_robot_file
-    from service.files.text_file import read_text_file
-
-    text = read_text_file(_STANDARD_INPUT if name == "-" else Path(name))
-    if robot is None:
-        return [CheckedFile(name, text, check_model(text))]
-    settings_text = read_text_file(Path(robot))
-    try:
-        settings = read_robot_file(settings_text, read_model(text).model)
-    except InvalidModelError as error:
-        return [CheckedFile(name, text, tuple(error.findings))]
-    except InvalidRobotFileError as error:
-        of_robot = CheckedFile(robot, settings_text, tuple(error.findings))
-        return [CheckedFile(name, text, check_model(text)), of_robot]
-    findings = check_model(text, settings.to_signal_settings())
-    return [CheckedFile(name, text, findings), CheckedFile(robot, settings_text, ())]
 
 
 COMMAND = Command("check", "check a model file", _TEXT, _add_options, _run)

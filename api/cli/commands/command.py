@@ -61,6 +61,8 @@ def add_url(parser: argparse.ArgumentParser) -> None:
 def with_service(url: str, run: Callable[["ServiceClient"], Outcome]) -> int:
     """Run something with a client; report a rejection, or a service that does not answer.
 
+    What was done and is not stored is told as well; it is no failure.
+
     Args:
         url: Where the service runs.
         run: What to do.
@@ -69,7 +71,10 @@ def with_service(url: str, run: Callable[["ServiceClient"], Outcome]) -> int:
 
     def ask() -> Outcome:
         with service_at(url) as client:
-            return run(client)
+            outcome = run(client)
+            if why := client.why_forgotten():
+                complain(f"a restart of the service would forget this: {why}")
+            return outcome
 
     return answered(ask)
 

@@ -125,6 +125,9 @@ def _warnings(supervisor: Supervisor, *, exposed: bool) -> Iterator[WarningJson]
         if signal.skewed:
             message = f"the clock of the sender of {name} differs from ours by more than 1 s"
             yield WarningJson(code="CLOCK_SKEW", message=message)
+        if signal.source_fault is not None:
+            message = f"no reading of {name}: {signal.source_fault}"
+            yield WarningJson(code="SOURCE_FAILS", message=message)
     lost = supervisor.core.driving.holds.get(VEHICLE_HOLD)
     if lost is not None:
         yield WarningJson(code="NO_POSE", message=lost.reason)

@@ -9,6 +9,7 @@ from api.http.dependencies import SupervisorDep
 from api.http.route_policy import Permission, policy
 from api.http.schemas.base import Json, Timestamp, rfc3339
 from service.storage.journal import LogStatus, StorageStatus
+from service.storage.trends.trends import TrendsStatus
 
 router = APIRouter(tags=["service"])
 
@@ -30,6 +31,19 @@ class LogJson(Json):
         )
 
 
+class HistoryJson(Json):
+    """How the history of the signals is doing."""
+
+    bytes: int
+    lost_readings: int = Field(description="Readings of this run that it does not have")
+    reason: str | None = Field(description="Why it cannot be written; null: it can")
+
+    @classmethod
+    def of(cls, status: TrendsStatus) -> "HistoryJson":
+        """Show `status`."""
+        return cls(bytes=status.bytes, lost_readings=status.dropped, reason=status.reason)
+
+
 class StorageJson(Json):
     """How storage is doing."""
 
@@ -43,10 +57,11 @@ class StorageJson(Json):
     logs: dict[str, LogJson] = Field(description="`inputs` and `events`")
     lost_inputs: int = Field(description="Inputs of this run that could not be written down")
     lost_events: int
+    history: HistoryJson | None = Field(description="Of the signals; null: there is none")
 
     @classmethod
-    def of(cls, status: StorageStatus) -> "StorageJson":
-        """Show `status`."""
+    def of(cls, status: StorageStatus, history: TrendsStatus | None) -> "StorageJson":
+        """Show the logs and the history of the signals."""
         return cls(
             path=status.path,
             bytes=status.bytes,
@@ -58,6 +73,7 @@ class StorageJson(Json):
             logs={name: LogJson.of(log) for name, log in status.logs.items()},
             lost_inputs=status.lost_inputs,
             lost_events=status.lost_events,
+            history=None if history is None else HistoryJson.of(history),
         )
 
 
@@ -65,7 +81,8 @@ class StorageJson(Json):
 @policy(Permission.OBSERVE)
 async def get_storage(supervisor: SupervisorDep) -> StorageJson:
     """Show where state and logs are kept, how much there is, and whether storage works."""
-    return StorageJson.of(supervisor.storage)
+    trends = supervisor.trends
+    return StorageJson.of(supervisor.storage, None if trends is None else trends.status)
 
 
 def _shown(moment: datetime | None) -> str | None:

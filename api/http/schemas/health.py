@@ -55,6 +55,9 @@ class StreamedSignalJson(Json):
     skewed: bool = Field(description="The sender's clock differs from ours by more than 1 s")
     stale: bool
     error: str | None
+    source_fault: str | None = Field(
+        description="Why its source gives no reading; null: it does, or the signal has none"
+    )
     needs_acknowledgement: bool = Field(
         description="`error` ends only after an operator has acknowledged it, and nobody has yet"
     )
@@ -74,6 +77,7 @@ class StreamedSignalJson(Json):
             skewed=view.skewed,
             stale=view.stale,
             error=view.error,
+            source_fault=view.source_fault,
             needs_acknowledgement=view.needs_acknowledgement,
             pending=_pending(view, clock),
             settings=dict(view.settings),

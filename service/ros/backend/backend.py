@@ -9,8 +9,10 @@ from service.clock import Clock
 from service.files.robot_file import RobotSettings
 from service.ports import Deliver
 from service.ros.backend.delivery import Delivery
+from service.ros.backend.diagnostics import ReportedDiagnostics
 from service.ros.backend.nodes import RosNodes
 from service.ros.backend.signals import SignalTopics
+from service.ros.backend.topic_statistics import TopicStatistics
 from service.ros.backend.vehicle import RosVehicle
 from service.ros.graph.graph import RosGraph
 
@@ -45,6 +47,8 @@ class Ros2Backend:
         self._graph = graph
         self._nodes = RosNodes(model.nodes, graph, clock)
         self._signals = SignalTopics(robot, graph, clock)
+        self._statistics = TopicStatistics(robot, graph, clock)
+        self._diagnostics = ReportedDiagnostics(robot.ros2.diagnostics, graph)
         limits = robot.to_vehicle_limits()
         self._vehicle = RosVehicle(robot.ros2, limits, graph, clock)
         room = _ROOM + _ROOM_PER_NODE * len(model.nodes)
@@ -61,12 +65,15 @@ class Ros2Backend:
             deliver(BackendStatus(available=True))
             hear = self._delivery.put
             self._signals.start(hear)
+            self._statistics.start()
+            self._diagnostics.start(hear)
             self._vehicle.start(hear)
             await self._nodes.start(hear)
             async with asyncio.TaskGroup() as group:
                 group.create_task(self._graph.wait_failed(), name="link to ROS 2")
                 group.create_task(self._nodes.run(), name="nodes")
                 group.create_task(self._vehicle.run(), name="vehicle")
+                group.create_task(self._statistics.run(hear), name="statistics of topics")
                 await self._delivery.run(deliver)
         finally:
             await self._graph.close()

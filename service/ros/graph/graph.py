@@ -174,6 +174,21 @@ class RosNode(Protocol):
         """
         ...
 
+    def watch_arrivals(
+        self, topic: str, type_name: str, hear: Callable[[int | None], None]
+    ) -> None:
+        """Hear when messages of a topic arrive; of each, no more is read than its time stamp.
+
+        So a topic of large messages costs little more than their transport.
+
+        Args:
+            topic: Full name.
+            type_name: As `sensor_msgs/msg/PointCloud2`.
+            hear: Called on another thread with the time stamp of the message, ns since 1970-01-01
+                UTC; None: messages of the type have none, or it is 0.
+        """
+        ...
+
     def watch_liveliness(
         self, topic: str, type_name: str, lease_s: float, take: Callable[[bool], None]
     ) -> None:

@@ -48,6 +48,7 @@ from service.ros.graph.graph import (
     Qos,
     UnknownTypeError,
 )
+from service.ros.graph.header import begins_with_header, stamp_in
 from service.ros.graph.sending import Sender, Turnstile, send_or_tell
 
 _PROFILES = {
@@ -258,6 +259,20 @@ class _Node:
         profile = _PROFILES[qos]
         inbox = Inbox(self._link.crossing, topic, pick, take, profile.depth)
         self._node.create_subscription(kind, topic, inbox.hear, profile, event_callbacks=_NO_EVENTS)
+
+    def watch_arrivals(
+        self, topic: str, type_name: str, hear: Callable[[int | None], None]
+    ) -> None:
+        """Hear when messages of a topic arrive."""
+        kind = _find_type(type_name)
+        has_stamp = begins_with_header(kind.get_fields_and_field_types())
+
+        def arrive(serialized: bytes) -> None:
+            hear(stamp_in(serialized) if has_stamp else None)
+
+        self._node.create_subscription(
+            kind, topic, arrive, _PROFILES[Qos.SENSOR], event_callbacks=_NO_EVENTS, raw=True
+        )
 
     def watch_liveliness(
         self, topic: str, type_name: str, lease_s: float, take: Callable[[bool], None]

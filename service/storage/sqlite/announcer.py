@@ -6,9 +6,9 @@ from collections.abc import Sequence
 
 from pydantic_core import to_json
 
+from service.call_thread import CallThread
 from service.storage.journal import Plain
 from service.storage.sqlite.announced_file import ROOM_BYTES, AnnouncedFile
-from service.storage.sqlite.disk_thread import DiskThread
 
 
 class Announcer:
@@ -20,7 +20,7 @@ class Announcer:
 
     def __init__(self, file: AnnouncedFile) -> None:
         self._file = file
-        self._thread = DiskThread("journal-announcer")
+        self._thread = CallThread("journal-announcer")
         self._waiting: list[tuple[Plain, asyncio.Future[None]]] = []
         self._is_busy = False
 

@@ -16,6 +16,7 @@ from pydantic_core import to_json
 from domain.errors import StorageDegradedError
 from domain.outbox import NOTHING, Outputs
 from domain.timebase import Duration, Instant, seconds
+from service.call_thread import CallThread
 from service.clock import Clock, since_epoch
 from service.codec.codec import KEPT, STEPS
 from service.codec.names import NAMES
@@ -35,7 +36,6 @@ from service.storage.sqlite.announcer import Announcer
 from service.storage.sqlite.backlog import Backlog
 from service.storage.sqlite.batch import IDS, OWN, Flight
 from service.storage.sqlite.connection import FAILURES, words
-from service.storage.sqlite.disk_thread import DiskThread
 from service.storage.sqlite.folder import Report
 from service.storage.sqlite.opening import Opened, StoreSettings, open_folder
 from service.storage.sqlite.reading import read_events
@@ -63,7 +63,7 @@ class SqliteJournal:
     """A `Journal` in a folder; made by `open`."""
 
     def __init__(
-        self, settings: StoreSettings, boot: Boot, clock: Clock, writer: DiskThread, opened: Opened
+        self, settings: StoreSettings, boot: Boot, clock: Clock, writer: CallThread, opened: Opened
     ) -> None:
         self._settings = settings
         self._boot = boot
@@ -71,7 +71,7 @@ class SqliteJournal:
         self._writer = writer
         self._opened = opened
         self._report = opened.report
-        self._reader = DiskThread("journal-reader")
+        self._reader = CallThread("journal-reader")
         self._announcer = Announcer(opened.announced)
         self._backlog = Backlog(settings.backlog_bytes, opened.next.batch, opened.next.step)
         self._waiters: list[asyncio.Future[None]] = []
@@ -101,7 +101,7 @@ class SqliteJournal:
         Raises:
             UnusableFolderError: It is in use, of another robot, or cannot be used at all.
         """
-        writer = DiskThread("journal-writer")
+        writer = CallThread("journal-writer")
         try:
             async with asyncio.timeout(OPEN_PATIENCE_S):
                 opened = await writer.run(lambda: open_folder(settings, boot))

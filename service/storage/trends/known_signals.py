@@ -79,7 +79,7 @@ def _known(number: int, settings: SignalSettings) -> KnownSignal:
     spec = settings.spec
     members = spec.members if spec.kind is SignalKind.ENUMERATION else ()
     identity = json.dumps([spec.name, spec.kind, spec.unit, members])
-    errors = [bound.error for bound in settings.bounds]
+    errors = list(settings.value_errors)
     return KnownSignal(
         number,
         identity,

@@ -11,7 +11,7 @@ from domain.errors import StorageDegradedError, UnknownSignalError
 from domain.health.signals import SignalSettings
 from domain.inputs import SignalValue
 from domain.timebase import Instant, seconds
-from service.storage.sqlite.disk_thread import DiskThread
+from service.call_thread import CallThread
 from service.storage.trends.block_file import MEMORY
 from service.storage.trends.history import Trend
 from service.storage.trends.intake import Intake
@@ -59,7 +59,7 @@ class Trends:
         self._known = self._signals.by_name
         self._recorder = Recorder(self._signals, path, MEMORY_TIERS if path == MEMORY else TIERS)
         self._intake = Intake()
-        self._thread: DiskThread | None = None
+        self._thread: CallThread | None = None
         """None: there was nothing to do yet."""
         self._is_closed = False
         self._settling: asyncio.Future[None] | None = None
@@ -153,9 +153,9 @@ class Trends:
         doing.add_done_callback(_log_failure)
         return doing
 
-    def _started_thread(self) -> DiskThread:
+    def _started_thread(self) -> CallThread:
         if self._thread is None:
-            self._thread = DiskThread("trends")
+            self._thread = CallThread("trends")
         return self._thread
 
 

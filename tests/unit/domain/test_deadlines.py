@@ -1,5 +1,7 @@
 """Many deadlines, one of which is next."""
 
+import pickle
+
 import hypothesis.strategies as st
 from hypothesis import given
 from hypothesis.stateful import RuleBasedStateMachine, invariant, rule
@@ -52,6 +54,16 @@ def test_a_deadline_that_was_cleared_never_comes() -> None:
     assert deadlines.next() == 12
     assert deadlines.pop_due(20) == "base"
     assert deadlines.pop_due(20) is None
+
+
+def test_a_deadline_that_is_put_off_again_and_again_takes_no_memory() -> None:
+    deadlines: Deadlines[str] = Deadlines()
+    deadlines.set("arm", 1)
+    for at in range(10_000):
+        deadlines.set("base", 1_000_000 + at)
+    assert len(pickle.dumps(deadlines)) < 10_000
+    assert deadlines.pop_due(1) == "arm"
+    assert deadlines.next() == 1_009_999
 
 
 class AgainstASortedList(RuleBasedStateMachine):

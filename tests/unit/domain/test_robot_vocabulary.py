@@ -1,6 +1,8 @@
 from domain.conditions.check import check
 from domain.conditions.condition import Condition
+from domain.health.built_in_errors import OF_NODES
 from domain.health.signals import SignalKind, SignalSettings, SignalSpec, default_signals
+from domain.parts.declared_errors import DeclaredError
 from domain.parts.system_model import NodeModel, SmhModel
 from domain.robot_vocabulary import vocabulary_of
 from domain.state_and_mode import DEFAULT_MODE, PartName
@@ -44,3 +46,16 @@ def test_an_array_and_a_truth_among_the_parameters_are_told_apart() -> None:
     assert check(Condition("arm.parameters.brake"), vocabulary) == []
     (fault,) = check(Condition("arm.parameters.gains == 1"), vocabulary)
     assert fault.code == "WRONG_TYPE"
+
+
+def test_conditions_can_name_the_errors_that_a_part_declares() -> None:
+    lidar, camera = PartName("lidar"), PartName("camera")
+    model = SmhModel(
+        {lidar: NodeModel(lidar), camera: NodeModel(camera)},
+        {},
+        errors={lidar: {"SILENT": DeclaredError(), "UNREACHABLE": DeclaredError()}},
+    )
+
+    terms = vocabulary_of(model, default_signals(), is_complete=True).parts
+    assert terms["lidar"].errors == (*OF_NODES, "SILENT")
+    assert terms["camera"].errors == tuple(OF_NODES)

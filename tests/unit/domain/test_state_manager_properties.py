@@ -22,7 +22,7 @@ from domain.health.signals import (
 )
 from domain.health.state_manager import HealthChanges, StateManager
 from domain.inputs import Reading, Readings, SignalValue
-from domain.snapshot import SignalView, SystemState, TaskStatus
+from domain.snapshot import ErrorKey, SignalView, SystemState, TaskStatus
 from domain.timebase import Instant, seconds, to_seconds
 from tests.support.health_reference import SECOND, HealthReference, Moment
 
@@ -140,8 +140,8 @@ class Told:
     signals: set[str] = field(default_factory=set)
 
     def add(self, changes: HealthChanges) -> None:
-        self.raised += [reason.code for reason in changes.raised]
-        self.cleared += changes.cleared
+        self.raised += [key.name for key, _ in changes.raised]
+        self.cleared += [key.name for key in changes.cleared]
         self.pending += changes.pending
         self.settled += changes.settled
         self.skewed += changes.skewed
@@ -153,7 +153,7 @@ def do(health: StateManager, act: Act, now: int) -> HealthChanges | None:
     if isinstance(act, Engage):
         return health.set_emergency_stop(now if act.engaged else None, now)
     if isinstance(act, Acknowledge):
-        return health.acknowledge(act.error, now)
+        return health.acknowledge(ErrorKey(None, act.error), now)
     try:
         health.check(act, now)
     except OutdatedReadingError:
@@ -258,8 +258,8 @@ def test_what_is_told_adds_up_to_what_is_seen(
     health = StateManager(declared, START)
     for before, changes in _steps(health, story):
         after = seen_of(health)
-        assert set(after[0]) - set(before[0]) <= {reason.code for reason in changes.raised}
-        assert set(before[0]) - set(after[0]) <= set(changes.cleared)
+        assert set(after[0]) - set(before[0]) <= {key.name for key, _ in changes.raised}
+        assert set(before[0]) - set(after[0]) <= {key.name for key in changes.cleared}
         assert changes.state_changed or before[:2] == after[:2]
         kept = {name for name, view in after[2].items() if view is before[2][name]}
         assert kept.isdisjoint(changes.signals)

@@ -249,6 +249,28 @@ def test_on_a_terminal_a_loss_is_shown_at_once(service: Service) -> None:
     assert followed.shown.endswith("\r\x1b[2Kreconnecting: the connection broke\r\x1b[2K")
 
 
+def test_a_task_that_outlived_a_restart_of_the_service_is_followed_to_its_end(
+    service: Service,
+) -> None:
+    followed = Followed(
+        service,
+        shows(task()),
+        Loss("the connection broke"),
+        hello("two", boot=2),
+        shows(task("PAUSED", 4, reason="restart")),
+        shows(task("SUCCEEDED", 10)),
+    )
+
+    assert followed.outcome is Outcome.SUCCEEDED
+    assert followed.said == [
+        "task t1 at 0.0 of 10.0 m: running",
+        "task t1: reconnecting: the connection broke",
+        "task t1: the service was restarted",
+        "task t1 at 4.0 of 10.0 m: paused: restart",
+        "task t1 after 10.0 of 10.0 m: succeeded",
+    ]
+
+
 def test_a_service_that_was_restarted_leaves_the_end_unknown_though_it_has_a_task_of_that_id(
     service: Service,
 ) -> None:

@@ -192,3 +192,27 @@ def test_a_command_starts_quickly_since_a_client_needs_nothing_of_the_service() 
     assert "httpx" in loaded
     heavy = {"api.http", "domain", "fastapi", "numpy", "pydantic", "starlette", "uvicorn"}
     assert heavy.isdisjoint(loaded)
+
+
+def test_what_a_restart_would_forget_is_told_with_its_reason(service: Service) -> None:
+    full = {"degraded": True, "reason": "the disk is full"}
+    service.answers["GET /storage"] = httpx.Response(200, json=full)
+    forgotten = httpx.Response(202, json={}, headers={"Pilothouse-Durable": "false"})
+    service.answers["POST /nodes/drive_base/mode"] = forgotten
+    client = service.client()
+    client.call("GET", "/nodes/drive_base")
+    assert client.why_forgotten() == ""
+
+    client.call("POST", "/nodes/drive_base/mode", {"mode": "FAST"})
+    assert client.why_forgotten() == "the disk is full"
+
+
+def test_a_service_that_was_told_to_store_nothing_forgets_without_a_word(service: Service) -> None:
+    service.answers["GET /storage"] = httpx.Response(200, json={"reason": None})
+    forgotten = httpx.Response(202, json={}, headers={"Pilothouse-Durable": "false"})
+    service.answers["POST /nodes/drive_base/mode"] = forgotten
+    client = service.client()
+
+    client.call("POST", "/nodes/drive_base/mode", {"mode": "FAST"})
+
+    assert client.why_forgotten() == ""

@@ -15,6 +15,8 @@ from domain.inputs import (
     TaskRequest,
 )
 from domain.state_and_mode import PartName
+from domain.timebase import seconds
+from service.source_status import SourceStatus
 from service.supervisor import Supervisor
 from tests.support.frames import event
 from tests.support.live_robot import make_supervisor, running
@@ -45,6 +47,21 @@ async def test_the_metrics_tell_the_state_and_the_errors_of_the_robot(
         assert await metric(http, "pilothouse_system_state", state="IDLE") == 0
         assert await metric(http, "pilothouse_error_active", error="ESTOP") == 1
         assert await metric(http, "pilothouse_error_active", error="BATTERY_LOW") is None
+
+
+async def test_the_metrics_count_the_errors_by_severity(
+    http: httpx.AsyncClient, supervisor: Supervisor
+) -> None:
+    name = "pilothouse_errors"
+    async with running(supervisor):
+        supervisor.submit(EmergencyStopRequest(True, "test", Actor("operator")))
+        supervisor.submit(NodeReport(PartName("drive_base"), reachable=True))
+        before = await metric(http, name, severity="urgent")
+        supervisor.submit(NodeReport(PartName("drive_base"), reachable=False))
+        assert before is not None
+        assert await metric(http, name, severity="urgent") == before + 1
+        assert await metric(http, name, severity="critical")
+        assert await metric(http, name, severity="fatal") == 0
 
 
 async def test_the_metrics_count_the_parts_with_an_error(
@@ -166,6 +183,20 @@ async def test_a_task_is_told_by_progress_and_error_and_its_holds_by_owner(
         assert progress == pytest.approx(0.5, abs=0.1)
         assert await metric(http, "pilothouse_cross_track_error_meters") == pytest.approx(0.0)
         assert await metric(http, "pilothouse_hold_active", owner="operator") == 1.0
+
+
+async def test_the_metrics_tell_how_the_sources_are_doing(
+    http: httpx.AsyncClient, supervisor: Supervisor
+) -> None:
+    supervisor.sources = (
+        SourceStatus("os", ("cpu",), reads=7, failures=2, duration=seconds(0.002)),
+        SourceStatus("topic /scan", ("scan",)),
+    )
+
+    assert await metric(http, "pilothouse_source_reads_total", source="os") == 7
+    assert await metric(http, "pilothouse_source_failures_total", source="os") == 2
+    assert await metric(http, "pilothouse_source_duration_seconds", source="os") == 0.002
+    assert await metric(http, "pilothouse_source_duration_seconds", source="topic /scan") is None
 
 
 async def test_who_was_turned_away_is_counted_by_why(http: httpx.AsyncClient) -> None:

@@ -40,6 +40,17 @@ def test_without_arguments_the_example_is_served_with_everything_simulated() -> 
     assert composition.gateway is None
 
 
+def test_the_log_keeps_a_robot_file_with_its_templates_written_out(robot: Path) -> None:
+    robot.write_text(
+        "include:\n  - topic: {name: scan, topic: /scan, type: sensor_msgs/msg/LaserScan,"
+        " min_hz: 8, max_gap_s: 0.5}\n"
+    )
+    files = read_files(ServeOptions(robot=robot))
+
+    assert "include" not in files.text
+    assert "SCAN_SLOW" in files.text
+
+
 def test_a_robot_file_may_turn_the_mock_off(robot: Path) -> None:
     robot.write_text("mock: false\n")
     supervisor = composed(ServeOptions(robot=robot)).supervisor
@@ -112,6 +123,38 @@ def test_without_a_robot_file_a_guard_on_an_unknown_signal_is_a_warning(tmp_path
 
 def test_nothing_set_is_a_robot_file_without_content() -> None:
     assert RobotSettings().mock is None
+
+
+SOURCES = """\
+signals:
+  cpu: {unit: "%", source: {os: {what: cpu_percent}}}
+  battery_level: {source: {file: {path: /sys/class/power_supply/BAT0/capacity, scale: 0.01}}}
+  load: {unit: kg, source: {http: {period_s: 5}}}
+"""
+
+
+def test_the_sources_of_a_robot_file_are_run_and_the_mock_leaves_their_signals_alone(
+    robot: Path,
+) -> None:
+    robot.write_text(SOURCES)
+    supervisor = composed(ServeOptions(robot=robot)).supervisor
+
+    assert [(source.name, source.signals) for source in supervisor.sources] == [
+        ("os", ("cpu",)),
+        ("file /sys/class/power_supply/BAT0/capacity", ("battery_level",)),
+    ]
+    assert supervisor.readings.mock is not None
+    published = {signal.signal for signal in supervisor.readings.mock.view() if signal.publishing}
+    assert published == {"estop", "gps_accuracy", "signal_strength", "temperature"}
+
+
+@pytest.mark.usefixtures("_ros")
+@pytest.mark.parametrize("mocked", [True, False])
+def test_a_robot_in_ros_2_has_its_sources_too(robot: Path, mocked: bool) -> None:
+    robot.write_text("backend: ros2\n" + SOURCES)
+    supervisor = composed(ServeOptions(robot=robot, mock_signals=mocked)).supervisor
+
+    assert len(supervisor.sources) == 2
 
 
 # --- ROS 2 ---------------------------------------------------------------------------------------

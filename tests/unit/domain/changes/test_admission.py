@@ -10,6 +10,8 @@ from domain.findings import Blocker
 from domain.inputs import ChangeRequest, ModeRequest, ParametersRequest, TransitionRequest
 from domain.lifecycle import LifecycleState, Transition
 from domain.parameters import Parameters
+from domain.parts.claims import Claims
+from domain.parts.mode_inference import ModeInference
 from domain.parts.node_doubts import IN_DOUBT
 from domain.parts.node_facts import NodeFacts
 from domain.parts.system_model import SmhModel, SystemModel
@@ -45,7 +47,8 @@ def _admission(
     for name, given in ((BASE, base), (ARM, arm)):
         facts[name] = given if isinstance(given, NodeFacts) else _node(given)
     model = model or actuation_model()
-    return ChangeAdmission(model, facts, _doubtful(facts), unguarded(model))
+    claims = Claims(ModeInference(model))
+    return ChangeAdmission(model, facts, _doubtful(facts), unguarded(model), claims)
 
 
 def _codes(admission: ChangeAdmission, request: ChangeRequest) -> list[str]:
@@ -366,7 +369,8 @@ def test_of_many_blockers_what_refuses_comes_first_and_the_rest_is_cut() -> None
     last = list(model.nodes)[-1]
     facts[last] = _node(S.FINALIZED)
 
-    admission = ChangeAdmission(model, facts, _doubtful(facts), unguarded(model))
+    claims = Claims(ModeInference(model))
+    admission = ChangeAdmission(model, facts, _doubtful(facts), unguarded(model), claims)
     blockers = admission.blockers(ModeRequest(model.parts[0], "FAST"), ())
 
     assert (len(blockers), blockers[0].code, blockers[0].path[-1]) == (100, "FINALIZED", last)

@@ -6,18 +6,21 @@ import pytest
 
 from domain.errors import InvalidValueError
 from domain.findings import Blocker
-from domain.health.error_registry import ErrorRegistry, ErrorSource
+from domain.health.error_registry import ErrorChanges, ErrorRegistry, ErrorSource
 from domain.health.signal_monitor import SignalMonitor
-from domain.health.signals import default_signals
+from domain.health.signals import Raisable, default_signals
 from domain.inputs import Reading
+from domain.snapshot import ErrorKey
+from domain.state_and_mode import PartName
 
 DOOR = "DOOR_OPEN"
+KEY = ErrorKey(None, DOOR)
 
 
 class Door:
     """A source that is no signal: open from one instant on, and closed by an acknowledgement."""
 
-    bits: Mapping[str, int] = {DOOR: 128}
+    can_raise: Mapping[str, Raisable] = {DOOR: Raisable(KEY, 128)}
 
     def __init__(self, opens_at: int, error: str = DOOR) -> None:
         self.opens_at: int | None = opens_at
@@ -51,56 +54,100 @@ def signals() -> dict[str, SignalMonitor]:
     return {item.spec.name: SignalMonitor(item, 0) for item in default_signals()}
 
 
+def joined(*sources: ErrorSource, at: int = 0) -> ErrorRegistry:
+    registry = ErrorRegistry(sources)
+    registry.judge(at)
+    registry.renew()
+    return registry
+
+
 def test_an_error_may_come_from_a_source_that_is_no_signal() -> None:
-    door = Door(opens_at=5)
-    registry = ErrorRegistry([door])
+    registry = ErrorRegistry([Door(opens_at=5)])
     assert registry.next_wake() == 5
 
     registry.judge(5)
+    changes = registry.renew()
 
-    assert registry.errors() == (DOOR,)
-    assert [reason.message for reason in registry.reasons()] == ["the door is open"]
-    assert registry.code(registry.errors()) == 128
+    assert (changes.raised, changes.cleared, changes.explained) == ((KEY,), (), (KEY,))
+    assert registry.errors == (DOOR,)
+    assert [reason.message for reason in registry.reasons] == ["the door is open"]
+    assert registry.code == 128
     assert registry.next_wake() is None
 
 
 def test_errors_of_all_sources_stand_in_the_order_of_their_bits() -> None:
     monitors, door = signals(), Door(opens_at=0)
-    sources: list[ErrorSource] = [door, *monitors.values()]
-    registry = ErrorRegistry(sources)
     monitors["estop"].receive(Reading("estop", True), "test", 0)
-    registry.judge(0)
+    registry = joined(door, *monitors.values())
 
-    assert registry.errors() == ("ESTOP", "STALE_DATA", DOOR)
-    assert registry.reasons()[0].code == "ESTOP", "the stop first"
-    assert registry.names[-1] == DOOR
+    assert registry.errors == ("ESTOP", "STALE_DATA", DOOR)
+    assert registry.reasons[0].code == "ESTOP", "the stop first"
+    assert [key.error for key in registry.order][-1] == DOOR
 
 
 def test_an_acknowledgement_reaches_the_source_of_the_error() -> None:
-    door = Door(opens_at=0)
-    registry = ErrorRegistry([door])
-    registry.judge(0)
+    registry = joined(Door(opens_at=0))
 
-    registry.acknowledge("ESTOP", 1)
-    assert registry.errors() == (DOOR,)
-    registry.acknowledge(DOOR, 1)
-    assert registry.errors() == ()
+    registry.acknowledge(ErrorKey(None, "ESTOP"), 1)
+    registry.renew()
+    assert registry.errors == (DOOR,)
+    registry.acknowledge(KEY, 1)
+    assert registry.renew().cleared == (KEY,)
+    assert not registry.errors
 
 
 def test_an_error_that_two_sources_raise_is_on_until_both_are_done() -> None:
     front, back = Door(opens_at=0), Door(opens_at=0)
-    registry = ErrorRegistry([front, back])
-    registry.judge(0)
+    registry = joined(front, back)
 
     front.is_open = False
-    assert registry.errors() == (DOOR,)
+    registry.touch(0)
+    assert registry.renew() == ErrorChanges(explained=(KEY,))
+    assert registry.errors == (DOOR,)
     back.is_open = False
-    assert registry.errors() == ()
+    registry.touch(1)
+    registry.renew()
+    assert not registry.errors
+
+
+def test_only_sources_that_were_touched_or_are_due_are_looked_at() -> None:
+    class CountingDoor(Door):
+        looks = 0
+
+        @property
+        def errors(self) -> frozenset[str]:
+            CountingDoor.looks += 1
+            return super().errors
+
+    registry = joined(*(CountingDoor(opens_at=number) for number in range(1_000)))
+    CountingDoor.looks = 0
+
+    registry.touch(7)
+    registry.renew()
+    registry.judge(1)
+    registry.renew()
+
+    assert 0 < CountingDoor.looks <= 6, "doors 7 and 1, however many there are"
+
+
+def test_an_error_without_a_bit_is_on_and_the_robot_is_well() -> None:
+    class Hatch(Door):
+        can_raise: Mapping[str, Raisable] = {
+            "OPEN": Raisable(ErrorKey(PartName("hatch"), "OPEN"), 0)
+        }
+
+    registry = joined(Door(opens_at=9), Hatch(opens_at=0, error="OPEN"))
+
+    hatch = ErrorKey(PartName("hatch"), "OPEN")
+    assert registry.is_on(hatch)
+    assert registry.reason(hatch).message == "the door is open"
+    assert (registry.errors, registry.code, registry.reasons) == ((), 0, ())
+    assert list(registry.order) == [KEY, hatch], "errors without a bit come last"
 
 
 def test_an_error_has_one_bit() -> None:
     class Hatch(Door):
-        bits: Mapping[str, int] = {DOOR: 256}
+        can_raise: Mapping[str, Raisable] = {DOOR: Raisable(KEY, 256)}
 
     with pytest.raises(InvalidValueError, match="128 and 256"):
         ErrorRegistry([Door(0), Hatch(0)])

@@ -7,15 +7,22 @@ from typing import cast
 import pytest
 
 from domain.events.event import RecordedEvent
+from domain.events.health import ErrorAcknowledged
 from domain.events.service import TimeWasDue
 from domain.health.health import Health
 from domain.health.signals import Recovery, SignalSettings, default_signals
-from domain.inputs import AcknowledgeRequest, Reading, Readings, Restored, SignalValue
+from domain.inputs import (
+    Reading,
+    Readings,
+    Restored,
+    SignalValue,
+    SourceFault,
+)
 from domain.kept import KeptError
 from domain.outbox import Outbox, Outputs
 from domain.restart import Restart
 from domain.robot_state import RobotState
-from domain.snapshot import TaskStatus
+from domain.snapshot import ErrorKey, TaskStatus
 from domain.storage import Storage
 from domain.tasks.driving import Driving
 from domain.timebase import Instant, seconds
@@ -43,8 +50,13 @@ class Robot:
         self.health.take_readings(Readings(items, "test"), self.now)
         return self._taken()
 
+    def fail(self, reason: str) -> list[RecordedEvent]:
+        self.health.take_fault(SourceFault("temperature", "file", reason), self.now)
+        return self._taken()
+
     def acknowledge(self, error: str) -> list[RecordedEvent]:
-        self.health.acknowledge(AcknowledgeRequest(error), self.now)
+        self.outbox.begin(self.now, ErrorAcknowledged(error))
+        self.health.acknowledge(ErrorKey(None, error), self.now)
         return self._taken()
 
     def restore(self, *kept: KeptError) -> list[RecordedEvent]:
@@ -119,6 +131,7 @@ def test_an_error_is_told_with_its_value_its_limit_and_the_reading_that_caused_i
         "value": 0.42,
         "threshold": 0.5,
         "part": None,
+        "root_cause": True,
     }
 
 
@@ -143,7 +156,11 @@ def test_the_end_of_an_error_is_told(health: Robot) -> None:
     health.read(battery_level=0.42)
     health.pass_time(0.5)
     events = health.read(**GOOD)
-    assert _only(events, "error.cleared").data == {"error": "BATTERY_LOW", "part": None}
+    assert _only(events, "error.cleared").data == {
+        "error": "BATTERY_LOW",
+        "part": None,
+        "root_cause": True,
+    }
     assert _only(events, "system_state.changed").data["state"] == "IDLE"
 
 
@@ -213,6 +230,15 @@ def test_silence_has_no_cause_but_time(health: Robot) -> None:
     raised = _only(health.pass_time(3), "error.raised")
     assert raised.data["error"] == "STALE_DATA"
     assert health.root(raised) == "time.passed"
+
+
+def test_why_a_source_gives_no_reading_is_told_once_until_it_changes(health: Robot) -> None:
+    told = _only(health.fail("no such file"), "signal.not_read")
+    assert told.data == {"signal": "temperature", "source": "file", "reason": "no such file"}
+    assert health.last.signals == {"temperature"}
+
+    assert health.fail("no such file") == []
+    _only(health.fail("permission denied"), "signal.not_read")
 
 
 def test_a_sender_whose_clock_is_off_is_told_once(health: Robot) -> None:

@@ -14,7 +14,7 @@ from domain.health.signals import (
     SignalSpec,
     default_signals,
 )
-from domain.inputs import Reading, SignalValue
+from domain.inputs import Reading, SignalValue, SourceFault
 from domain.timebase import seconds
 
 START = seconds(500)
@@ -300,6 +300,29 @@ def test_a_signal_never_seen_is_good_only_where_staleness_is_off(
 
     assert monitor.errors == errors
     assert monitor.view.stale is bool(errors)
+
+
+def test_a_signal_whose_source_fails_becomes_stale_in_its_own_time_and_says_why() -> None:
+    monitor = SignalMonitor(DEFAULTS["temperature"], START)
+    monitor.receive(Reading("temperature", 20.0), "file", START)
+    monitor.note_fault(SourceFault("temperature", "file", "no such file"), START + seconds(1))
+    assert monitor.view.source_fault == "no such file"
+    assert not monitor.view.stale
+
+    monitor.judge(START + seconds(2) + 1)
+    (reason,) = monitor.reasons()
+    assert reason.message == "no reading of temperature for 2 s: no such file"
+
+
+def test_only_a_reading_of_the_same_source_ends_its_fault() -> None:
+    monitor = SignalMonitor(DEFAULTS["temperature"], START)
+    monitor.note_fault(SourceFault("temperature", "file", "no such file"), START)
+
+    monitor.receive(Reading("temperature", 20.0), "pad", START)
+    assert monitor.view.source_fault == "no such file"
+
+    monitor.receive(Reading("temperature", 20.0), "file", START)
+    assert monitor.view.source_fault is None
 
 
 def test_a_stop_is_as_fresh_as_its_newest_reading_of_any_source() -> None:

@@ -160,6 +160,11 @@ def test_a_silent_signal_is_told_apart_from_one_never_heard(is_seen: bool, words
     assert stale_reason(DEFAULTS["temperature"], is_seen=is_seen) == words
 
 
+def test_a_silent_signal_says_why_its_source_is_silent() -> None:
+    words = stale_reason(DEFAULTS["temperature"], "no such file", is_seen=True)
+    assert words == "no reading of temperature for 2 s: no such file"
+
+
 @pytest.mark.parametrize(
     ("recovery", "words"),
     [

@@ -22,7 +22,7 @@ from domain.health.signals import (
 )
 from domain.health.state_manager import HealthChanges, StateManager
 from domain.inputs import Reading
-from domain.snapshot import SystemState, TaskStatus
+from domain.snapshot import ErrorKey, SystemState, TaskStatus
 from domain.timebase import seconds
 from tests.support.health_story import START, Robot, never_stale
 
@@ -100,7 +100,7 @@ def test_reasons_name_the_stop_first_and_what_is_merely_kept_on_last(robot: Robo
 
 
 def test_a_reason_carries_its_facts(robot: Robot) -> None:
-    (reason,) = robot.read(1, battery_level=0.42).raised
+    ((_, reason),) = robot.read(1, battery_level=0.42).raised
 
     assert (reason.code, reason.path, reason.value, reason.threshold, reason.since) == (
         "BATTERY_LOW",
@@ -170,7 +170,7 @@ def test_a_pulse_of_the_stop_within_one_message_is_seen(robot: Robot) -> None:
     robot.health.pass_time(START + seconds(1.2) - 1)
     assert robot.errors == ("ESTOP",)
 
-    assert robot.pass_time(1.2).cleared == ("ESTOP",)
+    assert robot.pass_time(1.2).cleared == (ErrorKey(None, "ESTOP"),)
 
 
 # --- acknowledgement -----------------------------------------------------------------------------
@@ -183,7 +183,7 @@ def test_a_stop_that_has_to_be_acknowledged_outlasts_its_release() -> None:
     assert robot.words == ["e-stop no longer causes ESTOP, which waits for acknowledgement"]
     assert robot.health.wake_at() is None
 
-    assert robot.acknowledge(9, "ESTOP").cleared == ("ESTOP",)
+    assert robot.acknowledge(9, "ESTOP").cleared == (ErrorKey(None, "ESTOP"),)
 
 
 def test_a_stop_acknowledged_while_pressed_ends_when_it_is_released() -> None:
@@ -191,7 +191,7 @@ def test_a_stop_acknowledged_while_pressed_ends_when_it_is_released() -> None:
     robot.read(1, estop=True)
     assert robot.acknowledge(2, "ESTOP").cleared == ()
 
-    assert robot.read(3, estop=False).cleared == ("ESTOP",)
+    assert robot.read(3, estop=False).cleared == (ErrorKey(None, "ESTOP"),)
 
 
 def test_acknowledging_one_error_leaves_the_others() -> None:
@@ -227,7 +227,7 @@ def test_a_bad_time_is_told_when_it_begins_and_when_it_becomes_an_error(robot: R
     assert not begun.state_changed
 
     raised = robot.pass_time(15)
-    assert [reason.code for reason in raised.raised] == ["GPS_LOST"]
+    assert [key.error for key, _ in raised.raised] == ["GPS_LOST"]
     assert (raised.pending, raised.settled) == ((), ())
     assert raised.signals == {"gps_accuracy"}
     assert robot.words == ["GPS accuracy 250 mm is above 200 mm, no good reading for 15 s"]
@@ -243,8 +243,8 @@ def test_an_error_due_long_ago_is_told_with_its_own_time(robot: Robot) -> None:
     robot.read(1, gps_accuracy=250.0)
     changes = robot.read(60, gps_accuracy=100.0)
 
-    assert [reason.since for reason in changes.raised] == [START + seconds(15)]
-    assert changes.cleared == ("GPS_LOST",)
+    assert [reason.since for _, reason in changes.raised] == [START + seconds(15)]
+    assert changes.cleared == (ErrorKey(None, "GPS_LOST"),)
 
 
 def test_what_is_due_at_an_instant_comes_before_what_arrives_at_it(robot: Robot) -> None:

@@ -6,7 +6,13 @@ from service.finding_codes.file_codes import ALL_FILES, ROBOT_FILES, WAYPOINT_FI
 from tests.support.shared import PROJECT
 
 _SOURCES = ("service/files", "domain/conditions", "domain/parts/lint")
-_MODULES = ("domain/parts/settings_check.py", "domain/parts/system_model.py")
+_MODULES = (
+    "domain/health/monitor_graph.py",
+    "domain/parts/errors_check.py",
+    "domain/parts/reactions_check.py",
+    "domain/parts/settings_check.py",
+    "domain/parts/system_model.py",
+)
 _CODE = re.compile(r'"(ALIAS|CYCLE|HEADER|[A-Z]+(?:_[A-Z]+)+)"')
 _NO_FINDINGS = frozenset(
     {

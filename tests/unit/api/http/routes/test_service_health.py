@@ -8,7 +8,13 @@ from fastapi import FastAPI
 
 from domain.actor import Actor
 from domain.findings import Finding
-from domain.inputs import DriveStatus, EmergencyStopRequest, Reading
+from domain.inputs import (
+    DriveStatus,
+    EmergencyStopRequest,
+    Reading,
+    Readings,
+    SourceFault,
+)
 from domain.timebase import seconds
 from service.simulation.simulated import SimulatedBackend
 from service.supervisor import Supervisor
@@ -99,6 +105,16 @@ async def test_a_sender_with_a_wrong_clock_is_a_warning(
     supervisor.readings.submit([early])
 
     assert "temperature" in (await warnings(http))["CLOCK_SKEW"]
+
+
+async def test_a_source_that_fails_is_a_warning_until_it_reads_again(
+    http: httpx.AsyncClient, supervisor: Supervisor
+) -> None:
+    supervisor.submit(SourceFault("temperature", "file", "no such file"))
+    assert (await warnings(http))["SOURCE_FAILS"] == "no reading of temperature: no such file"
+
+    supervisor.submit(Readings((Reading("temperature", 30.0),), "file"))
+    assert "SOURCE_FAILS" not in await warnings(http)
 
 
 async def test_ticks_that_were_late_are_a_warning(

@@ -5,6 +5,7 @@ from collections.abc import AsyncIterator
 import pytest
 
 from domain.health.signals import SignalKind, SignalSettings, SignalSpec, default_signals
+from domain.inputs import SourceFault
 from domain.supervision import SupervisionSettings
 from service.files.robot_settings import SignalsBlock
 from tests.support.http_robot import HttpRobot, http_robot
@@ -59,6 +60,19 @@ async def test_a_signal_never_seen_has_no_age_and_is_stale(unmocked: HttpRobot) 
 
     assert (signal["value"], signal["age_s"], signal["received_at"]) == (None, None, None)
     assert signal["stale"] is True
+
+
+async def test_a_signal_says_why_its_source_gives_no_reading(unmocked: HttpRobot) -> None:
+    unmocked.supervisor.submit(SourceFault("temperature", "file", "no such file"))
+    await unmocked.pass_time(3)
+
+    assert (await unmocked.get("/signals/temperature"))["source_fault"] == "no such file"
+    reasons = (await unmocked.get("/system_state"))["reasons"]
+    assert "no reading of temperature yet: no such file" in [r["message"] for r in reasons]
+
+    reading = {"value": 20, "source": "file"}
+    await unmocked.http.post("/signals/temperature", json=reading)
+    assert (await unmocked.get("/signals/temperature"))["source_fault"] is None
 
 
 async def test_an_error_that_is_on_its_way_tells_how_far_it_is(robot: HttpRobot) -> None:

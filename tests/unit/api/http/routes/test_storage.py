@@ -6,6 +6,7 @@ import pytest
 
 from service.storage.journal import LogStatus, StorageStatus
 from service.storage.memory import MemoryJournal
+from service.storage.trends.trends import Trends, TrendsStatus
 from tests.support.http_robot import HttpRobot
 
 NOON = datetime(2026, 1, 1, 12, tzinfo=UTC)
@@ -58,7 +59,20 @@ async def test_a_full_disk_is_shown_with_what_is_lost(robot: HttpRobot) -> None:
         },
         "lost_inputs": 30,
         "lost_events": 2,
+        "history": {"bytes": 0, "lost_readings": 0, "reason": None},
     }
+
+
+async def test_the_history_of_the_signals_is_shown_beside_the_logs(
+    robot: HttpRobot, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    broken_file = TrendsStatus(5_000, 7, "disk I/O error")
+    monkeypatch.setattr(Trends, "status", broken_file)
+
+    shown = await robot.get("/storage")
+
+    broken = {"bytes": 5_000, "lost_readings": 7, "reason": "disk I/O error"}
+    assert shown["history"] == broken
 
 
 @pytest.mark.usefixtures("_full")

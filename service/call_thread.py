@@ -1,4 +1,4 @@
-"""A thread that waits for the disk, so that the loop does not."""
+"""A thread for calls that block, so that the loop does not."""
 
 import asyncio
 import threading
@@ -10,10 +10,10 @@ from typing import TypeVar
 Result = TypeVar("Result")
 
 
-class DiskThread:
+class CallThread:
     """Runs calls one after the other in a thread of its own.
 
-    A daemon: a disk that never answers must not keep the process from ending.
+    A daemon: a disk or a device that never answers must not keep the process from ending.
     """
 
     def __init__(self, name: str) -> None:
@@ -59,6 +59,6 @@ def _tell(
         else:
             future.set_result(result)  # type: ignore[arg-type]  # of the call that did not fail
 
-    # The loop may have been closed while the disk was slow; then nobody waits any more.
+    # The loop may have been closed while the call blocked; then nobody waits any more.
     with suppress(RuntimeError):
         loop.call_soon_threadsafe(settle)

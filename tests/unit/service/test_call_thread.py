@@ -4,11 +4,11 @@ from functools import partial
 
 import pytest
 
-from service.storage.sqlite.disk_thread import DiskThread
+from service.call_thread import CallThread
 
 
 async def test_calls_run_in_order_in_one_thread_of_their_own() -> None:
-    thread = DiskThread("disk")
+    thread = CallThread("disk")
     names: list[str] = []
 
     def call(number: int) -> int:
@@ -23,7 +23,7 @@ async def test_calls_run_in_order_in_one_thread_of_their_own() -> None:
 
 
 async def test_what_a_call_raises_is_raised_where_it_is_awaited() -> None:
-    thread = DiskThread("disk")
+    thread = CallThread("disk")
 
     def fail() -> None:
         raise OSError("no disk")
@@ -34,7 +34,7 @@ async def test_what_a_call_raises_is_raised_where_it_is_awaited() -> None:
 
 
 async def test_the_loop_goes_on_while_the_disk_is_slow() -> None:
-    thread = DiskThread("disk")
+    thread = CallThread("disk")
     gate = threading.Event()
 
     slow = thread.run(gate.wait)
@@ -47,7 +47,7 @@ async def test_the_loop_goes_on_while_the_disk_is_slow() -> None:
 
 
 async def test_nobody_has_to_wait_for_a_call_any_more() -> None:
-    thread = DiskThread("disk")
+    thread = CallThread("disk")
     gate = threading.Event()
     slow = thread.run(gate.wait)
     following = thread.run(lambda: "done")
@@ -60,7 +60,7 @@ async def test_nobody_has_to_wait_for_a_call_any_more() -> None:
 
 
 def test_a_loop_that_ended_meanwhile_is_no_concern() -> None:
-    thread = DiskThread("disk")
+    thread = CallThread("disk")
     gate, ended = threading.Event(), threading.Event()
 
     async def begin() -> None:

@@ -1,0 +1,71 @@
+"""The model file and the robot file that a command was given, read and checked."""
+
+from dataclasses import dataclass
+from pathlib import Path
+
+from api.cli.checked_file import CheckedFile
+from domain.errors import InvalidModelError
+from domain.findings import Finding
+from domain.health.signals import SignalSettings, default_signals
+from domain.parts.system_model import SmhModel
+from service.files.model_file import read_model
+from service.files.robot_file import InvalidRobotFileError, read_robot_file
+from service.files.text_file import read_text_file
+
+_STANDARD_INPUT = Path("/dev/stdin")
+
+
+@dataclass(frozen=True, slots=True)
+class RobotFiles:
+    """What was read of a robot."""
+
+    files: tuple[CheckedFile, ...]
+    """The model, and the robot file if it was given and checked."""
+    model: SmhModel | None
+    """None: a file is invalid."""
+    signals: tuple[SignalSettings, ...]
+
+
+def read_robot_files(name: str, robot: str | None) -> RobotFiles:
+    """Read a model, and the robot file with it; without a valid model the latter is not checked.
+
+    Args:
+        name: Path of the model file; `-` is the standard input.
+        robot: Path of the robot file, or None.
+
+    Raises:
+        UnreadableFileError: A file cannot be read.
+    """
+    text = read_text_file(_STANDARD_INPUT if name == "-" else Path(name))
+    if robot is None:
+        model, findings = _read(text)
+        return RobotFiles((CheckedFile(name, text, findings),), model, default_signals())
+    settings_text = read_text_file(Path(robot))
+    model, findings = _read(text)
+    if model is None:
+        return RobotFiles((CheckedFile(name, text, findings),), None, ())
+    try:
+        settings = read_robot_file(settings_text, model)
+    except InvalidRobotFileError as error:
+        of_robot = CheckedFile(robot, settings_text, tuple(error.findings))
+        return RobotFiles((CheckedFile(name, text, findings), of_robot), None, ())
+    signals = settings.to_signal_settings()
+    model, findings = _read(text, signals)
+    of_model, of_robot = CheckedFile(name, text, findings), CheckedFile(robot, settings_text, ())
+    return RobotFiles((of_model, of_robot), model, signals)
+
+
+def _read(
+    text: str, signals: tuple[SignalSettings, ...] | None = None
+) -> tuple[SmhModel | None, tuple[Finding, ...]]:
+    """Return a model, if it is valid, and all findings.
+
+    Args:
+        text: The text of the file.
+        signals: All signals of the robot, or None, as for `read_model`.
+    """
+    try:
+        loaded = read_model(text, signals)
+    except InvalidModelError as error:
+        return None, tuple(error.findings)
+    return loaded.model, loaded.warnings

@@ -1,0 +1,1 @@
+"""Statistics over sliding windows: what the readings of the last seconds say together."""

@@ -1,0 +1,63 @@
+from pathlib import Path
+
+import pytest
+
+from api.cli.robot_files import read_robot_files
+from service.files.text_file import UnreadableFileError
+from tests.support.http_robot import ACTUATION
+
+LOAD = "signals: {load: {error: OVERLOAD, above: 10}}\n"
+
+
+@pytest.fixture
+def model(tmp_path: Path) -> Path:
+    path = tmp_path / "model.yaml"
+    path.write_text(ACTUATION)
+    return path
+
+
+@pytest.fixture
+def robot(tmp_path: Path) -> Path:
+    path = tmp_path / "robot.yaml"
+    path.write_text(LOAD)
+    return path
+
+
+def test_a_model_alone_has_the_five_usual_signals(model: Path) -> None:
+    read = read_robot_files(str(model), None)
+
+    assert read.model is not None
+    assert [file.is_valid for file in read.files] == [True]
+    assert len(read.signals) == 5
+
+
+def test_a_robot_file_brings_its_signals(model: Path, robot: Path) -> None:
+    read = read_robot_files(str(model), str(robot))
+
+    assert read.model is not None
+    assert [file.name for file in read.files] == [str(model), str(robot)]
+    assert read.signals[-1].spec.name == "load"
+
+
+def test_without_a_valid_model_the_robot_file_is_not_checked(model: Path, robot: Path) -> None:
+    model.write_text(ACTUATION.replace("\ndrive_base:", "\nwheels:"))
+    robot.write_text("nodes: {nobody: {}}\n")
+
+    read = read_robot_files(str(model), str(robot))
+
+    assert read.model is None
+    assert [(file.name, file.is_valid) for file in read.files] == [(str(model), False)]
+
+
+def test_an_invalid_robot_file_is_told_beside_the_model(model: Path, robot: Path) -> None:
+    robot.write_text("nodes: {nobody: {}}\n")
+
+    read = read_robot_files(str(model), str(robot))
+
+    assert read.model is None
+    assert [file.is_valid for file in read.files] == [True, False]
+
+
+def test_a_file_that_is_not_there_is_told(model: Path) -> None:
+    with pytest.raises(UnreadableFileError):
+        read_robot_files(str(model), "/nowhere/robot.yaml")
