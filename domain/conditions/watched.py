@@ -52,6 +52,8 @@ class WatchedConditions:
         self._by_topic: dict[Topic, dict[Subject, list[_Leaf]]] = {}
         self._touched: dict[Topic, None] = {}
         """In the order in which they were touched."""
+        self.may_have_changed = False
+        """Whether facts may have changed since the last `renew`."""
         self.revision = 0
         """Rises whenever a condition gets another value."""
 
@@ -110,6 +112,7 @@ class WatchedConditions:
 
         They come in the order in which they were touched, and then in which they were added.
         """
+        self.may_have_changed = False
         doubtful: dict[str, _Watched] = {}
         touched, self._touched = self._touched, {}
         for topic in touched:
