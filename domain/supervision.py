@@ -37,6 +37,7 @@ from domain.parts.system_model import SmhModel
 from domain.reactions.displacing import Displacing
 from domain.reactions.fallbacks import Fallbacks
 from domain.reactions.reaction import Reaction, reactions_of
+from domain.reactions.reaction_view import ReactionView
 from domain.reactions.reactions import Reactions
 from domain.reactions.rules import Rules
 from domain.reactions.settings import RuleSettings
@@ -53,7 +54,6 @@ from domain.snapshot import (
     ParameterView,
     PartView,
     PlanView,
-    ReactionView,
     SignalView,
     SystemStateView,
 )
@@ -97,27 +97,22 @@ class Supervision:
         self.model = model
         self._now = start
         outbox = self._outbox = Outbox()
-        self._parts = Parts(model, self._outbox)
-        self._health = Health(settings.signals, self._outbox, start)
-        self._emergency_stop = EmergencyStop(self._health, self._outbox)
-        self.driving = Driving(
-            settings.tasks, settings.vehicle, self._health, self._emergency_stop, outbox, start
-        )
-        storage = Storage(self._outbox)
-        self._robot_state = RobotState(self._health, self.driving, storage, self._outbox)
-        self._part_errors = PartErrors(
-            self._parts, self._health.error_list, outbox, start, settings.checkpoints
-        )
-        self.facts = RobotFacts(self._parts, self._health, self.driving, self._part_errors.reason)
+        parts = self._parts = Parts(model, outbox)
+        health = self._health = Health(settings.signals, outbox, start)
+        stop = self._emergency_stop = EmergencyStop(health, outbox)
+        self.driving = Driving(settings.tasks, settings.vehicle, health, stop, outbox, start)
+        storage = Storage(outbox)
+        self._robot_state = RobotState(health, self.driving, storage, outbox)
+        errors = PartErrors(parts, health.error_list, outbox, start, settings.checkpoints)
+        self._part_errors = errors
+        self.facts = RobotFacts(parts, health, self.driving, errors.reason)
         """What conditions are evaluated over."""
         self.conditions = WatchedConditions(self.facts)
         """The conditions of the model, kept up to date; read only."""
         guards = Guards(model, self.conditions, start)
         reactions = reactions_of(model, self.conditions, start)
-        self._changing = Changing(
-            self._parts, self._health, self._part_errors, settings.changes, self._outbox, guards
-        )
-        displacing = Displacing(self._parts, self._changing, outbox)
+        self._changing = Changing(parts, health, errors, settings.changes, outbox, guards)
+        displacing = Displacing(parts, self._changing, outbox)
         self._reactions = self._reactions_by(displacing, reactions, guards, start)
         # Driving stops the vehicle before the state is published and changes continue.
         self._concerns: tuple[Concern, ...] = (

@@ -54,6 +54,8 @@ class WatchedConditions:
         """Of each who follows, the conditions whose value changed since it looked last, by text."""
         self.revision = 0
         """Rises whenever a condition gets another value."""
+        self.leaf_revision = 0
+        """Rises whenever a comparison does, and so the reason of a condition may be another one."""
 
     @property
     def topics(self) -> Collection[Topic]:
@@ -115,6 +117,7 @@ class WatchedConditions:
                     truth = compare(leaf.comparison, observed)
                     if truth is not leaf.truth:
                         leaf.truth, leaf.since = truth, now
+                        self.leaf_revision += 1
                         doubtful.update((each.condition.text, each) for each in leaf.conditions)
         changed = []
         for watched in doubtful.values():
