@@ -23,6 +23,7 @@ from api.http.routes import (
     analysis,
     announcing,
     changes,
+    checkpoints,
     emergency_stop,
     errors,
     example_tracks,
@@ -54,6 +55,7 @@ _RESOURCES = (
     openapi_router,
     # Before the parts: the path of a part matches everything below /nodes.
     parameters.router,
+    checkpoints.router,
     changes.router,
     model.router,
     inference.router,

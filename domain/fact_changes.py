@@ -1,6 +1,6 @@
 """Notes which facts an input changed, and evaluates the conditions that name them."""
 
-from collections.abc import Iterable, Iterator, Mapping, Set
+from collections.abc import Hashable, Iterable, Iterator, Mapping, Set
 from typing import TypeVar
 
 from domain.concern import Concern, Takers
@@ -14,7 +14,7 @@ from domain.state_and_mode import PartName
 from domain.tasks.driving import Driving
 from domain.timebase import Instant
 
-_Key = TypeVar("_Key", str, PartName, ErrorKey)
+KeyT = TypeVar("KeyT", bound=Hashable)
 
 _ROBOT, _TASK, _VEHICLE = map(Topic, (TopicKind.ROBOT, TopicKind.TASK, TopicKind.VEHICLE))
 
@@ -47,10 +47,10 @@ class FactChanges(Concern):
         """Actual state and mode of each named part as they were evaluated last."""
         self._reported: set[str] = set()
         """Nodes that reported since the last `settle`, and the systems above them."""
-        errors = [topic for topic in topics if topic.kind is TopicKind.ERROR]
-        self._robot_errors = [topic for topic in errors if not topic.part]
-        self._part_errors = {
-            ErrorKey(PartName(topic.part), topic.name): topic for topic in errors if topic.part
+        self._errors = {
+            ErrorKey(PartName(topic.part) if topic.part else None, topic.name): topic
+            for topic in topics
+            if topic.kind is TopicKind.ERROR
         }
         self._holds = [topic for topic in topics if topic.kind is TopicKind.HOLD]
         self._seen: object = None
@@ -75,10 +75,7 @@ class FactChanges(Concern):
             return False
         self._touch(_named(self._outbox.signals, self._signals))
         self._touch_parts()
-        if self._outbox.errors:
-            # Errors of the robot are few. Of its parts, each may have some.
-            self._touch(self._robot_errors)
-            self._touch(_named(self._outbox.errors, self._part_errors))
+        self._touch(_named(self._outbox.errors, self._errors))
         if (holds := self._driving.holds) is not self._seen:
             # A pose that is too old sets a hold.
             self._touch((*self._holds, _VEHICLE))
@@ -112,7 +109,7 @@ class FactChanges(Concern):
             self._watched.touch(topic)
 
 
-def _named(changed: Set[_Key], named: Mapping[_Key, Topic]) -> Iterator[Topic]:
+def _named(changed: Set[KeyT], named: Mapping[KeyT, Topic]) -> Iterator[Topic]:
     """Yield what is in both; the smaller one may be far smaller."""
     if len(changed) < len(named):
         yield from (named[key] for key in changed if key in named)

@@ -5,6 +5,7 @@ from dataclasses import dataclass
 from typing import TypeAlias
 
 from domain.actor import NOBODY, Actor
+from domain.findings import Fact
 from domain.identifiers import ChangeId, GoalId
 from domain.kept import Kept
 from domain.lifecycle import LifecycleState, Transition
@@ -260,6 +261,19 @@ class UnshelveRequest:
 
 
 @dataclass(frozen=True, slots=True)
+class ErrorReport:
+    """Somebody found an error of a part that nothing here looks for, or that it is over."""
+
+    part: PartName | None
+    """None: of the robot itself, whose errors are all found here; it is rejected."""
+    error: str
+    active: bool
+    message: str = ""
+    value: Fact = None
+    actor: Actor = NOBODY
+
+
+@dataclass(frozen=True, slots=True)
 class ArmRequest:
     """Let a reaction act, only tell when it would, or neither."""
 
@@ -373,6 +387,7 @@ Input: TypeAlias = (
     | CancelRequest
     | EmergencyStopRequest
     | AcknowledgeRequest
+    | ErrorReport
     | ArmRequest
     | AcknowledgeReactionRequest
     | ShelveRequest

@@ -188,6 +188,23 @@ class KeptFailedChange:
 
 
 @dataclass(frozen=True, slots=True)
+class KeptReport:
+    """An error of a part that somebody reported, and that is not over."""
+
+    part: PartName
+    error: str
+    message: str
+    value: Fact
+    since: Instant
+    """When it was reported first."""
+
+    @property
+    def name(self) -> str:
+        """Return its name among those of its kind."""
+        return f"{self.part}.{self.error}"
+
+
+@dataclass(frozen=True, slots=True)
 class KeptHold:
     """A hold that somebody set."""
 
@@ -284,6 +301,7 @@ Kept: TypeAlias = (
     | KeptShelf
     | KeptClock
     | KeptFailedChange
+    | KeptReport
     | KeptHold
     | KeptReaction
     | KeptTask

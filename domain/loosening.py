@@ -9,6 +9,7 @@ from domain.inputs import (
     CancelRequest,
     CancelTaskRequest,
     EmergencyStopRequest,
+    ErrorReport,
     HoldRequest,
     Input,
     ModeRequest,
@@ -40,6 +41,8 @@ def may_loosen(given: Input, *, is_stopped: bool, holds: Collection[str]) -> boo
     match given:
         case EmergencyStopRequest(engaged=engaged):
             return is_stopped and not engaged
+        case ErrorReport(active=active):
+            return not active
         case ReleaseRequest(owner=owner):
             return owner in holds
         case TransitionRequest(transition=transition):

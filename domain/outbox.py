@@ -63,6 +63,8 @@ class Outbox:
         self._kept: dict[tuple[type[Kept], str], Keeping] = {}
         self._commands: list[Command] = []
         self._events: list[RecordedEvent] = []
+        self.step = 0
+        """Rises with each input, and with each portion of what an earlier one left."""
         self._next_event = 1
         self._next_request = 1
         self._at: Instant = 0
@@ -84,6 +86,7 @@ class Outbox:
         """
         self._at, self._input, self._actor, self._cause = now, event, actor, cause
         self._input_id = None
+        self.step += 1
 
     def number_events_from(self, first: int) -> None:
         """Give the next event this id: those before may have been told by an earlier run."""
@@ -113,6 +116,7 @@ class Outbox:
             actor: Who sent it.
         """
         self._at, self._actor, self._input_id = now, actor, recorded
+        self.step += 1
 
     def record_input(self) -> int:
         """Record the input, unless it is recorded already; return its event id."""

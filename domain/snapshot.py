@@ -381,9 +381,21 @@ class ErrorView:
     """When it was raised, or when it began to be pending; None: it is normal."""
     count: int
     """How often it was raised, in this run of the service."""
+    caused_by: "tuple[ErrorKey, ...]" = ()
+    """The errors that explain it: those of its causes that are on, or were last."""
+    roots: "tuple[ErrorKey, ...]" = ()
+    """The errors that it goes back to through its causes; empty: it is a root itself."""
+    hint: str = ""
+    """What to do about it; empty: nobody said."""
+
     ended: Instant | None = None
     """When its cause was gone; None: it is present, or that is not known."""
     marks: ErrorMarks = NO_MARKS
+
+    @property
+    def is_root(self) -> bool:
+        """Tell whether no other error explains it."""
+        return not self.roots
 
     @property
     def is_open(self) -> bool:

@@ -24,9 +24,12 @@ from domain.health.announcing import Announcing
 from domain.health.checkpoint_errors import CheckpointErrors
 from domain.health.checkpoints import CheckpointSettings
 from domain.health.emergency_stop import EmergencyStop
+from domain.health.error_causes import ErrorCauses
 from domain.health.health import Health
 from domain.health.mode_limits import ModeLimits
 from domain.health.part_errors import PartErrors
+from domain.health.propagation import Propagation
+from domain.health.reported_errors import ReportedErrors
 from domain.health.signals import SignalSettings, default_signals
 from domain.inputs import ChangeRequest, Input, TimePassed
 from domain.lifecycle import Transition
@@ -98,7 +101,7 @@ class Supervision:
         self._now = start
         outbox = self._outbox = Outbox()
         parts = self._parts = Parts(model, outbox)
-        health = self._health = Health(settings.signals, outbox, start)
+        health = self._health = Health(settings.signals, outbox, start, ErrorCauses(model))
         stop = self._emergency_stop = EmergencyStop(health, outbox)
         self.driving = Driving(settings.tasks, settings.vehicle, health, stop, outbox, start)
         storage = Storage(outbox)
@@ -120,7 +123,7 @@ class Supervision:
             self._parts,
             self._health,
             self._emergency_stop,
-            ModeLimits(settings.signals, self._parts, self._health, self._outbox),
+            ModeLimits(settings.signals, parts, health, outbox),
             self.driving,
             Standstill(self.driving, self._emergency_stop, self._outbox),
             storage,
@@ -142,10 +145,13 @@ class Supervision:
         """Return what else raises errors of parts, what conditions then say, and who is told."""
         parts, health, errors, outbox = self._parts, self._health, self._part_errors, self._outbox
         announcing = Announcing(health, errors, self.conditions, outbox, start)
+        propagation = Propagation(health.error_list, self.conditions, errors.unheard, outbox, start)
         return (
+            ReportedErrors(self.model, health.error_list, outbox),
             CheckpointErrors(settings.checkpoints, parts, health, errors, outbox),
             # It evaluates all conditions, and so comes last of those that watch some.
             FactChanges(self.conditions, parts, self.driving, outbox),
+            propagation,
             announcing,
         )
 
@@ -389,8 +395,7 @@ class Supervision:
 
     def error_graph(self) -> ErrorGraph:
         """Return the critical and fatal errors, and the errors that they follow from."""
-        own = {view.key: view.severity for view in self._health.error_views()}
-        return error_graph(self.model, own)
+        return error_graph(self.model, self._health.severities())
 
     @property
     def parts_with_errors(self) -> Mapping[str, int]:

@@ -7,7 +7,6 @@ from typing import Generic, TypeVar
 from domain.reactions.reaction_view import ReactionView
 from domain.snapshot import (
     EmergencyStopView,
-    ErrorState,
     ErrorView,
     HoldView,
     PartView,
@@ -133,7 +132,7 @@ class FrameFeed(Watched):
         """Forget errors that ended so long ago that every reader took a frame since."""
         for name, view in frame.errors.items():
             self._ended_in.pop(name, None)
-            if view.state is ErrorState.NORMAL:
+            if not view.is_open:
                 self._ended_in[name] = frame.seq
         while self._ended_in:
             name, ended_in = next(iter(self._ended_in.items()))

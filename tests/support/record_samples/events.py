@@ -51,6 +51,9 @@ from domain.events.health import (
     ErrorAcknowledged,
     ErrorCleared,
     ErrorRaised,
+    ErrorReported,
+    PropagationNotSeen,
+    SignalLimitsChanged,
     SignalNotRead,
     SignalPending,
     SignalRead,
@@ -59,6 +62,7 @@ from domain.events.health import (
     SystemStateChanged,
 )
 from domain.events.parts import (
+    CheckpointReached,
     DeviationBegan,
     DeviationEnded,
     NodeReachable,
@@ -174,6 +178,7 @@ EVENTS: Mapping[str, tuple[object, ...]] = {
     "error.cleared": (
         ErrorCleared(error="LOW_BATTERY"),
         ErrorCleared(error="DEVIATES", part=PartName("arm")),
+        ErrorCleared(error="SILENT", part=PartName("left/arm"), root_cause=False),
     ),
     "error.raised": (
         ErrorRaised(error="LOW_BATTERY", message="12.5 % < 20 %", value=12.5, threshold=12.5),
@@ -183,6 +188,23 @@ EVENTS: Mapping[str, tuple[object, ...]] = {
             value="inactive",
             threshold="active.FAST",
             part=PartName("arm"),
+        ),
+        ErrorRaised(
+            error="SILENT",
+            message="not part('left/arm').reachable",
+            value=None,
+            threshold=None,
+            part=PartName("left/arm"),
+            root_cause=False,
+        ),
+    ),
+    "error.reported": (
+        ErrorReported(
+            part=PartName("left/arm"),
+            error="JAMMED",
+            active=True,
+            message='Größe ≤ 3 — "gripper\\jam"',
+            value=12.5,
         ),
     ),
     "goal.ended": (GoalEnded(goal=GoalId(5), succeeded=True, reason='Größe ≤ 3 — "gripper\\jam"'),),
@@ -245,6 +267,7 @@ EVENTS: Mapping[str, tuple[object, ...]] = {
             reason='Größe ≤ 3 — "gripper\\jam"',
         ),
     ),
+    "checkpoint.reached": (CheckpointReached(node=PartName("left/arm"), checkpoint="cycle"),),
     "part.deviation_ended": (
         DeviationEnded(
             part=PartName("arm"),
@@ -277,7 +300,20 @@ EVENTS: Mapping[str, tuple[object, ...]] = {
     "signal.not_read": (
         SignalNotRead(signal="disk", source="os disk /", reason='Größe ≤ 3 — "gripper\\jam"'),
     ),
+    "signal.limits_changed": (
+        SignalLimitsChanged(signal="load", because="left/arm.FAST", above=60.0),
+        SignalLimitsChanged(signal="load", because=None),
+    ),
     "signal.skewed": (SignalSkewed(signal="battery_level"),),
+    "propagation.not_seen": (
+        PropagationNotSeen(
+            error="LATE",
+            part=PartName("mapper"),
+            cause_error="SILENT",
+            cause_part=PartName("left/arm"),
+            within_s=2.0,
+        ),
+    ),
     "reaction.acting": (
         ReactionActing(
             part=PartName("left/arm"),

@@ -12,8 +12,10 @@ from domain.inputs import (
     BackendStatus,
     CancelRequest,
     CancelTaskRequest,
+    CheckpointReport,
     DriveStatus,
     EmergencyStopRequest,
+    ErrorReport,
     GoalFeedback,
     GoalResult,
     HoldRequest,
@@ -60,6 +62,18 @@ INPUTS: Mapping[str, tuple[object, ...]] = {
             parameters=None,
             reachable=None,
             has_lifecycle=None,
+        ),
+    ),
+    "checkpoint_report": (
+        CheckpointReport(
+            node=PartName("left/arm"),
+            checkpoint="cycle",
+            actor=Actor(name="ada", way="http", address="10.0.0.7"),
+        ),
+        CheckpointReport(
+            node=PartName("left/arm"),
+            checkpoint="cycle",
+            actor=Actor(name="", way="", address=""),
         ),
     ),
     "node_answer": (
@@ -238,6 +252,17 @@ INPUTS: Mapping[str, tuple[object, ...]] = {
             part=PartName("arm"),
         ),
         UnshelveRequest(error="LOW_BATTERY", actor=Actor(), part=None),
+    ),
+    "error_report": (
+        ErrorReport(
+            part=PartName("left/arm"),
+            error="JAMMED",
+            active=True,
+            message='Größe ≤ 3 — "gripper\\jam"',
+            value=12.5,
+            actor=Actor(name="ada", way="http", address="10.0.0.7"),
+        ),
+        ErrorReport(part=None, error="JAMMED", active=False),
     ),
     "arm_request": (
         ArmRequest(

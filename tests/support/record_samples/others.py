@@ -20,6 +20,7 @@ from domain.kept import (
     KeptHold,
     KeptProgress,
     KeptReaction,
+    KeptReport,
     KeptShelf,
     KeptTarget,
     KeptTask,
@@ -240,6 +241,15 @@ OTHERS: Mapping[str, tuple[object, ...]] = {
             change=ChangeId("3"),
             message="change 3 failed: 12.5 % < 20 %",
             status="failed",
+            since=1764420000123456789,
+        ),
+    ),
+    "kept_report": (
+        KeptReport(
+            part=PartName("left/arm"),
+            error="JAMMED",
+            message='Größe ≤ 3 — "gripper\\jam"',
+            value=12.5,
             since=1764420000123456789,
         ),
     ),

@@ -44,6 +44,7 @@ CONTRACT = {
     "/nodes/{part}/reactions/{reaction}": {"patch"},
     "/nodes/{part}/reactions/{reaction}/acknowledge": {"post"},
     "/nodes/{part}/parameters": {"get", "patch"},
+    "/nodes/{part}/checkpoints/{checkpoint}": {"post"},
     "/changes": {"get"},
     "/changes/{change}": {"get", "delete"},
     "/model": {"get"},
