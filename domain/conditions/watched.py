@@ -22,7 +22,7 @@ class _Watched:
     since: Instant
     broken_since: Instant | None
     """Since when it is false or unknown; None: it is true."""
-    followers: "list[dict[str, Condition]]" = field(default_factory=list)
+    followers: list[dict[str, Condition]] = field(default_factory=list)
     """Where it is noted that its value changed."""
 
 

@@ -44,8 +44,8 @@ class ReportedErrors(Concern):
         told = ErrorReported(part, report.error, report.active, message, report.value)
         self._outbox.begin(now, told, report.actor)
         if not report.active:
-            self._outbox.forget(KeptReport, key.name)
             if self._errors.is_on(key):
+                self._outbox.forget(KeptReport, key.name)
                 self._errors.clear(key)
             return
         own = self._errors.causes.declared[key]

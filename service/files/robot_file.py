@@ -254,13 +254,27 @@ def _faults(settings: RobotSettings, model: SmhModel) -> Iterator[Fault]:
     for keys, code, message in faults_of_signals(settings.signals, model):
         yield ("signals", *keys), code, message
     kinds = {signal.spec.name: signal.spec.kind for signal in settings.to_signal_settings()}
-    for keys, code, message in settings.ros2.faults(kinds):
+    for keys, code, message in settings.ros2.faults(kinds, model):
         yield ("ros2", *keys), code, message
-    # Several sources of a stop are kept apart; of anything else the newest reading would count.
-    for name in sorted(settings.signals.sources.keys() & settings.ros2.signals.keys()):
-        if name != ESTOP_SIGNAL:
-            message = f"{name} has a source under signals; remove one of them"
-            yield ("ros2", "signals", name), "INVALID_VALUE", message
+    yield from _faults_of_two_sources(settings)
+
+
+def _faults_of_two_sources(settings: RobotSettings) -> Iterator[Fault]:
+    """Yield signals that have a topic beside what else gives their value."""
+    further = settings.signals.further
+    for key, named in (
+        ("signals", settings.ros2.signals),
+        ("statistics", settings.ros2.statistics),
+    ):
+        for name in named:
+            monitored = further[name].of if name in further else None
+            if monitored is not None:
+                message = f"{name} is a monitor: its value follows from {monitored}"
+                yield ("ros2", key, name), "INVALID_VALUE", message
+            # Several sources of a stop are kept apart; else the newest reading would count.
+            elif name in settings.signals.sources and name != ESTOP_SIGNAL:
+                message = f"{name} has a source under signals; remove one of them"
+                yield ("ros2", key, name), "INVALID_VALUE", message
 
 
 def _plain(node: Node | None, findings: list[Finding]) -> Any:  # noqa: ANN401  # as in JSON
