@@ -5,11 +5,13 @@ from dataclasses import dataclass
 from typing import TypeAlias
 
 from domain.actor import NOBODY, Actor
+from domain.findings import Fact
 from domain.identifiers import ChangeId, GoalId
 from domain.kept import Kept
 from domain.lifecycle import LifecycleState, Transition
 from domain.parameters import Parameters, ParameterValue
 from domain.paths.path import Path
+from domain.reaction_terms import Arm
 from domain.state_and_mode import ModeName, PartName
 from domain.timebase import Duration, Instant, seconds
 from domain.vehicle import DriveCommand, Point, VehicleState
@@ -259,6 +261,39 @@ class UnshelveRequest:
 
 
 @dataclass(frozen=True, slots=True)
+class ErrorReport:
+    """Somebody found an error of a part that nothing here looks for, or that it is over."""
+
+    part: PartName | None
+    """None: of the robot itself, whose errors are all found here; it is rejected."""
+    error: str
+    active: bool
+    message: str = ""
+    value: Fact = None
+    actor: Actor = NOBODY
+
+
+@dataclass(frozen=True, slots=True)
+class ArmRequest:
+    """Let a reaction act, only tell when it would, or neither."""
+
+    part: PartName
+    reaction: str
+    arm: Arm
+    reason: str = ""
+    actor: Actor = NOBODY
+
+
+@dataclass(frozen=True, slots=True)
+class AcknowledgeReactionRequest:
+    """Acknowledge a reaction that waits for it, or that acted too often."""
+
+    part: PartName
+    reaction: str
+    actor: Actor = NOBODY
+
+
+@dataclass(frozen=True, slots=True)
 class TaskRequest:
     """Submit a task: follow a path. It replaces the current task, if any."""
 
@@ -352,6 +387,9 @@ Input: TypeAlias = (
     | CancelRequest
     | EmergencyStopRequest
     | AcknowledgeRequest
+    | ErrorReport
+    | ArmRequest
+    | AcknowledgeReactionRequest
     | ShelveRequest
     | UnshelveRequest
     | DriveRequest

@@ -3,10 +3,13 @@
 from collections.abc import Collection
 
 from domain.inputs import (
+    AcknowledgeReactionRequest,
     AcknowledgeRequest,
+    ArmRequest,
     CancelRequest,
     CancelTaskRequest,
     EmergencyStopRequest,
+    ErrorReport,
     HoldRequest,
     Input,
     ModeRequest,
@@ -38,11 +41,15 @@ def may_loosen(given: Input, *, is_stopped: bool, holds: Collection[str]) -> boo
     match given:
         case EmergencyStopRequest(engaged=engaged):
             return is_stopped and not engaged
+        case ErrorReport(active=active):
+            return not active
         case ReleaseRequest(owner=owner):
             return owner in holds
         case TransitionRequest(transition=transition):
             return transition in _RAISING
         case TaskRequest() | AcknowledgeRequest() | ShelveRequest():
+            return True
+        case ArmRequest() | AcknowledgeReactionRequest():
             return True
         case ModeRequest() | ParametersRequest():
             return True

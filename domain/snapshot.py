@@ -13,6 +13,7 @@ from domain.identifiers import ChangeId, TaskId
 from domain.inputs import ChangeRequest, SignalValue
 from domain.lifecycle import LifecycleState, Transition
 from domain.parameters import ParameterValue
+from domain.reaction_terms import Action, Arm, ReactionState, Until
 from domain.state_and_mode import ModeName, PartName, StateAndMode
 from domain.timebase import Duration, Instant
 from domain.vehicle import DriveCommand, Point, VehicleState
@@ -77,6 +78,8 @@ class EffectiveTarget:
     """Id of the event that recorded why it differs; None: it is the requested one."""
     blockers: tuple[Blocker, ...] = ()
     """Why the requested target is not in force; empty: it is."""
+    reaction: str | None = None
+    """Name of the reaction that set it; None: no reaction did."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -379,14 +382,56 @@ class ErrorView:
     """When it was raised, or when it began to be pending; None: it is normal."""
     count: int
     """How often it was raised, in this run of the service."""
+    caused_by: "tuple[ErrorKey, ...]" = ()
+    """The errors that explain it: those of its causes that are on, or were last."""
+    roots: "tuple[ErrorKey, ...]" = ()
+    """The errors that it goes back to through its causes; empty: it is a root itself."""
+    hint: str = ""
+    """What to do about it; empty: nobody said."""
+
     ended: Instant | None = None
     """When its cause was gone; None: it is present, or that is not known."""
     marks: ErrorMarks = NO_MARKS
 
     @property
+    def is_root(self) -> bool:
+        """Tell whether no other error explains it."""
+        return not self.roots
+
+    @property
     def is_open(self) -> bool:
         """Tell whether an operator may want to see it: it is not normal, or it is shelved."""
         return self.state is not ErrorState.NORMAL or self.marks.shelf is not None
+
+
+@dataclass(frozen=True, slots=True)
+class ReactionView:
+    """One reaction of a part."""
+
+    reaction: str
+    part: PartName
+    arm: Arm
+    state: ReactionState
+    action: Action
+    target: StateAndMode | None
+    since: Instant | None
+    """Since when it stands so; None: since the start."""
+    blockers: tuple[Blocker, ...]
+    """What calls for it, or what keeps it from acting."""
+    left: int | None
+    """How often it may act before its budget is used up; None: at any time."""
+    when: str
+    """Its condition."""
+    lasts: Duration
+    """How long its condition has to be true."""
+    until: Until
+    waits_for: str
+    """What has to happen next, in words."""
+
+    @property
+    def name(self) -> str:
+        """Return its name among those of all parts, such as `vehicle.LIMP`."""
+        return f"{self.part}.{self.reaction}"
 
 
 @dataclass(frozen=True, slots=True)

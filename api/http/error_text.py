@@ -30,11 +30,10 @@ def error_text(view: ErrorView, show: Callable[[Instant], str]) -> str:
         "shelved_because": None if shelf is None else shelf.reason,
         "suppressed": marks.suppressed,
         "chattering": marks.chattering,
-        # Nothing causes an error: each is its own root.
-        "root_cause": True,
+        "root_cause": view.is_root,
         "first_out": view.first_out,
-        "caused_by": [],
-        "roots": [{"part": key.part, "error": key.error}],
+        "caused_by": [each._asdict() for each in view.caused_by],
+        "roots": [each._asdict() for each in view.roots or (key,)],
         "message": view.message,
         "value": view.value,
         "threshold": view.threshold,
@@ -47,8 +46,8 @@ def error_text(view: ErrorView, show: Callable[[Instant], str]) -> str:
 
 
 def _hint(view: ErrorView) -> str | None:
-    """Return what would help; None: nothing is known of that."""
+    """Return what would help: to calm an error that chatters, else what the model file says."""
     if not view.marks.chattering:
-        return None
+        return view.hint or None
     calming = view.marks.calming
     return chatter_words(None if calming is None else to_seconds(calming))

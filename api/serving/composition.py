@@ -24,6 +24,7 @@ from service.keeper import NO_STORES, Stores
 from service.onboard_parts import make_onboard
 from service.ports import RobotBackend, SignalSource
 from service.ros.backend.backend import Ros2Backend
+from service.ros.backend.diagnostics import TYPE as DIAGNOSTICS
 from service.ros.gateway import RosGateway
 from service.ros.graph.graph import RosGraph, UnknownTypeError
 from service.ros.interface.interface import RosInterface
@@ -265,6 +266,8 @@ def _require_types(graph: RosGraph, topics: Ros2Block) -> None:
     named += [statistic.type for statistic in topics.statistics.values()]
     if topics.command is not None:
         named.append(topics.command.type)
+    if topics.diagnostics is not None:
+        named.append(DIAGNOSTICS)
     for type_name in named:
         if not graph.has_type(type_name):
             raise UnknownTypeError(type_name)

@@ -39,6 +39,14 @@ class Alarms:
         self._from_start = {key for key, alarm in self._alarms.items() if alarm.state.is_on}
         self._keeps = True
 
+    def take_as_start(self, key: ErrorKey) -> None:
+        """Take an error that is about to be raised as how the robot begins."""
+        self._from_start.add(key)
+
+    def note_told(self, key: ErrorKey) -> None:
+        """Note that it is told that an error is on."""
+        self._from_start.discard(key)
+
     def discard(self, key: ErrorKey) -> None:
         """Forget an error that is on since the start."""
         self._from_start.discard(key)

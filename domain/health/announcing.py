@@ -10,7 +10,7 @@ from domain.conditions.evaluation import Truth
 from domain.conditions.watched import WatchedConditions
 from domain.errors import InvalidValueError, UnknownErrorNameError, UnknownPartError
 from domain.events.announcing import ErrorChattering, ErrorShelved, ErrorUnshelved
-from domain.events.health import ErrorAcknowledged, ErrorCleared, ErrorRaised
+from domain.events.health import ErrorAcknowledged
 from domain.events.service import NotRestored
 from domain.health.chatter import Chatter
 from domain.health.health import Health
@@ -91,12 +91,12 @@ class Announcing(Concern):
         acknowledged = ErrorAcknowledged(key.error, key.part)
         self._outbox.begin(now, acknowledged, request.actor)
         self._health.acknowledge(key, now)
-        was_on = self._errors.is_on(key)
+        before = self._errors.view(key)
         if not self._errors.acknowledge(key):
             return
         self._outbox.record_input()
-        if was_on and not self._errors.is_on(key):
-            self._outbox.emit(ErrorCleared(key.error, key.part))
+        if before.state.is_on and not self._errors.is_on(key):
+            self._errors.tell_cleared(before)
 
     def shelve(self, request: ShelveRequest, now: Instant) -> None:
         """Announce an error no more for a time; a repetition begins the time anew.
@@ -198,8 +198,7 @@ class Announcing(Concern):
         was_on = self._errors.is_on(key)
         self._errors.restore(kept, now)
         if not was_on and self._errors.is_on(key):
-            raised = ErrorRaised(key.error, kept.message, kept.value, kept.threshold, key.part)
-            self._outbox.emit(raised)
+            self._errors.tell_raised(key)
 
     def _suppress(self) -> None:
         suppressed = frozenset(

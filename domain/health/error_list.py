@@ -1,17 +1,23 @@
 """All errors, of the robot and of its parts: which are on, since when, and how often."""
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import replace
+from itertools import chain, islice
 from typing import NamedTuple
 
+from domain.events.health import ErrorCleared, ErrorRaised
 from domain.findings import Fact
 from domain.health.alarm import QUIET, Alarm, Evidence
 from domain.health.alarms import Alarms
 from domain.health.built_in_errors import severity_of
+from domain.health.error_causes import MAX_SHOWN, NO_CAUSES, ErrorCauses
+from domain.health.on_errors import OnErrors
+from domain.health.severe_errors import SevereErrors
 from domain.health.turns import Turn
 from domain.kept import KeptUnacknowledged
 from domain.outbox import Outbox
 from domain.snapshot import NO_MARKS, ErrorKey, ErrorMarks, ErrorState, ErrorView, Severity
+from domain.state_and_mode import PartName
 from domain.timebase import Instant
 
 
@@ -37,11 +43,19 @@ class ErrorList:
     An error that was never raised takes no memory: a robot may have ten thousand parts.
     """
 
-    def __init__(self, outbox: Outbox) -> None:
+    def __init__(self, outbox: Outbox, causes: ErrorCauses = NO_CAUSES) -> None:
+        """Begin with all errors normal.
+
+        Args:
+            outbox: Is told what changed.
+            causes: Which errors explain which.
+        """
         self._outbox = outbox
+        self.causes = causes
         self._alarms = Alarms(outbox)
         self._severities: dict[ErrorKey, Severity] = {}
-        """Of those that are declared."""
+        """Of those of signals."""
+        self._of_signals: dict[PartName | None, list[str]] = {}
         self._latching: set[ErrorKey] = set()
         """Those that stay on until they are acknowledged; signals keep their own on."""
         self._open: dict[ErrorKey, ErrorView] = {}
@@ -49,9 +63,10 @@ class ErrorList:
         self._ended: dict[ErrorKey, ErrorView] = {}
         """The others of which something is to be said: they were raised before, for example."""
         self._turns: list[Turn] = []
-        self._parts_with: dict[str, int] = {}
-        """By error, how many parts have it."""
-        self._count_on = 0
+        self.on = OnErrors(outbox)
+        self.severe = SevereErrors()
+        self._told: dict[ErrorKey, int] = {}
+        """By error, the newest event that told that it was raised or cleared."""
         self._first: ErrorKey | None = None
         """The error that was raised first since none was on."""
 
@@ -64,12 +79,13 @@ class ErrorList:
 
         Args:
             key: The error.
-            severity: None: that of the built-in error.
+            severity: Of an error of a signal; None: it is none, and the model says its severity.
             latches: It stays on after its cause until it is acknowledged; signals keep their own
                 errors on by themselves.
         """
         if severity is not None:
             self._severities[key] = severity
+            self._of_signals.setdefault(key.part, []).append(key.error)
         if latches:
             self._latching.add(key)
 
@@ -92,6 +108,52 @@ class ErrorList:
             return
         self._show(known, before, after, found, since)
 
+    def raise_(self, key: ErrorKey, found: Found, since: Instant, cause: int | None = None) -> None:
+        """Raise an error of a part, and tell it; of one that is on, note what is found now.
+
+        Args:
+            key: The error.
+            found: What was found.
+            since: When it was raised.
+            cause: Id of the event that led to it; None: the current input.
+        """
+        was_on = self.is_on(key)
+        self.note(key, found, since)
+        if not was_on:
+            self.tell_raised(key, cause)
+
+    def tell_raised(self, key: ErrorKey, cause: int | None = None) -> None:
+        """Tell that an error of a part is on."""
+        self._alarms.note_told(key)
+        view = self._open[key]
+        raised = ErrorRaised(
+            key.error, view.message, view.value, view.threshold, key.part, view.is_root
+        )
+        self._tell(key, self._outbox.emit(raised, cause))
+
+    def clear(self, key: ErrorKey, cause: int | None = None) -> None:
+        """Note that the cause of an error of a part is gone, and tell it if the error ended.
+
+        Args:
+            key: The error.
+            cause: Id of the event that led to it; None: the current input.
+        """
+        before = self.view(key)
+        self.note(key, NORMAL, 0)
+        if before.state.is_on and not self.is_on(key):
+            self.tell_cleared(before, cause)
+
+    def tell_cleared(self, before: ErrorView, cause: int | None = None) -> None:
+        """Tell that an error of a part is over.
+
+        Args:
+            before: As it was.
+            cause: Id of the event that led to it; None: the current input.
+        """
+        key = before.key
+        cleared = ErrorCleared(key.error, key.part, before.is_root)
+        self._tell(key, self._outbox.emit(cleared, cause))
+
     def forget(self, key: ErrorKey) -> None:
         """Forget an error that is on since the start, as if it had never been raised."""
         if not self._alarms.is_from_start(key):
@@ -101,7 +163,28 @@ class ErrorList:
         self._alarms.discard(key)
         del self._open[key]
         self._outbox.errors.add(key)
-        self._count(key, -1)
+        self._put_severe(self.view(key))
+        self._switch(key, on=False)
+
+    def renew_roots(self, key: ErrorKey) -> bool:
+        """Find the roots of an error that is on anew; return whether they changed.
+
+        While none of its causes is on, it keeps those that it had.
+        """
+        if key not in self.on:
+            return False
+        causes, roots = self.explanation_of(key)
+        view = self._open[key]
+        if not causes or (causes, roots) == (view.caused_by, view.roots):
+            return False
+        self._put(replace(view, caused_by=causes, roots=roots))
+        if key in self.on.contenders and self._first in self.on.contenders:
+            self._mark_first(min(self.on.contenders, key=self._rank))
+        return True
+
+    def take_as_start(self, key: ErrorKey) -> None:
+        """Take an error that is about to be raised as how the robot begins, until it is told."""
+        self._alarms.take_as_start(key)
 
     def mark_start(self) -> None:
         """Take what is on now as how each robot begins: its end leaves nothing to see."""
@@ -156,13 +239,32 @@ class ErrorList:
         view = self._open.get(key)
         return view is not None and view.state.is_on
 
+    def names_of(self, part: PartName | None) -> Iterable[str]:
+        """Return all errors of a part, those of signals last; None: of the robot itself."""
+        if part is not None:
+            yield from self.causes.names_of(part)
+        yield from dict.fromkeys(self._of_signals.get(part, ()))
+
     def view(self, key: ErrorKey) -> ErrorView:
         """Return an error; the same object until it changes, unless it was never raised."""
         known = self._open.get(key) or self._ended.get(key)
         if known is not None:
             return known
         severity = self._severity_of(key)
-        return ErrorView(key, severity, ErrorState.NORMAL, False, "", None, None, None, 0)
+        hint = self._hint_of(key)
+        return ErrorView(
+            key, severity, ErrorState.NORMAL, False, "", None, None, None, 0, hint=hint
+        )
+
+    def explanation_of(self, key: ErrorKey) -> tuple[tuple[ErrorKey, ...], tuple[ErrorKey, ...]]:
+        """Return which causes of an error are on, and their roots; of each, only the first ones."""
+        causes = self.causes.present(key, self.on.parts_by_name, self.is_on)
+        found = (self._open[cause].roots or (cause,) for cause in causes)
+        return causes, tuple(islice(dict.fromkeys(chain.from_iterable(found)), MAX_SHOWN))
+
+    def told_by(self, key: ErrorKey) -> int | None:
+        """Return the newest event that told of an error of a part; None: there is none."""
+        return self._told.get(key)
 
     def open_ones(self) -> Mapping[str, ErrorView]:
         """Return the errors that are not normal, or shelved, by their names."""
@@ -170,13 +272,25 @@ class ErrorList:
 
     @property
     def parts_with(self) -> Mapping[str, int]:
-        """Return by error how many parts have it now; read only."""
-        return self._parts_with
+        """Return by error how many parts have it now."""
+        return {error: len(parts) for error, parts in self.on.parts_by_name.items()}
 
     # --- inside ----------------------------------------------------------------------------------
 
+    def _tell(self, key: ErrorKey, event: int) -> None:
+        self._told[key] = event
+        if self._severity_of(key).stops_task:
+            self.severe.decided_by = event
+
     def _severity_of(self, key: ErrorKey) -> Severity:
+        declared = self.causes.declared.get(key)
+        if declared is not None and declared.severity is not None:
+            return declared.severity
         return self._severities.get(key) or severity_of(key)
+
+    def _hint_of(self, key: ErrorKey) -> str:
+        declared = self.causes.declared.get(key)
+        return "" if declared is None else declared.hint
 
     def _show(
         self, known: ErrorView, before: Alarm, after: Alarm, found: Found, since: Instant
@@ -202,8 +316,12 @@ class ErrorList:
             # What nobody has seen stays readable after its end.
             found = Found(found.state, known.message, known.value, known.threshold)
         raised = state.is_on and not was_on
+        # What returned is still shown under its root.
+        is_explained = (was_on and state.is_on) or state is ErrorState.RETURNED
         view = replace(
             known,
+            caused_by=known.caused_by if is_explained else (),
+            roots=known.roots if is_explained else (),
             state=state,
             message=found.message,
             value=found.value,
@@ -216,7 +334,7 @@ class ErrorList:
         self._put(view)
         if state.is_on is not was_on:
             self._turns.append(Turn(view.key, raised, self._outbox.now))
-            self._count(view.key, 1 if raised else -1)
+            self._switch(view.key, on=raised)
         if too_many is not None:
             self.acknowledge(too_many)
 
@@ -229,16 +347,35 @@ class ErrorList:
         else:
             here.pop(view.key, None)
         self._outbox.errors.add(view.key)
+        self._put_severe(view)
 
-    def _count(self, key: ErrorKey, step: int) -> None:
-        """Count an error that was raised or ended, and tell which was first."""
-        if key.part is not None:
-            self._parts_with[key.error] = self._parts_with.get(key.error, 0) + step
-        self._count_on += step
-        if step > 0 and self._count_on == 1:
-            self._mark_first(key)
-        elif self._count_on == 0:
+    def _put_severe(self, view: ErrorView) -> None:
+        """Signals set the bits of their errors themselves, and declare each of them."""
+        if view.key.part is not None and view.key not in self._severities:
+            self.severe.put(view)
+
+    def _switch(self, key: ErrorKey, *, on: bool) -> None:
+        """Note that an error was raised or ended; find its roots, and which was first."""
+        was_empty = self.on.is_empty
+        self.on.switch(key, on=on)
+        if on:
+            is_first = was_empty or (
+                self._first in self.on.contenders
+                and key in self.on.contenders
+                and self._rank(key) < self._rank(self._first)
+            )
+            if is_first:
+                self._mark_first(key)
+            self.renew_roots(key)
+        elif self.on.is_empty:
             self._mark_first(None)
+
+    def _rank(self, key: ErrorKey | None) -> tuple[bool, int, int]:
+        """Return where an error stands in its step: roots first, then as in the file."""
+        if key is None:
+            return (True, 0, 0)
+        _, part, position = self.causes.place(key)
+        return (not self.view(key).is_root, part, position)
 
     def _mark_first(self, key: ErrorKey | None) -> None:
         for changed, is_first in ((self._first, False), (key, True)):

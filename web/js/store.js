@@ -143,9 +143,10 @@ const FOLDERS = {
   },
 };
 
-/** An error that ended is told once more, as normal. */
+/** An error that ended is told once more, as normal; one that is shelved stays listed. */
 function withoutEnded(errors) {
-  return Object.fromEntries(Object.entries(errors).filter(([, { state }]) => state !== "normal"));
+  const isOpen = ([, error]) => error.state !== "normal" || error.shelved_until_at !== null;
+  return Object.fromEntries(Object.entries(errors).filter(isOpen));
 }
 
 /** A frame that was sent before the answer to STOP holds the earlier state. */

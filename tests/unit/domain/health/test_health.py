@@ -131,6 +131,7 @@ def test_an_error_is_told_with_its_value_its_limit_and_the_reading_that_caused_i
         "value": 0.42,
         "threshold": 0.5,
         "part": None,
+        "root_cause": True,
     }
 
 
@@ -155,7 +156,11 @@ def test_the_end_of_an_error_is_told(health: Robot) -> None:
     health.read(battery_level=0.42)
     health.pass_time(0.5)
     events = health.read(**GOOD)
-    assert _only(events, "error.cleared").data == {"error": "BATTERY_LOW", "part": None}
+    assert _only(events, "error.cleared").data == {
+        "error": "BATTERY_LOW",
+        "part": None,
+        "root_cause": True,
+    }
     assert _only(events, "system_state.changed").data["state"] == "IDLE"
 
 
