@@ -101,17 +101,13 @@ class Supervision:
         self._now = start
         outbox = self._outbox = Outbox()
         parts = self._parts = Parts(model, outbox)
-        causes = ErrorCauses(model)
+        causes = ErrorCauses(model, settings.checkpoints)
         health = self._health = Health(settings.signals, outbox, start, causes)
-        self._emergency_stop = EmergencyStop(self._health, self._outbox)
-        self.driving = Driving(
-            settings.tasks, settings.vehicle, self._health, self._emergency_stop, outbox, start
-        )
+        stop = self._emergency_stop = EmergencyStop(health, outbox)
+        self.driving = Driving(settings.tasks, settings.vehicle, health, stop, outbox, start)
         storage = Storage(self._outbox)
         self._robot_state = RobotState(self._health, self.driving, storage, self._outbox)
-        errors = self._part_errors = PartErrors(
-            parts, health.error_list, outbox, start, settings.checkpoints
-        )
+        errors = self._part_errors = PartErrors(parts, health.error_list, outbox, start)
         self.facts = RobotFacts(self._parts, self._health, self.driving, self._part_errors.reason)
         """What conditions are evaluated over."""
         self.conditions = WatchedConditions(self.facts)
