@@ -252,6 +252,9 @@ class PartErrors(Concern):
     def names_of(self, part: PartName) -> Iterable[str]:
         """Return the errors that a part can have, apart from those of signals."""
         names = self._errors.causes.names_of(part)
+        if part in self._parts.model.errors:
+            of_signal = self._errors.is_of_signal
+            names = tuple(name for name in names if not of_signal(ErrorKey(part, name)))
         if part not in self._with_checkpoints:
             return names
         return dict.fromkeys((*names, *OF_CHECKPOINTS))
