@@ -23,6 +23,7 @@ from api.http.routes import (
     analysis,
     announcing,
     changes,
+    checkpoints,
     emergency_stop,
     error_reports,
     errors,
@@ -34,6 +35,7 @@ from api.http.routes import (
     monitors,
     parameters,
     parts,
+    reactions,
     service_health,
     signals,
     storage,
@@ -54,6 +56,7 @@ _RESOURCES = (
     openapi_router,
     # Before the parts: the path of a part matches everything below /nodes.
     parameters.router,
+    checkpoints.router,
     changes.router,
     model.router,
     inference.router,
@@ -61,6 +64,7 @@ _RESOURCES = (
     monitors.router,
     system_state.router,
     errors.router,
+    reactions.router,
     announcing.router,
     error_reports.router,
     analysis.router,
@@ -91,7 +95,13 @@ def _resources() -> list[BaseRoute]:
     for resource in _RESOURCES:
         router.include_router(resource)
     for prefix in ("systems", "nodes"):
-        for resource in (announcing.part_router, error_reports.part_router, parts.router):
+        of_parts = (
+            announcing.part_router,
+            error_reports.part_router,
+            reactions.part_router,
+            parts.router,
+        )
+        for resource in of_parts:
             router.include_router(resource, prefix=f"/{prefix}", tags=[prefix])
     return router.routes
 

@@ -7,6 +7,7 @@
     |   +-- UnknownSignalError
     |   +-- UnknownCheckpointError
     |   +-- UnknownErrorNameError
+    |   +-- UnknownReactionError
     |   +-- UnknownChangeError
     |   +-- UnknownParameterError
     |   +-- UnknownTaskError
@@ -135,6 +136,12 @@ class UnknownErrorNameError(UnknownNameError):
     """An unknown error name."""
 
     code = "UNKNOWN_ERROR"
+
+
+class UnknownReactionError(UnknownNameError):
+    """An unknown reaction: the part has none of this name."""
+
+    code = "UNKNOWN_REACTION"
 
 
 class UnknownChangeError(UnknownNameError):

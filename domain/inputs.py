@@ -11,6 +11,7 @@ from domain.kept import Kept
 from domain.lifecycle import LifecycleState, Transition
 from domain.parameters import Parameters, ParameterValue
 from domain.paths.path import Path
+from domain.reaction_terms import Arm
 from domain.state_and_mode import ModeName, PartName
 from domain.timebase import Duration, Instant, seconds
 from domain.vehicle import DriveCommand, Point, VehicleState
@@ -273,6 +274,26 @@ class ErrorReport:
 
 
 @dataclass(frozen=True, slots=True)
+class ArmRequest:
+    """Let a reaction act, only tell when it would, or neither."""
+
+    part: PartName
+    reaction: str
+    arm: Arm
+    reason: str = ""
+    actor: Actor = NOBODY
+
+
+@dataclass(frozen=True, slots=True)
+class AcknowledgeReactionRequest:
+    """Acknowledge a reaction that waits for it, or that acted too often."""
+
+    part: PartName
+    reaction: str
+    actor: Actor = NOBODY
+
+
+@dataclass(frozen=True, slots=True)
 class TaskRequest:
     """Submit a task: follow a path. It replaces the current task, if any."""
 
@@ -367,6 +388,8 @@ Input: TypeAlias = (
     | EmergencyStopRequest
     | AcknowledgeRequest
     | ErrorReport
+    | ArmRequest
+    | AcknowledgeReactionRequest
     | ShelveRequest
     | UnshelveRequest
     | DriveRequest

@@ -14,8 +14,9 @@ from domain.identifiers import ChangeId, TaskId
 from domain.lifecycle import LifecycleState, Transition
 from domain.parameters import ParameterValue
 from domain.paths.path import Path
+from domain.reaction_terms import Arm
 from domain.state_and_mode import PartName, StateAndMode
-from domain.timebase import Instant
+from domain.timebase import Duration, Instant
 from domain.vehicle import VehicleState
 
 
@@ -43,7 +44,7 @@ class KeptEffectiveTarget:
     part: PartName
     target: StateAndMode
     rule: str | None
-    """Name of the rule of the system that set it; None: no rule did."""
+    """Name of the rule or reaction that set it; None: it has none."""
     order: int
     """Rises with each displacement: a later one prevails where two concern the same part."""
     after: int
@@ -55,7 +56,7 @@ class KeptEffectiveTarget:
     staying: Mapping[PartName, LifecycleState] = field(default_factory=dict)
     """Nodes below to which it does not apply, and the state that each is to keep."""
     because: str = "rule"
-    """Who set it: `rule` or `invariant`."""
+    """Who set it: `rule`, `invariant` or `reaction`."""
 
     @property
     def name(self) -> str:
@@ -219,6 +220,30 @@ class KeptHold:
 
 
 @dataclass(frozen=True, slots=True)
+class KeptReaction:
+    """How a reaction of the model stands, if that is more than idle."""
+
+    part: PartName
+    reaction: str
+    arm: Arm | None = None
+    """What an operator said; None: it is as the model says."""
+    since: Instant | None = None
+    """Since when it acts, or has acted too often; None: it does neither."""
+    is_exhausted: bool = False
+    is_acknowledged: bool = False
+    """It ends once its condition is no longer true."""
+    escalated: bool = False
+    """It did not have its effect in time, and so another one is called for."""
+    used: tuple[Duration, ...] = ()
+    """How long ago it acted, when this was kept: while the service is down, no time passes."""
+
+    @property
+    def name(self) -> str:
+        """Return its name among those of its kind."""
+        return self.reaction
+
+
+@dataclass(frozen=True, slots=True)
 class KeptTask:
     """A task as it was submitted; its progress is kept apart, since that changes often."""
 
@@ -278,6 +303,7 @@ Kept: TypeAlias = (
     | KeptFailedChange
     | KeptReport
     | KeptHold
+    | KeptReaction
     | KeptTask
     | KeptProgress
 )

@@ -3,7 +3,9 @@
 from collections.abc import Collection
 
 from domain.inputs import (
+    AcknowledgeReactionRequest,
     AcknowledgeRequest,
+    ArmRequest,
     CancelRequest,
     CancelTaskRequest,
     EmergencyStopRequest,
@@ -46,6 +48,8 @@ def may_loosen(given: Input, *, is_stopped: bool, holds: Collection[str]) -> boo
         case TransitionRequest(transition=transition):
             return transition in _RAISING
         case TaskRequest() | AcknowledgeRequest() | ShelveRequest():
+            return True
+        case ArmRequest() | AcknowledgeReactionRequest():
             return True
         case ModeRequest() | ParametersRequest():
             return True

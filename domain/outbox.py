@@ -26,6 +26,8 @@ class Outputs(NamedTuple):
     """Signals whose view changed."""
     errors: frozenset[ErrorKey] = frozenset()
     """Errors whose view changed."""
+    reactions: frozenset[str] = frozenset()
+    """Reactions whose view changed, by their names."""
     system_state: bool = False
     """Whether the system state changed."""
     task: TaskId | None = None
@@ -53,6 +55,7 @@ class Outbox:
         self.parts: set[PartName] = set()
         self.signals: set[str] = set()
         self.errors: set[ErrorKey] = set()
+        self.reactions: set[str] = set()
         self.system_state = False
         self.task: TaskId | None = None
         self.task_changed = False
@@ -159,6 +162,7 @@ class Outbox:
             frozenset(self.parts),
             frozenset(self.signals),
             frozenset(self.errors),
+            frozenset(self.reactions),
             self.system_state,
             self.task,
             self.task_changed,
@@ -168,7 +172,8 @@ class Outbox:
         self._kept = {}
         self._commands, self._events = [], []
         self.change, self.system_state = None, False
-        self.parts, self.signals, self.errors = set(), set(), set()
+        self.parts, self.signals = set(), set()
+        self.errors, self.reactions = set(), set()
         self.task, self.task_changed, self.vehicle_changed = None, False, False
         return outputs
 
@@ -182,6 +187,7 @@ class Outbox:
             or self.parts
             or self.signals
             or self.errors
+            or self.reactions
             or self.system_state
             or self.change
             or self.task

@@ -77,6 +77,8 @@ class EffectiveTarget:
     """Id of the event that recorded why it differs; None: it is the requested one."""
     blockers: tuple[Blocker, ...] = ()
     """Why the requested target is not in force; empty: it is."""
+    reaction: str | None = None
+    """Name of the reaction that set it; None: no reaction did."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -44,6 +44,7 @@ from domain.errors import (
     UnknownNameError,
     UnknownParameterError,
     UnknownPartError,
+    UnknownReactionError,
     UnknownSignalError,
     UnknownTaskError,
 )
@@ -67,6 +68,7 @@ STATUS_OF: Mapping[type[PilothouseError], HTTPStatus] = {
     BodyTooLargeError: HTTPStatus.REQUEST_ENTITY_TOO_LARGE,
     UnknownNameError: HTTPStatus.NOT_FOUND,
     UnknownPartError: HTTPStatus.NOT_FOUND,
+    UnknownReactionError: HTTPStatus.NOT_FOUND,
     UnknownSignalError: HTTPStatus.NOT_FOUND,
     UnknownCheckpointError: HTTPStatus.NOT_FOUND,
     UnknownErrorNameError: HTTPStatus.NOT_FOUND,

@@ -91,6 +91,7 @@ class SignalLimitsChanged(Event):
     """Other limits of a signal are in force, since a part is in another mode."""
 
     kind = "signal.limits_changed"
+    is_notable = False
 
     signal: str
     because: str | None

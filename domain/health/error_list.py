@@ -103,6 +103,8 @@ class ErrorList:
         if self._alarms.is_from_start(key) and not after.state.is_on:
             after = Alarm(evidence)
         known = self.view(key)
+        if not after.state.is_on and self._is_seen_with_roots(known):
+            after = Alarm(evidence)
         told = (known.message, known.value, known.threshold)
         if after == before and (after == QUIET or told == (found[1:4])):
             return
@@ -184,6 +186,8 @@ class ErrorList:
         if not causes or (causes, roots) == (view.caused_by, view.roots):
             return False
         self._put(replace(view, caused_by=causes, roots=roots))
+        if key not in self._latching:
+            self._alarms.keep_no_longer(key)
         if key in self.on.contenders and self._first in self.on.contenders:
             self._mark_first(min(self.on.contenders, key=self._rank))
         return True
@@ -200,8 +204,18 @@ class ErrorList:
     def acknowledge(self, key: ErrorKey) -> bool:
         """Note that somebody has seen an error; return whether that changed anything.
 
-        An error that was on for want of that ends.
+        An error that was on for want of that ends. What followed from it and has returned is seen
+        with it: it was not announced by itself.
         """
+        if not self._see(key):
+            return False
+        for other in self._alarms.returned:
+            view = self.view(other)
+            if key in view.roots and self._is_seen_with_roots(view):
+                self._see(other)
+        return True
+
+    def _see(self, key: ErrorKey) -> bool:
         before = self._alarms[key]
         after = before.acknowledged()
         if after == before:
@@ -338,13 +352,19 @@ class ErrorList:
             ended=after.ended,
             count=known.count + raised,
         )
-        too_many = self._alarms.put(view, after)
         self._put(view)
         if state.is_on is not was_on:
             self._turns.append(Turn(view.key, raised, self._outbox.now))
             self._switch(view.key, on=raised)
+        view = self.view(view.key)
+        is_announced = view.is_root or view.key in self._latching
+        too_many = self._alarms.put(view, after, is_announced=is_announced)
         if too_many is not None:
-            self.acknowledge(too_many)
+            self._see(too_many)
+
+    def _is_seen_with_roots(self, view: ErrorView) -> bool:
+        """Tell whether an error follows from others that somebody has seen, all of them."""
+        return bool(view.roots) and not any(self._alarms[root].unseen for root in view.roots)
 
     def _put(self, view: ErrorView) -> None:
         is_open = view.is_open

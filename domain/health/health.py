@@ -3,6 +3,7 @@
 from collections.abc import Iterable, Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import replace
+from itertools import chain
 
 from domain.concern import Concern, Takers
 from domain.events.health import (
@@ -20,13 +21,7 @@ from domain.findings import Blocker
 from domain.health.error_causes import NO_CAUSES, ErrorCauses
 from domain.health.error_list import ErrorList
 from domain.health.robot_errors import RobotErrors
-from domain.health.signals import (
-    DECLARED_BIT,
-    ESTOP,
-    Comparison,
-    ModeLimit,
-    SignalSettings,
-)
+from domain.health.signals import DECLARED_BIT, ESTOP, Comparison, ModeLimit, SignalSettings
 from domain.health.state_manager import HealthChanges, StateManager
 from domain.inputs import Readings, Restored, SourceFault
 from domain.kept import KeptError
@@ -35,6 +30,7 @@ from domain.snapshot import (
     ErrorKey,
     ErrorView,
     MonitorView,
+    Severity,
     SignalView,
     SystemState,
     SystemStateView,
@@ -232,6 +228,11 @@ class Health(Concern):
         """
         for key in self._keys_of.get(part, ()):
             yield self.error_list.view(key)
+
+    def severities(self) -> Mapping[ErrorKey, Severity]:
+        """Return the errors that signals raise, with their severities; ESTOP is one of them."""
+        keys = chain.from_iterable(self._keys_of.values())
+        return {key: self.error_list.view(key).severity for key in keys}
 
     @property
     def is_stopped(self) -> bool:

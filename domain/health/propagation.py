@@ -60,9 +60,7 @@ class Propagation(Concern):
             for condition in (own.when, own.unless):
                 if condition is not None:
                     self._users.setdefault(condition.text, []).append(key)
-        watched.watch(self._conditions(), start)
-        self._changed = watched.follow()
-        self._changed.update((each.text, each) for each in self._conditions())
+        self._changed = watched.follow(self._conditions(), start)
         self._heap: list[tuple[Place, ErrorKey]] = []
         self._queued = set[ErrorKey]()
         self._origin: tuple[int, Actor] | None = None

@@ -41,6 +41,8 @@ NAMES: Mapping[type, str] = {
     inputs.EmergencyStopRequest: "emergency_stop_request",
     inputs.AcknowledgeRequest: "acknowledge_request",
     inputs.ErrorReport: "error_report",
+    inputs.ArmRequest: "arm_request",
+    inputs.AcknowledgeReactionRequest: "acknowledge_reaction_request",
     inputs.ShelveRequest: "shelve_request",
     inputs.UnshelveRequest: "unshelve_request",
     inputs.TaskRequest: "task_request",
@@ -68,6 +70,7 @@ NAMES: Mapping[type, str] = {
     kept.KeptFailedChange: "kept_failed_change",
     kept.KeptReport: "kept_report",
     kept.KeptHold: "kept_hold",
+    kept.KeptReaction: "kept_reaction",
     kept.KeptTask: "kept_task",
     kept.KeptProgress: "kept_progress",
     # Events have the name that clients know as well.

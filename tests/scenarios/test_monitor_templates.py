@@ -45,8 +45,8 @@ def _from(value: float, per_second: float = 0.0) -> Course:
     return lambda elapsed_s: value + per_second * elapsed_s
 
 
-def _errors(template: str, courses: Mapping[str, Course], duration_s: float) -> set[str]:
-    """Return the errors that were raised while signals took their courses."""
+def _robot(template: str, courses: Mapping[str, Course], duration_s: float) -> CoreRobot:
+    """Return a robot that includes a template, after signals have taken their courses."""
     include = [{template: dict(REQUIRED.get(template, {}))}]
     model = actuation_model()
     signals = robot_settings_of({"include": include}, model).to_signal_settings()
@@ -56,6 +56,10 @@ def _errors(template: str, courses: Mapping[str, Course], duration_s: float) -> 
         robot.read(**{**GOOD, **{name: course(elapsed_s) for name, course in courses.items()}})
         robot.advance(STEP_S)
         elapsed_s += STEP_S
+    return robot
+
+
+def _raised(robot: CoreRobot) -> set[str]:
     return {event["error"] for event in robot.happened("error.raised")}
 
 
@@ -63,7 +67,7 @@ def _errors(template: str, courses: Mapping[str, Course], duration_s: float) -> 
 def test_nothing_is_wrong_while_all_is_well(template: str) -> None:
     courses = {name: _from(value) for name, value in WELL[template].items()}
 
-    assert _errors(template, courses, 100.0) <= {"STALE_DATA"}
+    assert _raised(_robot(template, courses, 100.0)) <= {"STALE_DATA"}
 
 
 @pytest.mark.parametrize(
@@ -105,7 +109,22 @@ def test_an_error_is_raised_when_its_cause_comes(
 ) -> None:
     well = {name: _from(value) for name, value in WELL[template].items()}
 
-    assert error in _errors(template, {**well, **courses}, after_s)
+    assert error in _raised(_robot(template, {**well, **courses}, after_s))
+
+
+@pytest.mark.parametrize("per_second", [0.0, 0.002])
+def test_a_battery_that_is_no_longer_used_is_not_short(per_second: float) -> None:
+    """The time to its limit is unknown then, whether it rests or is charged."""
+
+    def level(elapsed_s: float) -> float:
+        if elapsed_s < 60.0:
+            return 0.7 - 0.002 * elapsed_s
+        return min(1.0, 0.58 + per_second * (elapsed_s - 60.0))
+
+    robot = _robot("battery", {"battery_level": level}, 700.0)
+
+    assert {event["error"] for event in robot.happened("error.cleared")} >= {"BATTERY_SHORT"}
+    assert sum(event["error"] == "BATTERY_SHORT" for event in robot.happened("error.raised")) == 1
 
 
 def test_every_error_of_a_template_has_a_row_here() -> None:

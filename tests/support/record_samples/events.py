@@ -53,6 +53,7 @@ from domain.events.health import (
     ErrorRaised,
     ErrorReported,
     PropagationNotSeen,
+    SignalLimitsChanged,
     SignalNotRead,
     SignalPending,
     SignalRead,
@@ -61,12 +62,22 @@ from domain.events.health import (
     SystemStateChanged,
 )
 from domain.events.parts import (
+    CheckpointReached,
     DeviationBegan,
     DeviationEnded,
     NodeReachable,
     NodeReported,
     NodeUnreachable,
     PartActualChanged,
+)
+from domain.events.reactions import (
+    ReactionAcknowledged,
+    ReactionActing,
+    ReactionArmRequested,
+    ReactionEnded,
+    ReactionExhausted,
+    ReactionOverruled,
+    ReactionWouldAct,
 )
 from domain.events.service import (
     NotRestored,
@@ -85,6 +96,7 @@ from domain.events.targets import (
 )
 from domain.identifiers import ChangeId, GoalId, TaskId
 from domain.lifecycle import LifecycleState, Transition
+from domain.reaction_terms import Action, Arm
 from domain.snapshot import Because, StepStatus, SystemState
 from domain.state_and_mode import ModeName, PartName, StateAndMode
 from tests.support.record_samples.pieces import PARAMETERS
@@ -255,6 +267,7 @@ EVENTS: Mapping[str, tuple[object, ...]] = {
             reason='Größe ≤ 3 — "gripper\\jam"',
         ),
     ),
+    "checkpoint.reached": (CheckpointReached(node=PartName("left/arm"), checkpoint="cycle"),),
     "part.deviation_ended": (
         DeviationEnded(
             part=PartName("arm"),
@@ -287,6 +300,10 @@ EVENTS: Mapping[str, tuple[object, ...]] = {
     "signal.not_read": (
         SignalNotRead(signal="disk", source="os disk /", reason='Größe ≤ 3 — "gripper\\jam"'),
     ),
+    "signal.limits_changed": (
+        SignalLimitsChanged(signal="load", because="left/arm.FAST", above=60.0),
+        SignalLimitsChanged(signal="load", because=None),
+    ),
     "signal.skewed": (SignalSkewed(signal="battery_level"),),
     "propagation.not_seen": (
         PropagationNotSeen(
@@ -297,6 +314,55 @@ EVENTS: Mapping[str, tuple[object, ...]] = {
             within_s=2.0,
         ),
     ),
+    "reaction.acting": (
+        ReactionActing(
+            part=PartName("left/arm"),
+            reaction="LIMP",
+            action=Action.MODE,
+            reason='Größe ≤ 3 — "gripper\\jam"',
+        ),
+    ),
+    "reaction.ended": (
+        ReactionEnded(
+            part=PartName("left/arm"),
+            reaction="LIMP",
+            action=Action.MODE,
+            reason='Größe ≤ 3 — "gripper\\jam"',
+        ),
+    ),
+    "reaction.would_act": (
+        ReactionWouldAct(
+            part=PartName("left/arm"),
+            reaction="LIMP",
+            action=Action.MODE,
+            reason='Größe ≤ 3 — "gripper\\jam"',
+        ),
+    ),
+    "reaction.overruled": (
+        ReactionOverruled(
+            part=PartName("left/arm"),
+            reaction="LIMP",
+            action=Action.MODE,
+            reason='Größe ≤ 3 — "gripper\\jam"',
+        ),
+    ),
+    "reaction.exhausted": (
+        ReactionExhausted(
+            part=PartName("left/arm"),
+            reaction="LIMP",
+            action=Action.HOLD,
+            reason='Größe ≤ 3 — "gripper\\jam"',
+        ),
+    ),
+    "reaction.arm_requested": (
+        ReactionArmRequested(
+            part=PartName("left/arm"),
+            reaction="LIMP",
+            arm=Arm.DISARMED,
+            reason='Größe ≤ 3 — "gripper\\jam"',
+        ),
+    ),
+    "reaction.acknowledged": (ReactionAcknowledged(part=PartName("left/arm"), reaction="LIMP"),),
     "rule.not_applied": (
         RuleNotApplied(
             part=PartName("left/arm"),
@@ -322,6 +388,15 @@ EVENTS: Mapping[str, tuple[object, ...]] = {
             rule=None,
             reason='Größe ≤ 3 — "gripper\\jam"',
         ),
+        DisplacementBegan(
+            part=PartName("left/arm"),
+            target=StateAndMode(state=LifecycleState.ACTIVE, mode=ModeName("SLOW")),
+            was=None,
+            because=Because.REACTION,
+            rule=None,
+            reason='Größe ≤ 3 — "gripper\\jam"',
+            reaction="LIMP",
+        ),
     ),
     "target.displacement_ended": (
         DisplacementEnded(
@@ -340,6 +415,15 @@ EVENTS: Mapping[str, tuple[object, ...]] = {
             rule=None,
             reason='Größe ≤ 3 — "gripper\\jam"',
         ),
+        DisplacementEnded(
+            part=PartName("left/arm"),
+            target=StateAndMode(state=LifecycleState.ACTIVE, mode=ModeName("SLOW")),
+            was=StateAndMode(state=LifecycleState.ACTIVE, mode=ModeName("SLOW")),
+            because=Because.REACTION,
+            rule=None,
+            reason='Größe ≤ 3 — "gripper\\jam"',
+            reaction="LIMP",
+        ),
     ),
     "target.displacement_stays": (
         DisplacementStays(
@@ -355,6 +439,14 @@ EVENTS: Mapping[str, tuple[object, ...]] = {
             because=Because.INVARIANT,
             rule=None,
             reason='Größe ≤ 3 — "gripper\\jam"',
+        ),
+        DisplacementStays(
+            part=PartName("left/arm"),
+            target=StateAndMode(state=LifecycleState.ACTIVE, mode=ModeName("SLOW")),
+            because=Because.REACTION,
+            rule=None,
+            reason='Größe ≤ 3 — "gripper\\jam"',
+            reaction="LIMP",
         ),
     ),
     "system_state.changed": (

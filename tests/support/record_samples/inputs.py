@@ -6,10 +6,13 @@ from math import inf, nan
 from domain.actor import Actor
 from domain.identifiers import ChangeId, GoalId
 from domain.inputs import (
+    AcknowledgeReactionRequest,
     AcknowledgeRequest,
+    ArmRequest,
     BackendStatus,
     CancelRequest,
     CancelTaskRequest,
+    CheckpointReport,
     DriveStatus,
     EmergencyStopRequest,
     ErrorReport,
@@ -37,6 +40,7 @@ from domain.inputs import (
     WriteRecord,
 )
 from domain.lifecycle import LifecycleState, Transition
+from domain.reaction_terms import Arm
 from domain.state_and_mode import ModeName, PartName
 from domain.vehicle import DriveCommand, Point, Pose, VehicleState
 from tests.support.record_samples.pieces import KEPT, PARAMETERS, PATH
@@ -58,6 +62,18 @@ INPUTS: Mapping[str, tuple[object, ...]] = {
             parameters=None,
             reachable=None,
             has_lifecycle=None,
+        ),
+    ),
+    "checkpoint_report": (
+        CheckpointReport(
+            node=PartName("left/arm"),
+            checkpoint="cycle",
+            actor=Actor(name="ada", way="http", address="10.0.0.7"),
+        ),
+        CheckpointReport(
+            node=PartName("left/arm"),
+            checkpoint="cycle",
+            actor=Actor(name="", way="", address=""),
         ),
     ),
     "node_answer": (
@@ -247,6 +263,34 @@ INPUTS: Mapping[str, tuple[object, ...]] = {
             actor=Actor(name="ada", way="http", address="10.0.0.7"),
         ),
         ErrorReport(part=None, error="JAMMED", active=False),
+    ),
+    "arm_request": (
+        ArmRequest(
+            part=PartName("left/arm"),
+            reaction="LIMP",
+            arm=Arm.PASSIVE,
+            reason='Größe ≤ 3 — "gripper\\jam"',
+            actor=Actor(name="ada", way="http", address="10.0.0.7"),
+        ),
+        ArmRequest(
+            part=PartName("left/arm"),
+            reaction="LIMP",
+            arm=Arm.PASSIVE,
+            reason="",
+            actor=Actor(name="", way="", address=""),
+        ),
+    ),
+    "acknowledge_reaction_request": (
+        AcknowledgeReactionRequest(
+            part=PartName("left/arm"),
+            reaction="LIMP",
+            actor=Actor(name="ada", way="http", address="10.0.0.7"),
+        ),
+        AcknowledgeReactionRequest(
+            part=PartName("left/arm"),
+            reaction="LIMP",
+            actor=Actor(name="", way="", address=""),
+        ),
     ),
     "task_request": (
         TaskRequest(

@@ -19,6 +19,7 @@ from domain.kept import (
     KeptFailedChange,
     KeptHold,
     KeptProgress,
+    KeptReaction,
     KeptReport,
     KeptShelf,
     KeptTarget,
@@ -26,6 +27,7 @@ from domain.kept import (
     KeptUnacknowledged,
 )
 from domain.lifecycle import LifecycleState, Transition
+from domain.reaction_terms import Arm
 from domain.snapshot import StepStatus
 from domain.state_and_mode import ModeName, PartName, StateAndMode
 from domain.vehicle import DriveCommand, Pose, VehicleState
@@ -151,6 +153,16 @@ OTHERS: Mapping[str, tuple[object, ...]] = {
             since=1764420000123456789,
             because="invariant",
         ),
+        KeptEffectiveTarget(
+            part=PartName("arm"),
+            target=StateAndMode(state=LifecycleState.INACTIVE),
+            rule="LIMP",
+            order=4,
+            after=9,
+            cause=42,
+            since=1764420000123456789,
+            because="reaction",
+        ),
     ),
     "kept_change": (
         KeptChange(
@@ -247,6 +259,28 @@ OTHERS: Mapping[str, tuple[object, ...]] = {
             reason='Größe ≤ 3 — "gripper\\jam"',
             by="ada",
             since=1764420000123456789,
+        ),
+    ),
+    "kept_reaction": (
+        KeptReaction(
+            part=PartName("left/arm"),
+            reaction="LIMP",
+            arm=Arm.PASSIVE,
+            since=1764420000123456789,
+            is_exhausted=True,
+            is_acknowledged=True,
+            escalated=True,
+            used=(5_000_000_000, 250_000_000),
+        ),
+        KeptReaction(
+            part=PartName("left/arm"),
+            reaction="LIMP",
+            arm=None,
+            since=None,
+            is_exhausted=False,
+            is_acknowledged=False,
+            escalated=False,
+            used=(),
         ),
     ),
     "kept_task": (

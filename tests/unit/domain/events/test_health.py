@@ -14,6 +14,7 @@ from domain.events.health import (
     ErrorRaised,
     ErrorReported,
     PropagationNotSeen,
+    SignalLimitsChanged,
     SignalNotRead,
     SignalPending,
     SignalRead,
@@ -40,6 +41,15 @@ IDLE, ERROR = SystemState.IDLE, SystemState.ERROR
         (
             SignalNotRead("disk", "os disk /", "no answer within 1 s"),
             "no reading of disk from os disk /: no answer within 1 s",
+        ),
+        (
+            SignalLimitsChanged("load", "drive_base.FAST", above=60.0),
+            "load is bad above 60: drive_base.FAST",
+        ),
+        (SignalLimitsChanged("load", "default", below=2.5), "load is bad below 2.5: default"),
+        (
+            SignalLimitsChanged("load", None),
+            "no value of load is bad: none of its limits applies",
         ),
         (
             SignalPending("gps_accuracy", "GPS_LOST"),

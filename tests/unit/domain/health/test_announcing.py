@@ -15,10 +15,11 @@ from domain.inputs import (
     Restored,
     ShelveRequest,
     TimePassed,
+    TransitionRequest,
     UnshelveRequest,
 )
 from domain.kept import Kept, KeptShelf, KeptUnacknowledged
-from domain.lifecycle import LifecycleState
+from domain.lifecycle import LifecycleState, Transition
 from domain.outbox import Outputs
 from domain.parts.declared_errors import DeclaredError
 from domain.parts.system_model import SmhModel
@@ -183,6 +184,42 @@ def test_one_that_was_acknowledged_before_ends_with_its_cause(latching: Robot) -
     latching.hear()
     assert latching.state() is S.NORMAL
     assert latching.kinds[-1] == "error.cleared"
+
+
+@pytest.fixture
+def deviating(robot: Robot) -> Robot:
+    """Return a robot that lost its base, which deviates because of that."""
+    robot.give(TransitionRequest(BASE, Transition.CONFIGURE))
+    robot.give(NodeReport(BASE, state=LifecycleState.INACTIVE))
+    robot.hear(reachable=False)
+    robot.advance(2)
+    assert robot.error("DEVIATES").roots == (ErrorKey(BASE, LOST),)
+    return robot
+
+
+def end(robot: Robot) -> None:
+    robot.give(NodeReport(BASE, state=LifecycleState.INACTIVE, reachable=True))
+    robot.advance(2)
+
+
+def test_what_followed_from_an_error_is_seen_with_it(deviating: Robot) -> None:
+    end(deviating)
+    assert (deviating.state(), deviating.state("DEVIATES")) == (S.RETURNED, S.RETURNED)
+    deviating.see()
+    assert (deviating.state(), deviating.state("DEVIATES")) == (S.NORMAL, S.NORMAL)
+
+
+def test_what_follows_from_an_error_that_was_seen_leaves_nothing_to_see(deviating: Robot) -> None:
+    deviating.see()
+    assert deviating.state("DEVIATES") is S.ACTIVE
+    end(deviating)
+    assert (deviating.state(), deviating.state("DEVIATES")) == (S.NORMAL, S.NORMAL)
+
+
+def test_what_follows_from_another_error_is_not_kept_over_a_restart(deviating: Robot) -> None:
+    unseen = {name for kind, name in deviating.kept if kind is KeptUnacknowledged}
+    kept = {name for name in unseen if deviating.kept[KeptUnacknowledged, name] is not None}
+    assert kept == {"drive_base.UNREACHABLE"}
 
 
 def test_of_very_many_that_returned_the_oldest_count_as_seen() -> None:
