@@ -131,7 +131,7 @@ class ErrorList:
         raised = ErrorRaised(
             key.error, view.message, view.value, view.threshold, key.part, view.is_root
         )
-        self._tell(key, self._outbox.emit(raised, cause))
+        self.note_told(key, self._outbox.emit(raised, cause))
 
     def clear(self, key: ErrorKey, cause: int | None = None) -> None:
         """Note that the cause of an error of a part is gone, and tell it if the error ended.
@@ -154,7 +154,13 @@ class ErrorList:
         """
         key = before.key
         cleared = ErrorCleared(key.error, key.part, before.is_root)
-        self._tell(key, self._outbox.emit(cleared, cause))
+        self.note_told(key, self._outbox.emit(cleared, cause))
+
+    def note_told(self, key: ErrorKey, event: int) -> None:
+        """Note which event told that an error was raised or cleared."""
+        self._told[key] = event
+        if self._severity_of(key).stops_task and key.part is not None:
+            self.severe.decided_by = event
 
     def forget(self, key: ErrorKey) -> None:
         """Forget an error that is on since the start, as if it had never been raised."""
@@ -253,11 +259,16 @@ class ErrorList:
         view = self._open.get(key)
         return view is not None and view.state.is_on
 
+    def is_of_signal(self, key: ErrorKey) -> bool:
+        """Tell whether a signal raises an error; what the model says of it only explains it."""
+        return key in self._severities
+
     def names_of(self, part: PartName | None) -> Iterable[str]:
         """Return all errors of a part, those of signals last; None: of the robot itself."""
+        of_signals = self._of_signals.get(part, ())
         if part is not None:
-            yield from self.causes.names_of(part)
-        yield from dict.fromkeys(self._of_signals.get(part, ()))
+            yield from (name for name in self.causes.names_of(part) if name not in of_signals)
+        yield from dict.fromkeys(of_signals)
 
     def view(self, key: ErrorKey) -> ErrorView:
         """Return an error; the same object until it changes, unless it was never raised."""
@@ -277,7 +288,7 @@ class ErrorList:
         return causes, tuple(islice(dict.fromkeys(chain.from_iterable(found)), MAX_SHOWN))
 
     def told_by(self, key: ErrorKey) -> int | None:
-        """Return the newest event that told of an error of a part; None: there is none."""
+        """Return the newest event that told of an error; None: there is none."""
         return self._told.get(key)
 
     def open_ones(self) -> Mapping[str, ErrorView]:
@@ -291,16 +302,13 @@ class ErrorList:
 
     # --- inside ----------------------------------------------------------------------------------
 
-    def _tell(self, key: ErrorKey, event: int) -> None:
-        self._told[key] = event
-        if self._severity_of(key).stops_task:
-            self.severe.decided_by = event
-
     def _severity_of(self, key: ErrorKey) -> Severity:
+        if (severity := self._severities.get(key)) is not None:
+            return severity
         declared = self.causes.declared.get(key)
         if declared is not None and declared.severity is not None:
             return declared.severity
-        return self._severities.get(key) or severity_of(key)
+        return severity_of(key)
 
     def _hint_of(self, key: ErrorKey) -> str:
         declared = self.causes.declared.get(key)
@@ -371,7 +379,7 @@ class ErrorList:
 
     def _put_severe(self, view: ErrorView) -> None:
         """Signals set the bits of their errors themselves, and declare each of them."""
-        if view.key.part is not None and view.key not in self._severities:
+        if view.key.part is not None and not self.is_of_signal(view.key):
             self.severe.put(view)
 
     def _switch(self, key: ErrorKey, *, on: bool) -> None:

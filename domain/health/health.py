@@ -289,10 +289,16 @@ class Health(Concern):
         for signal in changes.skewed:
             emit(SignalSkewed(signal))
         for key, why in changes.raised:
-            raised = ErrorRaised(key.error, why.message, why.value, why.threshold, key.part)
+            is_root = not self.error_list.explanation_of(key)[1]
+            raised = ErrorRaised(
+                key.error, why.message, why.value, why.threshold, key.part, is_root
+            )
             self._decided_by = emit(raised, self._pending.pop(key, None))
+            self.error_list.note_told(key, self._decided_by)
         for key in changes.cleared:
-            self._decided_by = emit(ErrorCleared(key.error, key.part))
+            is_root = self.error_list.view(key).is_root
+            self._decided_by = emit(ErrorCleared(key.error, key.part, is_root))
+            self.error_list.note_told(key, self._decided_by)
         self._robot_errors.follow(changes, now)
         self._outbox.signals |= changes.signals
         for signal in changes.signals:
