@@ -346,7 +346,7 @@ class ErrorList:
         )
         self._put(view)
         if state.is_on is not was_on:
-            self._turns.append(Turn(view.key, raised, self._outbox.now))
+            self._turns.append(Turn(view.key, raised, self._outbox.now, before.ended))
             self._switch(view.key, on=raised)
         view = self.view(view.key)
         is_announced = view.is_root or view.key in self._latching

@@ -8,6 +8,7 @@ import pytest
 from domain.actor import Actor
 from domain.conditions.condition import Condition
 from domain.health.alarms import MAX_RETURNED
+from domain.health.signals import default_signals
 from domain.inputs import (
     AcknowledgeRequest,
     ModeRequest,
@@ -26,7 +27,7 @@ from domain.parts.system_model import SmhModel
 from domain.snapshot import ErrorKey, ErrorState, ErrorView
 from domain.state_and_mode import PartName
 from domain.supervision import Supervision, SupervisionSettings
-from domain.timebase import Instant, seconds
+from domain.timebase import Duration, Instant, seconds
 from tests.support.big_model import big_model
 from tests.support.good import GOOD
 from tests.support.models import ACTUATION, ARM, BASE, actuation_model
@@ -45,9 +46,15 @@ def model_with(errors: Mapping[PartName, Mapping[str, DeclaredError]]) -> SmhMod
 class Robot(OperatorVerbs[Outputs, None, None]):
     """A core whose nodes are heard, with the questions that these stories ask."""
 
-    def __init__(self, model: SmhModel | None = None, start: Instant = 0) -> None:
+    def __init__(
+        self,
+        model: SmhModel | None = None,
+        start: Instant = 0,
+        settings: SupervisionSettings | None = None,
+    ) -> None:
         self.now = start
-        self.core = Supervision(model or actuation_model(), SupervisionSettings(), start)
+        settings = settings or SupervisionSettings()
+        self.core = Supervision(model or actuation_model(), settings, start)
         self.kinds: list[str] = []
         self.kept: dict[tuple[type[Kept], str], Kept | None] = {}
 
@@ -302,6 +309,26 @@ def test_an_error_that_comes_and_goes_chatters_with_what_would_calm_it(robot: Ro
     assert robot.kinds.count("error.chattering") == 1
     robot.advance(600)
     assert not robot.error().marks.chattering
+
+
+def flapping(clear_for: Duration) -> Robot:
+    """Return a robot whose battery was low for 1 s, and not for 2 s, several times."""
+    battery, *others = default_signals()
+    signals = (replace(battery, clear_for=clear_for, stale_after=0), *others)
+    robot = Robot(settings=SupervisionSettings(signals=signals))
+    for _ in range(6):
+        for level, lasts_s in ((0.4, 1), (0.9, 2)):
+            robot.read(battery_level=level)
+            robot.advance(lasts_s)
+    return robot
+
+
+def test_the_time_that_is_advised_calms_the_error() -> None:
+    chattering = flapping(0).error("BATTERY_LOW", None)
+    assert (chattering.marks.chattering, chattering.count) == (True, 6)
+    assert chattering.marks.calming is not None
+    calm = flapping(chattering.marks.calming).error("BATTERY_LOW", None)
+    assert (calm.marks.chattering, calm.count) == (False, 1)
 
 
 # --- over a restart ------------------------------------------------------------------------------
