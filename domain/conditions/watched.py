@@ -52,8 +52,12 @@ class WatchedConditions:
         self._by_topic: dict[Topic, dict[Subject, list[_Leaf]]] = {}
         self._touched: dict[Topic, None] = {}
         """In the order in which they were touched."""
+        self.may_have_changed = False
+        """Whether facts may have changed since the last `renew`."""
         self.revision = 0
         """Rises whenever a condition gets another value."""
+        self.leaf_revision = 0
+        """Rises whenever a comparison does, and so the reason of a condition may be another one."""
 
     @property
     def topics(self) -> Collection[Topic]:
@@ -110,6 +114,7 @@ class WatchedConditions:
 
         They come in the order in which they were touched, and then in which they were added.
         """
+        self.may_have_changed = False
         doubtful: dict[str, _Watched] = {}
         touched, self._touched = self._touched, {}
         for topic in touched:
@@ -119,6 +124,7 @@ class WatchedConditions:
                     truth = compare(leaf.comparison, observed)
                     if truth is not leaf.truth:
                         leaf.truth, leaf.since = truth, now
+                        self.leaf_revision += 1
                         doubtful.update((each.condition.text, each) for each in leaf.conditions)
         changed = []
         for watched in doubtful.values():

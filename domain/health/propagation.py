@@ -193,6 +193,9 @@ class Propagation(Concern):
     def _detect(self, key: ErrorKey, own: DeclaredError, when: Condition, now: Instant) -> None:
         """Decide about an error with a condition of its own; an unknown one keeps it as it is."""
         truth, since = self._watched.truth(when), self._watched.since(when)
+        if key in self._silent and (truth is not Truth.TRUE or not self._is_unheard(key)):
+            # That a node was not yet heard of begins nothing that stays.
+            self._clear(key, None)
         if truth is Truth.TRUE and key not in self._present:
             if since + own.for_ > now:
                 self._wait(key, since + own.for_, since)

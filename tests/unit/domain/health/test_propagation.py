@@ -402,3 +402,11 @@ def test_thousands_that_follow_at_once_are_decided_about_in_portions() -> None:
     assert max(told) <= 2 * LOOKS_AT_ONCE
     raised = next(e for e in robot.events if e.data.get("part") == f"n{count - 1}")
     assert raised.cause is not None
+
+
+def test_that_a_node_was_not_yet_heard_of_begins_nothing_that_stays() -> None:
+    text = node("lidar", '{BAD: {when: "not lidar.reachable or temperature > 40"}}')
+    cold = CoreRobot(read_model(text).model)
+    assert cold.core.signals()["temperature"].value is None
+    bad = ErrorKey(PartName("lidar"), "BAD")
+    assert cold.core.error(bad).state is S.NORMAL, "the temperature is not known"
