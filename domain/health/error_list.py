@@ -163,9 +163,8 @@ class ErrorList:
             self.note(key, NORMAL, 0)
             return
         self._alarms.discard(key)
-        del self._open[key]
-        self._outbox.errors.add(key)
-        self._put_severe(self.view(key))
+        marks = self._open.pop(key).marks
+        self._put(replace(self.view(key), marks=marks))
         self._switch(key, on=False)
 
     def renew_roots(self, key: ErrorKey) -> bool:

@@ -388,6 +388,13 @@ def test_a_shelving_survives_and_does_not_run_down_while_the_service_is_down(
     assert not after.error().marks.is_silenced
 
 
+def test_a_node_that_is_heard_after_a_restart_is_shelved_as_before(robot: Robot) -> None:
+    robot.shelve(60)
+    after = robot.restarted()
+    after.hear()
+    assert (after.state(), after.error().marks.is_silenced) == (S.NORMAL, True)
+
+
 def test_errors_that_no_longer_exist_are_told_and_forgotten(robot: Robot) -> None:
     robot.hear(reachable=False)
     robot.shelve()
