@@ -129,7 +129,13 @@ class ErrorList:
         self._alarms.note_told(key)
         view = self._open[key]
         raised = ErrorRaised(
-            key.error, view.message, view.value, view.threshold, key.part, view.is_root
+            key.error,
+            view.message,
+            view.value,
+            view.threshold,
+            key.part,
+            view.is_root,
+            view.marks.is_silenced,
         )
         self._tell(key, self._outbox.emit(raised, cause))
 
@@ -153,7 +159,7 @@ class ErrorList:
             cause: Id of the event that led to it; None: the current input.
         """
         key = before.key
-        cleared = ErrorCleared(key.error, key.part, before.is_root)
+        cleared = ErrorCleared(key.error, key.part, before.is_root, before.marks.is_silenced)
         self._tell(key, self._outbox.emit(cleared, cause))
 
     def forget(self, key: ErrorKey) -> None:

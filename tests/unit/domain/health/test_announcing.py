@@ -260,6 +260,14 @@ def test_a_shelved_error_is_told_as_such_for_a_time_and_stays_as_it_is(robot: Ro
     assert robot.kinds.count("error.unshelved") == 1
 
 
+def test_what_is_silenced_is_not_in_a_short_list_of_events(robot: Robot) -> None:
+    robot.shelve(error="BATTERY_LOW", part=None)
+    for level in (0.4, 0.9):
+        told = {event.kind: event.event for event in robot.read(battery_level=level).events}
+        robot.advance(0.3)
+        assert told["error.raised" if level < 0.5 else "error.cleared"].notable is False
+
+
 def test_somebody_may_end_the_shelving_before(robot: Robot) -> None:
     robot.shelve()
     robot.give(UnshelveRequest(LOST, ADA, BASE))
