@@ -129,7 +129,13 @@ class ErrorList:
         self._alarms.note_told(key)
         view = self._open[key]
         raised = ErrorRaised(
-            key.error, view.message, view.value, view.threshold, key.part, view.is_root
+            key.error,
+            view.message,
+            view.value,
+            view.threshold,
+            key.part,
+            view.is_root,
+            view.marks.is_silenced,
         )
         self.note_told(key, self._outbox.emit(raised, cause))
 
@@ -153,7 +159,7 @@ class ErrorList:
             cause: Id of the event that led to it; None: the current input.
         """
         key = before.key
-        cleared = ErrorCleared(key.error, key.part, before.is_root)
+        cleared = ErrorCleared(key.error, key.part, before.is_root, before.marks.is_silenced)
         self.note_told(key, self._outbox.emit(cleared, cause))
 
     def note_told(self, key: ErrorKey, event: int) -> None:
@@ -169,9 +175,8 @@ class ErrorList:
             self.note(key, NORMAL, 0)
             return
         self._alarms.discard(key)
-        del self._open[key]
-        self._outbox.errors.add(key)
-        self._put_severe(self.view(key))
+        marks = self._open.pop(key).marks
+        self._put(replace(self.view(key), marks=marks))
         self._switch(key, on=False)
 
     def renew_roots(self, key: ErrorKey) -> bool:
@@ -354,7 +359,7 @@ class ErrorList:
         )
         self._put(view)
         if state.is_on is not was_on:
-            self._turns.append(Turn(view.key, raised, self._outbox.now))
+            self._turns.append(Turn(view.key, raised, self._outbox.now, before.ended))
             self._switch(view.key, on=raised)
         view = self.view(view.key)
         is_announced = view.is_root or view.key in self._latching
