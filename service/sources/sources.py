@@ -23,6 +23,10 @@ LONGEST_PAUSE: Duration = seconds(60.0)
 """Longest such time; a source that ran so long begins anew with the first one."""
 
 
+QUIET: Duration = seconds(10.0)
+"""Least time between two faults of a signal that are told: each of them is recorded."""
+
+
 class Sources:
     """A `SignalSource` that runs sources: one that fails is run again, later and later.
 
@@ -48,7 +52,9 @@ class Sources:
     async def run(self, deliver: Deliver) -> None:
         """Deliver readings and faults of all sources until cancelled."""
         work = {
-            f"source {source.name}": self._keep(source, _Sink(status, self._specs, deliver))
+            f"source {source.name}": self._keep(
+                source, _Sink(status, self._specs, self._clock, deliver)
+            )
             for source, status in zip(self._sources, self.status, strict=True)
         }
         await run_forever(work)
@@ -85,10 +91,18 @@ class _Sink:
     """Checks what one source has to say, delivers it, and logs what changed."""
 
     def __init__(
-        self, status: SourceStatus, specs: Mapping[str, SignalSpec], deliver: Deliver
+        self,
+        status: SourceStatus,
+        specs: Mapping[str, SignalSpec],
+        clock: Clock,
+        deliver: Deliver,
     ) -> None:
         self._status = status
         self._specs = specs
+        self._clock = clock
+        self._told: dict[str, str] = {}
+        """Why there is no reading, by signal, as it was told."""
+        self._quiet_until: dict[str, Instant] = {}
         self._deliver = deliver
 
     def take(self, signal: str, value: object, stamp: Instant | None = None) -> None:
@@ -103,17 +117,18 @@ class _Sink:
             self.fail(signal, f"refused: {error.message}")
             return
         status.reads += 1
-        if status.faults.pop(signal, None) is not None:
+        if self._told.pop(signal, None) is not None:
             log.info("%s reads %s again", status.name, signal)
         self._deliver(Readings((Reading(signal, checked, stamp),), status.name))
 
     def fail(self, signal: str, why: str) -> None:
-        """Deliver why there is no reading, unless that is known."""
-        status = self._status
+        """Deliver why there is no reading, unless that is known, or another reason just was."""
+        status, now = self._status, self._clock.now()
         status.failures += 1
-        if status.faults.get(signal) == why:
+        if self._told.get(signal) == why or now < self._quiet_until.get(signal, now):
             return
-        status.faults[signal] = why
+        self._quiet_until[signal] = now + QUIET
+        self._told[signal] = why
         log.warning("%s does not read %s: %s", status.name, signal, why)
         self._deliver(SourceFault(signal, status.name, why))
 
