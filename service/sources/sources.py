@@ -9,7 +9,7 @@ from domain.health.signals import SignalKind, SignalSpec
 from domain.inputs import Reading, Readings, SourceFault
 from domain.timebase import Duration, Instant, seconds
 from service.clock import Clock
-from service.ports import Deliver
+from service.ports import BackendMessage, Deliver
 from service.running import run_forever
 from service.source_status import SourceStatus
 from service.sources.source import Source, reason_of
@@ -50,13 +50,16 @@ class Sources:
         self.status = tuple(SourceStatus(source.name, source.signals) for source in sources)
 
     async def run(self, deliver: Deliver) -> None:
-        """Deliver readings and faults of all sources until cancelled."""
-        work = {
-            f"source {source.name}": self._keep(
-                source, _Sink(status, self._specs, self._clock, deliver)
-            )
-            for source, status in zip(self._sources, self.status, strict=True)
-        }
+        """Deliver readings and faults of all sources until cancelled.
+
+        Raises:
+            ExceptionGroup: What `deliver` raised, in a `TaskFailedError`.
+        """
+        delivery = _Delivery(deliver)
+        work = {"delivery of readings": delivery.failed()}
+        for source, status in zip(self._sources, self.status, strict=True):
+            sink = _Sink(status, self._specs, self._clock, delivery.deliver)
+            work[f"source {source.name}"] = self._keep(source, sink)
         await run_forever(work)
 
     async def _keep(self, source: Source, sink: "_Sink") -> None:
@@ -71,6 +74,25 @@ class Sources:
                 pause = FIRST_PAUSE
             await self._clock.sleep_until(now + pause)
             pause = min(2 * pause, LONGEST_PAUSE)
+
+
+class _Delivery:
+    """Delivers, and tells the adapter if that fails: it is no failure of the source."""
+
+    def __init__(self, deliver: Deliver) -> None:
+        self._deliver = deliver
+        self._failed: asyncio.Future[None] = asyncio.get_running_loop().create_future()
+
+    def deliver(self, message: BackendMessage) -> None:
+        try:
+            self._deliver(message)
+        except Exception as error:
+            if not self._failed.done():
+                self._failed.set_exception(error)
+            raise
+
+    async def failed(self) -> None:
+        await self._failed
 
 
 async def _end_of(source: Source, sink: "_Sink") -> str:

@@ -220,6 +220,21 @@ async def test_a_source_that_fails_with_ever_new_words_does_not_fill_the_record(
     assert robot.faults()[-1] == ("disk", "no such device")
 
 
+async def test_what_the_core_raises_is_no_failure_of_a_source_and_ends_the_adapter() -> None:
+    def fail(_: BackendMessage) -> None:
+        raise ZeroDivisionError
+
+    source = Scripted("os", "cpu")
+    task = asyncio.create_task(Sources((source,), SPECS, ManualClock()).run(fail))
+    await settle()
+    with pytest.raises(ZeroDivisionError):
+        source.take("cpu", 1.0)
+
+    with pytest.raises(ExceptionGroup) as caught:
+        await task
+    assert isinstance(caught.value.exceptions[0].__cause__, ZeroDivisionError)
+
+
 async def test_a_source_may_give_readings_before_it_first_waits() -> None:
     class Eager(Scripted):
         async def run(self, sink: Sink) -> None:
