@@ -19,7 +19,7 @@ from domain.events.service import NotRestored, WriteAnswered
 from domain.findings import Blocker
 from domain.health.error_list import ErrorList
 from domain.health.robot_errors import RobotErrors
-from domain.health.signals import ESTOP, Comparison, ModeLimit, SignalSettings
+from domain.health.signals import ESTOP, Comparison, ModeLimit, Recovery, SignalSettings
 from domain.health.state_manager import HealthChanges, StateManager
 from domain.inputs import AcknowledgeRequest, Readings, Restored, SourceFault
 from domain.kept import KeptError
@@ -47,7 +47,8 @@ class Health(Concern):
     """
 
     def __init__(self, signals: Iterable[SignalSettings], outbox: Outbox, start: Instant) -> None:
-        self._manager = StateManager(signals, start)
+        named = {item.spec.name: item for item in signals}
+        self._manager = StateManager(named.values(), start)
         self._outbox = outbox
         self.error_list = ErrorList(outbox)
         """All errors; later concerns note those of parts there."""
@@ -58,6 +59,9 @@ class Health(Concern):
             self._keys_of.setdefault(key.part, []).append(key)
         self._pending: dict[ErrorKey, int] = {}
         """By error, the event that recorded it as pending."""
+        acknowledge = Recovery.ACKNOWLEDGE
+        self._waiting = {name for name, item in named.items() if item.recovery is acknowledge}
+        """Signals whose error may wait for an acknowledgement."""
         self._kept: dict[str, ErrorKey] = {}
         """By signal, the error that is kept, since it waits for an acknowledgement."""
         self.decided_by: int | None = None
@@ -250,7 +254,7 @@ class Health(Concern):
             self.decided_by = emit(ErrorCleared(key.error, key.part))
         self._robot_errors.follow(changes, now)
         self._outbox.signals |= changes.signals
-        for signal in changes.signals:
+        for signal in changes.signals & self._waiting:
             self._keep(signal)
 
     def _keep(self, name: str) -> None:
