@@ -21,8 +21,11 @@ from api.http.metrics import Metrics
 from api.http.problem_handlers import add_problem_handlers
 from api.http.routes import (
     analysis,
+    announcing,
     changes,
+    checkpoints,
     emergency_stop,
+    error_reports,
     errors,
     example_tracks,
     holds,
@@ -32,6 +35,7 @@ from api.http.routes import (
     monitors,
     parameters,
     parts,
+    reactions,
     service_health,
     signals,
     storage,
@@ -52,6 +56,7 @@ _RESOURCES = (
     openapi_router,
     # Before the parts: the path of a part matches everything below /nodes.
     parameters.router,
+    checkpoints.router,
     changes.router,
     model.router,
     inference.router,
@@ -59,6 +64,9 @@ _RESOURCES = (
     monitors.router,
     system_state.router,
     errors.router,
+    reactions.router,
+    announcing.router,
+    error_reports.router,
     analysis.router,
     emergency_stop.router,
     mock.router,
@@ -87,7 +95,14 @@ def _resources() -> list[BaseRoute]:
     for resource in _RESOURCES:
         router.include_router(resource)
     for prefix in ("systems", "nodes"):
-        router.include_router(parts.router, prefix=f"/{prefix}", tags=[prefix])
+        of_parts = (
+            announcing.part_router,
+            error_reports.part_router,
+            reactions.part_router,
+            parts.router,
+        )
+        for resource in of_parts:
+            router.include_router(resource, prefix=f"/{prefix}", tags=[prefix])
     return router.routes
 
 

@@ -26,6 +26,10 @@ class Deadlines(Generic[KeyT]):
         """
         self._count = 0
 
+    def __contains__(self, key: KeyT) -> bool:
+        """Tell whether a key has a deadline."""
+        return key in self._at
+
     def set(self, key: KeyT, at: Instant) -> None:
         """Set the deadline of `key`; it replaces an earlier one."""
         self._count += 1

@@ -7,6 +7,7 @@
     |   +-- UnknownSignalError
     |   +-- UnknownCheckpointError
     |   +-- UnknownErrorNameError
+    |   +-- UnknownReactionError
     |   +-- UnknownChangeError
     |   +-- UnknownParameterError
     |   +-- UnknownTaskError
@@ -19,6 +20,7 @@
     |   +-- IllegalTransitionError
     |   +-- BlockedError
     |   +-- OutdatedReadingError
+    |   +-- NotReportedError
     |   +-- ReservedHoldError
     |   +-- TooManyHoldsError
     +-- BackendUnavailableError       the backend is down: no node can be reached
@@ -134,6 +136,12 @@ class UnknownErrorNameError(UnknownNameError):
     """An unknown error name."""
 
     code = "UNKNOWN_ERROR"
+
+
+class UnknownReactionError(UnknownNameError):
+    """An unknown reaction: the part has none of this name."""
+
+    code = "UNKNOWN_REACTION"
 
 
 class UnknownChangeError(UnknownNameError):
@@ -263,6 +271,16 @@ class OutdatedReadingError(RefusedError):
     def __init__(self, signal: str, behind_s: float) -> None:
         super().__init__(f"a newer reading of {signal} is held; this one is {behind_s:.3f} s older")
         self.hint = "omit the stamp, or correct the sender's clock"
+
+
+class NotReportedError(RefusedError):
+    """A report of an error that is found by other means."""
+
+    code = "NOT_REPORTED"
+
+    def __init__(self, name: str) -> None:
+        super().__init__(f"{name} is found by Pilothouse: nobody can report it, or its end")
+        self.hint = "declare an error without when and caused_by to report it"
 
 
 class ReservedHoldError(RefusedError):

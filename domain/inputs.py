@@ -5,14 +5,19 @@ from dataclasses import dataclass
 from typing import TypeAlias
 
 from domain.actor import NOBODY, Actor
+from domain.findings import Fact
 from domain.identifiers import ChangeId, GoalId
 from domain.kept import Kept
 from domain.lifecycle import LifecycleState, Transition
 from domain.parameters import Parameters, ParameterValue
 from domain.paths.path import Path
+from domain.reaction_terms import Arm
 from domain.state_and_mode import ModeName, PartName
-from domain.timebase import Duration, Instant
+from domain.timebase import Duration, Instant, seconds
 from domain.vehicle import DriveCommand, Point, VehicleState
+
+MAX_SHELF = seconds(8 * 3_600)
+"""How long an error may be shelved: a shift. Source: ISA-18.2, shelving is for a limited time."""
 
 SignalValue: TypeAlias = bool | float | str
 """Value of a boolean, numeric or enumerated signal, in this order."""
@@ -224,9 +229,67 @@ class EmergencyStopRequest:
 
 @dataclass(frozen=True, slots=True)
 class AcknowledgeRequest:
-    """Acknowledge an error, so that it clears once its cause is gone."""
+    """Acknowledge an error: somebody has seen it, and it may clear once its cause is gone."""
 
     error: str
+    actor: Actor = NOBODY
+    part: PartName | None = None
+    """None: the error is the robot's own."""
+
+
+@dataclass(frozen=True, slots=True)
+class ShelveRequest:
+    """Do not announce an error for a time; its state, its bit and its reactions stay."""
+
+    error: str
+    for_: Duration
+    """At most `MAX_SHELF`."""
+    reason: str
+    actor: Actor = NOBODY
+    part: PartName | None = None
+    """None: the error is the robot's own."""
+
+
+@dataclass(frozen=True, slots=True)
+class UnshelveRequest:
+    """Announce an error again; without effect if it is not shelved."""
+
+    error: str
+    actor: Actor = NOBODY
+    part: PartName | None = None
+    """None: the error is the robot's own."""
+
+
+@dataclass(frozen=True, slots=True)
+class ErrorReport:
+    """Somebody found an error of a part that nothing here looks for, or that it is over."""
+
+    part: PartName | None
+    """None: of the robot itself, whose errors are all found here; it is rejected."""
+    error: str
+    active: bool
+    message: str = ""
+    value: Fact = None
+    actor: Actor = NOBODY
+
+
+@dataclass(frozen=True, slots=True)
+class ArmRequest:
+    """Let a reaction act, only tell when it would, or neither."""
+
+    part: PartName
+    reaction: str
+    arm: Arm
+    reason: str = ""
+    actor: Actor = NOBODY
+
+
+@dataclass(frozen=True, slots=True)
+class AcknowledgeReactionRequest:
+    """Acknowledge a reaction that waits for it, or that acted too often."""
+
+    part: PartName
+    reaction: str
     actor: Actor = NOBODY
 
 
@@ -324,6 +387,11 @@ Input: TypeAlias = (
     | CancelRequest
     | EmergencyStopRequest
     | AcknowledgeRequest
+    | ErrorReport
+    | ArmRequest
+    | AcknowledgeReactionRequest
+    | ShelveRequest
+    | UnshelveRequest
     | DriveRequest
     | Restored
 )

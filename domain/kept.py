@@ -9,12 +9,14 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import TypeAlias
 
+from domain.findings import Fact
 from domain.identifiers import ChangeId, TaskId
 from domain.lifecycle import LifecycleState, Transition
 from domain.parameters import ParameterValue
 from domain.paths.path import Path
+from domain.reaction_terms import Arm
 from domain.state_and_mode import PartName, StateAndMode
-from domain.timebase import Instant
+from domain.timebase import Duration, Instant
 from domain.vehicle import VehicleState
 
 
@@ -42,7 +44,7 @@ class KeptEffectiveTarget:
     part: PartName
     target: StateAndMode
     rule: str | None
-    """Name of the rule of the system that set it; None: no rule did."""
+    """Name of the rule or reaction that set it; None: it has none."""
     order: int
     """Rises with each displacement: a later one prevails where two concern the same part."""
     after: int
@@ -54,7 +56,7 @@ class KeptEffectiveTarget:
     staying: Mapping[PartName, LifecycleState] = field(default_factory=dict)
     """Nodes below to which it does not apply, and the state that each is to keep."""
     because: str = "rule"
-    """Who set it: `rule` or `invariant`."""
+    """Who set it: `rule`, `invariant` or `reaction`."""
 
     @property
     def name(self) -> str:
@@ -117,6 +119,56 @@ class KeptError:
 
 
 @dataclass(frozen=True, slots=True)
+class KeptUnacknowledged:
+    """An error that was raised, whether it is still on or not, and that nobody acknowledged."""
+
+    part: PartName | None
+    """None: the robot's own."""
+    error: str
+    message: str
+    """What was found when it was raised."""
+    since: Instant
+    """When it was raised."""
+    value: Fact = None
+    threshold: Fact = None
+
+    @property
+    def name(self) -> str:
+        """Return its name among those of its kind."""
+        return _of_part(self.part, self.error)
+
+
+@dataclass(frozen=True, slots=True)
+class KeptShelf:
+    """An error that somebody shelved for a time."""
+
+    part: PartName | None
+    """None: the robot's own."""
+    error: str
+    until: Instant
+    """As long as the service runs; `KeptClock` tells how long it did not."""
+    reason: str
+    by: str
+
+    @property
+    def name(self) -> str:
+        """Return its name among those of its kind."""
+        return _of_part(self.part, self.error)
+
+
+@dataclass(frozen=True, slots=True)
+class KeptClock:
+    """The time up to which the service ran, for what does not run down while it is down."""
+
+    at: Instant
+
+    @property
+    def name(self) -> str:
+        """Return its name among those of its kind; there is one."""
+        return ""
+
+
+@dataclass(frozen=True, slots=True)
 class KeptFailedChange:
     """The last change of a part that ended did so without success."""
 
@@ -136,6 +188,23 @@ class KeptFailedChange:
 
 
 @dataclass(frozen=True, slots=True)
+class KeptReport:
+    """An error of a part that somebody reported, and that is not over."""
+
+    part: PartName
+    error: str
+    message: str
+    value: Fact
+    since: Instant
+    """When it was reported first."""
+
+    @property
+    def name(self) -> str:
+        """Return its name among those of its kind."""
+        return f"{self.part}.{self.error}"
+
+
+@dataclass(frozen=True, slots=True)
 class KeptHold:
     """A hold that somebody set."""
 
@@ -148,6 +217,30 @@ class KeptHold:
     def name(self) -> str:
         """Return its name among those of its kind."""
         return self.owner
+
+
+@dataclass(frozen=True, slots=True)
+class KeptReaction:
+    """How a reaction of the model stands, if that is more than idle."""
+
+    part: PartName
+    reaction: str
+    arm: Arm | None = None
+    """What an operator said; None: it is as the model says."""
+    since: Instant | None = None
+    """Since when it acts, or has acted too often; None: it does neither."""
+    is_exhausted: bool = False
+    is_acknowledged: bool = False
+    """It ends once its condition is no longer true."""
+    escalated: bool = False
+    """It did not have its effect in time, and so another one is called for."""
+    used: tuple[Duration, ...] = ()
+    """How long ago it acted, when this was kept: while the service is down, no time passes."""
+
+    @property
+    def name(self) -> str:
+        """Return its name among those of its kind."""
+        return self.reaction
 
 
 @dataclass(frozen=True, slots=True)
@@ -193,14 +286,24 @@ class KeptProgress:
         return self.task
 
 
+def _of_part(part: PartName | None, error: str) -> str:
+    """Return the name of an error among those of all parts; None: the robot's own."""
+    return error if part is None else f"{part}.{error}"
+
+
 Kept: TypeAlias = (
     KeptTarget
     | KeptEffectiveTarget
     | KeptChange
     | KeptEmergencyStop
     | KeptError
+    | KeptUnacknowledged
+    | KeptShelf
+    | KeptClock
     | KeptFailedChange
+    | KeptReport
     | KeptHold
+    | KeptReaction
     | KeptTask
     | KeptProgress
 )

@@ -3,17 +3,22 @@
 from collections.abc import Collection
 
 from domain.inputs import (
+    AcknowledgeReactionRequest,
     AcknowledgeRequest,
+    ArmRequest,
     CancelRequest,
     CancelTaskRequest,
     EmergencyStopRequest,
+    ErrorReport,
     HoldRequest,
     Input,
     ModeRequest,
     ParametersRequest,
     ReleaseRequest,
+    ShelveRequest,
     TaskRequest,
     TransitionRequest,
+    UnshelveRequest,
 )
 from domain.lifecycle import Transition
 
@@ -36,12 +41,18 @@ def may_loosen(given: Input, *, is_stopped: bool, holds: Collection[str]) -> boo
     match given:
         case EmergencyStopRequest(engaged=engaged):
             return is_stopped and not engaged
+        case ErrorReport(active=active):
+            return not active
         case ReleaseRequest(owner=owner):
             return owner in holds
         case TransitionRequest(transition=transition):
             return transition in _RAISING
-        case TaskRequest() | AcknowledgeRequest() | ModeRequest() | ParametersRequest():
+        case TaskRequest() | AcknowledgeRequest() | ShelveRequest():
             return True
-        case HoldRequest() | CancelRequest() | CancelTaskRequest():
+        case ArmRequest() | AcknowledgeReactionRequest():
+            return True
+        case ModeRequest() | ParametersRequest():
+            return True
+        case HoldRequest() | CancelRequest() | CancelTaskRequest() | UnshelveRequest():
             return False
     raise TypeError(f"{type(given).__name__} is no request")

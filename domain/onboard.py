@@ -124,6 +124,7 @@ def _merged(parts: Sequence[Outputs]) -> Outputs:
         frozenset().union(*(part.parts for part in parts)),
         frozenset().union(*(part.signals for part in parts)),
         frozenset().union(*(part.errors for part in parts)),
+        frozenset().union(*(part.reactions for part in parts)),
         any(part.system_state for part in parts),
         next((part.task for part in parts if part.task is not None), None),
         any(part.task_changed for part in parts),

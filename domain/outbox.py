@@ -26,6 +26,8 @@ class Outputs(NamedTuple):
     """Signals whose view changed."""
     errors: frozenset[ErrorKey] = frozenset()
     """Errors whose view changed."""
+    reactions: frozenset[str] = frozenset()
+    """Reactions whose view changed, by their names."""
     system_state: bool = False
     """Whether the system state changed."""
     task: TaskId | None = None
@@ -53,6 +55,7 @@ class Outbox:
         self.parts: set[PartName] = set()
         self.signals: set[str] = set()
         self.errors: set[ErrorKey] = set()
+        self.reactions: set[str] = set()
         self.system_state = False
         self.task: TaskId | None = None
         self.task_changed = False
@@ -60,6 +63,8 @@ class Outbox:
         self._kept: dict[tuple[type[Kept], str], Keeping] = {}
         self._commands: list[Command] = []
         self._events: list[RecordedEvent] = []
+        self.step = 0
+        """Rises with each input, and with each portion of what an earlier one left."""
         self._next_event = 1
         self._next_request = 1
         self._at: Instant = 0
@@ -81,6 +86,7 @@ class Outbox:
         """
         self._at, self._input, self._actor, self._cause = now, event, actor, cause
         self._input_id = None
+        self.step += 1
 
     def number_events_from(self, first: int) -> None:
         """Give the next event this id: those before may have been told by an earlier run."""
@@ -90,6 +96,11 @@ class Outbox:
     def next_event(self) -> int:
         """Return the id that the next event gets."""
         return self._next_event
+
+    @property
+    def now(self) -> Instant:
+        """Return the time of the current input."""
+        return self._at
 
     @property
     def actor(self) -> Actor:
@@ -105,6 +116,7 @@ class Outbox:
             actor: Who sent it.
         """
         self._at, self._actor, self._input_id = now, actor, recorded
+        self.step += 1
 
     def record_input(self) -> int:
         """Record the input, unless it is recorded already; return its event id."""
@@ -150,6 +162,7 @@ class Outbox:
             frozenset(self.parts),
             frozenset(self.signals),
             frozenset(self.errors),
+            frozenset(self.reactions),
             self.system_state,
             self.task,
             self.task_changed,
@@ -159,7 +172,8 @@ class Outbox:
         self._kept = {}
         self._commands, self._events = [], []
         self.change, self.system_state = None, False
-        self.parts, self.signals, self.errors = set(), set(), set()
+        self.parts, self.signals = set(), set()
+        self.errors, self.reactions = set(), set()
         self.task, self.task_changed, self.vehicle_changed = None, False, False
         return outputs
 
@@ -173,6 +187,7 @@ class Outbox:
             or self.parts
             or self.signals
             or self.errors
+            or self.reactions
             or self.system_state
             or self.change
             or self.task

@@ -11,6 +11,7 @@ from domain.kept import (
     KeptProgress,
     KeptTarget,
     KeptTask,
+    KeptUnacknowledged,
 )
 from domain.outbox import Outbox
 from domain.timebase import Instant
@@ -48,13 +49,16 @@ def _described(restored: Restored) -> ServiceRestored:
         if isinstance(value, KeptProgress) and value.ended_as is not None
     }
     tasks = [value for value in restored.kept if isinstance(value, KeptTask)]
+    unacknowledged = {
+        value.name for value in restored.kept if isinstance(value, KeptError | KeptUnacknowledged)
+    }
     return ServiceRestored(
         boot=restored.boot,
         targets=count(KeptTarget),
         changes=count(KeptChange),
         tasks=sum(task.id not in ended for task in tasks),
         holds=count(KeptHold),
-        errors=count(KeptError),
+        errors=len(unacknowledged),
         emergency_stop=bool(restored.stop_because) or any(stop.engaged for stop in stops),
         reason=restored.stop_because,
     )

@@ -4,7 +4,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from typing import Protocol
 
 from domain.conditions.vocabulary import Kind, PartTerms, Terms, Vocabulary
-from domain.health.built_in_errors import OF_EVERY_PART, OF_NODES
+from domain.health.built_in_errors import ALL_OF_NODES, OF_EVERY_PART
 from domain.health.signals import STALE_DATA, SignalKind, SignalSettings, SignalSpec
 from domain.parameters import ParameterValue
 from domain.parts.declared_errors import DeclaredError
@@ -12,7 +12,7 @@ from domain.parts.system_model import NodeModel, SystemModel
 from domain.state_and_mode import PartName
 
 _OF_EVERY_PART = tuple(OF_EVERY_PART)
-_OF_NODES = tuple(OF_NODES)
+_OF_NODES = tuple(ALL_OF_NODES)
 
 
 class PartsOfRobot(Protocol):

@@ -77,6 +77,8 @@ class EffectiveTarget:
     """Id of the event that recorded why it differs; None: it is the requested one."""
     blockers: tuple[Blocker, ...] = ()
     """Why the requested target is not in force; empty: it is."""
+    reaction: str | None = None
+    """Name of the reaction that set it; None: no reaction did."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -305,11 +307,16 @@ class ErrorState(StrEnum):
     """Active, and an operator has acknowledged it."""
     LATCHED = "latched"
     """Its cause is gone, and an operator has yet to acknowledge it."""
+    RETURNED = "returned"
+    """It ended by itself, and nobody has acknowledged that it was there; it is not on."""
 
     @property
     def is_on(self) -> bool:
         """Tell whether the error is raised."""
-        return self not in (ErrorState.NORMAL, ErrorState.PENDING)
+        return self in _ARE_ON
+
+
+_ARE_ON = frozenset({ErrorState.ACTIVE, ErrorState.ACKNOWLEDGED, ErrorState.LATCHED})
 
 
 class ErrorKey(NamedTuple):
@@ -323,6 +330,38 @@ class ErrorKey(NamedTuple):
     def name(self) -> str:
         """Return its name among all errors, such as `BATTERY_LOW` or `drive_base.UNREACHABLE`."""
         return self.error if self.part is None else f"{self.part}.{self.error}"
+
+
+@dataclass(frozen=True, slots=True)
+class ShelfView:
+    """An error is shelved: it is not announced for a time."""
+
+    until: Instant
+    reason: str
+    by: str
+
+
+@dataclass(frozen=True, slots=True)
+class ErrorMarks:
+    """What is told about the announcing of an error; it changes no state, bit or reaction."""
+
+    shelf: ShelfView | None = None
+    """None: it is not shelved."""
+    suppressed: bool = False
+    """The model silences it as things are now."""
+    chattering: bool = False
+    """It was raised and ended too often of late."""
+    calming: Duration | None = None
+    """For how long its cause would have to be gone before it clears, to be calm; None: it is
+    calm, or nothing is known of that."""
+
+    @property
+    def is_silenced(self) -> bool:
+        """Tell whether it is shelved or suppressed."""
+        return self.suppressed or self.shelf is not None
+
+
+NO_MARKS = ErrorMarks()
 
 
 @dataclass(frozen=True, slots=True)
@@ -342,6 +381,26 @@ class ErrorView:
     """When it was raised, or when it began to be pending; None: it is normal."""
     count: int
     """How often it was raised, in this run of the service."""
+    caused_by: "tuple[ErrorKey, ...]" = ()
+    """The errors that explain it: those of its causes that are on, or were last."""
+    roots: "tuple[ErrorKey, ...]" = ()
+    """The errors that it goes back to through its causes; empty: it is a root itself."""
+    hint: str = ""
+    """What to do about it; empty: nobody said."""
+
+    ended: Instant | None = None
+    """When its cause was gone; None: it is present, or that is not known."""
+    marks: ErrorMarks = NO_MARKS
+
+    @property
+    def is_root(self) -> bool:
+        """Tell whether no other error explains it."""
+        return not self.roots
+
+    @property
+    def is_open(self) -> bool:
+        """Tell whether an operator may want to see it: it is not normal, or it is shelved."""
+        return self.state is not ErrorState.NORMAL or self.marks.shelf is not None
 
 
 @dataclass(frozen=True, slots=True)

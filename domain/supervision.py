@@ -20,12 +20,16 @@ from domain.conditions.watched import WatchedConditions
 from domain.events.service import TimeWasDue
 from domain.fact_changes import FactChanges
 from domain.findings import Blocker
+from domain.health.announcing import Announcing
 from domain.health.checkpoint_errors import CheckpointErrors
 from domain.health.checkpoints import CheckpointSettings
 from domain.health.emergency_stop import EmergencyStop
+from domain.health.error_causes import ErrorCauses
 from domain.health.health import Health
 from domain.health.mode_limits import ModeLimits
 from domain.health.part_errors import PartErrors
+from domain.health.propagation import Propagation
+from domain.health.reported_errors import ReportedErrors
 from domain.health.signals import SignalSettings, default_signals
 from domain.inputs import ChangeRequest, Input, TimePassed
 from domain.lifecycle import Transition
@@ -35,6 +39,9 @@ from domain.parts.parts import Parts
 from domain.parts.system_model import SmhModel
 from domain.reactions.displacing import Displacing
 from domain.reactions.fallbacks import Fallbacks
+from domain.reactions.reaction import Reaction, reactions_of
+from domain.reactions.reaction_view import ReactionView
+from domain.reactions.reactions import Reactions
 from domain.reactions.rules import Rules
 from domain.reactions.settings import RuleSettings
 from domain.restart import Restart
@@ -94,22 +101,22 @@ class Supervision:
         self._now = start
         outbox = self._outbox = Outbox()
         parts = self._parts = Parts(model, outbox)
-        health = self._health = Health(settings.signals, outbox, start)
-        self._emergency_stop = EmergencyStop(self._health, self._outbox)
-        self.driving = Driving(
-            settings.tasks, settings.vehicle, self._health, self._emergency_stop, outbox, start
-        )
-        storage = Storage(self._outbox)
-        self._robot_state = RobotState(self._health, self.driving, storage, self._outbox)
-        errors = self._part_errors = PartErrors(
-            parts, health.error_list, outbox, start, settings.checkpoints
-        )
-        self.facts = RobotFacts(self._parts, self._health, self.driving, self._part_errors.reason)
+        causes = ErrorCauses(model, settings.checkpoints)
+        health = self._health = Health(settings.signals, outbox, start, causes)
+        stop = self._emergency_stop = EmergencyStop(health, outbox)
+        self.driving = Driving(settings.tasks, settings.vehicle, health, stop, outbox, start)
+        storage = Storage(outbox)
+        self._robot_state = RobotState(health, self.driving, storage, outbox)
+        errors = self._part_errors = PartErrors(parts, health.error_list, outbox, start)
+        self.facts = RobotFacts(parts, health, self.driving, errors.reason)
         """What conditions are evaluated over."""
         self.conditions = WatchedConditions(self.facts)
         """The conditions of the model, kept up to date; read only."""
         guards = Guards(model, self.conditions, start)
+        reactions = reactions_of(model, self.conditions, start)
         self._changing = Changing(parts, health, errors, settings.changes, outbox, guards)
+        displacing = Displacing(parts, self._changing, outbox)
+        self._reactions = self._reactions_by(displacing, reactions, guards, start)
         # Driving stops the vehicle before the state is published and changes continue.
         self._concerns: tuple[Concern, ...] = (
             Restart(self._outbox),
@@ -122,20 +129,52 @@ class Supervision:
             storage,
             self._robot_state,
             self._part_errors,
-            CheckpointErrors(settings.checkpoints, parts, health, errors, outbox),
-            FactChanges(self.conditions, parts, self.driving, outbox),
+            *self._after_part_errors(settings, start),
             self._changing,
-            *self._displacers(guards, settings.rules),
+            # What sets targets in force, the stronger first.
+            self._reactions,
+            *self._displacers(guards, settings.rules, displacing),
             Audit(self._outbox),
             Stalls(self._outbox),
         )
-        self._outbox.errors.clear()  # What is on from the start is no change.
         self._arrange()
 
-    def _displacers(self, guards: Guards, rules: RuleSettings) -> tuple[Concern, Concern]:
-        """Return what sets targets in force, the stronger first; both displace by one object."""
+    def _after_part_errors(
+        self, settings: SupervisionSettings, start: Instant
+    ) -> tuple[Concern, ...]:
+        """Return what else raises errors of parts, what conditions then say, and who is told."""
+        parts, health, errors, outbox = self._parts, self._health, self._part_errors, self._outbox
+        announcing = Announcing(health, errors, self.conditions, outbox, start)
+        propagation = Propagation(health.error_list, self.conditions, errors.unheard, outbox, start)
+        return (
+            ReportedErrors(self.model, health.error_list, outbox),
+            CheckpointErrors(settings.checkpoints, parts, health, errors, outbox),
+            # It evaluates all conditions, and so comes last of those that watch some.
+            FactChanges(self.conditions, parts, self.driving, outbox),
+            propagation,
+            announcing,
+        )
+
+    def _reactions_by(
+        self, displacing: Displacing, reactions: list[Reaction], guards: Guards, start: Instant
+    ) -> Reactions:
+        return Reactions(
+            reactions,
+            self._parts,
+            self._changing,
+            self._health,
+            self._emergency_stop,
+            self.driving,
+            guards,
+            displacing,
+            self._outbox,
+            start,
+        )
+
+    def _displacers(
+        self, guards: Guards, rules: RuleSettings, displacing: Displacing
+    ) -> tuple[Concern, Concern]:
         parts, changing, health, outbox = self._parts, self._changing, self._health, self._outbox
-        displacing = Displacing(parts, changing, outbox)
         errors = self._part_errors
         return (
             Fallbacks(parts, changing, health, errors, guards, displacing, outbox),
@@ -144,6 +183,8 @@ class Supervision:
 
     def _arrange(self) -> None:
         """Note which concerns have to be asked when; most have nothing to do most of the time."""
+        self._health.error_list.mark_start()
+        self._outbox.errors.clear()  # What is on from the start is no change.
         self._takers = _takers(self._concerns)
         self._clocked = [c for c in self._concerns if _overrides(c, "wake_at")]
         self._settling = [c for c in self._concerns if _overrides(c, "settle")]
@@ -332,14 +373,29 @@ class Supervision:
         yield from self._part_errors.views_of(part)
         yield from self._health.error_views(part)
 
+    def reaction(self, key: str) -> ReactionView:
+        """Return one reaction, as `Outputs.reactions` names it."""
+        return self._reactions.view_of(key)
+
+    def reaction_of(self, part: PartName, name: str) -> ReactionView:
+        """Return one reaction of a part.
+
+        Raises:
+            UnknownReactionError: The part has no reaction of this name.
+        """
+        return self._reactions.view(part, name)
+
+    def reactions(self) -> Mapping[str, ReactionView]:
+        """Return all reactions by their names, in the order of the file."""
+        return {view.name: view for view in self._reactions.views()}
+
     def open_errors(self) -> Mapping[str, ErrorView]:
         """Return the errors that are not normal, by their names."""
         return self._health.error_list.open_ones()
 
     def error_graph(self) -> ErrorGraph:
         """Return the critical and fatal errors, and the errors that they follow from."""
-        own = {view.key: view.severity for view in self._health.error_views()}
-        return error_graph(self.model, own)
+        return error_graph(self.model, self._health.severities())
 
     @property
     def parts_with_errors(self) -> Mapping[str, int]:

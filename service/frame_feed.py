@@ -4,9 +4,9 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
 from typing import Generic, TypeVar
 
+from domain.reactions.reaction_view import ReactionView
 from domain.snapshot import (
     EmergencyStopView,
-    ErrorState,
     ErrorView,
     HoldView,
     PartView,
@@ -50,6 +50,8 @@ class Frame:
     errors: Mapping[str, ErrorView]
     """As for `parts`, by name; a full frame has those that are not normal, and those that ended a
     short time ago."""
+    reactions: Mapping[str, ReactionView]
+    """As for `parts`, by name."""
     task: TaskView | None
     """The current task, or else the last one; None: there has been none."""
     task_changed: bool
@@ -85,6 +87,7 @@ class FrameFeed(Watched):
         """Also those that ended, so that who merges frames learns of each end."""
         self._ended_in: dict[str, int] = {}
         """Number of the frame that told the end of an error, the oldest first."""
+        self._reactions: dict[str, ReactionView] = {}
         self._signals: dict[str, SignalView] = {}
         self._has_all = False
 
@@ -118,6 +121,7 @@ class FrameFeed(Watched):
         self._parts.take(frame.parts, frame.seq)
         self._errors.take(frame.errors, frame.seq)
         self._forget_ended(frame)
+        self._reactions.update(frame.reactions)
         self._signals.update(frame.signals)
         self._has_all = self._has_all or frame.full
         self._newest = frame
@@ -128,7 +132,7 @@ class FrameFeed(Watched):
         """Forget errors that ended so long ago that every reader took a frame since."""
         for name, view in frame.errors.items():
             self._ended_in.pop(name, None)
-            if view.state is ErrorState.NORMAL:
+            if not view.is_open:
                 self._ended_in[name] = frame.seq
         while self._ended_in:
             name, ended_in = next(iter(self._ended_in.items()))
@@ -148,6 +152,7 @@ class FrameFeed(Watched):
                 parts=dict(self.parts),
                 signals=dict(self._signals),
                 errors=dict(self.errors),
+                reactions=dict(self._reactions),
                 full=True,
             )
         return self._complete
@@ -169,6 +174,7 @@ class FrameFeed(Watched):
             parts=dict(self.parts_since(seen)),
             signals=dict(self._signals),
             errors=dict(self.errors_since(seen)),
+            reactions=dict(self._reactions),
             full=False,
         )
 

@@ -7,6 +7,7 @@ from itertools import islice
 from typing import Generic, TypeVar
 
 from domain.outbox import Outputs
+from domain.reactions.reaction_view import ReactionView
 from domain.snapshot import ErrorKey, ErrorView, PartView, SignalView
 from domain.state_and_mode import PartName
 from domain.supervision import Supervision
@@ -53,6 +54,7 @@ class FramePublisher:
         self._simulated = simulated
         self._changed_parts = _Changed[PartName]()
         self._changed_errors = _Changed[ErrorKey]()
+        self._changed_reactions: set[str] = set()
         self._changed_signals: set[str] = set()
         self._signals_told_at: dict[str, Instant] = {}
         self._task_changed = False
@@ -81,6 +83,7 @@ class FramePublisher:
         """Remember what changed; the next frame shows it."""
         self._changed_parts.note(outputs.parts)
         self._changed_errors.note(outputs.errors)
+        self._changed_reactions |= outputs.reactions
         self._changed_signals |= outputs.signals
         self._task_changed |= outputs.task_changed
         self._vehicle_changed |= outputs.vehicle_changed
@@ -104,6 +107,7 @@ class FramePublisher:
             parts=self._take_parts(full=full),
             signals=self._take_signals(full=full),
             errors=self._take_errors(full=full),
+            reactions=self._take_reactions(full=full),
             task=core.driving.latest_task if last is None or self._task_changed else last.task,
             task_changed=full or self._task_changed,
             vehicle=core.driving.vehicle,
@@ -136,6 +140,13 @@ class FramePublisher:
             return self._core.open_errors()
         taken = self._changed_errors.take(ERRORS_AT_ONCE)
         return {key.name: self._core.error(key) for key in taken}
+
+    def _take_reactions(self, *, full: bool) -> Mapping[str, ReactionView]:
+        """Return all reactions for a full frame, or else those that changed."""
+        changed, self._changed_reactions = self._changed_reactions, set()
+        if full:
+            return self._core.reactions()
+        return {key: self._core.reaction(key) for key in sorted(changed)}
 
     def _take_signals(self, *, full: bool) -> Mapping[str, SignalView]:
         """Return the signals that changed; one that was only received again waits its turn."""

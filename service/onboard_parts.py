@@ -16,6 +16,8 @@ def make_onboard(model: SmhModel, robot: RobotSettings, start: Instant) -> Onboa
         robot.to_change_settings(),
         robot.to_task_settings(),
         limits,
+        robot.to_rule_settings(),
+        checkpoints=robot.to_checkpoint_settings(),
     )
     core = Supervision(model, settings, start)
     navigation = Navigation(limits, robot.to_navigation_settings(), core.driving.watch)

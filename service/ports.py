@@ -11,6 +11,7 @@ from domain.commands import Drive, NodeCommand
 from domain.inputs import (
     BackendStatus,
     DriveStatus,
+    ErrorReport,
     NodeAnswer,
     NodeReport,
     Readings,
@@ -26,6 +27,7 @@ BackendMessage: TypeAlias = (
     | ReportBacklog
     | Readings
     | SourceFault
+    | ErrorReport
     | VehicleReport
     | DriveStatus
 )

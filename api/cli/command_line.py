@@ -16,6 +16,7 @@ from api.cli.commands import (
     analyse,
     change,
     check,
+    errors,
     export,
     monitor,
     profile,
@@ -42,6 +43,7 @@ _COMMANDS = (
     change.MODE,
     change.STATE,
     why.WHY,
+    errors.ERRORS,
     task.COMMAND,
     simulate.COMMAND,
     profile.COMMAND,
@@ -56,6 +58,7 @@ examples:
   pilothouse check robot.yaml             check a model file
   pilothouse analyse robot.yaml           find single points of failure
   pilothouse serve robot.yaml --port 9000 supervise it, with simulated nodes
+  pilothouse errors                       list what is wrong, roots first
   pilothouse mode actuation PERFORMANCE   change a mode, and follow the steps
   pilothouse state drive_base deactivate  request a lifecycle transition
   pilothouse task track.csv --preview     preview the waypoints of a task

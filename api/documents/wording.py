@@ -41,6 +41,7 @@ TAGS: Mapping[str, str] = MappingProxyType(
         "nodes": "Nodes: what they report, their parameters, and changes of both.",
         "changes": "What became of the changes that were asked for, step by step.",
         "health": "Signals, the state of the robot that follows from them, and the emergency stop.",
+        "reactions": "What the robot does while something is so, and whether it may.",
         "drive": "The vehicle, its waypoint task, and who holds it.",
         "events": "What happened, in order.",
         "model": "The model of the robot's systems and nodes, and the check of any other one.",

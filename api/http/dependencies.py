@@ -3,6 +3,7 @@
 All are coroutines: the framework would call plain functions in a thread.
 """
 
+import re
 from collections.abc import Collection
 from itertools import islice
 from typing import Annotated
@@ -82,6 +83,8 @@ def known_part(part: str, request: Request, supervisor: Supervisor) -> PartName:
 PartDep = Annotated[PartName, Depends(_part)]
 
 
+_ONLY_OF_NODES = re.compile(r"/(parameters$|checkpoints)(?=$|/)")
+
 _MAX_HINTED = 256
 """Characters of a path in which the name of a part is looked for."""
 
@@ -90,8 +93,8 @@ def _hint(model: SmhModel, kind: str, part: str, path: str) -> str | None:
     """Return a hint: the right path of the part, or the routes of the longest known prefix."""
     if part in model:
         other = "node" if kind == "system" else "system"
-        if other == "system" and path.endswith("/parameters"):
-            return f"{part} is a system, and only nodes have parameters: see /systems/{part}"
+        if other == "system" and (of_nodes := _ONLY_OF_NODES.search(path)) is not None:
+            return f"{part} is a system, and only nodes have {of_nodes[1]}: see /systems/{part}"
         return f"{part} is a {other}: see {path.replace(f'/{kind}s/', f'/{other}s/', 1)}"
     # Each shorter prefix is looked up: in a long path that would take quadratic time.
     name = part[:_MAX_HINTED]

@@ -7,8 +7,9 @@ from collections.abc import Callable
 
 from pydantic_core import to_json
 
+from domain.events.announcing import chatter_words
 from domain.snapshot import ErrorView
-from domain.timebase import Instant
+from domain.timebase import Instant, to_seconds
 
 
 def error_text(view: ErrorView, show: Callable[[Instant], str]) -> str:
@@ -18,25 +19,36 @@ def error_text(view: ErrorView, show: Callable[[Instant], str]) -> str:
         view: Of the error.
         show: Returns an instant as RFC 3339.
     """
-    key, since = view.key, view.since
+    key, since, ended, marks = view.key, view.since, view.ended, view.marks
+    shelf = marks.shelf
     shown = {
         "error": key.error,
         "part": key.part,
         "severity": str(view.severity),
         "state": str(view.state),
-        # Nothing shelves, suppresses or causes an error: each is its own root.
-        "shelved_until_at": None,
-        "suppressed": False,
-        "chattering": False,
-        "root_cause": True,
+        "shelved_until_at": None if shelf is None else show(shelf.until),
+        "shelved_because": None if shelf is None else shelf.reason,
+        "suppressed": marks.suppressed,
+        "chattering": marks.chattering,
+        "root_cause": view.is_root,
         "first_out": view.first_out,
-        "caused_by": [],
-        "roots": [{"part": key.part, "error": key.error}],
+        "caused_by": [each._asdict() for each in view.caused_by],
+        "roots": [each._asdict() for each in view.roots or (key,)],
         "message": view.message,
         "value": view.value,
         "threshold": view.threshold,
         "since_at": None if since is None else show(since),
+        "ended_at": None if ended is None else show(ended),
         "count": view.count,
-        "hint": None,
+        "hint": _hint(view),
     }
     return to_json(shown, inf_nan_mode="null").decode()
+
+
+def _hint(view: ErrorView) -> str | None:
+    """Return what would help, as the model file says it, and what calms an error that chatters."""
+    if not view.marks.chattering:
+        return view.hint or None
+    calming = view.marks.calming
+    words = chatter_words(None if calming is None else to_seconds(calming))
+    return f"{view.hint}; {words}" if view.hint else words

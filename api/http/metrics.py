@@ -1,5 +1,6 @@
 """Prometheus metrics, read from the supervisor when they are scraped."""
 
+from collections import Counter
 from collections.abc import Iterable, Iterator, Sequence
 from itertools import islice
 
@@ -9,7 +10,7 @@ from prometheus_client.metrics_core import Metric
 from prometheus_client.registry import Collector
 
 from api.http.gate.refusals import COUNTED, Refusals
-from domain.snapshot import ChangeStatus, SystemState
+from domain.snapshot import ChangeStatus, Severity, SystemState
 from domain.timebase import to_seconds
 from service.refused_readings import WAYS
 from service.source_status import SourceStatus
@@ -68,6 +69,13 @@ class _RobotCollector(Collector):
             "Number of parts that have an error, by error",
             "error",
             ((error, float(count)) for error, count in core.parts_with_errors.items()),
+        )
+        on = Counter(view.severity for view in core.open_errors().values() if view.state.is_on)
+        yield _gauge(
+            "pilothouse_errors",
+            "Number of errors that are on, of the robot and of its parts, by severity",
+            "severity",
+            ((str(severity), float(on[severity])) for severity in Severity),
         )
         deviating = (name for name, part in core.parts().items() if not part.converged)
         yield _gauge(

@@ -54,6 +54,7 @@ def _effective(target: EffectiveTarget, show: Callable[[Instant], str]) -> dict[
         "mode": target.mode,
         "because": str(target.because),
         "rule": target.rule,
+        "reaction": target.reaction,
         "cause": target.cause,
         "blockers": [_blocker(blocker, show) for blocker in target.blockers],
     }

@@ -24,6 +24,7 @@ from service.keeper import NO_STORES, Stores
 from service.onboard_parts import make_onboard
 from service.ports import RobotBackend, SignalSource
 from service.ros.backend.backend import Ros2Backend
+from service.ros.backend.diagnostics import TYPE as DIAGNOSTICS
 from service.ros.gateway import RosGateway
 from service.ros.graph.graph import RosGraph, UnknownTypeError
 from service.ros.interface.interface import RosInterface
@@ -194,15 +195,9 @@ def _with_simulated(
     onboard = make_onboard(loaded.model, robot, now)
     stores = replace(stores, memories=memories_of(simulated))
     supervisor = Supervisor(
-        loaded,
-        onboard,
-        clock,
-        whole,
-        backend.readings,
-        simulated.what,
-        stores=stores,
-        sources=status,
+        loaded, onboard, clock, whole, backend.readings, simulated.what, stores=stores
     )
+    supervisor.sources = status
     limits, parts = ServiceLimits.of(robot.limits), SimulatedParts(onboard, simulated)
     return Composition(supervisor, limits, simulated=parts)
 
@@ -227,18 +222,12 @@ def _with_ros2(
         mock = MockSource(signals, clock)
         backend, status = _with_sources(loaded, robot, clock, ros, (ros, mock))
         supervisor = Supervisor(
-            loaded,
-            onboard,
-            clock,
-            backend,
-            mock.readings,
-            ("signals",),
-            stores=stores,
-            sources=status,
+            loaded, onboard, clock, backend, mock.readings, ("signals",), stores=stores
         )
     else:
         backend, status = _with_sources(loaded, robot, clock, ros, (ros,))
-        supervisor = Supervisor(loaded, onboard, clock, backend, stores=stores, sources=status)
+        supervisor = Supervisor(loaded, onboard, clock, backend, stores=stores)
+    supervisor.sources = status
     mapped = {block.topic for block in robot.ros2.signals.values()}
     gateway = RosGateway(RosInterface(supervisor), graph, mapped)
     return Composition(supervisor, ServiceLimits.of(robot.limits), gateway)
@@ -277,6 +266,8 @@ def _require_types(graph: RosGraph, topics: Ros2Block) -> None:
     named += [statistic.type for statistic in topics.statistics.values()]
     if topics.command is not None:
         named.append(topics.command.type)
+    if topics.diagnostics is not None:
+        named.append(DIAGNOSTICS)
     for type_name in named:
         if not graph.has_type(type_name):
             raise UnknownTypeError(type_name)

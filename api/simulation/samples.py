@@ -57,6 +57,7 @@ class Sampler:
             f'"parts":{encoder.parts.text(core.parts())},'
             f'"signals":{encoder.signals.text(core.signals())},'
             f'"errors":{encoder.errors.text(core.open_errors())},'
+            f'"reactions":{encoder.reactions.text(core.reactions())},'
             f'"task":{encoder.task(driving.current_task)},'
             f'"vehicle":{encoder.vehicle(driving.vehicle)},'
             f'"holds":{encoder.holds(driving.holds)},'

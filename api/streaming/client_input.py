@@ -16,6 +16,7 @@ TOPICS = (
     "parts",
     "signals",
     "errors",
+    "reactions",
     "task",
     "vehicle",
     "holds",

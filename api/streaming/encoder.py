@@ -146,6 +146,8 @@ class StreamEncoder:
             yield f'"signals":{robot.signals.text(frame.signals)}'
         if "errors" in topics and (frame.full or frame.errors):
             yield f'"errors":{robot.errors.text(frame.errors)}'
+        if "reactions" in topics and (frame.full or frame.reactions):
+            yield f'"reactions":{robot.reactions.text(frame.reactions)}'
         if "task" in topics and frame.task_changed:
             yield f'"task":{robot.task(frame.task)}'
         if "vehicle" in topics and frame.vehicle_changed:

@@ -9,9 +9,11 @@ from api.http.error_text import error_text
 from api.http.part_text import part_text
 from api.http.schemas.base import rfc3339, timestamp
 from api.http.schemas.health import EmergencyStopJson, StreamedSignalJson, SystemStateJson
+from api.http.schemas.reactions import ReactionJson
 from api.http.schemas.tasks import HoldJson, TaskJson, VehicleJson
 from domain.actor import Actor
 from domain.events.event import RecordedEvent
+from domain.reactions.reaction_view import ReactionView
 from domain.snapshot import (
     EmergencyStopView,
     ErrorView,
@@ -48,6 +50,9 @@ class RobotEncoder:
             lambda view: StreamedSignalJson.of(view, clock).model_dump_json()
         )
         self.errors = MemberCache[ErrorView](lambda view: error_text(view, since.text))
+        self.reactions = MemberCache[ReactionView](
+            lambda view: ReactionJson.of(view, clock).model_dump_json()
+        )
         self._holds = LatestCache[Mapping[str, HoldView]](self._encode_holds)
         self._moments = LatestCache[Instant](lambda at: timestamp(clock, at))
         """An input and what follows from it are at the same moment."""

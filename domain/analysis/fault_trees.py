@@ -10,15 +10,12 @@ from dataclasses import dataclass
 from typing import Final
 
 from domain.analysis.cut_sets import MAX_CUT_SETS, Event, Gate, minimal_cut_sets
-from domain.health.built_in_errors import OF_NODES
-from domain.parts.declared_errors import DeclaredError
+from domain.health.built_in_errors import ALL_OF_NODES, OF_EVERY_PART
 from domain.parts.system_model import SmhModel
 from domain.snapshot import ErrorKey, Severity
 
 TOO_MANY_CUT_SETS: Final = "TOO_MANY_CUT_SETS"
 """Code of an error of which not all cut sets were found."""
-
-_STOPS_THE_TASK = (Severity.CRITICAL, Severity.FATAL)
 
 
 @dataclass(frozen=True, slots=True)
@@ -73,30 +70,31 @@ class FaultTree:
         )
 
 
-def error_graph(model: SmhModel, own: Mapping[ErrorKey, Severity]) -> ErrorGraph:
+def error_graph(model: SmhModel, found: Mapping[ErrorKey, Severity]) -> ErrorGraph:
     """Return the critical and fatal errors of a robot, and the errors that they follow from.
 
     Args:
         model: Systems and nodes, with the errors that the file declares.
-        own: The errors that the robot has besides those of its parts, in the order in which they
-            are shown.
+        found: The errors that signals raise, in the order in which they are shown.
     """
     declared = {
         ErrorKey(part, name): error
         for part in model.parts
         for name, error in model.errors.get(part, {}).items()
     }
-    severities = {**{key: _severity(key, error) for key, error in declared.items()}, **own}
+    built_in = {key: _built_in(model, key) for key in declared}
+    severities = {
+        key: error.severity or built_in[key] or Severity.WARNING for key, error in declared.items()
+    }
+    severities |= found
     followed = {
         key: Causes(error.caused_by, error.need_all)
         for key, error in declared.items()
-        if _follows(key, error) and key not in own
+        if error.when is None and error.caused_by and not built_in[key] and key not in found
     }
-    place = _places(model, own, declared)
+    place = _places(model, found, declared)
     tops = {
-        key: severities[key]
-        for key in sorted(severities, key=place)
-        if severities[key] in _STOPS_THE_TASK
+        key: severities[key] for key in sorted(severities, key=place) if severities[key].stops_task
     }
     reached = _reached(tops, followed)
     return ErrorGraph(
@@ -127,13 +125,9 @@ def fault_trees(graph: ErrorGraph) -> tuple[FaultTree, ...]:
     )
 
 
-def _severity(key: ErrorKey, error: DeclaredError) -> Severity:
-    return error.severity or OF_NODES.get(key.error, Severity.WARNING)
-
-
-def _follows(key: ErrorKey, error: DeclaredError) -> bool:
-    """Tell whether an error follows from its causes, and is not found in another way."""
-    return error.when is None and bool(error.caused_by) and key.error not in OF_NODES
+def _built_in(model: SmhModel, key: ErrorKey) -> Severity | None:
+    """Return the severity of a built-in error; None: the part has none such."""
+    return (ALL_OF_NODES if key.part in model.nodes else OF_EVERY_PART).get(key.error)
 
 
 def _reached(tops: Iterable[ErrorKey], followed: Mapping[ErrorKey, Causes]) -> set[ErrorKey]:
@@ -149,12 +143,12 @@ def _reached(tops: Iterable[ErrorKey], followed: Mapping[ErrorKey, Causes]) -> s
 
 
 def _places(
-    model: SmhModel, own: Iterable[ErrorKey], declared: Iterable[ErrorKey]
+    model: SmhModel, found: Iterable[ErrorKey], declared: Iterable[ErrorKey]
 ) -> Callable[[ErrorKey], tuple[int, int, str]]:
     """Return the place of an error: the robot's own come first, then part by part."""
     ranks = {part: number for number, part in enumerate(model.parts)}
-    numbers = {error: number for number, error in enumerate(OF_NODES)}
-    places = {key: number for number, key in enumerate((*own, *declared), len(numbers))}
+    numbers = {error: number for number, error in enumerate(ALL_OF_NODES)}
+    places = {key: number for number, key in enumerate((*found, *declared), len(numbers))}
     last = len(numbers) + len(places)
 
     def place(key: ErrorKey) -> tuple[int, int, str]:

@@ -121,7 +121,8 @@ class Changes:
     def restore(self, restored: Restored, now: Instant) -> None:
         """Set the targets that were kept, and end the changes that the restart interrupted."""
         self._log.count_from(restored.next_change)
-        self._parts.ask(self._kept_targets.restore(restored.kept))
+        for targets in self._kept_targets.restore(restored.kept):
+            self._parts.ask(targets)
         for change in ended_by_restart(restored.kept, now):
             self._log.add(change)
             self._outbox.forget(KeptChange, change.id)
@@ -207,7 +208,7 @@ class Changes:
     def _ask(self, change: Change) -> None:
         """Set the targets that a change is to reach, and keep them over a restart."""
         if change.schedule.on_failure is OnFailure.ROLLBACK:
-            change.targets_before = {name: self._parts.asked(name) for name in change.targets}
+            change.targets_before = self._parts.asked_of(change.targets)
         self._parts.ask(change.targets)
         if change.targets:
             self._kept_targets.note(change.part, change.targets)

@@ -41,8 +41,8 @@ class Guards:
             for guard in guards:
                 self._parts_of.setdefault(guard.text, []).append(part)
         self._rank = {part: number for number, part in enumerate(self._of_parts)}
-        watched.watch(chain.from_iterable(self._of_parts.values()), now)
-        self._changed = watched.follow()
+        self._changed = watched.follow(chain.from_iterable(self._of_parts.values()), now)
+        self._changed.clear()
         every = chain.from_iterable(self._of_parts.values())
         self._failing = {g.text for g in every if watched.truth(g) is not Truth.TRUE}
         """The guards that are not known to be true."""
@@ -91,10 +91,11 @@ class Guards:
         self, parts: Iterable[PartName], targets: Mapping[PartName, StateAndMode]
     ) -> Iterator[Blocker]:
         """Return why parts cannot go on to their target modes: of invariants, without grace."""
+        # The report that lets the step begin may be what breaks a guard.
+        why_not = self._watched.explain if self._watched.may_have_changed else self._why_not
         for part in parts:
             has_grace = self._settings(part, targets[part]).grace > 0
-            # The report that lets the step begin may be what breaks a guard.
-            for blocker in self._blockers(part, targets[part], self._watched.explain):
+            for blocker in self._blockers(part, targets[part], why_not):
                 if not (has_grace and blocker.code == INVARIANT):
                     yield blocker
 
@@ -159,8 +160,6 @@ class Guards:
     def _follow(self) -> None:
         """Take over which guards got another value."""
         for text, guard in self._changed.items():
-            if text not in self._parts_of:
-                continue
             self._moved.update(self._parts_of[text])
             if self._watched.truth(guard) is Truth.TRUE:
                 self._failing.discard(text)

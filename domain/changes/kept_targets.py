@@ -5,7 +5,7 @@ is forgotten once later requests have replaced the targets of all its parts.
 """
 
 from collections import Counter
-from collections.abc import Collection, Iterable, Mapping
+from collections.abc import Collection, Iterable, Iterator, Mapping
 from typing import Protocol
 
 from domain.changes.plan import targets_of
@@ -75,12 +75,11 @@ class KeptTargets:
                 self._outbox.keep(KeptTarget(part, target, self._order))
                 self._own(self._order, [part])
 
-    def restore(self, kept: Iterable[Kept]) -> dict[PartName, StateAndMode]:
-        """Return the targets of all parts that follow from the requests that were kept.
+    def restore(self, kept: Iterable[Kept]) -> Iterator[dict[PartName, StateAndMode]]:
+        """Yield the targets that follow from each request that was kept, in their order.
 
         Requests that the model no longer allows are left out, and told.
         """
-        targets: dict[PartName, StateAndMode] = {}
         requests = [value for value in kept if isinstance(value, KeptTarget)]
         for request in sorted(requests, key=lambda value: value.order):
             self._order = request.order
@@ -90,9 +89,8 @@ class KeptTargets:
                 self._outbox.forget(KeptTarget, request.name)
                 continue
             found = self._targets_of(request)
-            targets |= found
             self._own(request.order, found)
-        return targets
+            yield found
 
     def _targets_of(self, request: KeptTarget) -> dict[PartName, StateAndMode]:
         targets = targets_of(self._model, request.part, request.target)

@@ -1,6 +1,7 @@
 """Explains why a condition is not true, as a tree of blockers down to the leaves that decide it."""
 
 from collections.abc import Callable, Mapping
+from dataclasses import replace
 from types import MappingProxyType
 from typing import TypeAlias, assert_never
 
@@ -18,6 +19,7 @@ from domain.conditions.tree import (
     TopicKind,
     Value,
     is_number,
+    negated,
     value_text,
 )
 from domain.findings import Blocker
@@ -47,6 +49,22 @@ def explain(
     """
     blocker = _Explanation(facts, since).of(condition.root, condition.text.strip())
     return () if blocker is None else (blocker,)
+
+
+def explain_true(
+    condition: Condition, facts: Facts, since: Since = lambda _: None
+) -> tuple[Blocker, ...]:
+    """Return why a condition is true, as why its opposite is not; empty: it is false.
+
+    Each leaf says what would have to be for the condition to end. Arguments are as for `explain`.
+    """
+    text = condition.text.strip()
+    blocker = _Explanation(facts, since).of(negated(condition.root), text)
+    if blocker is None:
+        return ()
+    if not isinstance(condition.root, Comparison):
+        blocker = replace(blocker, message=f"true: {text}")
+    return (blocker,)
 
 
 class _Explanation:

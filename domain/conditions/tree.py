@@ -205,6 +205,19 @@ def comparisons(node: Node) -> Iterator[Comparison]:
     return (leaf for leaf in leaves(node) if isinstance(leaf, Comparison))
 
 
+def negated(node: Node) -> Node:
+    """Return the condition that is true where this one is false."""
+    match node:
+        case AllOf(operands):
+            return AnyOf(tuple(map(negated, operands)))
+        case AnyOf(operands):
+            return AllOf(tuple(map(negated, operands)))
+        case Constant(value):
+            return Constant(not value)
+        case Comparison():
+            return Comparison(node.subject, node.operator.opposite, node.values, node.columns)
+
+
 def is_number(value: object) -> bool:
     """Tell whether a value is a number; true and false are none."""
     return isinstance(value, int | float) and not isinstance(value, bool)

@@ -6,9 +6,9 @@ from itertools import chain
 
 from domain.conditions.condition import Condition
 from domain.conditions.evaluation import Truth, compare, truth_of
-from domain.conditions.explanation import explain
+from domain.conditions.explanation import explain, explain_true
 from domain.conditions.facts import Facts
-from domain.conditions.tree import Comparison, Subject, Topic, TopicKind, comparisons
+from domain.conditions.tree import Comparison, Subject, Topic, TopicKind, Value, comparisons
 from domain.findings import Blocker
 from domain.timebase import Instant
 
@@ -22,6 +22,8 @@ class _Watched:
     since: Instant
     broken_since: Instant | None
     """Since when it is false or unknown; None: it is true."""
+    followers: list[dict[str, Condition]] = field(default_factory=list)
+    """Where it is noted that its value changed."""
 
 
 @dataclass(slots=True)
@@ -50,10 +52,12 @@ class WatchedConditions:
         self._by_topic: dict[Topic, dict[Subject, list[_Leaf]]] = {}
         self._touched: dict[Topic, None] = {}
         """In the order in which they were touched."""
-        self._followers: list[dict[str, Condition]] = []
-        """Of each who follows, the conditions whose value changed since it looked last, by text."""
+        self.may_have_changed = False
+        """Whether facts may have changed since the last `renew`."""
         self.revision = 0
         """Rises whenever a condition gets another value."""
+        self.leaf_revision = 0
+        """Rises whenever a comparison does, and so the reason of a condition may be another one."""
 
     @property
     def topics(self) -> Collection[Topic]:
@@ -87,14 +91,18 @@ class WatchedConditions:
             for leaf in leaves.values():
                 leaf.conditions.append(watched)
 
-    def follow(self) -> dict[str, Condition]:
-        """Return what will hold each condition whose value changed, by its text.
+    def follow(self, conditions: Iterable[Condition], now: Instant) -> dict[str, Condition]:
+        """Add conditions; return where those whose value changed are noted by their text.
 
-        Whoever follows looks at it, and empties it.
+        Whoever follows them removes them from there. At first, all of them are in it.
         """
-        changed: dict[str, Condition] = {}
-        self._followers.append(changed)
-        return changed
+        noted: dict[str, Condition] = {}
+        for condition in conditions:
+            if condition.text not in noted:
+                self.watch((condition,), now)
+                noted[condition.text] = condition
+                self._watched[condition.text].followers.append(noted)
+        return noted
 
     def touch(self, topic: Topic) -> None:
         """Note that something about a topic changed."""
@@ -106,6 +114,7 @@ class WatchedConditions:
 
         They come in the order in which they were touched, and then in which they were added.
         """
+        self.may_have_changed = False
         doubtful: dict[str, _Watched] = {}
         touched, self._touched = self._touched, {}
         for topic in touched:
@@ -115,6 +124,7 @@ class WatchedConditions:
                     truth = compare(leaf.comparison, observed)
                     if truth is not leaf.truth:
                         leaf.truth, leaf.since = truth, now
+                        self.leaf_revision += 1
                         doubtful.update((each.condition.text, each) for each in leaf.conditions)
         changed = []
         for watched in doubtful.values():
@@ -126,8 +136,8 @@ class WatchedConditions:
                 elif watched.broken_since is None:
                     watched.broken_since = now
                 changed.append(watched.condition)
-        for follower in self._followers:
-            follower.update((condition.text, condition) for condition in changed)
+                for noted in watched.followers:
+                    noted[watched.condition.text] = watched.condition
         self.revision += len(changed)
         return tuple(changed)
 
@@ -143,10 +153,21 @@ class WatchedConditions:
         """Return since when a condition that is watched is false or unknown; None: it is true."""
         return self._watched[condition.text].broken_since
 
+    def value_of(self, subject: Subject) -> Value | None:
+        """Return the value of a fact; None: there is none, or it is not known."""
+        observed = self._facts.observe(subject)
+        return None if observed.doubt else observed.value
+
     def explain(self, condition: Condition) -> tuple[Blocker, ...]:
         """Return why a condition that is watched is not true; empty: it is."""
         since = self._watched[condition.text].broken_since
         found = explain(condition, self._facts, self._since_of_leaf)
+        return tuple(replace(b, since=since) if b.since is None else b for b in found)
+
+    def explain_true(self, condition: Condition) -> tuple[Blocker, ...]:
+        """Return why a condition that is watched is not false; empty: it is."""
+        since = self._watched[condition.text].since
+        found = explain_true(condition, self._facts, self._since_of_leaf)
         return tuple(replace(b, since=since) if b.since is None else b for b in found)
 
     # --- inside ----------------------------------------------------------------------------------
@@ -164,5 +185,7 @@ class WatchedConditions:
     def _truth_of(self, condition: Condition) -> Truth:
         return truth_of(condition.root, lambda leaf: self._leaves[leaf.text].truth)
 
-    def _since_of_leaf(self, leaf: Comparison) -> Instant:
-        return self._leaves[leaf.text].since
+    def _since_of_leaf(self, leaf: Comparison) -> Instant | None:
+        """Return since when a comparison has its value; of one that is turned round, None."""
+        watched = self._leaves.get(leaf.text)
+        return None if watched is None else watched.since

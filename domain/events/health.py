@@ -122,14 +122,16 @@ class ErrorRaised(Event):
     threshold: Fact
     part: PartName | None = None
     """None: the robot's own."""
+    root_cause: bool = True
+    """No other error explains it."""
 
     def _words(self) -> str:
         return f"{ErrorKey(self.part, self.error).name}: {self.message}"
 
     @property
     def notable(self) -> bool:
-        """Tell whether no other event of a short list says the same."""
-        return self.part is None or self.error not in _TOLD_ALREADY
+        """Tell whether no other event of a short list says the same, or explains it."""
+        return self.part is None or (self.root_cause and self.error not in _TOLD_ALREADY)
 
 
 @dataclass(frozen=True, slots=True)
@@ -141,6 +143,8 @@ class ErrorCleared(Event):
     error: str
     part: PartName | None = None
     """As in `error.raised`."""
+    root_cause: bool = True
+    """No other error explained it."""
 
     def _words(self) -> str:
         return f"{ErrorKey(self.part, self.error).name} cleared"
@@ -148,7 +152,44 @@ class ErrorCleared(Event):
     @property
     def notable(self) -> bool:
         """As of `error.raised`."""
-        return self.part is None or self.error not in _TOLD_ALREADY
+        return self.part is None or (self.root_cause and self.error not in _TOLD_ALREADY)
+
+
+@dataclass(frozen=True, slots=True)
+class ErrorReported(Event):
+    """Somebody reports an error of a part, or that it is over."""
+
+    kind = "error.reported"
+    is_input = True
+
+    part: PartName
+    error: str
+    active: bool
+    message: str
+    value: Fact
+
+    def _words(self) -> str:
+        name = ErrorKey(self.part, self.error).name
+        return because(f"{name} reported", self.message) if self.active else f"{name} reported over"
+
+
+@dataclass(frozen=True, slots=True)
+class PropagationNotSeen(Event):
+    """An error should have led to another one by now, and did not: a detection may be broken."""
+
+    kind = "propagation.not_seen"
+
+    error: str
+    part: PartName
+    cause_error: str
+    cause_part: PartName | None
+    """None: it is an error of the robot itself."""
+    within_s: float
+
+    def _words(self) -> str:
+        cause = ErrorKey(self.cause_part, self.cause_error).name
+        name = ErrorKey(self.part, self.error).name
+        return f"{cause} has been on for {self.within_s:g} s without {name}"
 
 
 @dataclass(frozen=True, slots=True)

@@ -12,18 +12,20 @@ class DisplacementBegan(Event):
     """Another target than the requested one is in force for a system."""
 
     kind = "target.displacement_began"
+    optional = frozenset({"reaction"})
 
     part: PartName
     target: StateAndMode
-    was: StateAndMode
+    was: StateAndMode | None
     because: Because
     rule: str | None
     reason: str
+    reaction: str | None = None
 
     def _words(self) -> str:
-        instead = f"{self.target.label} instead of {self.was.label}"
-        setter = _setter(self.because, self.rule)
-        return because(f"{self.part}: {setter} sets {instead}", self.reason)
+        instead = f" instead of {self.was.label}" if self.was else ""
+        setter = _setter(self.because, self.rule or self.reaction)
+        return because(f"{self.part}: {setter} sets {self.target.label}{instead}", self.reason)
 
 
 @dataclass(frozen=True, slots=True)
@@ -31,6 +33,7 @@ class DisplacementEnded(Event):
     """What a displacement replaced is in force again, or a request replaced both."""
 
     kind = "target.displacement_ended"
+    optional = frozenset({"reaction"})
 
     part: PartName
     target: StateAndMode | None
@@ -38,10 +41,11 @@ class DisplacementEnded(Event):
     because: Because
     rule: str | None
     reason: str
+    reaction: str | None = None
 
     def _words(self) -> str:
         now = self.target.label if self.target else "no target"
-        what = f"{self.was.label} of {_setter(self.because, self.rule)}"
+        what = f"{self.was.label} of {_setter(self.because, self.rule or self.reaction)}"
         return because(f"{self.part}: {now} replaces {what}", self.reason)
 
 
@@ -50,12 +54,14 @@ class DisplacementStays(Event):
     """The cause of a displacement is gone, and the displacement stays until a request ends it."""
 
     kind = "target.displacement_stays"
+    optional = frozenset({"reaction"})
 
     part: PartName
     target: StateAndMode
     because: Because
     rule: str | None
     reason: str
+    reaction: str | None = None
 
     def _words(self) -> str:
         words = f"{self.part} stays {self.target.label} after {_setter(self.because, self.rule)}"
@@ -78,6 +84,6 @@ class RuleNotApplied(Event):
         return because(words, self.reason)
 
 
-def _setter(kind: Because, rule: str | None) -> str:
+def _setter(kind: Because, name: str | None) -> str:
     """Return who set a target, as in "rule slow_down"."""
-    return "a broken invariant" if kind is Because.INVARIANT else f"{kind} {rule}"
+    return "a broken invariant" if kind is Because.INVARIANT else f"{kind} {name}"

@@ -50,5 +50,10 @@ ALL_OF_NODES: Mapping[str, Severity] = MappingProxyType({**OF_NODES, **OF_CHECKP
 
 
 def severity_of(key: ErrorKey) -> Severity:
-    """Return the severity of an error; each of the robot itself sets a bit, and so ERROR."""
-    return Severity.CRITICAL if key.part is None else ALL_OF_NODES[key.error]
+    """Return the severity of an error of which nothing else is said.
+
+    Each of the robot itself sets a bit, and so ERROR.
+    """
+    if key.part is None:
+        return Severity.CRITICAL
+    return ALL_OF_NODES.get(key.error, Severity.WARNING)

@@ -61,7 +61,8 @@ class CheckpointErrors(Concern):
         checkpoints = self._nodes.get(node)
         known = () if checkpoints is None else checkpoints.names
         if checkpoints is None or report.checkpoint not in known:
-            raise UnknownCheckpointError(f"checkpoint of {node}", report.checkpoint, known)
+            hint = None if known else f"the robot file has no checkpoints of {node}"
+            raise UnknownCheckpointError(f"checkpoint of {node}", report.checkpoint, known, hint)
         self._outbox.begin(now, CheckpointReached(node, report.checkpoint), report.actor)
         checkpoints.reach(report.checkpoint, now, is_late=self._health.is_late)
         self._judge(node, now)

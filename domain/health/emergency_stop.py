@@ -2,7 +2,7 @@
 
 from dataclasses import replace
 
-from domain.actor import SERVICE
+from domain.actor import SERVICE, Actor
 from domain.concern import Concern, Takers
 from domain.events.health import (
     EmergencyStopEngaged,
@@ -40,6 +40,13 @@ class EmergencyStop(Concern):
 
     def take_request(self, request: EmergencyStopRequest, now: Instant) -> None:
         """Engage or release the stop; a repetition changes nothing."""
+        self._press(request, now, None)
+
+    def engage_for(self, actor: Actor, reason: str, cause: int, now: Instant) -> None:
+        """Engage the stop in the name of a reaction; a person releases it."""
+        self._press(EmergencyStopRequest(True, reason, actor), now, cause)
+
+    def _press(self, request: EmergencyStopRequest, now: Instant, cause: int | None) -> None:
         if request.engaged is self._view.engaged:
             return
         self._view = EmergencyStopView(
@@ -50,7 +57,7 @@ class EmergencyStop(Concern):
             standstill_at=None,
         )
         kind = EmergencyStopEngaged if request.engaged else EmergencyStopReleased
-        self._outbox.begin(now, kind(request.reason), request.actor)
+        self._outbox.begin(now, kind(request.reason), request.actor, cause)
         self._outbox.record_input()
         by = request.actor.label
         self._outbox.keep(KeptEmergencyStop(request.engaged, by, request.reason, now))

@@ -1,23 +1,37 @@
 """All errors, of the robot and of its parts: which are on, since when, and how often."""
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import replace
+from itertools import chain, islice
 from typing import NamedTuple
 
+from domain.events.health import ErrorCleared, ErrorRaised
 from domain.findings import Fact
+from domain.health.alarm import QUIET, Alarm, Evidence
+from domain.health.alarms import Alarms
 from domain.health.built_in_errors import severity_of
+from domain.health.error_causes import MAX_SHOWN, NO_CAUSES, ErrorCauses
+from domain.health.on_errors import OnErrors
+from domain.health.severe_errors import SevereErrors
+from domain.health.turns import Turn
+from domain.kept import KeptUnacknowledged
 from domain.outbox import Outbox
-from domain.snapshot import ErrorKey, ErrorState, ErrorView, Severity
+from domain.snapshot import NO_MARKS, ErrorKey, ErrorMarks, ErrorState, ErrorView, Severity
+from domain.state_and_mode import PartName
 from domain.timebase import Instant
 
 
 class Found(NamedTuple):
-    """What was found of an error."""
+    """What was found of an error; whether somebody has seen it is added here."""
 
     state: ErrorState
+    """`normal`, `pending`, `active`, or `latched`: who found it keeps it on until it is
+    acknowledged."""
     message: str = ""
     value: Fact = None
     threshold: Fact = None
+    lingers: bool = False
+    """It is active for its minimum time only: its cause is gone."""
 
 
 NORMAL = Found(ErrorState.NORMAL)
@@ -29,25 +43,51 @@ class ErrorList:
     An error that was never raised takes no memory: a robot may have ten thousand parts.
     """
 
-    def __init__(self, outbox: Outbox) -> None:
+    def __init__(self, outbox: Outbox, causes: ErrorCauses = NO_CAUSES) -> None:
+        """Begin with all errors normal.
+
+        Args:
+            outbox: Is told what changed.
+            causes: Which errors explain which.
+        """
         self._outbox = outbox
+        self.causes = causes
+        self._alarms = Alarms(outbox)
         self._severities: dict[ErrorKey, Severity] = {}
-        """Of those that are declared."""
+        """Of those of signals."""
+        self._of_signals: dict[PartName | None, list[str]] = {}
+        self._latching: set[ErrorKey] = set()
+        """Those that stay on until they are acknowledged; signals keep their own on."""
         self._open: dict[ErrorKey, ErrorView] = {}
-        """Those that are not normal."""
+        """Those that are not normal, or shelved."""
         self._ended: dict[ErrorKey, ErrorView] = {}
-        """Those that are normal, and were raised before."""
-        self._parts_with: dict[str, int] = {}
-        """By error, how many parts have it."""
-        self._count_on = 0
+        """The others of which something is to be said: they were raised before, for example."""
+        self._turns: list[Turn] = []
+        self.on = OnErrors(outbox)
+        self.severe = SevereErrors()
+        self._told: dict[ErrorKey, int] = {}
+        """By error, the newest event that told that it was raised or cleared."""
         self._first: ErrorKey | None = None
         """The error that was raised first since none was on."""
 
     # --- what happens ----------------------------------------------------------------------------
 
-    def declare(self, key: ErrorKey, severity: Severity) -> None:
-        """Give an error a severity of its own."""
-        self._severities[key] = severity
+    def declare(
+        self, key: ErrorKey, severity: Severity | None = None, *, latches: bool = False
+    ) -> None:
+        """Give an error settings of its own.
+
+        Args:
+            key: The error.
+            severity: Of an error of a signal; None: it is none, and the model says its severity.
+            latches: It stays on after its cause until it is acknowledged; signals keep their own
+                errors on by themselves.
+        """
+        if severity is not None:
+            self._severities[key] = severity
+            self._of_signals.setdefault(key.part, []).append(key.error)
+        if latches:
+            self._latching.add(key)
 
     def note(self, key: ErrorKey, found: Found, since: Instant) -> None:
         """Note what was found of an error; of several, in the order of the file.
@@ -57,38 +97,154 @@ class ErrorList:
             found: What was found.
             since: When it was raised, or began to be pending; it stays as it was noted first.
         """
-        known = self._open.get(key) or self._ended.get(key)
-        if known is None:
-            if found.state is ErrorState.NORMAL:
-                return
-        elif found == (known.state, known.message, known.value, known.threshold):
+        before = self._alarms[key]
+        evidence = Evidence(found.state, found.lingers)
+        after = before.after(evidence, since, self._outbox.now, latches=key in self._latching)
+        if self._alarms.is_from_start(key) and not after.state.is_on:
+            after = Alarm(evidence)
+        known = self.view(key)
+        if not after.state.is_on and self._is_seen_with_roots(known):
+            after = Alarm(evidence)
+        told = (known.message, known.value, known.threshold)
+        if after == before and (after == QUIET or told == (found[1:4])):
             return
-        was_on = known is not None and known.state.is_on
-        if known is None or was_on is not found.state.is_on or known.state is ErrorState.NORMAL:
-            began = since
-        else:
-            began = since if known.since is None else known.since
-        raised = found.state.is_on and not was_on
-        view = ErrorView(
-            key,
-            self._severity_of(key),
-            found.state,
-            known is not None and known.first_out,
-            found.message,
-            found.value,
-            found.threshold,
-            None if found.state is ErrorState.NORMAL else began,
-            (0 if known is None else known.count) + raised,
+        self._show(known, before, after, found, since)
+
+    def raise_(self, key: ErrorKey, found: Found, since: Instant, cause: int | None = None) -> None:
+        """Raise an error of a part, and tell it; of one that is on, note what is found now.
+
+        Args:
+            key: The error.
+            found: What was found.
+            since: When it was raised.
+            cause: Id of the event that led to it; None: the current input.
+        """
+        was_on = self.is_on(key)
+        self.note(key, found, since)
+        if not was_on:
+            self.tell_raised(key, cause)
+
+    def tell_raised(self, key: ErrorKey, cause: int | None = None) -> None:
+        """Tell that an error of a part is on."""
+        self._alarms.note_told(key)
+        view = self._open[key]
+        raised = ErrorRaised(
+            key.error, view.message, view.value, view.threshold, key.part, view.is_root
         )
-        self._put(view)
-        if found.state.is_on is not was_on:
-            self._count(key, 1 if raised else -1)
+        self._tell(key, self._outbox.emit(raised, cause))
+
+    def clear(self, key: ErrorKey, cause: int | None = None) -> None:
+        """Note that the cause of an error of a part is gone, and tell it if the error ended.
+
+        Args:
+            key: The error.
+            cause: Id of the event that led to it; None: the current input.
+        """
+        before = self.view(key)
+        self.note(key, NORMAL, 0)
+        if before.state.is_on and not self.is_on(key):
+            self.tell_cleared(before, cause)
+
+    def tell_cleared(self, before: ErrorView, cause: int | None = None) -> None:
+        """Tell that an error of a part is over.
+
+        Args:
+            before: As it was.
+            cause: Id of the event that led to it; None: the current input.
+        """
+        key = before.key
+        cleared = ErrorCleared(key.error, key.part, before.is_root)
+        self._tell(key, self._outbox.emit(cleared, cause))
 
     def forget(self, key: ErrorKey) -> None:
-        """Forget an error that is on as if it had never been raised."""
+        """Forget an error that is on since the start, as if it had never been raised."""
+        if not self._alarms.is_from_start(key):
+            # An earlier run raised it, and nobody saw that.
+            self.note(key, NORMAL, 0)
+            return
+        self._alarms.discard(key)
         del self._open[key]
         self._outbox.errors.add(key)
-        self._count(key, -1)
+        self._put_severe(self.view(key))
+        self._switch(key, on=False)
+
+    def renew_roots(self, key: ErrorKey) -> bool:
+        """Find the roots of an error that is on anew; return whether they changed.
+
+        While none of its causes is on, it keeps those that it had.
+        """
+        if key not in self.on:
+            return False
+        causes, roots = self.explanation_of(key)
+        view = self._open[key]
+        if not causes or (causes, roots) == (view.caused_by, view.roots):
+            return False
+        self._put(replace(view, caused_by=causes, roots=roots))
+        if key not in self._latching:
+            self._alarms.keep_no_longer(key)
+        if key in self.on.contenders and self._first in self.on.contenders:
+            self._mark_first(min(self.on.contenders, key=self._rank))
+        return True
+
+    def take_as_start(self, key: ErrorKey) -> None:
+        """Take an error that is about to be raised as how the robot begins, until it is told."""
+        self._alarms.take_as_start(key)
+
+    def mark_start(self) -> None:
+        """Take what is on now as how each robot begins: its end leaves nothing to see."""
+        self._alarms.mark_start()
+        self._turns.clear()
+
+    def acknowledge(self, key: ErrorKey) -> bool:
+        """Note that somebody has seen an error; return whether that changed anything.
+
+        An error that was on for want of that ends. What followed from it and has returned is seen
+        with it: it was not announced by itself.
+        """
+        if not self._see(key):
+            return False
+        for other in self._alarms.returned:
+            view = self.view(other)
+            if key in view.roots and self._is_seen_with_roots(view):
+                self._see(other)
+        return True
+
+    def _see(self, key: ErrorKey) -> bool:
+        before = self._alarms[key]
+        after = before.acknowledged()
+        if after == before:
+            return False
+        known = self.view(key)
+        found = Found(after.found.state, known.message, known.value, known.threshold)
+        self._show(known, before, after, found, known.since or 0)
+        return True
+
+    def restore(self, kept: KeptUnacknowledged, now: Instant) -> None:
+        """Bring back that nobody acknowledged an error of an earlier run.
+
+        It stays on if it has to be acknowledged, and has returned otherwise. If its cause is
+        present already, it stays as it is.
+        """
+        key = ErrorKey(kept.part, kept.error)
+        self._alarms.restore(kept)
+        if self.is_on(key):
+            return
+        state = ErrorState.LATCHED if key in self._latching else ErrorState.NORMAL
+        since = min(kept.since, now)
+        alarm = Alarm(Evidence(state), unseen=True, raised=since)
+        found = Found(state, kept.message, kept.value, kept.threshold)
+        self._show(self.view(key), QUIET, alarm, found, since)
+
+    def mark(self, key: ErrorKey, marks: ErrorMarks) -> None:
+        """Note what silences an error, or that it chatters; its state stays."""
+        known = self.view(key)
+        if known.marks != marks:
+            self._put(replace(known, marks=marks))
+
+    def take_turns(self) -> list[Turn]:
+        """Return what was raised or ended since the last call, in order."""
+        taken, self._turns = self._turns, []
+        return taken
 
     # --- what can be seen ------------------------------------------------------------------------
 
@@ -97,45 +253,149 @@ class ErrorList:
         view = self._open.get(key)
         return view is not None and view.state.is_on
 
+    def names_of(self, part: PartName | None) -> Iterable[str]:
+        """Return all errors of a part, those of signals last; None: of the robot itself."""
+        if part is not None:
+            yield from self.causes.names_of(part)
+        yield from dict.fromkeys(self._of_signals.get(part, ()))
+
     def view(self, key: ErrorKey) -> ErrorView:
         """Return an error; the same object until it changes, unless it was never raised."""
         known = self._open.get(key) or self._ended.get(key)
         if known is not None:
             return known
         severity = self._severity_of(key)
-        return ErrorView(key, severity, ErrorState.NORMAL, False, "", None, None, None, 0)
+        hint = self._hint_of(key)
+        return ErrorView(
+            key, severity, ErrorState.NORMAL, False, "", None, None, None, 0, hint=hint
+        )
+
+    def explanation_of(self, key: ErrorKey) -> tuple[tuple[ErrorKey, ...], tuple[ErrorKey, ...]]:
+        """Return which causes of an error are on, and their roots; of each, only the first ones."""
+        causes = self.causes.present(key, self.on.parts_by_name, self.is_on)
+        found = (self._open[cause].roots or (cause,) for cause in causes)
+        return causes, tuple(islice(dict.fromkeys(chain.from_iterable(found)), MAX_SHOWN))
+
+    def told_by(self, key: ErrorKey) -> int | None:
+        """Return the newest event that told of an error of a part; None: there is none."""
+        return self._told.get(key)
 
     def open_ones(self) -> Mapping[str, ErrorView]:
-        """Return the errors that are not normal, by their names."""
+        """Return the errors that are not normal, or shelved, by their names."""
         return {key.name: view for key, view in self._open.items()}
 
     @property
     def parts_with(self) -> Mapping[str, int]:
-        """Return by error how many parts have it now; read only."""
-        return self._parts_with
+        """Return by error how many parts have it now."""
+        return {error: len(parts) for error, parts in self.on.parts_by_name.items()}
 
     # --- inside ----------------------------------------------------------------------------------
 
+    def _tell(self, key: ErrorKey, event: int) -> None:
+        self._told[key] = event
+        if self._severity_of(key).stops_task:
+            self.severe.decided_by = event
+
     def _severity_of(self, key: ErrorKey) -> Severity:
+        declared = self.causes.declared.get(key)
+        if declared is not None and declared.severity is not None:
+            return declared.severity
         return self._severities.get(key) or severity_of(key)
 
+    def _hint_of(self, key: ErrorKey) -> str:
+        declared = self.causes.declared.get(key)
+        return "" if declared is None else declared.hint
+
+    def _show(
+        self, known: ErrorView, before: Alarm, after: Alarm, found: Found, since: Instant
+    ) -> None:
+        """Show an error as it is announced now.
+
+        Args:
+            known: As it was shown.
+            before: As it was announced.
+            after: As it is announced now.
+            found: What was found.
+            since: When it was raised, or began to be pending.
+        """
+        state, was_on = after.state, before.state.is_on
+        began: Instant | None = since
+        if state is ErrorState.NORMAL:
+            found, began = NORMAL, None
+        elif state is not ErrorState.PENDING:
+            began = after.raised
+        elif known.state is ErrorState.PENDING:
+            began = known.since
+        if not found.message and after.unseen:
+            # What nobody has seen stays readable after its end.
+            found = Found(found.state, known.message, known.value, known.threshold)
+        raised = state.is_on and not was_on
+        # What returned is still shown under its root.
+        is_explained = (was_on and state.is_on) or state is ErrorState.RETURNED
+        view = replace(
+            known,
+            caused_by=known.caused_by if is_explained else (),
+            roots=known.roots if is_explained else (),
+            state=state,
+            message=found.message,
+            value=found.value,
+            threshold=found.threshold,
+            since=began,
+            ended=after.ended,
+            count=known.count + raised,
+        )
+        self._put(view)
+        if state.is_on is not was_on:
+            self._turns.append(Turn(view.key, raised, self._outbox.now))
+            self._switch(view.key, on=raised)
+        view = self.view(view.key)
+        is_announced = view.is_root or view.key in self._latching
+        too_many = self._alarms.put(view, after, is_announced=is_announced)
+        if too_many is not None:
+            self._see(too_many)
+
+    def _is_seen_with_roots(self, view: ErrorView) -> bool:
+        """Tell whether an error follows from others that somebody has seen, all of them."""
+        return bool(view.roots) and not any(self._alarms[root].unseen for root in view.roots)
+
     def _put(self, view: ErrorView) -> None:
-        is_open = view.state is not ErrorState.NORMAL
+        is_open = view.is_open
         here, there = (self._open, self._ended) if is_open else (self._ended, self._open)
         there.pop(view.key, None)
-        if is_open or view.count:
+        if is_open or view.count or view.marks != NO_MARKS:
             here[view.key] = view
+        else:
+            here.pop(view.key, None)
         self._outbox.errors.add(view.key)
+        self._put_severe(view)
 
-    def _count(self, key: ErrorKey, step: int) -> None:
-        """Count an error that was raised or ended, and tell which was first."""
-        if key.part is not None:
-            self._parts_with[key.error] = self._parts_with.get(key.error, 0) + step
-        self._count_on += step
-        if step > 0 and self._count_on == 1:
-            self._mark_first(key)
-        elif self._count_on == 0:
+    def _put_severe(self, view: ErrorView) -> None:
+        """Signals set the bits of their errors themselves, and declare each of them."""
+        if view.key.part is not None and view.key not in self._severities:
+            self.severe.put(view)
+
+    def _switch(self, key: ErrorKey, *, on: bool) -> None:
+        """Note that an error was raised or ended; find its roots, and which was first."""
+        was_empty = self.on.is_empty
+        self.on.switch(key, on=on)
+        if on:
+            is_first = was_empty or (
+                self._first in self.on.contenders
+                and key in self.on.contenders
+                and self._rank(key) < self._rank(self._first)
+            )
+            if is_first:
+                self._mark_first(key)
+            self.renew_roots(key)
+        elif self.on.is_empty:
             self._mark_first(None)
+
+    def _rank(self, key: ErrorKey | None) -> tuple[bool, int, int]:
+        """Return where an error stands in its step: roots first, then as in the file."""
+        if key is None:
+            return (True, 0, 0)
+        _, part, position = self.causes.place(key)
+        return (not self.view(key).is_root, part, position)
 
     def _mark_first(self, key: ErrorKey | None) -> None:
         for changed, is_first in ((self._first, False), (key, True)):

@@ -2,10 +2,11 @@
 
 from collections.abc import Iterable, Iterator, Mapping
 from contextlib import contextmanager
+from dataclasses import replace
+from itertools import chain
 
 from domain.concern import Concern, Takers
 from domain.events.health import (
-    ErrorAcknowledged,
     ErrorCleared,
     ErrorRaised,
     SignalLimitsChanged,
@@ -17,18 +18,28 @@ from domain.events.health import (
 )
 from domain.events.service import NotRestored, WriteAnswered
 from domain.findings import Blocker
+from domain.health.error_causes import NO_CAUSES, ErrorCauses
 from domain.health.error_list import ErrorList
 from domain.health.robot_errors import RobotErrors
-from domain.health.signals import ESTOP, Comparison, ModeLimit, Recovery, SignalSettings
+from domain.health.signals import (
+    DECLARED_BIT,
+    ESTOP,
+    Comparison,
+    ModeLimit,
+    Recovery,
+    SignalSettings,
+)
 from domain.health.state_manager import HealthChanges, StateManager
-from domain.inputs import AcknowledgeRequest, Readings, Restored, SourceFault
+from domain.inputs import Readings, Restored, SourceFault
 from domain.kept import KeptError
 from domain.outbox import Outbox
 from domain.snapshot import (
     ErrorKey,
     ErrorView,
     MonitorView,
+    Severity,
     SignalView,
+    SystemState,
     SystemStateView,
     TaskStatus,
 )
@@ -46,11 +57,25 @@ class Health(Concern):
     The cause of an error that time alone raised is the first bad reading, not the clock.
     """
 
-    def __init__(self, signals: Iterable[SignalSettings], outbox: Outbox, start: Instant) -> None:
-        named = {item.spec.name: item for item in signals}
-        self._manager = StateManager(named.values(), start)
+    def __init__(
+        self,
+        signals: Iterable[SignalSettings],
+        outbox: Outbox,
+        start: Instant,
+        causes: ErrorCauses = NO_CAUSES,
+    ) -> None:
+        """Begin with no readings.
+
+        Args:
+            signals: Settings of all signals.
+            outbox: Receives events.
+            start: The current time; the times of silent signals count from here.
+            causes: Which errors of parts explain which.
+        """
+        declared = tuple(signals)
+        self._manager = StateManager(declared, start)
         self._outbox = outbox
-        self.error_list = ErrorList(outbox)
+        self.error_list = ErrorList(outbox, causes)
         """All errors; later concerns note those of parts there."""
         self._robot_errors = RobotErrors(self._manager, self.error_list, start)
         self._keys_of: dict[PartName | None, list[ErrorKey]] = {}
@@ -60,12 +85,14 @@ class Health(Concern):
         self._pending: dict[ErrorKey, int] = {}
         """By error, the event that recorded it as pending."""
         acknowledge = Recovery.ACKNOWLEDGE
-        self._waiting = {name for name, item in named.items() if item.recovery is acknowledge}
+        self._waiting = {item.spec.name for item in declared if item.recovery is acknowledge}
         """Signals whose error may wait for an acknowledgement."""
         self._kept: dict[str, ErrorKey] = {}
         """By signal, the error that is kept, since it waits for an acknowledgement."""
-        self.decided_by: int | None = None
-        """The newest event that raised or cleared an error; None: there was none yet."""
+        self._decided_by: int | None = None
+        """The newest event that raised or cleared an error of a signal."""
+        self._seen: tuple[tuple[Blocker, ...], tuple[Blocker, ...]] = ((), ())
+        self._all_reasons: tuple[Blocker, ...] = ()
 
     # --- what happens ----------------------------------------------------------------------------
 
@@ -75,7 +102,6 @@ class Health(Concern):
         return {
             Readings: self.take_readings,
             SourceFault: self.take_fault,
-            AcknowledgeRequest: self.acknowledge,
             Restored: self.restore,
         }
 
@@ -128,16 +154,14 @@ class Health(Concern):
             self._outbox.record_input()
             self._tell(self._manager.note_fault(fault, now), now)
 
-    def acknowledge(self, request: AcknowledgeRequest, now: Instant) -> None:
-        """Acknowledge an error, so that it clears once its cause is gone.
+    def acknowledge(self, key: ErrorKey, now: Instant) -> None:
+        """Acknowledge an error, so that its signal clears it once its cause is gone.
 
-        Raises:
-            UnknownErrorNameError: There is no error of this name.
+        For an error that no signal raises, this has no effect.
         """
-        self._outbox.begin(now, ErrorAcknowledged(request.error), request.actor)
-        key = ErrorKey(None, request.error)
-        self._tell(self._manager.acknowledge(key, now), now)
-        self._robot_errors.follow_acknowledgement(key, now)
+        if key in self._manager.keys:
+            self._tell(self._manager.acknowledge(key, now), now)
+            self._robot_errors.follow_acknowledgement(key, now)
 
     def press_stop(self, since: Instant | None, now: Instant) -> None:
         """Raise ESTOP for the emergency stop, or remove that cause.
@@ -182,9 +206,16 @@ class Health(Concern):
     # --- what can be seen ------------------------------------------------------------------------
 
     @property
+    def decided_by(self) -> int | None:
+        """Return the newest event that raised or cleared an error that sets a bit; None: none."""
+        known = (self._decided_by, self.error_list.severe.decided_by)
+        return max((event for event in known if event is not None), default=None)
+
+    @property
     def errors(self) -> tuple[str, ...]:
-        """Return the names of the active errors that set a bit, in the order of their bits."""
-        return self._manager.errors
+        """Return the names of the active errors that set a bit: those of signals by their bits."""
+        names = self.error_list.severe.names
+        return (*self._manager.errors, *names) if names else self._manager.errors
 
     @property
     def reasons(self) -> tuple[Blocker, ...]:
@@ -192,7 +223,13 @@ class Health(Concern):
 
         The same object until it changes.
         """
-        return self._manager.reasons
+        of_parts = self.error_list.severe.reasons(self.error_list.view)
+        if not of_parts:
+            return self._manager.reasons
+        seen = (self._manager.reasons, of_parts)
+        if seen[0] is not self._seen[0] or seen[1] is not self._seen[1]:
+            self._seen, self._all_reasons = seen, (*seen[0], *seen[1])
+        return self._all_reasons
 
     def error_views(self, part: PartName | None = None) -> Iterator[ErrorView]:
         """Yield the errors that signals raise, also those that were never raised, by their bits.
@@ -202,6 +239,11 @@ class Health(Concern):
         """
         for key in self._keys_of.get(part, ()):
             yield self.error_list.view(key)
+
+    def severities(self) -> Mapping[ErrorKey, Severity]:
+        """Return the errors that signals raise, with their severities; ESTOP is one of them."""
+        keys = chain.from_iterable(self._keys_of.values())
+        return {key: self.error_list.view(key).severity for key in keys}
 
     @property
     def is_stopped(self) -> bool:
@@ -233,7 +275,17 @@ class Health(Concern):
 
     def system_state(self, task_status: TaskStatus) -> SystemStateView:
         """Return the state of the robot for a given task status."""
-        return self._manager.system_state(task_status)
+        view = self._manager.system_state(task_status)
+        if not self.error_list.severe.names:
+            return view
+        code = view.error_code | DECLARED_BIT
+        return replace(
+            view,
+            state=SystemState.ERROR,
+            error_code=code,
+            errors=self.errors,
+            reasons=self.reasons,
+        )
 
     # --- inside ----------------------------------------------------------------------------------
 
@@ -249,9 +301,9 @@ class Health(Concern):
             emit(SignalSkewed(signal))
         for key, why in changes.raised:
             raised = ErrorRaised(key.error, why.message, why.value, why.threshold, key.part)
-            self.decided_by = emit(raised, self._pending.pop(key, None))
+            self._decided_by = emit(raised, self._pending.pop(key, None))
         for key in changes.cleared:
-            self.decided_by = emit(ErrorCleared(key.error, key.part))
+            self._decided_by = emit(ErrorCleared(key.error, key.part))
         self._robot_errors.follow(changes, now)
         self._outbox.signals |= changes.signals
         for signal in changes.signals & self._waiting:

@@ -10,22 +10,19 @@ from domain.deadlines import SharedDeadlines
 from domain.errors import shortened
 from domain.events.changes import ChangeEnded
 from domain.events.event import because
-from domain.events.health import ErrorCleared, ErrorRaised
 from domain.events.service import NotRestored
 from domain.findings import Blocker
 from domain.health.built_in_errors import (
-    ALL_OF_NODES,
     CHANGE_FAILED,
     DEVIATES,
     ERROR_PROCESSING,
     INVARIANT_BROKEN,
-    OF_EVERY_PART,
-    OF_NODES,
     PARAMETERS_DRIFTED,
     UNREACHABLE,
 )
 from domain.health.drift import drifted_parameter
-from domain.health.error_list import NORMAL, ErrorList, Found
+from domain.health.error_list import ErrorList, Found
+from domain.health.severe_errors import reason_of
 from domain.inputs import NodeReport, Restored
 from domain.kept import KeptFailedChange
 from domain.lifecycle import LifecycleState
@@ -65,24 +62,8 @@ class PartErrors(Concern):
     it is how each node of each robot begins.
     """
 
-    def __init__(
-        self,
-        parts: Parts,
-        errors: ErrorList,
-        outbox: Outbox,
-        start: Instant,
-        with_checkpoints: Container[PartName] = (),
-    ) -> None:
-        """Begin with all nodes unheard.
-
-        Args:
-            parts: Whose errors these are.
-            errors: Where they are noted.
-            outbox: Where they are told.
-            start: The current time.
-            with_checkpoints: Nodes whose checkpoints are supervised.
-        """
-        self._with_checkpoints = with_checkpoints
+    def __init__(self, parts: Parts, errors: ErrorList, outbox: Outbox, start: Instant) -> None:
+        self.model = parts.model
         self._parts = parts
         self._errors = errors
         self._outbox = outbox
@@ -251,10 +232,13 @@ class PartErrors(Concern):
     # --- what can be seen ------------------------------------------------------------------------
 
     def names_of(self, part: PartName) -> Iterable[str]:
-        """Return the errors that a part can have."""
-        if part not in self._parts.model.nodes:
-            return OF_EVERY_PART
-        return ALL_OF_NODES if part in self._with_checkpoints else OF_NODES
+        """Return the errors that a part can have, apart from those of signals."""
+        return self._errors.causes.names_of(part)
+
+    @property
+    def unheard(self) -> Container[PartName]:
+        """Return the nodes that were not heard of since the start."""
+        return self._unheard
 
     def views_of(self, part: PartName) -> Iterator[ErrorView]:
         """Yield the errors of a part, also those that were never raised."""
@@ -265,8 +249,7 @@ class PartErrors(Concern):
         """Return why an error of a part is active; None: it is not, or the part has none such."""
         if not self._errors.is_on(ErrorKey(part, error)):
             return None
-        view = self._view(part, error)
-        return Blocker(error, view.message, (part,), view.value, view.threshold, view.since)
+        return reason_of(self._view(part, error), self._errors.view)
 
     # --- inside ----------------------------------------------------------------------------------
 
@@ -362,20 +345,13 @@ class PartErrors(Concern):
         self, part: PartName, error: str, found: Found, since: Instant, cause: int | None = None
     ) -> None:
         """Raise an error, or note what is found of one that is on already."""
-        was_on = self._errors.is_on(ErrorKey(part, error))
-        self._note(part, error, found, since)
-        if not was_on:
-            raised = ErrorRaised(error, found.message, found.value, found.threshold, part)
-            self._outbox.emit(raised, cause)
+        self._errors.raise_(ErrorKey(part, error), found, since, cause)
 
     def _clear(self, part: PartName, error: str, cause: int | None = None) -> None:
         """Clear an error if it is on, or pending."""
         key = ErrorKey(part, error)
-        was_on = self._errors.is_on(key)
-        if was_on or error == DEVIATES:
-            self._errors.note(key, NORMAL, 0)
-        if was_on:
-            self._outbox.emit(ErrorCleared(error, part), cause)
+        if self._errors.is_on(key) or error == DEVIATES:
+            self._errors.clear(key, cause)
 
     def _note(self, part: PartName, error: str, found: Found, since: Instant) -> None:
         self._errors.note(ErrorKey(part, error), found, since)

@@ -1,7 +1,6 @@
 """The robot's own errors in the list of all errors, as the state manager decides them."""
 
 from domain.health.error_list import NORMAL, ErrorList, Found
-from domain.health.signals import Recovery
 from domain.health.state_manager import HealthChanges, StateManager
 from domain.snapshot import ErrorKey, ErrorState, SignalView
 from domain.timebase import Instant
@@ -43,18 +42,23 @@ class RobotErrors:
         found, since = NORMAL, now
         if self._manager.is_on(key):
             reason = self._manager.reason(key)
-            state = ErrorState.ACTIVE if view is None else self._state(key, view)
-            found = Found(state, reason.message, reason.value, reason.threshold)
+            state, lingers = self._state(key, view)
+            found = Found(state, reason.message, reason.value, reason.threshold, lingers)
             since = now if reason.since is None else reason.since
         elif view is not None and view.pending_error == key.error:
             found = Found(ErrorState.PENDING)
             since = view.pending_since or now
         self._errors.note(key, found, since)
 
-    def _state(self, key: ErrorKey, view: SignalView) -> ErrorState:
-        """Return the state of an active error of the value of a signal."""
-        if view.needs_acknowledgement:
-            is_present = self._manager.is_present(key)
-            return ErrorState.ACTIVE if is_present else ErrorState.LATCHED
-        needs_it = view.settings["recovery"] == str(Recovery.ACKNOWLEDGE)
-        return ErrorState.ACKNOWLEDGED if needs_it else ErrorState.ACTIVE
+    def _state(self, key: ErrorKey, view: SignalView | None) -> tuple[ErrorState, bool]:
+        """Return whether an error that is on is latched, and whether it lingers without a cause.
+
+        Args:
+            key: The error.
+            view: The signal whose value raised it; None: it is of staleness.
+        """
+        if self._manager.is_present(key):
+            return ErrorState.ACTIVE, False
+        if view is not None and view.needs_acknowledgement:
+            return ErrorState.LATCHED, False
+        return ErrorState.ACTIVE, True

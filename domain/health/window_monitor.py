@@ -47,7 +47,8 @@ class WindowMonitor(SignalMonitor):
     """One monitor: the statistic is its reading, and an error follows from it as from any other.
 
     It is computed when readings of its signal come, and when time alone may take the value across a
-    bound. While it is unknown no error is raised, nothing counts, and an error that is on stays.
+    bound. While it is unknown no error is raised and nothing counts; an error that is on stays as
+    long as readings are missing.
     """
 
     def __init__(self, settings: SignalSettings, monitor: MonitorSettings, start: Instant) -> None:
@@ -94,7 +95,10 @@ class WindowMonitor(SignalMonitor):
         is_same = False
         if value is None:
             self._lose_value()
-            self._judge([] if self._cause is None else [self._cause], now)
+            # Without readings an error is not known to be over. With readings that have no value it
+            # is: no trend leads to the limit any more.
+            cause = None if self.window.has_enough(now) else self._cause
+            self._judge([] if cause is None else [cause], now)
         elif self.is_calm and not self._is_bad(value):
             is_same = self._was_fed and self.readings.newest is not None
             if self._hold(value, now):

@@ -20,6 +20,7 @@ from domain.inputs import NodeReport, Restored
 from domain.lifecycle import LifecycleState
 from domain.outbox import Outbox
 from domain.parameters import check_values
+from domain.parts.claims import Claims
 from domain.parts.convergence import is_there
 from domain.parts.deviations import Deviations
 from domain.parts.mode_inference import ModeInference
@@ -56,6 +57,8 @@ class Parts(Concern):
         self.inference = ModeInference(model)
         """Read only for others."""
         self._targets = Targets(self.inference)
+        self.claims = Claims(self.inference)
+        """What reactions claim; they set it, and requests are judged by it."""
         self._deviations = Deviations(self.inference)
         self._reachability = Reachability(model)
         self._waiting = WaitingParts(model)
@@ -229,6 +232,10 @@ class Parts(Concern):
         """Return the requested target of a part; None: there is none."""
         return self._targets.asked(part)
 
+    def asked_of(self, parts: Iterable[PartName]) -> dict[PartName, StateAndMode | None]:
+        """Return the requested target of each of several parts."""
+        return self._targets.asked_of(parts)
+
     @property
     def displacements(self) -> Sequence[Displacement]:
         """Return which systems are displaced, those that prevail last; read only."""
@@ -238,9 +245,18 @@ class Parts(Concern):
         """Tell whether a displacement decides the target in force of its own part."""
         return self._targets.prevails(displaced)
 
-    def beyond(self, because: Because) -> Set[PartName]:
-        """Return the parts whose targets in force nothing of this kind can replace."""
-        return self._targets.beyond(because)
+    def beyond(
+        self, because: Because, strength: int = 0, besides: PartName | None = None
+    ) -> Set[PartName]:
+        """Return the parts whose targets in force nothing of this kind and strength can replace.
+
+        Arguments are as for `Targets.beyond`.
+        """
+        return self._targets.beyond(because, strength, besides)
+
+    def stays_at_rest(self, part: PartName, target: StateAndMode) -> bool:
+        """Tell whether a request brought a part to rest, deeper than a target would."""
+        return self._targets.stays_at_rest(part, target)
 
     def targets_without(self, displaced: Displacement) -> Mapping[PartName, StateAndMode]:
         """Return the targets that the end of a displacement would put in force, by part."""

@@ -10,12 +10,11 @@ from domain.errors import near_match
 from domain.findings import Finding
 from domain.lifecycle import LifecycleState
 from domain.parts.declared_errors import DeclaredError
-from domain.parts.declared_reactions import Action, DeclaredReaction, Until
+from domain.parts.declared_reactions import DeclaredReaction
+from domain.reaction_terms import HOLD_PREFIX, Action, Until
 from domain.state_and_mode import DEFAULT_MODE, ModeName, PartName, StateAndMode
 
 REACTIONS = "reactions"
-HOLD_PREFIX = "reaction:"
-"""Of the names of the holds that reactions set."""
 
 _OF_PART = ("state", "mode", "converged", "parameters")
 """What an action changes of its own part."""

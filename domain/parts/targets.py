@@ -1,6 +1,6 @@
 """Targets of parts: requested and in force."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 
 from domain.findings import Blocker
@@ -8,6 +8,14 @@ from domain.lifecycle import LifecycleState
 from domain.parts.mode_inference import ModeInference
 from domain.snapshot import Because, EffectiveTarget
 from domain.state_and_mode import ModeName, PartName, StateAndMode
+
+_REST = (
+    LifecycleState.ACTIVE,
+    LifecycleState.INACTIVE,
+    LifecycleState.UNCONFIGURED,
+    LifecycleState.FINALIZED,
+)
+"""Primary states, each more at rest than those before it."""
 
 _RANK = {because: rank for rank, because in enumerate(Because)}
 """Who prevails over whom; among equals, who came later."""
@@ -27,14 +35,28 @@ class Displacement:
     targets: dict[PartName, StateAndMode]
     """Of the system and of all parts that inherit."""
     because: Because
-    rule: str | None
-    """Name of the rule that set it; None: no rule did."""
+    name: str | None
+    """Name of the rule or reaction that set it; None: it has none."""
     cause: int
     """Id of the event that recorded it."""
     blockers: tuple[Blocker, ...] = ()
     """Why it is in force, and why it stays so."""
+    strength: int = 0
+    """Among displacements of one kind, the stronger prevails."""
+    is_over: bool = False
+    """Nothing calls for it any more, and it stays until its parts may return."""
     shown: _Shown = field(default_factory=dict)
     """One object for all parts with the same target."""
+
+    @property
+    def is_firm(self) -> bool:
+        """Tell whether no request ends it: a reaction that acts."""
+        return self.because is Because.REACTION and not self.is_over
+
+    @property
+    def rank(self) -> tuple[int, int]:
+        """Return who prevails over whom; among equals, who came later."""
+        return _RANK[self.because], self.strength
 
     @property
     def target(self) -> StateAndMode:
@@ -49,6 +71,9 @@ class Targets:
     reason; inference and `converged` use it. Both are the same unless a system is displaced. Who
     prevails is the order of `Because`. A request for a displaced system, or for one that contains
     it, ends the displacement; one for a part below it takes that part, and those below, out of it.
+
+    No request ends what a reaction that acts has set. But a part that was deactivated, cleaned up
+    or shut down on request stays at rest, whichever came first: reactions make a robot safer.
     """
 
     def __init__(self, inference: ModeInference) -> None:
@@ -56,6 +81,8 @@ class Targets:
         self._asked: dict[PartName, StateAndMode | None] = {}
         self._displacements: list[Displacement] = []
         """Whoever prevails comes last."""
+        self._resting: set[PartName] = set()
+        """Parts that a request brought to rest."""
         self._shared: _Shown = {}
         """One object for all parts with the same requested target."""
 
@@ -66,10 +93,13 @@ class Targets:
             wanted: Of the requested part and of those below it; None: the part has none any more.
         """
         self._asked.update(wanted)
+        self._note_rest(wanted)
         if not self._displacements:
             return self._inference.set_targets(wanted)
         freed: set[PartName] = set()
         for displaced in list(self._displacements):
+            if displaced.is_firm:
+                continue
             if displaced.system in wanted:
                 self._displacements.remove(displaced)
                 freed |= displaced.targets.keys()
@@ -81,7 +111,7 @@ class Targets:
     def displace(self, displaced: Displacement) -> set[PartName]:
         """Put a displacement in force; return the parts about which that changed something."""
         self._displacements.append(displaced)
-        self._displacements.sort(key=lambda one: _RANK[one.because])
+        self._displacements.sort(key=lambda one: one.rank)
         return self._set(tuple(displaced.targets)) | displaced.targets.keys()
 
     def end(self, displaced: Displacement) -> set[PartName]:
@@ -111,10 +141,28 @@ class Targets:
         """Tell whether a displacement decides the target in force of its own part."""
         return self._prevailing(displaced.system) is displaced
 
-    def beyond(self, because: Because) -> set[PartName]:
-        """Return the parts whose targets in force nothing of this kind can replace."""
-        stronger = [d for d in self._displacements if _RANK[d.because] > _RANK[because]]
-        return {part for displaced in stronger for part in displaced.targets}
+    def beyond(
+        self, because: Because, strength: int = 0, besides: PartName | None = None
+    ) -> set[PartName]:
+        """Return the parts whose targets in force nothing of this kind and strength can replace.
+
+        Args:
+            because: The kind.
+            strength: Among those of this kind.
+            besides: A part whose own displacements of this kind do not count: they are replaced.
+        """
+        rank = (_RANK[because], strength)
+        stronger = [
+            d
+            for d in self._displacements
+            if d.rank > rank and not (d.because is because and d.system == besides)
+        ]
+        return {p for d in stronger for p in d.targets if self._covers(d, p)}
+
+    def stays_at_rest(self, part: PartName, target: StateAndMode) -> bool:
+        """Tell whether a request brought a part to rest, deeper than a target would."""
+        asked = self._asked.get(part) if part in self._resting else None
+        return asked is not None and _depth(asked) > _depth(target)
 
     def without(self, displaced: Displacement) -> dict[PartName, StateAndMode]:
         """Return the targets that the end of a displacement would put in force, by part."""
@@ -128,6 +176,11 @@ class Targets:
     def asked(self, part: PartName) -> StateAndMode | None:
         """Return the requested target of a part; None: there is none."""
         return self._asked.get(part)
+
+    def asked_of(self, parts: Iterable[PartName]) -> dict[PartName, StateAndMode | None]:
+        """Return the requested target of each of several parts."""
+        asked = self._asked
+        return {part: asked.get(part) for part in parts}
 
     def effective(self, part: PartName) -> EffectiveTarget | None:
         """Return the target in force of a part, with its reason; None: there is none."""
@@ -153,13 +206,29 @@ class Targets:
 
     def _prevailing(self, part: PartName) -> Displacement | None:
         for displaced in reversed(self._displacements):
-            if part in displaced.targets:
+            if self._covers(displaced, part):
                 return displaced
         return None
 
+    def _covers(self, displaced: Displacement, part: PartName) -> bool:
+        """Tell whether a displacement sets the target of a part, unless a stronger one does."""
+        target = displaced.targets.get(part)
+        if target is None:
+            return False
+        is_of_reaction = displaced.because is Because.REACTION
+        return not (is_of_reaction and self._resting and self.stays_at_rest(part, target))
+
+    def _note_rest(self, wanted: Mapping[PartName, StateAndMode | None]) -> None:
+        """Note which parts a request brings to rest: all that it names, or none."""
+        active = LifecycleState.ACTIVE
+        if all(target is not None and target.state is not active for target in wanted.values()):
+            self._resting.update(wanted)
+        elif self._resting:
+            self._resting.difference_update(wanted)
+
     def _without(self, left_out: Displacement, part: PartName) -> StateAndMode | None:
         for displaced in reversed(self._displacements):
-            if displaced is not left_out and part in displaced.targets:
+            if displaced is not left_out and self._covers(displaced, part):
                 return displaced.targets[part]
         return self._asked.get(part)
 
@@ -172,8 +241,14 @@ def _shown(displaced: Displacement, target: StateAndMode) -> EffectiveTarget:
             target.state,
             target.mode,
             displaced.because,
-            displaced.rule,
+            displaced.name if displaced.because is Because.RULE else None,
             displaced.cause,
             displaced.blockers,
+            displaced.name if displaced.because is Because.REACTION else None,
         )
     return shown
+
+
+def _depth(target: StateAndMode) -> int:
+    """Return how much at rest a target is, from 0; a transitional state counts as active."""
+    return _REST.index(target.state) if target.state in _REST else 0

@@ -10,7 +10,7 @@ from domain.timebase import Instant
 
 
 class Displacer(Protocol):
-    """One rule of a system, or one fallback of a part."""
+    """One rule of a system, one fallback or one reaction of a part."""
 
     def __hash__(self) -> int:
         """Return what tells it from others of the same kind."""
@@ -34,6 +34,11 @@ class Displacer(Protocol):
     @property
     def new_target(self) -> StateAndMode:
         """Return the target that it puts in force."""
+        ...
+
+    @property
+    def strength(self) -> int:
+        """Return who prevails among those of its kind: the greater; of equals, who came later."""
         ...
 
     @property

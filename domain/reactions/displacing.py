@@ -106,7 +106,11 @@ class Displacing:
         request = self._towards(displacer, displacer.new_target)
         goal = self._changing.admission.goal(request)
         targets = {displacer.system: displacer.new_target, **goal.targets}
-        beyond = self._parts.beyond(displacer.because)
+        system = displacer.system
+        beyond = self._parts.beyond(displacer.because, displacer.strength, besides=system)
+        if displacer.because is Because.REACTION:
+            stays = self._parts.stays_at_rest
+            beyond = beyond | {part for part, target in targets.items() if stays(part, target)}
         if beyond:
             goal = ChangeGoal(
                 {part: target for part, target in goal.targets.items() if part not in beyond},
@@ -142,15 +146,22 @@ class Displacing:
         """
         system, target = displacer.system, displacer.new_target
         was = self._parts.target(system)
-        assert was is not None, "it is the target that is replaced"
-        because, name = displacer.because, displacer.name
-        began = DisplacementBegan(system, target, was, because, name, ground.reason)
+        because, (rule, reaction) = displacer.because, _rule_or_reaction(displacer)
+        began = DisplacementBegan(system, target, was, because, rule, ground.reason, reaction)
         self._outbox.begin(now, began, displacer.actor, ground.cause)
         recorded = self._outbox.record_input()
         if instead_of is not None:
             self._parts.end_displacement(self._of[instead_of])
             self._forget(instead_of)
-        displaced = Displacement(system, way.targets, because, name, recorded, ground.blockers)
+        displaced = Displacement(
+            system,
+            way.targets,
+            because,
+            displacer.name,
+            recorded,
+            ground.blockers,
+            displacer.strength,
+        )
         self._of[displacer] = displaced
         self._kept.begin(displaced, ground.since)
         self._parts.displace(displaced)
@@ -174,9 +185,11 @@ class Displacing:
     def way_back(self, displacer: Displacer) -> Way | None:
         """Return what leads to the targets that the end of a displacement would put in force.
 
-        None: others are in force, or none was requested.
+        None: others are in force, none was requested, or it is the same one.
         """
         targets = dict(self._parts.targets_without(self._of[displacer]))
+        if all(self._is_in_force(part, target) for part, target in targets.items()):
+            return None
         target = targets.get(displacer.system, self._parts.target(displacer.system))
         if not targets or target is None:
             return None
@@ -228,8 +241,9 @@ class Displacing:
             now: The current time.
         """
         displaced = self._of[displacer]
-        because, name, target = displacer.because, displacer.name, displaced.target
-        stays = DisplacementStays(displacer.system, target, because, name, why.message)
+        because, (rule, reaction) = displacer.because, _rule_or_reaction(displacer)
+        target, system = displaced.target, displacer.system
+        stays = DisplacementStays(system, target, because, rule, why.message, reaction)
         self._outbox.begin(now, stays, displacer.actor, cause)
         self._outbox.record_input()
         self._parts.explain(displaced, (why,))
@@ -246,6 +260,10 @@ class Displacing:
         """Show the cause of a displacement; return whether something else was shown before."""
         return self.explain(displacer, [displacer.cause(self._kept.since(self._of[displacer]))])
 
+    def let_go(self, displacer: Displacer, *, is_over: bool) -> None:
+        """Note whether something calls for a displacement; if not, a request may end it."""
+        self._of[displacer].is_over = is_over
+
     # --- inside ----------------------------------------------------------------------------------
 
     def _ended(
@@ -255,8 +273,13 @@ class Displacing:
         target = self._parts.target(system)
         if way is not None:
             target = way.targets.get(system, target)
-        because, name = displacer.because, displacer.name
-        return DisplacementEnded(system, target, displaced.target, because, name, reason)
+        because, (rule, of_reaction) = displacer.because, _rule_or_reaction(displacer)
+        was = displaced.target
+        return DisplacementEnded(system, target, was, because, rule, reason, of_reaction)
+
+    def _is_in_force(self, part: PartName, target: StateAndMode) -> bool:
+        in_force = self._parts.target(part)
+        return in_force is not None and in_force.agrees_with(target)
 
     def _forget(self, displacer: Displacer) -> None:
         self._kept.forget(self._of.pop(displacer))
@@ -264,3 +287,10 @@ class Displacing:
     def _towards(self, displacer: Displacer, target: StateAndMode) -> ChangeRequest:
         parts = self._parts
         return request_towards(parts.model, parts.facts, displacer.system, target, displacer.actor)
+
+
+def _rule_or_reaction(displacer: Displacer) -> tuple[str | None, str | None]:
+    """Return its name as that of a rule, or of a reaction."""
+    if displacer.because is Because.REACTION:
+        return None, displacer.name
+    return displacer.name, None

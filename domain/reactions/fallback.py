@@ -35,6 +35,11 @@ class Fallback:
         return StateAndMode(LifecycleState.ACTIVE, self.mode)
 
     @property
+    def strength(self) -> int:
+        """Return that none is stronger than others: who came later prevails."""
+        return 0
+
+    @property
     def actor(self) -> Actor:
         """Return in whose name changes begin that lead there and back."""
         return Actor(f"invariant:{self.system}")

@@ -142,9 +142,9 @@ class Fallbacks(Concern):
             return list(self._rank)
         if seen != self._revision:
             review |= known
-        touched = self._rank.keys() & (moved | self._outbox.parts)
-        review |= touched & known
-        review.update(self._guards.failing(touched))
+        for touched in (moved, self._outbox.parts):
+            review |= touched & known
+            review.update(self._rank.keys() & self._guards.failing(touched))
         return sorted(review, key=self._rank.__getitem__)
 
     def _follow_requests(self, parts: Iterable[PartName]) -> bool:
@@ -244,8 +244,11 @@ class Fallbacks(Concern):
     def _fallback_of(self, part: PartName, target: StateAndMode, now: Instant) -> Fallback | None:
         """Return what replaces a target; None: nothing does.
 
-        A fallback whose own invariants are broken is left out for its own fallback, if it has one.
+        Nothing replaces what a reaction has set. A fallback whose own invariants are broken is left
+        out for its own fallback, if it has one.
         """
+        if part in self._parts.beyond(Because.INVARIANT):
+            return None
         found, passed = None, {target.mode}
         mode = self._guards.fallback_of(part, target)
         while mode is not None and mode not in passed:

@@ -40,7 +40,7 @@ class KeptDisplacements:
             KeptEffectiveTarget(
                 displaced.system,
                 target,
-                displaced.rule,
+                displaced.name,
                 self._order,
                 self._requests.newest,
                 displaced.cause,
@@ -90,7 +90,12 @@ class KeptDisplacements:
                 self._leave_out(value)
                 continue
             found = Displacement(
-                value.part, self._targets_of(value), because, value.rule, value.cause
+                value.part,
+                self._targets_of(value),
+                because,
+                value.rule,
+                value.cause,
+                strength=displacer.strength,
             )
             self._kept[found] = replace(value, since=min(value.since, now))
             yield found, displacer
@@ -99,6 +104,9 @@ class KeptDisplacements:
         label, part = value.target.label, value.part
         what = f"the target {label} of {part} that a rule set"
         reason = f"the model has no rule {value.rule!r} that sets it"
+        if value.because == Because.REACTION:
+            what = f"the target {label} of {part} that a reaction set"
+            reason = f"the model has no reaction {value.rule!r} that sets it"
         if value.because == Because.INVARIANT:
             what = f"the target {label} of {part}, a fallback"
             reason = "no mode of the model falls back to it"
@@ -109,7 +117,8 @@ class KeptDisplacements:
         targets = {
             part: StateAndMode(kept.staying[part]) if part in kept.staying else target
             for part, target in targets_of(self._model, kept.part, kept.target).items()
-            if self._requests.of(part) <= kept.after
+            # No request takes a part out of what a reaction has set.
+            if kept.because == Because.REACTION or self._requests.of(part) <= kept.after
         }
         return {kept.part: kept.target, **targets}
 

@@ -41,6 +41,7 @@ class Returns(Generic[DisplacerT]):
         displacing: Displacing,
         outbox: Outbox,
         is_free: Callable[[DisplacerT], bool],
+        most: int = MAX_RETURNS,
     ) -> None:
         """Begin without a displacement.
 
@@ -50,6 +51,7 @@ class Returns(Generic[DisplacerT]):
             displacing: What is displaced.
             outbox: Receives events.
             is_free: Tells whether no change keeps a part from returning now.
+            most: How often a part may return within a time.
         """
         self._parts = parts
         self._displacing = displacing
@@ -57,7 +59,7 @@ class Returns(Generic[DisplacerT]):
         self._is_free = is_free
         self._relieved: Waits[DisplacerT] = Waits()
         """Displacements whose cause is gone."""
-        self._bounds = {system: Bound(MAX_RETURNS, WINDOW) for system in systems}
+        self._bounds = {system: Bound(most, WINDOW) for system in systems}
         self._staying: set[DisplacerT] = set()
         """Displacements that nothing but a request ends."""
 

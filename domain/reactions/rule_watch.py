@@ -44,6 +44,11 @@ class RuleWatch:
         return self.rule.new_target
 
     @property
+    def strength(self) -> int:
+        """Return that none is stronger than others: who came later prevails."""
+        return 0
+
+    @property
     def actor(self) -> Actor:
         """Return in whose name changes begin that lead there and back."""
         return Actor(f"rule:{self.name}")

@@ -52,6 +52,14 @@ class Waits(Generic[KeyT]):
             self._waits[key] = Wait(now, record())
             self._deadlines.set(key, now + lasts)
 
+    def of(self, key: KeyT) -> Wait | None:
+        """Return the wait of a key; None: its condition does not hold."""
+        return self._waits.get(key)
+
+    def restore(self, key: KeyT, wait: Wait) -> None:
+        """Take over a wait that is over, of an earlier run."""
+        self._waits[key] = wait
+
     def end(self, key: KeyT) -> None:
         """Note that the condition of a key does not hold; without effect if it did not."""
         if self._waits.pop(key, None) is not None:

@@ -33,8 +33,14 @@ from domain.inputs import (
 from domain.kept import KeptHold, KeptProgress, KeptTask
 from domain.outbox import Outbox
 from domain.paths.path import Path
+from domain.reaction_terms import HOLD_PREFIX
 from domain.snapshot import HoldView, TaskStatus, TaskView, VehicleView
-from domain.tasks.holds import DRIVE_HOLD, ERROR_HOLD, VEHICLE_HOLD, why_not_restored
+from domain.tasks.holds import (
+    DRIVE_HOLD,
+    ERROR_HOLD,
+    VEHICLE_HOLD,
+    why_not_restored,
+)
 from domain.tasks.kept_tasks import tasks_of
 from domain.tasks.settings import TaskSettings
 from domain.tasks.task_planner import TaskPlanner
@@ -205,6 +211,20 @@ class Driving(Concern):
             self._outbox.forget(KeptProgress, task)
             self._outbox.emit(NotRestored(f"the task {task}", why))
         self._planner.restore(tasks, restored.next_task, now)
+
+    # --- for reactions ---------------------------------------------------------------------------
+
+    def hold_for_reaction(self, reaction: str, reason: str, now: Instant) -> None:
+        """Set the hold of a reaction: speed 0 is commanded at once."""
+        self._planner.hold(f"{HOLD_PREFIX}{reaction}", reason, "", now)
+
+    def release_for_reaction(self, reaction: str, now: Instant) -> None:
+        """Release the hold of a reaction, if it is set."""
+        self._planner.release(f"{HOLD_PREFIX}{reaction}", now)
+
+    def restore_hold_of_reaction(self, reaction: str, reason: str, since: Instant) -> None:
+        """Set a hold that an earlier run had set; the vehicle is not commanded."""
+        self._planner.holds.set(f"{HOLD_PREFIX}{reaction}", reason, "", since)
 
     # --- what can be seen ------------------------------------------------------------------------
 

@@ -6,6 +6,7 @@ Source: smart_polaris, whose only hold is `allow_run_tasks`; see docs/explanatio
 from collections.abc import Mapping
 
 from domain.errors import ReservedHoldError, TooManyHoldsError
+from domain.reaction_terms import HOLD_PREFIX
 from domain.snapshot import HoldView
 from domain.timebase import Instant
 
@@ -29,9 +30,13 @@ def why_not_restored(owner: str, others: int) -> str:
         owner: Name of the hold.
         others: Number of holds that are set again already.
     """
-    if owner in RESERVED or owner == RESTART_HOLD:
+    if _is_reserved(owner) or owner == RESTART_HOLD:
         return "only Pilothouse sets a hold of this name"
     return f"there are {MAX_HOLDS} holds already" if others >= MAX_HOLDS else ""
+
+
+def _is_reserved(owner: str) -> bool:
+    return owner in RESERVED or owner.startswith(HOLD_PREFIX)
 
 
 class Holds:
@@ -60,7 +65,7 @@ class Holds:
         Raises:
             ReservedHoldError: The name is reserved.
         """
-        if owner in RESERVED:
+        if _is_reserved(owner):
             raise ReservedHoldError(owner)
 
     def check_set(self, owner: str) -> None:

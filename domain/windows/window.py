@@ -55,8 +55,7 @@ class Window:
         age are known from when the window has passed once. With more readings than a window holds,
         all but age and `stuck_for` are unknown, and so is what is beyond any float.
         """
-        self._drop_expired(now)
-        if not self._is_known(now):
+        if not self.has_enough(now):
             return None
         try:
             value = self._measure.value(self._contents, now)
@@ -91,11 +90,22 @@ class Window:
         Returns:
             `now` if it changes all the time; None: it does not without a reading.
         """
+        if not self.has_enough(now):
+            return self._known_change_at(now)
+        return earliest(self._known_change_at(now), self._measure.changes_at(self._contents, now))
+
+    def has_enough(self, now: Instant) -> bool:
+        """Tell whether the window holds the readings that the statistic needs.
+
+        If it does and the statistic is unknown, the readings have none: there is no trend to a
+        limit.
+        """
         self._drop_expired(now)
-        known = self._known_change_at(now)
-        if not self._is_known(now):
-            return known
-        return earliest(known, self._measure.changes_at(self._contents, now))
+        if self._needs_all and not self._contents.is_complete(now):
+            return False
+        if self._is_of_arrivals:
+            return self._contents.has_passed(now)
+        return len(self._contents) >= self.settings.min_n
 
     def filled(self, now: Instant) -> float:
         """Return how much of the window has passed, from 0 to 1."""
@@ -104,13 +114,6 @@ class Window:
     def _drop_expired(self, now: Instant) -> None:
         while self._contents.next_leaves_at <= now:
             self._measure.leave(*self._contents.pop())
-
-    def _is_known(self, now: Instant) -> bool:
-        if self._needs_all and not self._contents.is_complete(now):
-            return False
-        if self._is_of_arrivals:
-            return self._contents.has_passed(now)
-        return len(self._contents) >= self.settings.min_n
 
     def _known_change_at(self, now: Instant) -> Instant | None:
         """Return when the statistic becomes known or unknown by time alone; None: it does not."""

@@ -8,6 +8,8 @@ from domain.errors import InvalidValueError
 from service.files.monitor_templates import Parameter, read_template
 
 INCLUDE = "include"
+MAX_INCLUDED = 100
+"""Templates in a robot file."""
 Keys: TypeAlias = tuple[int | str, ...]
 """Keys and places in lists that lead to a value."""
 
@@ -78,6 +80,8 @@ def _items(include: object) -> Iterator[tuple[int, str, Mapping[str, Parameter]]
     """Yield place, name and parameters of each template."""
     if not isinstance(include, list):
         raise InvalidIncludeError("expected a list of templates, such as [cpu, memory]")
+    if len(include) > MAX_INCLUDED:
+        raise InvalidIncludeError(f"at most {MAX_INCLUDED} templates", MAX_INCLUDED)
     for place, item in enumerate(include):
         match item:
             case str():

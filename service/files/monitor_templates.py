@@ -7,6 +7,7 @@ for the same in capitals. A key is left out if its value is a parameter that is 
 import re
 from collections.abc import Mapping
 from dataclasses import dataclass
+from functools import cache
 from importlib import resources
 from typing import Any, Literal, TypeAlias, get_args
 
@@ -86,6 +87,7 @@ def template_text(name: str) -> str:
     return (resources.files("service") / "monitors" / f"{name}.yaml").read_text(encoding="utf-8")
 
 
+@cache
 def read_template(name: str) -> MonitorTemplate:
     """Return a template.
 

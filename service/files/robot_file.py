@@ -6,31 +6,46 @@ The keys are documented in docs/reference/robot-file.schema.json.
 import json
 from collections.abc import Iterator
 from collections.abc import Mapping as AnyMapping
-from typing import Annotated, Any, Literal
+from typing import Annotated, Any, Literal, TypeAlias
 
 from pydantic import Field, ValidationError, field_validator
 
 from domain.changes.settings import ChangeSettings
 from domain.errors import InvalidValueError, PilothouseError, UnknownPartError, near_match
 from domain.findings import Finding
+from domain.health.checkpoints import CheckpointSettings
 from domain.health.signals import ESTOP_SIGNAL, SignalSettings
 from domain.navigation import NavigationSettings
 from domain.parts.system_model import SmhModel
+from domain.reactions.settings import RuleSettings
 from domain.state_and_mode import PartName
 from domain.tasks.settings import TaskSettings
 from domain.timebase import seconds
 from domain.vehicle import VehicleLimits
 from service.files.driving_block import DrivingBlock, StartTaskBlock
-from service.files.includes import INCLUDE, InvalidIncludeError, Keys, Merged, with_includes
+from service.files.includes import (
+    INCLUDE,
+    MAX_INCLUDED,
+    InvalidIncludeError,
+    Keys,
+    Merged,
+    with_includes,
+)
 from service.files.limits_block import LimitsBlock
 from service.files.monitor_templates import Parameter, TemplateName
 from service.files.parameter_file import scalar_value
-from service.files.robot_settings import ChangesBlock, NodeBlock, SignalsBlock
+from service.files.robot_settings import ChangesBlock, NodeBlock, RulesBlock, SignalsBlock
 from service.files.ros2_block import Ros2Block
 from service.files.settings_block import SettingsBlock, bare_names
 from service.files.signal_faults import Fault, faults_of_signals
 from service.files.vehicle_block import VehicleBlock
 from service.files.yaml_tree import Mapping, Node, Scalar, Sequence, finding_at, in_order, read_tree
+
+Included: TypeAlias = (
+    TemplateName
+    | Annotated[dict[TemplateName, dict[str, Parameter]], Field(min_length=1, max_length=1)]
+)
+"""A template, and its parameters if there are any."""
 
 _WORDS = {"extra_forbidden": "unknown key", "model_type": "expected keys below"}
 
@@ -57,9 +72,7 @@ class RobotSettings(SettingsBlock):
     mock: bool | None = None
     """Whether to publish mock signals. Default: as `pilothouse serve` is started; with simulated
     nodes they are published."""
-    include: list[TemplateName | dict[TemplateName, dict[str, Parameter]]] = Field(
-        default_factory=list
-    )
+    include: Annotated[list[Included], Field(max_length=MAX_INCLUDED)] = Field(default_factory=list)
     """Templates of signals and monitors, each by its name, or by its name with parameters below it.
     What the file itself says about a signal goes before what a template says."""
     signals: SignalsBlock = SignalsBlock()
@@ -68,6 +81,8 @@ class RobotSettings(SettingsBlock):
     """Settings of nodes that differ from the default, by name."""
     changes: ChangesBlock = ChangesBlock()
     """Deadlines of changes."""
+    rules: RulesBlock = RulesBlock()
+    """When rules of the model act."""
     vehicle: VehicleBlock = VehicleBlock()
     """Limits of the vehicle, and dynamics of a simulated one."""
     driving: DrivingBlock = DrivingBlock()
@@ -103,6 +118,18 @@ class RobotSettings(SettingsBlock):
             transition_deadline=seconds(self.changes.transition_deadline_s),
             parameters_deadline=seconds(self.changes.parameters_deadline_s),
         )
+
+    def to_rule_settings(self) -> RuleSettings:
+        """Return when rules act."""
+        return self.rules.to_domain()
+
+    def to_checkpoint_settings(self) -> dict[PartName, CheckpointSettings]:
+        """Return what is supervised of the checkpoints of nodes."""
+        return {
+            PartName(name): node.checkpoints.to_domain()
+            for name, node in self.nodes.items()
+            if node.checkpoints is not None
+        }
 
     def to_vehicle_limits(self) -> VehicleLimits:
         """Return the limits of the vehicle."""
@@ -234,13 +261,27 @@ def _faults(settings: RobotSettings, model: SmhModel) -> Iterator[Fault]:
     for keys, code, message in faults_of_signals(settings.signals, model):
         yield ("signals", *keys), code, message
     kinds = {signal.spec.name: signal.spec.kind for signal in settings.to_signal_settings()}
-    for keys, code, message in settings.ros2.faults(kinds):
+    for keys, code, message in settings.ros2.faults(kinds, model):
         yield ("ros2", *keys), code, message
-    # Several sources of a stop are kept apart; of anything else the newest reading would count.
-    for name in sorted(settings.signals.sources.keys() & settings.ros2.signals.keys()):
-        if name != ESTOP_SIGNAL:
-            message = f"{name} has a source under signals; remove one of them"
-            yield ("ros2", "signals", name), "INVALID_VALUE", message
+    yield from _faults_of_two_sources(settings)
+
+
+def _faults_of_two_sources(settings: RobotSettings) -> Iterator[Fault]:
+    """Yield signals that have a topic beside what else gives their value."""
+    further = settings.signals.further
+    for key, named in (
+        ("signals", settings.ros2.signals),
+        ("statistics", settings.ros2.statistics),
+    ):
+        for name in named:
+            monitored = further[name].of if name in further else None
+            if monitored is not None:
+                message = f"{name} is a monitor: its value follows from {monitored}"
+                yield ("ros2", key, name), "INVALID_VALUE", message
+            # Several sources of a stop are kept apart; else the newest reading would count.
+            elif name in settings.signals.sources and name != ESTOP_SIGNAL:
+                message = f"{name} has a source under signals; remove one of them"
+                yield ("ros2", key, name), "INVALID_VALUE", message
 
 
 def _plain(node: Node | None, findings: list[Finding]) -> Any:  # noqa: ANN401  # as in JSON

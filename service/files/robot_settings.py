@@ -17,7 +17,9 @@ from domain.health.signals import (
     default_signals,
     signal_name,
 )
+from domain.reactions.settings import RuleSettings
 from domain.timebase import Duration, seconds
+from service.files.checkpoints_block import CheckpointsBlock
 from service.files.declared_signal import STALE_BETWEEN, AnySignal, DeclaredSignal
 from service.files.settings_block import Number, Seconds, SettingsBlock, bare_names
 from service.files.source_block import MISSED_PERIODS, SourceBlock
@@ -165,7 +167,7 @@ class SignalsBlock(SettingsBlock):
 
 
 class NodeBlock(SettingsBlock):
-    """Settings of a node. All but `on_return` apply to simulated nodes only."""
+    """Settings of a node. All but `on_return` and `checkpoints` apply to simulated nodes only."""
 
     on_return: Literal["leave", "restore"] = "leave"
     """What happens when the node reappears and is not in its target state and mode: nothing, or a
@@ -184,6 +186,9 @@ class NodeBlock(SettingsBlock):
     """Duration of setting parameters, in seconds."""
     fault: Literal["slow", "refuse", "fail", "error", "silent", "die"] | None = None
     """Fault of the node from the start."""
+    checkpoints: CheckpointsBlock | None = None
+    """Places in its program that the node reports by POST /nodes/{node}/checkpoints/{name}, and
+    what is expected of them while it is active. Default: none are known."""
 
 
 class ChangesBlock(SettingsBlock):
@@ -193,6 +198,18 @@ class ChangesBlock(SettingsBlock):
     """Deadline of a lifecycle transition, in seconds."""
     parameters_deadline_s: Seconds = 2.0
     """Deadline of setting parameters, in seconds."""
+
+
+class RulesBlock(SettingsBlock):
+    """When rules of the model act."""
+
+    grace_s: Seconds = 1.0
+    """How long a deviation must last before a rule acts on it, and how long its cause must be gone
+    before the system returns to its requested target, in seconds."""
+
+    def to_domain(self) -> RuleSettings:
+        """Return these settings for the core."""
+        return RuleSettings(seconds(self.grace_s))
 
 
 def _duration(own: float | None, usual: Duration) -> Duration:

@@ -7,11 +7,15 @@ from typing import Annotated, Literal, Self, TypeAlias, TypeVar
 from pydantic import AfterValidator, Field, field_validator, model_validator
 
 from domain.health.signals import SignalKind
+from domain.parts.system_model import SmhModel
+from domain.state_and_mode import PartName
 from service.files.settings_block import Number, SettingsBlock, bare_names
 
 NAV_SAT_FIX = "sensor_msgs/msg/NavSatFix"
 """The only type from which a signal is computed if no field is given."""
 
+StatusName: TypeAlias = Annotated[str, Field(min_length=1, max_length=256)]
+ReportedError: TypeAlias = Annotated[str, Field(pattern=r"^[^.].*\.[A-Z][A-Z0-9_]{0,63}$")]
 BlockT = TypeVar("BlockT")
 Fault: TypeAlias = tuple[tuple[str, ...], str, str]
 """The keys that lead to a fault, its code and its message."""
@@ -130,6 +134,17 @@ class StatisticBlock(SettingsBlock):
         return self
 
 
+class DiagnosticsBlock(SettingsBlock):
+    """Errors of parts that others report by `diagnostic_msgs/msg/DiagnosticArray`."""
+
+    topic: TopicName = "/diagnostics"
+    """Full name of the topic."""
+    errors: Annotated[dict[StatusName, ReportedError], Field(min_length=1)]
+    """By name of a status, such as `lidar_driver: Connection`, the error that it reports, such as
+    `lidar.LINK`; the model file declares it for its part, with neither `when` nor `caused_by`. It
+    is on while one of its statuses has another level than OK."""
+
+
 class OdometryBlock(SettingsBlock):
     """Topic of the vehicle's odometry."""
 
@@ -155,6 +170,8 @@ class Ros2Block(SettingsBlock):
     """Topics of signals by name of the signal: the five default ones and the declared ones."""
     statistics: dict[str, StatisticBlock] = Field(default_factory=dict)
     """Statistics of topics by name of the declared signal that has their value."""
+    diagnostics: DiagnosticsBlock | None = None
+    """Errors of parts that others report on a topic. Without it none are taken from there."""
     odometry: OdometryBlock | None = None
     """Topic of the vehicle's odometry. Without it the pose is unknown and no task runs."""
     command: CommandBlock | None = None
@@ -165,14 +182,16 @@ class Ros2Block(SettingsBlock):
     def _without_leading_slashes(cls, named: dict[str, BlockT]) -> dict[str, BlockT]:
         return bare_names(named)
 
-    def faults(self, kinds: Mapping[str, SignalKind]) -> Iterator[Fault]:
-        """Yield what does not match the signals.
+    def faults(self, kinds: Mapping[str, SignalKind], model: SmhModel) -> Iterator[Fault]:
+        """Yield what does not match the signals and the model.
 
         Args:
             kinds: Kind of each signal by name.
+            model: Its parts, and the errors that they declare.
         """
         yield from self._faults_of_types()
         yield from self._faults_of_signals(kinds)
+        yield from self._faults_of_diagnostics(model)
         for name in self.statistics:
             place = ("statistics", name)
             if name in self.signals:
@@ -182,6 +201,22 @@ class Ros2Block(SettingsBlock):
                 yield place, "UNKNOWN_SIGNAL", _undeclared(name)
             elif kinds[name] is not SignalKind.NUMBER:
                 yield place, "INVALID_VALUE", f"a statistic is a number; {name} is not"
+
+    def _faults_of_diagnostics(self, model: SmhModel) -> Iterator[Fault]:
+        """Yield errors that cannot be reported: the model has none such, or they are detected."""
+        for status, name in (self.diagnostics.errors if self.diagnostics else {}).items():
+            place = ("diagnostics", "errors", status)
+            part, error = error_named(name)
+            if part not in model:
+                yield place, "UNKNOWN_PART", f"there is no part {part!r} that has {error}"
+                continue
+            declared = model.errors.get(part, {}).get(error)
+            if declared is None:
+                message = f"{part} declares no error {error} in the model file"
+                yield place, "UNKNOWN_ERROR", message
+            elif declared.when is not None or declared.caused_by:
+                message = f"{name} is found by other means, so nobody can report it"
+                yield place, "INVALID_VALUE", message
 
     def _faults_of_types(self) -> Iterator[Fault]:
         """Yield topics that are said to have several types."""
@@ -206,6 +241,12 @@ class Ros2Block(SettingsBlock):
             if "invert" in block.model_fields_set and kind is not SignalKind.BOOLEAN:
                 message = f"invert is for booleans only; {name} is not a boolean"
                 yield (*place, "invert"), "INVALID_VALUE", message
+
+
+def error_named(name: str) -> tuple[PartName, str]:
+    """Return the part and the error of a name such as `lidar.LINK`."""
+    part, _, error = name.lstrip("/").rpartition(".")
+    return PartName(part), error
 
 
 def _undeclared(name: str) -> str:

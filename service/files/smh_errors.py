@@ -10,7 +10,7 @@ from typing import Any, TypeAlias
 from domain.conditions.condition import Condition
 from domain.errors import near_match, shortened
 from domain.findings import Finding
-from domain.health.built_in_errors import OF_EVERY_PART, OF_NODES
+from domain.health.built_in_errors import ALL_OF_NODES, OF_EVERY_PART
 from domain.health.signals import ESTOP
 from domain.parts.declared_errors import DeclaredError
 from domain.snapshot import ErrorKey, Severity
@@ -52,7 +52,7 @@ def read_errors(block: SmhBlock, source: SourceText) -> Mapping[str, DeclaredErr
         elif setting.value is not None:
             message = f"{ERRORS} of {block.name}: expected errors below it"
             block.complain(setting.key, "NOT_A_BLOCK", message)
-    built_in = OF_NODES if block.is_node else OF_EVERY_PART
+    built_in = ALL_OF_NODES if block.is_node else OF_EVERY_PART
     declared = {}
     for name, of_error in lines.items():
         reader = _Reader(block, source, name, is_built_in=name in built_in)

@@ -8,14 +8,8 @@ from typing import Final, TypeVar
 from domain.conditions.condition import Condition
 from domain.errors import near_match, shortened
 from domain.findings import Finding
-from domain.parts.declared_reactions import (
-    Action,
-    Arm,
-    Budget,
-    DeclaredReaction,
-    Escalation,
-    Until,
-)
+from domain.parts.declared_reactions import Budget, DeclaredReaction, Escalation
+from domain.reaction_terms import Action, Arm, Until
 from domain.state_and_mode import PartName, StateAndMode
 from domain.timebase import Duration
 from service.files.extension import Setting

@@ -2,7 +2,7 @@
 
 from typing import Annotated, Literal, Self, TypeAlias
 
-from pydantic import Field, model_validator
+from pydantic import ConfigDict, Field, model_validator
 
 from service.files.settings_block import Number, SettingsBlock
 
@@ -256,6 +256,8 @@ class HttpBlock(SettingsBlock):
 
 class SourceBlock(SettingsBlock):
     """Where the readings of a signal come from: exactly one of these."""
+
+    model_config = ConfigDict(json_schema_extra={"minProperties": 1, "maxProperties": 1})
 
     os: OsBlock | None = None
     """A quantity of the computer."""

@@ -84,6 +84,13 @@ SETTINGS = (
         "Let fallbacks lead in one direction.",
     ),
     FindingCode(
+        "INVARIANT_CIRCLE",
+        ERROR,
+        "An invariant names an `INVARIANT_BROKEN` that rests on this very invariant, directly or "
+        "through others: it would never come to rest, or never hold again.",
+        "Name what lies behind the other invariant instead.",
+    ),
+    FindingCode(
         "UNREACHABLE_MODE",
         WARNING,
         "No plan reaches the mode: through several systems it requires different states of one "

@@ -1,6 +1,7 @@
 """A device that is opened when it is first needed, and again after a failure."""
 
 from collections.abc import Callable
+from contextlib import suppress
 from typing import Generic, Protocol, TypeVar
 
 
@@ -34,7 +35,9 @@ class Reopened(Generic[DeviceT]):
         try:
             return call(self._device)
         except Exception:
-            self.close()
+            # What is broken may not close either; why it broke is what is to be told.
+            with suppress(Exception):
+                self.close()
             raise
 
     def close(self) -> None:

@@ -170,7 +170,7 @@ class SampledSource:
 
 
 def _closed(close: Callable[[], None]) -> _Batch:
-    # What was closed by the other side cannot be closed again.
-    with suppress(OSError):
+    # Whatever is wrong with it now, nobody needs it any more.
+    with suppress(Exception):
         close()
     return _Batch(())

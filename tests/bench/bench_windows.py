@@ -54,7 +54,7 @@ def _measure(statistic: Statistic, values: Sequence[float]) -> dict[str, float]:
             best[place] = min(best[place], took)
     gc.enable()
     row = {
-        f"{size:,}_us": round(took * 1e6 / READINGS, 2)
+        f"of_{size:,}_us": round(took * 1e6 / READINGS, 2)
         for size, took in zip(sizes, best, strict=True)
     }
     return row | {"ratio": round(best[-1] / best[0], 2)}

@@ -20,6 +20,7 @@ from domain.actor import Actor
 from domain.changes.admission import ADVISORY
 from domain.events.event import RecordedEvent
 from domain.events.kinds import EVENTS
+from domain.health.checkpoints import CheckpointSettings
 from domain.health.signals import (
     Bound,
     Comparison,
@@ -31,14 +32,17 @@ from domain.health.signals import (
 )
 from domain.inputs import (
     BackendStatus,
+    CheckpointReport,
     DriveStatus,
     Input,
     ModeRequest,
     NodeReport,
     Restored,
     ServiceStall,
+    ShelveRequest,
     SourceFault,
     StorageStatus,
+    UnshelveRequest,
     WriteRecord,
 )
 from domain.kept import KeptHold, KeptTarget
@@ -235,6 +239,13 @@ def a_lost_sensor() -> list[RecordedEvent]:
     return told(SourceFault("temperature", "file /sys/class/thermal", "No such file"))
 
 
+def an_error_that_comes_and_goes() -> list[RecordedEvent]:
+    """A node is lost and heard again and again, until somebody shelves that for a while."""
+    heard = [NodeReport(BASE, reachable=reachable) for reachable in (True, False) * 4]
+    shelved = ShelveRequest("UNREACHABLE", seconds(600), "the cable is loose", part=BASE)
+    return told(*heard, shelved, UnshelveRequest("UNREACHABLE", part=BASE))
+
+
 def a_mode_with_other_limits() -> list[RecordedEvent]:
     bound = Bound("LOAD_HIGH", Comparison.ABOVE, 60.0)
     limit = ModeLimit(bound, BASE, ModeName("FAST"))
@@ -269,6 +280,18 @@ def a_lost_arm() -> list[RecordedEvent]:
     robot.somebody_asks("manipulator", "activate")
     robot.advance(2)
     return robot.events
+
+
+def a_step_left_out() -> list[RecordedEvent]:
+    """A node reports a checkpoint that is not the next one."""
+    order = CheckpointSettings(order={"sense": ("plan",), "plan": ("act",)})
+    core = Supervision(actuation_model(), SupervisionSettings(checkpoints={BASE: order}), 0)
+    inputs = (
+        NodeReport(BASE, LifecycleState.ACTIVE),
+        CheckpointReport(BASE, "sense"),
+        CheckpointReport(BASE, "act"),
+    )
+    return [event for given in inputs for event in core.handle(given, 1).events]
 
 
 def a_wait() -> list[RecordedEvent]:
@@ -316,9 +339,11 @@ def test_events_that_happen_are_listed_with_what_they_carry() -> None:
         a_restart,
         a_full_disk,
         a_lost_sensor,
+        an_error_that_comes_and_goes,
         a_mode_with_other_limits,
         a_lost_arm,
         a_wait,
+        a_step_left_out,
         the_examples,
     )
     for event in (event for story in stories for event in story()):

@@ -29,7 +29,7 @@ from domain.snapshot import Severity
 from domain.supervision import SupervisionSettings
 from domain.timebase import seconds
 from domain.windows.settings import Statistic, WindowSettings
-from tests.support.document_story import CSV, JSON, STORY, Asked
+from tests.support.document_story import CHECKPOINTS, CSV, JSON, STORY, Asked
 from tests.support.good import GOOD
 from tests.support.http_robot import HttpRobot, http_robot
 from tests.support.manual_clock import ManualClock
@@ -50,7 +50,7 @@ _BATTERY_SLOPE = SignalSettings(
         "battery_level", WindowSettings(statistic=Statistic.SLOPE, length=seconds(30))
     ),
 )
-_SETTINGS = SupervisionSettings((*default_signals(), _BATTERY_SLOPE))
+_SETTINGS = SupervisionSettings((*default_signals(), _BATTERY_SLOPE), checkpoints=CHECKPOINTS)
 _EXCERPT_LINES = 4
 _METRICS = ("pilothouse_system_state", "pilothouse_task")
 _PARSED = (JSON, MEDIA_TYPE)

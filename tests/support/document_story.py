@@ -3,6 +3,8 @@
 from dataclasses import dataclass, field
 from typing import Any
 
+from domain.health.checkpoints import CheckpointSettings
+from domain.state_and_mode import PartName
 from tests.support.http_robot import ACTUATION
 
 JSON = "application/json"
@@ -74,6 +76,11 @@ ARM = {"part": "manipulator"}
 BATTERY = {"signal": "battery_level"}
 OPERATOR = {"owner": "operator"}
 
+LOW_BATTERY = {"error": "BATTERY_LOW"}
+KNOWN = {"for_s": 600, "reason": "the charger is being mended"}
+CHECKPOINTS = {PartName("drive_base"): CheckpointSettings(order={"sense": ("act",)})}
+"""What the robot of the story supervises of its nodes."""
+
 _MODES_AND_STATES = (
     Asked("GET /systems", "After the start"),
     Asked("GET /nodes", "After the start"),
@@ -103,6 +110,11 @@ _MODES_AND_STATES = (
     Asked("GET /nodes/{part}/mode", "In a mode", BASE),
     Asked("GET /nodes/{part}/modes", "What can be entered", BASE),
     Asked("GET /nodes/{part}/parameters", "In a mode", BASE),
+    Asked(
+        "POST /nodes/{part}/checkpoints/{checkpoint}",
+        "In its order",
+        {**BASE, "checkpoint": "sense"},
+    ),
     Asked(
         "PATCH /nodes/{part}/parameters",
         "Set by hand",
@@ -178,7 +190,49 @@ _HEALTH = (
     Asked("GET /nodes/{part}/why", "All is well", BASE),
     Asked("GET /systems/{part}/errors", "All is well", ACTUATOR),
     Asked("GET /nodes/{part}/errors", "All is well", BASE),
-    Asked("POST /errors/{error}/acknowledge", "A flat battery", {"error": "BATTERY_LOW"}),
+    Asked("PUT /errors/{error}/shelf", "For ten minutes", LOW_BATTERY, body=KNOWN),
+    Asked("DELETE /errors/{error}/shelf", "Announce it again", LOW_BATTERY),
+    Asked("POST /errors/{error}/acknowledge", "A flat battery", LOW_BATTERY),
+    *(
+        asked
+        for kind, part in (("systems", ACTUATOR), ("nodes", BASE))
+        for asked in (
+            Asked(
+                f"PUT /{kind}/{{part}}/errors/{{error}}/shelf",
+                "For ten minutes",
+                {**part, "error": "DEVIATES"},
+                body=KNOWN,
+            ),
+            Asked(
+                f"DELETE /{kind}/{{part}}/errors/{{error}}/shelf",
+                "Announce it again",
+                {**part, "error": "DEVIATES"},
+            ),
+            Asked(
+                f"POST /{kind}/{{part}}/errors/{{error}}/acknowledge",
+                "It is seen",
+                {**part, "error": "DEVIATES"},
+            ),
+        )
+    ),
+    Asked(
+        "POST /systems/{part}/errors/{error}",
+        "One that Pilothouse finds itself",
+        ACTUATOR | {"error": "DEVIATES"},
+        body={"active": True, "message": "the arm is elsewhere"},
+    ),
+    Asked(
+        "POST /nodes/{part}/errors/{error}",
+        "One that Pilothouse finds itself",
+        BASE | {"error": "UNREACHABLE"},
+        body={"active": False},
+    ),
+    Asked(
+        "POST /errors/{error}",
+        "One of the robot itself",
+        {"error": "BATTERY_LOW"},
+        body={"active": False},
+    ),
     Asked(
         "POST /signals",
         "Two at once, from a named sender",

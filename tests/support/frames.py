@@ -7,6 +7,7 @@ from types import MappingProxyType
 from domain.actor import Actor
 from domain.events.event import Event, RecordedEvent
 from domain.lifecycle import LifecycleState
+from domain.reactions.reaction_view import ReactionView
 from domain.snapshot import (
     Actual,
     EmergencyStopView,
@@ -92,6 +93,7 @@ def frame(
     parts: Sequence[PartView] = (),
     signals: Sequence[SignalView] = (),
     errors: Sequence[ErrorView] = (),
+    reactions: Sequence[ReactionView] = (),
     *,
     full: bool = False,
     system_state: SystemStateView = IDLE,
@@ -112,6 +114,7 @@ def frame(
         parts={view.name: view for view in parts},
         signals={view.signal: view for view in signals},
         errors={view.key.name: view for view in errors},
+        reactions={view.name: view for view in reactions},
         task=task,
         task_changed=full or task_changed,
         vehicle=vehicle,

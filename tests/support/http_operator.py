@@ -11,15 +11,19 @@ from domain.inputs import (
     CancelTaskRequest,
     ChangeRequest,
     EmergencyStopRequest,
+    ErrorReport,
     HoldRequest,
     Input,
     ModeRequest,
     Readings,
     ReleaseRequest,
+    ShelveRequest,
     TaskRequest,
     TransitionRequest,
+    UnshelveRequest,
 )
 from domain.state_and_mode import PartName
+from domain.timebase import to_seconds
 from tests.support.http_robot import HttpRobot
 from tests.support.operator_verbs import OperatorVerbs
 
@@ -49,7 +53,23 @@ class HttpOperator(OperatorVerbs[Awaitable[Any], Awaitable[str], Awaitable[None]
                 values = {item.signal: item.value for item in given.items}
                 return await self._ask("POST", "/signals", HTTPStatus.OK, json=values)
             case AcknowledgeRequest():
-                return await self._ask("POST", f"/errors/{given.error}/acknowledge", HTTPStatus.OK)
+                path = f"{self._error_path(given.part, given.error)}/acknowledge"
+                return await self._ask("POST", path, HTTPStatus.OK)
+            case ShelveRequest():
+                path = f"{self._error_path(given.part, given.error)}/shelf"
+                shelf = {"for_s": to_seconds(given.for_), "reason": given.reason}
+                return await self._ask("PUT", path, HTTPStatus.OK, json=shelf)
+            case UnshelveRequest():
+                path = f"{self._error_path(given.part, given.error)}/shelf"
+                return await self._ask("DELETE", path, HTTPStatus.NO_CONTENT)
+            case ErrorReport():
+                path = self._error_path(given.part, given.error)
+                report = {
+                    "active": given.active,
+                    "message": given.message,
+                    "value": given.value,
+                }
+                return await self._ask("POST", path, HTTPStatus.OK, json=report)
             case ModeRequest():
                 path, body = f"{self._path(given.part)}/mode", {"mode": given.mode}
                 return await self._ask("POST", path, HTTPStatus.ACCEPTED, json=body)
@@ -90,6 +110,9 @@ class HttpOperator(OperatorVerbs[Awaitable[Any], Awaitable[str], Awaitable[None]
     def _path(self, part: PartName) -> str:
         kind = "systems" if part in self.robot.supervisor.model.systems else "nodes"
         return f"/{kind}/{part}"
+
+    def _error_path(self, part: PartName | None, error: str) -> str:
+        return f"{'' if part is None else self._path(part)}/errors/{error}"
 
     async def _ask(
         self,

@@ -139,8 +139,8 @@ class HttpRobot:
         await self.pass_time(3)
         assert (await self.get(answer.headers["location"]))["status"] == "succeeded"
 
-    def break_node(self, node: str, fault: Fault) -> None:
-        """Give a node a fault."""
+    def break_node(self, node: str, fault: Fault | None) -> None:
+        """Give a node a fault; None: it has none any more."""
         self.backend.set_fault(PartName(node), fault)
 
 

@@ -75,7 +75,17 @@ def signal(name: str, value: object = 1.0, unit: str = "", **more: object) -> Js
 
 def error(name: str, part: str | None = None, state: str = "active") -> Json:
     """Return an error that was raised at `AT`."""
-    return {"error": name, "part": part, "state": state, "message": "it is so", "since_at": AT}
+    return {
+        "error": name,
+        "part": part,
+        "severity": "urgent",
+        "state": state,
+        "shelved_until_at": None,
+        "suppressed": False,
+        "root_cause": True,
+        "message": "it is so",
+        "since_at": AT,
+    }
 
 
 def task(status: str = "RUNNING", **more: object) -> Json:

@@ -1,10 +1,13 @@
 """The pieces of the picture: each a list of lines for a width and for some number of lines."""
 
-from collections.abc import Sequence
+from collections import Counter
+from collections.abc import Mapping, Sequence
+from typing import Any, TypeAlias
 
 from rich.console import Console
 from rich.text import Text
 
+from api.cli.error_lines import SEVERITIES, is_on, is_silenced
 from api.cli.monitor import words
 from api.cli.monitor.rows import (
     CALM,
@@ -27,6 +30,8 @@ from api.cli.monitor.sentence import (
 )
 from api.cli.monitor.table import Column, printable, table
 from api.cli.monitor.view import Level, View, seconds_of
+
+Json: TypeAlias = Mapping[str, Any]
 
 LEGEND = "(*) inferred   ! deviation or error   > changing or pending   x unreachable"
 
@@ -229,17 +234,39 @@ def _rows_in(room: int | None) -> int | None:
 
 
 def errors(view: View) -> list[Text]:
-    """Return how many errors of parts are on, and which came last; nothing if there is none."""
-    on = [
-        name
-        for name, error in view.robot.errors.items()
-        if error["part"] is not None and error["state"] != "pending"
-    ]
-    if not on:
-        return []
-    count = f"{len(on)} error{'s' if len(on) > 1 else ''} of parts"
-    newest = ", ".join(on[: -_NAMED - 1 : -1])
-    return [Text(printable(f"{count}: {newest}"), style=_MARK_STYLES[WRONG])]
+    """Return which errors of parts are on, the worst first; nothing if there is none to tell.
+
+    The robot's own are in the sentence at the top. What follows from an error that is told, and
+    what is silenced, is only counted.
+    """
+    of_parts = [each for each in view.robot.errors.items() if each[1]["part"] is not None]
+    on = [(name, error) for name, error in of_parts if is_on(error)]
+    silenced = sum(is_silenced(error) for _, error in on)
+    loud = [(name, error) for name, error in on if not is_silenced(error)]
+    roots = [(name, error) for name, error in reversed(loud) if error["root_cause"]]
+    returned = sum(error["state"] == "returned" and not is_silenced(error) for _, error in of_parts)
+    more = (
+        _some(len(loud) - len(roots), "follow from these"),
+        _some(returned, "returned unseen"),
+        _some(silenced, "not announced"),
+    )
+    told = ", ".join(filter(None, (_worst_first(roots), *more)))
+    style = _MARK_STYLES[WRONG] if loud else ""
+    return [Text(printable(told), style=style)] if told else []
+
+
+def _worst_first(roots: Sequence[tuple[str, Json]]) -> str:
+    if not roots:
+        return ""
+    count = Counter(error["severity"] for _, error in roots)
+    severities = ", ".join(f"{count[each]} {each}" for each in SEVERITIES if count[each])
+    ranked = sorted(roots, key=lambda root: SEVERITIES.index(root[1]["severity"]))
+    names = ", ".join(name for name, _ in ranked[:_NAMED])
+    return f"errors of parts: {severities}: {names}"
+
+
+def _some(count: int, what: str) -> str:
+    return f"{count} {what}" if count else ""
 
 
 def _counted(chosen: Chosen[RowType], what: str) -> list[Text]:

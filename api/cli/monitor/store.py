@@ -122,7 +122,11 @@ def _open_ones(known: Mapping[str, Json], changed: Mapping[str, Json]) -> Mappin
     if not changed:
         return known
     merged = {**known, **changed}
-    return {name: error for name, error in merged.items() if error["state"] != "normal"}
+    return {
+        name: error
+        for name, error in merged.items()
+        if error["state"] != "normal" or error["shelved_until_at"] is not None
+    }
 
 
 def _event(robot: Robot, event: Json) -> Robot:

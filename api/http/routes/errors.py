@@ -23,18 +23,27 @@ async def list_errors(
     part: Annotated[
         str | None, Query(max_length=1_000, description="Only errors of this system or node")
     ] = None,
+    open_: Annotated[
+        bool,
+        Query(
+            alias="open",
+            description="true: only errors that are not normal, or that are shelved",
+        ),
+    ] = False,
 ) -> Response:
     """List the errors of the robot and of all its parts, also those that are normal.
 
-    They are in the order of the model file; of `active=true`, in the order in which they came.
+    They are in the order of the model file; of `active=true` and `open=true`, in the order in which
+    they came.
     """
     # What is due by now is an error by now.
     supervisor.let_pass()
     core = supervisor.core
     if part is None:
-        open_ones = core.open_errors().values()
-        return await answer_errors(supervisor, open_ones if active else core.errors(), active)
+        views = core.open_errors().values() if active or open_ else core.errors()
+        return await answer_errors(supervisor, views, active)
     name = part_name(part)
     if name not in supervisor.model:
         raise UnknownPartError("part", name, supervisor.model.parts)
-    return await answer_errors(supervisor, core.errors_of(name), active)
+    of_part = (view for view in core.errors_of(name) if view.is_open or not open_)
+    return await answer_errors(supervisor, of_part, active)

@@ -17,8 +17,11 @@ router = APIRouter(prefix="/holds", tags=["drive"], route_class=StopRoute)
 OwnerPath = Annotated[
     str,
     Path(
-        pattern=r"^[a-zA-Z0-9][a-zA-Z0-9_.-]{0,63}$",
-        description="Any name but `error` and `vehicle`, which are Pilothouse's own",
+        pattern=r"^(reaction:)?[a-zA-Z0-9][a-zA-Z0-9_.-]{0,63}$",
+        description=(
+            "Any name but `error`, `vehicle` and those of reactions (`reaction:LIMP`), which are"
+            " Pilothouse's own"
+        ),
     ),
 ]
 

@@ -16,11 +16,11 @@ from api.http.dependencies import (
     PartDep,
     PartPath,
     SupervisorDep,
-    known_of_kind,
     known_part,
 )
 from api.http.error_answers import ActiveQuery, answer_errors
 from api.http.list_answers import json_list
+from api.http.longer_names import part_of_longer_name
 from api.http.part_text import part_text
 from api.http.request_body import JsonRoute
 from api.http.route_policy import AuditClass, Permission, policy
@@ -42,7 +42,6 @@ from api.http.schemas.parts import (
 from domain.errors import UnknownModeError
 from domain.inputs import ModeRequest, TransitionRequest
 from domain.lifecycle import PRIMARY_STATES, LifecycleState, Transition
-from domain.state_and_mode import part_name
 from domain.timebase import Duration, seconds
 
 router = APIRouter(route_class=JsonRoute)
@@ -145,7 +144,7 @@ async def list_modes(part: PartDep, supervisor: SupervisorDep) -> ModesJson:
 @policy(Permission.OBSERVE)
 async def get_why(part: PartPath, supervisor: SupervisorDep, request: Request) -> Response:
     """Show why the part is not where it should be; no reasons: it is."""
-    if (whole := _longer_name(f"{part}/why", request, supervisor)) is not None:
+    if (whole := part_of_longer_name(f"{part}/why", request, supervisor)) is not None:
         return whole
     name = known_part(part, request, supervisor)
     # A request would find that what is due has passed.
@@ -161,21 +160,12 @@ async def list_part_errors(
     part: PartPath, supervisor: SupervisorDep, request: Request, *, active: ActiveQuery = None
 ) -> Response:
     """List the errors of the part, also those that are normal."""
-    if (whole := _longer_name(f"{part}/errors", request, supervisor)) is not None:
+    if (whole := part_of_longer_name(f"{part}/errors", request, supervisor)) is not None:
         return whole
     name = known_part(part, request, supervisor)
     # What is due by now is an error by now.
     supervisor.let_pass()
     return await answer_errors(supervisor, supervisor.core.errors_of(name), active)
-
-
-def _longer_name(path: str, request: Request, supervisor: SupervisorDep) -> Response | None:
-    """Return the part that a whole path names; None: there is none. The longest name wins."""
-    whole = part_name(path)
-    if whole not in known_of_kind(request, supervisor):
-        return None
-    text = part_text(supervisor.core.part(whole), partial(timestamp, supervisor.clock))
-    return Response(text, media_type="application/json")
 
 
 def _wait_for(in_body: float | None, in_query: float | None) -> Duration | None:

@@ -70,6 +70,9 @@ class EffectiveTargetJson(Json):
     mode: str | None
     because: Because = Field(description="Who set it; each prevails over those before it")
     rule: str | None = Field(description="Name of the rule that set it; null: no rule did")
+    reaction: str | None = Field(
+        description="Name of the reaction that set it; null: no reaction did"
+    )
     cause: int | None = Field(
         description="Id of the event that recorded why it differs from the requested one"
     )
@@ -85,6 +88,7 @@ class EffectiveTargetJson(Json):
             mode=target.mode,
             because=target.because,
             rule=target.rule,
+            reaction=target.reaction,
             cause=target.cause,
             blockers=tuple(BlockerJson.of(blocker, clock) for blocker in target.blockers),
         )

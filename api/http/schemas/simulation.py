@@ -333,6 +333,7 @@ class SampleJson(Json):
     parts: dict[str, Any]
     signals: dict[str, Any]
     errors: dict[str, Any] = Field(description="Those that are not normal, by name")
+    reactions: dict[str, Any] = Field(description="All reactions, by name")
     task: dict[str, Any] | None = Field(description="The current task; null: there is none")
     vehicle: dict[str, Any]
     holds: dict[str, Any] = Field(description="By owner")

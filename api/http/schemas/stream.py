@@ -15,6 +15,7 @@ from api.http.schemas.health import (
 )
 from api.http.schemas.parts import PartJson
 from api.http.schemas.problem import Problem
+from api.http.schemas.reactions import ReactionJson
 from api.http.schemas.tasks import HoldJson, TaskJson, VehicleJson
 
 # Members with a default are never omitted.
@@ -81,6 +82,14 @@ class StateFrame(Json):
             "Errors that have changed, by name: `BATTERY_LOW`, `drive_base.UNREACHABLE`; one that"
             " ended is told once more, as `normal`. In a full frame, all that are not normal, and"
             " those that ended in the last two minutes: who connects anew begins with none"
+        ),
+        json_schema_extra=left_out,
+    )
+    reactions: dict[str, ReactionJson] | SkipJsonSchema[None] = Field(
+        default=None,
+        description=(
+            "Reactions that have changed, by name, such as `vehicle.LIMP`; all of them in a full"
+            " frame"
         ),
         json_schema_extra=left_out,
     )

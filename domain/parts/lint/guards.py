@@ -4,12 +4,20 @@ from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 
 from domain.conditions.condition import Condition
-from domain.conditions.tree import Comparison, Node, Operator, Subject, TopicKind, comparisons
+from domain.conditions.tree import (
+    Comparison,
+    Node,
+    Operator,
+    Subject,
+    TopicKind,
+    comparisons,
+    negated,
+)
 from domain.findings import Finding
 from domain.lifecycle import LifecycleState
 from domain.parts.lint.demands import Demands, contradict
 from domain.parts.lint.possible import PossibleValues
-from domain.parts.lint.satisfiable import Satisfiability, equals, negated
+from domain.parts.lint.satisfiable import Satisfiability, equals
 from domain.parts.lint.warning import warning
 from domain.parts.mode_settings import ModeSettings
 from domain.parts.system_model import SmhModel

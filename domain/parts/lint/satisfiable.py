@@ -44,19 +44,6 @@ def equals(subject: Subject, *values: str | bool | float) -> Comparison:
     return Comparison(subject, Operator.IN, values, (1,) * len(values))
 
 
-def negated(node: Node) -> Node:
-    """Return the condition that is true where this one is false."""
-    match node:
-        case AllOf(operands):
-            return AnyOf(tuple(map(negated, operands)))
-        case AnyOf(operands):
-            return AllOf(tuple(map(negated, operands)))
-        case Constant(value):
-            return Constant(not value)
-        case Comparison():
-            return Comparison(node.subject, node.operator.opposite, node.values, node.columns)
-
-
 class Satisfiability:
     """Searches for values that make conditions true, within a budget for all searches."""
 

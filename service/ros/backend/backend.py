@@ -9,6 +9,7 @@ from service.clock import Clock
 from service.files.robot_file import RobotSettings
 from service.ports import Deliver
 from service.ros.backend.delivery import Delivery
+from service.ros.backend.diagnostics import ReportedDiagnostics
 from service.ros.backend.nodes import RosNodes
 from service.ros.backend.signals import SignalTopics
 from service.ros.backend.topic_statistics import TopicStatistics
@@ -47,6 +48,7 @@ class Ros2Backend:
         self._nodes = RosNodes(model.nodes, graph, clock)
         self._signals = SignalTopics(robot, graph, clock)
         self._statistics = TopicStatistics(robot, graph, clock)
+        self._diagnostics = ReportedDiagnostics(robot.ros2.diagnostics, graph)
         limits = robot.to_vehicle_limits()
         self._vehicle = RosVehicle(robot.ros2, limits, graph, clock)
         room = _ROOM + _ROOM_PER_NODE * len(model.nodes)
@@ -64,6 +66,7 @@ class Ros2Backend:
             hear = self._delivery.put
             self._signals.start(hear)
             self._statistics.start()
+            self._diagnostics.start(hear)
             self._vehicle.start(hear)
             await self._nodes.start(hear)
             async with asyncio.TaskGroup() as group:

@@ -4,13 +4,21 @@ Names of statuses: `pilothouse: drive_base` for a part, `pilothouse: signal esto
 `pilothouse: system state` for the robot.
 """
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from enum import IntEnum
 from typing import TypeVar
 
 from domain.lifecycle import LifecycleState
 from domain.parts.convergence import is_there
-from domain.snapshot import PartView, SignalView, SystemState, SystemStateView
+from domain.snapshot import (
+    ErrorView,
+    PartView,
+    Severity,
+    SignalView,
+    SystemState,
+    SystemStateView,
+)
+from domain.state_and_mode import PartName
 from service.clock import Clock
 from service.frame_feed import Frame
 from service.ros.interface.endpoints import Fields
@@ -31,13 +39,26 @@ class Level(IntEnum):
     STALE = 3
 
 
+_LEVELS = {
+    Severity.WARNING: Level.WARN,
+    Severity.URGENT: Level.ERROR,
+    Severity.CRITICAL: Level.ERROR,
+    Severity.FATAL: Level.ERROR,
+}
+
+
 def diagnostic_array(frame: Frame, clock: Clock) -> Fields:
     """Return a complete frame as a `diagnostic_msgs/msg/DiagnosticArray`."""
     signals = tuple(frame.signals.values())
     parts = tuple(frame.parts.values())
     room = MAX_STATUSES - 1
     listed_signals = _most_urgent(signals, _signal_level, room)
-    listed_parts = _most_urgent(parts, _part_level, room - len(listed_signals))
+    errors = _errors_by_part(frame)
+
+    def part_level(view: PartView) -> Level:
+        return max(_part_level(view), _worst(errors.get(view.name, ())))
+
+    listed_parts = _most_urgent(parts, part_level, room - len(listed_signals))
     left_out = len(signals) + len(parts) - len(listed_signals) - len(listed_parts)
     reasons = _reasons(frame.system_state)
     return {
@@ -45,7 +66,7 @@ def diagnostic_array(frame: Frame, clock: Clock) -> Fields:
         "status": [
             _robot_status(frame, left_out),
             *(_signal_status(signal, reasons.get(signal.signal, "")) for signal in listed_signals),
-            *(_part_status(part) for part in listed_parts),
+            *(_part_status(part, errors.get(part.name, ())) for part in listed_parts),
         ],
     }
 
@@ -141,15 +162,33 @@ def _part_level(view: PartView) -> Level:
     return Level.WARN if view.actual.undecidable or not view.converged else Level.OK
 
 
-def _part_status(view: PartView) -> Fields:
+def _errors_by_part(frame: Frame) -> Mapping[PartName, Sequence[ErrorView]]:
+    """Return the errors of parts that are on; what silences an error leaves it as it is."""
+    found: dict[PartName, list[ErrorView]] = {}
+    for view in frame.errors.values():
+        if view.key.part is not None and view.state.is_on:
+            found.setdefault(view.key.part, []).append(view)
+    return found
+
+
+def _worst(errors: Iterable[ErrorView]) -> Level:
+    return max((_LEVELS[view.severity] for view in errors), default=Level.OK)
+
+
+def _part_status(view: PartView, errors: Sequence[ErrorView]) -> Fields:
     actual, target = view.actual, view.target
+    level, message = _part_level(view), _part_message(view)
+    if (worst := _worst(errors)) > level:
+        bad = (error for error in errors if _LEVELS[error.severity] is worst)
+        level, message = worst, "; ".join(f"{error.key.error}: {error.message}" for error in bad)
     values = {
         "kind": view.kind,
         "actual": actual.state_and_mode.label,
         "target": target.label if target else None,
         "change": view.change,
+        "errors": ", ".join(error.key.error for error in errors) or None,
     }
-    return status(_part_level(view), view.name, _part_message(view), values)
+    return status(level, view.name, message, values)
 
 
 def _part_message(view: PartView) -> str:

@@ -2,6 +2,7 @@
 
 from collections.abc import Mapping
 
+from domain.events.announcing import ErrorChattering, ErrorShelved, ErrorUnshelved
 from domain.events.changes import (
     BackendAvailable,
     BackendUnavailable,
@@ -50,6 +51,8 @@ from domain.events.health import (
     ErrorAcknowledged,
     ErrorCleared,
     ErrorRaised,
+    ErrorReported,
+    PropagationNotSeen,
     SignalLimitsChanged,
     SignalNotRead,
     SignalPending,
@@ -59,12 +62,22 @@ from domain.events.health import (
     SystemStateChanged,
 )
 from domain.events.parts import (
+    CheckpointReached,
     DeviationBegan,
     DeviationEnded,
     NodeReachable,
     NodeReported,
     NodeUnreachable,
     PartActualChanged,
+)
+from domain.events.reactions import (
+    ReactionAcknowledged,
+    ReactionActing,
+    ReactionArmRequested,
+    ReactionEnded,
+    ReactionExhausted,
+    ReactionOverruled,
+    ReactionWouldAct,
 )
 from domain.events.service import (
     NotRestored,
@@ -83,6 +96,7 @@ from domain.events.targets import (
 )
 from domain.identifiers import ChangeId, GoalId, TaskId
 from domain.lifecycle import LifecycleState, Transition
+from domain.reaction_terms import Action, Arm
 from domain.snapshot import Because, StepStatus, SystemState
 from domain.state_and_mode import ModeName, PartName, StateAndMode
 from tests.support.record_samples.pieces import PARAMETERS
@@ -149,9 +163,22 @@ EVENTS: Mapping[str, tuple[object, ...]] = {
         ErrorAcknowledged(error="LOW_BATTERY"),
         ErrorAcknowledged(error="DEVIATES", part=PartName("arm")),
     ),
+    "error.chattering": (
+        ErrorChattering(error="LOW_BATTERY", clear_for_s=None),
+        ErrorChattering(error="DEVIATES", clear_for_s=12.5, part=PartName("arm")),
+    ),
+    "error.shelved": (
+        ErrorShelved(error="LOW_BATTERY", for_s=12.5, reason='Größe ≤ 3 — "gripper\\jam"'),
+        ErrorShelved(error="DEVIATES", for_s=12.5, reason="noise", part=PartName("arm")),
+    ),
+    "error.unshelved": (
+        ErrorUnshelved(error="LOW_BATTERY"),
+        ErrorUnshelved(error="DEVIATES", part=PartName("arm")),
+    ),
     "error.cleared": (
         ErrorCleared(error="LOW_BATTERY"),
         ErrorCleared(error="DEVIATES", part=PartName("arm")),
+        ErrorCleared(error="SILENT", part=PartName("left/arm"), root_cause=False),
     ),
     "error.raised": (
         ErrorRaised(error="LOW_BATTERY", message="12.5 % < 20 %", value=12.5, threshold=12.5),
@@ -161,6 +188,23 @@ EVENTS: Mapping[str, tuple[object, ...]] = {
             value="inactive",
             threshold="active.FAST",
             part=PartName("arm"),
+        ),
+        ErrorRaised(
+            error="SILENT",
+            message="not part('left/arm').reachable",
+            value=None,
+            threshold=None,
+            part=PartName("left/arm"),
+            root_cause=False,
+        ),
+    ),
+    "error.reported": (
+        ErrorReported(
+            part=PartName("left/arm"),
+            error="JAMMED",
+            active=True,
+            message='Größe ≤ 3 — "gripper\\jam"',
+            value=12.5,
         ),
     ),
     "goal.ended": (GoalEnded(goal=GoalId(5), succeeded=True, reason='Größe ≤ 3 — "gripper\\jam"'),),
@@ -223,6 +267,7 @@ EVENTS: Mapping[str, tuple[object, ...]] = {
             reason='Größe ≤ 3 — "gripper\\jam"',
         ),
     ),
+    "checkpoint.reached": (CheckpointReached(node=PartName("left/arm"), checkpoint="cycle"),),
     "part.deviation_ended": (
         DeviationEnded(
             part=PartName("arm"),
@@ -260,6 +305,64 @@ EVENTS: Mapping[str, tuple[object, ...]] = {
         SignalLimitsChanged(signal="load", because=None),
     ),
     "signal.skewed": (SignalSkewed(signal="battery_level"),),
+    "propagation.not_seen": (
+        PropagationNotSeen(
+            error="LATE",
+            part=PartName("mapper"),
+            cause_error="SILENT",
+            cause_part=PartName("left/arm"),
+            within_s=2.0,
+        ),
+    ),
+    "reaction.acting": (
+        ReactionActing(
+            part=PartName("left/arm"),
+            reaction="LIMP",
+            action=Action.MODE,
+            reason='Größe ≤ 3 — "gripper\\jam"',
+        ),
+    ),
+    "reaction.ended": (
+        ReactionEnded(
+            part=PartName("left/arm"),
+            reaction="LIMP",
+            action=Action.MODE,
+            reason='Größe ≤ 3 — "gripper\\jam"',
+        ),
+    ),
+    "reaction.would_act": (
+        ReactionWouldAct(
+            part=PartName("left/arm"),
+            reaction="LIMP",
+            action=Action.MODE,
+            reason='Größe ≤ 3 — "gripper\\jam"',
+        ),
+    ),
+    "reaction.overruled": (
+        ReactionOverruled(
+            part=PartName("left/arm"),
+            reaction="LIMP",
+            action=Action.MODE,
+            reason='Größe ≤ 3 — "gripper\\jam"',
+        ),
+    ),
+    "reaction.exhausted": (
+        ReactionExhausted(
+            part=PartName("left/arm"),
+            reaction="LIMP",
+            action=Action.HOLD,
+            reason='Größe ≤ 3 — "gripper\\jam"',
+        ),
+    ),
+    "reaction.arm_requested": (
+        ReactionArmRequested(
+            part=PartName("left/arm"),
+            reaction="LIMP",
+            arm=Arm.DISARMED,
+            reason='Größe ≤ 3 — "gripper\\jam"',
+        ),
+    ),
+    "reaction.acknowledged": (ReactionAcknowledged(part=PartName("left/arm"), reaction="LIMP"),),
     "rule.not_applied": (
         RuleNotApplied(
             part=PartName("left/arm"),
@@ -285,6 +388,15 @@ EVENTS: Mapping[str, tuple[object, ...]] = {
             rule=None,
             reason='Größe ≤ 3 — "gripper\\jam"',
         ),
+        DisplacementBegan(
+            part=PartName("left/arm"),
+            target=StateAndMode(state=LifecycleState.ACTIVE, mode=ModeName("SLOW")),
+            was=None,
+            because=Because.REACTION,
+            rule=None,
+            reason='Größe ≤ 3 — "gripper\\jam"',
+            reaction="LIMP",
+        ),
     ),
     "target.displacement_ended": (
         DisplacementEnded(
@@ -303,6 +415,15 @@ EVENTS: Mapping[str, tuple[object, ...]] = {
             rule=None,
             reason='Größe ≤ 3 — "gripper\\jam"',
         ),
+        DisplacementEnded(
+            part=PartName("left/arm"),
+            target=StateAndMode(state=LifecycleState.ACTIVE, mode=ModeName("SLOW")),
+            was=StateAndMode(state=LifecycleState.ACTIVE, mode=ModeName("SLOW")),
+            because=Because.REACTION,
+            rule=None,
+            reason='Größe ≤ 3 — "gripper\\jam"',
+            reaction="LIMP",
+        ),
     ),
     "target.displacement_stays": (
         DisplacementStays(
@@ -318,6 +439,14 @@ EVENTS: Mapping[str, tuple[object, ...]] = {
             because=Because.INVARIANT,
             rule=None,
             reason='Größe ≤ 3 — "gripper\\jam"',
+        ),
+        DisplacementStays(
+            part=PartName("left/arm"),
+            target=StateAndMode(state=LifecycleState.ACTIVE, mode=ModeName("SLOW")),
+            because=Because.REACTION,
+            rule=None,
+            reason='Größe ≤ 3 — "gripper\\jam"',
+            reaction="LIMP",
         ),
     ),
     "system_state.changed": (

@@ -6,12 +6,16 @@ from math import inf, nan
 from domain.actor import Actor
 from domain.identifiers import ChangeId, GoalId
 from domain.inputs import (
+    AcknowledgeReactionRequest,
     AcknowledgeRequest,
+    ArmRequest,
     BackendStatus,
     CancelRequest,
     CancelTaskRequest,
+    CheckpointReport,
     DriveStatus,
     EmergencyStopRequest,
+    ErrorReport,
     GoalFeedback,
     GoalResult,
     HoldRequest,
@@ -25,15 +29,18 @@ from domain.inputs import (
     ReportBacklog,
     Restored,
     ServiceStall,
+    ShelveRequest,
     SourceFault,
     StorageStatus,
     TaskRequest,
     TimePassed,
     TransitionRequest,
+    UnshelveRequest,
     VehicleReport,
     WriteRecord,
 )
 from domain.lifecycle import LifecycleState, Transition
+from domain.reaction_terms import Arm
 from domain.state_and_mode import ModeName, PartName
 from domain.vehicle import DriveCommand, Point, Pose, VehicleState
 from tests.support.record_samples.pieces import KEPT, PARAMETERS, PATH
@@ -55,6 +62,18 @@ INPUTS: Mapping[str, tuple[object, ...]] = {
             parameters=None,
             reachable=None,
             has_lifecycle=None,
+        ),
+    ),
+    "checkpoint_report": (
+        CheckpointReport(
+            node=PartName("left/arm"),
+            checkpoint="cycle",
+            actor=Actor(name="ada", way="http", address="10.0.0.7"),
+        ),
+        CheckpointReport(
+            node=PartName("left/arm"),
+            checkpoint="cycle",
+            actor=Actor(name="", way="", address=""),
         ),
     ),
     "node_answer": (
@@ -210,6 +229,68 @@ INPUTS: Mapping[str, tuple[object, ...]] = {
             error="LOW_BATTERY", actor=Actor(name="ada", way="http", address="10.0.0.7")
         ),
         AcknowledgeRequest(error="LOW_BATTERY", actor=Actor(name="", way="", address="")),
+        AcknowledgeRequest(
+            error="DEVIATES",
+            actor=Actor(name="ada", way="http", address="10.0.0.7"),
+            part=PartName("arm"),
+        ),
+    ),
+    "shelve_request": (
+        ShelveRequest(
+            error="DEVIATES",
+            for_=600_000_000_000,
+            reason='Größe ≤ 3 — "gripper\\jam"',
+            actor=Actor(name="ada", way="http", address="10.0.0.7"),
+            part=PartName("arm"),
+        ),
+        ShelveRequest(error="LOW_BATTERY", for_=1, reason="noise", actor=Actor(), part=None),
+    ),
+    "unshelve_request": (
+        UnshelveRequest(
+            error="DEVIATES",
+            actor=Actor(name="ada", way="http", address="10.0.0.7"),
+            part=PartName("arm"),
+        ),
+        UnshelveRequest(error="LOW_BATTERY", actor=Actor(), part=None),
+    ),
+    "error_report": (
+        ErrorReport(
+            part=PartName("left/arm"),
+            error="JAMMED",
+            active=True,
+            message='Größe ≤ 3 — "gripper\\jam"',
+            value=12.5,
+            actor=Actor(name="ada", way="http", address="10.0.0.7"),
+        ),
+        ErrorReport(part=None, error="JAMMED", active=False),
+    ),
+    "arm_request": (
+        ArmRequest(
+            part=PartName("left/arm"),
+            reaction="LIMP",
+            arm=Arm.PASSIVE,
+            reason='Größe ≤ 3 — "gripper\\jam"',
+            actor=Actor(name="ada", way="http", address="10.0.0.7"),
+        ),
+        ArmRequest(
+            part=PartName("left/arm"),
+            reaction="LIMP",
+            arm=Arm.PASSIVE,
+            reason="",
+            actor=Actor(name="", way="", address=""),
+        ),
+    ),
+    "acknowledge_reaction_request": (
+        AcknowledgeReactionRequest(
+            part=PartName("left/arm"),
+            reaction="LIMP",
+            actor=Actor(name="ada", way="http", address="10.0.0.7"),
+        ),
+        AcknowledgeReactionRequest(
+            part=PartName("left/arm"),
+            reaction="LIMP",
+            actor=Actor(name="", way="", address=""),
+        ),
     ),
     "task_request": (
         TaskRequest(

@@ -12,16 +12,22 @@ from domain.inputs import TimePassed
 from domain.kept import (
     Keeping,
     KeptChange,
+    KeptClock,
     KeptEffectiveTarget,
     KeptEmergencyStop,
     KeptError,
     KeptFailedChange,
     KeptHold,
     KeptProgress,
+    KeptReaction,
+    KeptReport,
+    KeptShelf,
     KeptTarget,
     KeptTask,
+    KeptUnacknowledged,
 )
 from domain.lifecycle import LifecycleState, Transition
+from domain.reaction_terms import Arm
 from domain.snapshot import StepStatus
 from domain.state_and_mode import ModeName, PartName, StateAndMode
 from domain.vehicle import DriveCommand, Pose, VehicleState
@@ -147,6 +153,16 @@ OTHERS: Mapping[str, tuple[object, ...]] = {
             since=1764420000123456789,
             because="invariant",
         ),
+        KeptEffectiveTarget(
+            part=PartName("arm"),
+            target=StateAndMode(state=LifecycleState.INACTIVE),
+            rule="LIMP",
+            order=4,
+            after=9,
+            cause=42,
+            since=1764420000123456789,
+            because="reaction",
+        ),
     ),
     "kept_change": (
         KeptChange(
@@ -188,6 +204,37 @@ OTHERS: Mapping[str, tuple[object, ...]] = {
             part=PartName("lidar"),
         ),
     ),
+    "kept_unacknowledged": (
+        KeptUnacknowledged(
+            part=PartName("arm"),
+            error="DEVIATES",
+            message="12.5 % < 20 %",
+            since=1764420000123456789,
+            value="active.SLOW",
+            threshold=12.5,
+        ),
+        KeptUnacknowledged(
+            part=None,
+            error="LOW_BATTERY",
+            message="12.5 % < 20 %",
+            since=1764420000123456789,
+            value=None,
+            threshold=None,
+        ),
+    ),
+    "kept_shelf": (
+        KeptShelf(
+            part=PartName("arm"),
+            error="DEVIATES",
+            until=1764420000123456789,
+            reason='Größe ≤ 3 — "gripper\\jam"',
+            by="ada",
+        ),
+        KeptShelf(
+            part=None, error="LOW_BATTERY", until=1764420000123456789, reason="noise", by="ada"
+        ),
+    ),
+    "kept_clock": (KeptClock(at=1764420000123456789),),
     "kept_failed_change": (
         KeptFailedChange(
             part=PartName("arm"),
@@ -197,12 +244,43 @@ OTHERS: Mapping[str, tuple[object, ...]] = {
             since=1764420000123456789,
         ),
     ),
+    "kept_report": (
+        KeptReport(
+            part=PartName("left/arm"),
+            error="JAMMED",
+            message='Größe ≤ 3 — "gripper\\jam"',
+            value=12.5,
+            since=1764420000123456789,
+        ),
+    ),
     "kept_hold": (
         KeptHold(
             owner="operator",
             reason='Größe ≤ 3 — "gripper\\jam"',
             by="ada",
             since=1764420000123456789,
+        ),
+    ),
+    "kept_reaction": (
+        KeptReaction(
+            part=PartName("left/arm"),
+            reaction="LIMP",
+            arm=Arm.PASSIVE,
+            since=1764420000123456789,
+            is_exhausted=True,
+            is_acknowledged=True,
+            escalated=True,
+            used=(5_000_000_000, 250_000_000),
+        ),
+        KeptReaction(
+            part=PartName("left/arm"),
+            reaction="LIMP",
+            arm=None,
+            since=None,
+            is_exhausted=False,
+            is_acknowledged=False,
+            escalated=False,
+            used=(),
         ),
     ),
     "kept_task": (

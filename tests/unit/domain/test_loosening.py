@@ -19,9 +19,11 @@ from domain.inputs import (
     ModeRequest,
     ParametersRequest,
     ReleaseRequest,
+    ShelveRequest,
     TaskRequest,
     TimePassed,
     TransitionRequest,
+    UnshelveRequest,
 )
 from domain.lifecycle import Transition
 from domain.loosening import may_loosen
@@ -38,6 +40,7 @@ LOOSENING = (
     TransitionRequest(BASE, Transition.ACTIVATE),
     ReleaseRequest("operator"),
     AcknowledgeRequest(ESTOP),
+    ShelveRequest(ESTOP, 1, "known"),
     RELEASE_STOP,
 )
 SAFER = (
@@ -46,6 +49,7 @@ SAFER = (
     TransitionRequest(BASE, Transition.SHUTDOWN),
     HoldRequest("operator", "lunch"),
     CancelTaskRequest(),
+    UnshelveRequest(ESTOP),
     CancelRequest(ChangeId("c1")),
     EmergencyStopRequest(engaged=True, reason="smoke"),
 )

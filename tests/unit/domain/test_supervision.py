@@ -18,6 +18,7 @@ from domain.errors import (
     OutdatedReadingError,
     PilothouseError,
     UnknownChangeError,
+    UnknownCheckpointError,
     UnknownErrorNameError,
     UnknownModeError,
     UnknownParameterError,
@@ -28,9 +29,11 @@ from domain.events.event import RecordedEvent
 from domain.health.signals import Recovery, default_signals
 from domain.identifiers import ChangeId
 from domain.inputs import (
+    MAX_SHELF,
     AcknowledgeRequest,
     BackendStatus,
     CancelRequest,
+    CheckpointReport,
     EmergencyStopRequest,
     GoalFeedback,
     GoalResult,
@@ -42,10 +45,12 @@ from domain.inputs import (
     ParametersRequest,
     Reading,
     Readings,
+    ShelveRequest,
     SignalValue,
     SourceFault,
     TimePassed,
     TransitionRequest,
+    UnshelveRequest,
     VehicleReport,
     WriteRecord,
 )
@@ -100,6 +105,8 @@ def _seen(core: Supervision) -> object:
 REFUSED: list[tuple[Input, type[PilothouseError]]] = [
     (NodeReport(GRIPPER, state=S.ACTIVE), UnknownPartError),
     (NodeReport(ACTUATION, state=S.ACTIVE), UnknownPartError),
+    (CheckpointReport(GRIPPER, "cycle"), UnknownPartError),
+    (CheckpointReport(BASE, "cycle"), UnknownCheckpointError),
     (_readings(speed=1.0), UnknownSignalError),
     (SourceFault("speed", "os", "no such file"), UnknownSignalError),
     (_readings(battery_level=0.1, temperature="hot"), InvalidValueError),
@@ -111,6 +118,13 @@ REFUSED: list[tuple[Input, type[PilothouseError]]] = [
     (ParametersRequest(BASE, {"max_speed": 1}), InvalidValueError),
     (CancelRequest(ChangeId("c99")), UnknownChangeError),
     (AcknowledgeRequest("NO_SUCH"), UnknownErrorNameError),
+    (AcknowledgeRequest("NO_SUCH", part=BASE), UnknownErrorNameError),
+    (AcknowledgeRequest("DEVIATES", part=GRIPPER), UnknownPartError),
+    (ShelveRequest("NO_SUCH", 1, "noise"), UnknownErrorNameError),
+    (ShelveRequest("ESTOP", 0, "noise"), InvalidValueError),
+    (ShelveRequest("ESTOP", MAX_SHELF + 1, "noise"), InvalidValueError),
+    (ShelveRequest("ESTOP", 1, "  "), InvalidValueError),
+    (UnshelveRequest("NO_SUCH"), UnknownErrorNameError),
 ]
 
 

@@ -49,6 +49,21 @@ async def test_the_metrics_tell_the_state_and_the_errors_of_the_robot(
         assert await metric(http, "pilothouse_error_active", error="BATTERY_LOW") is None
 
 
+async def test_the_metrics_count_the_errors_by_severity(
+    http: httpx.AsyncClient, supervisor: Supervisor
+) -> None:
+    name = "pilothouse_errors"
+    async with running(supervisor):
+        supervisor.submit(EmergencyStopRequest(True, "test", Actor("operator")))
+        supervisor.submit(NodeReport(PartName("drive_base"), reachable=True))
+        before = await metric(http, name, severity="urgent")
+        supervisor.submit(NodeReport(PartName("drive_base"), reachable=False))
+        assert before is not None
+        assert await metric(http, name, severity="urgent") == before + 1
+        assert await metric(http, name, severity="critical")
+        assert await metric(http, name, severity="fatal") == 0
+
+
 async def test_the_metrics_count_the_parts_with_an_error(
     http: httpx.AsyncClient, supervisor: Supervisor
 ) -> None:

@@ -40,6 +40,17 @@ def test_without_arguments_the_example_is_served_with_everything_simulated() -> 
     assert composition.gateway is None
 
 
+def test_the_log_keeps_a_robot_file_with_its_templates_written_out(robot: Path) -> None:
+    robot.write_text(
+        "include:\n  - topic: {name: scan, topic: /scan, type: sensor_msgs/msg/LaserScan,"
+        " min_hz: 8, max_gap_s: 0.5}\n"
+    )
+    files = read_files(ServeOptions(robot=robot))
+
+    assert "include" not in files.text
+    assert "SCAN_SLOW" in files.text
+
+
 def test_a_robot_file_may_turn_the_mock_off(robot: Path) -> None:
     robot.write_text("mock: false\n")
     supervisor = composed(ServeOptions(robot=robot)).supervisor

@@ -64,7 +64,11 @@ class Kept:
         after = Kept(model or self.model)
         after.values = self.values
         after.outbox.begin(0, TimeWasDue())
-        targets = after.targets.restore(self.values.restored().kept)
+        targets = {
+            part: target
+            for request in after.targets.restore(self.values.restored().kept)
+            for part, target in request.items()
+        }
         return targets, after
 
 

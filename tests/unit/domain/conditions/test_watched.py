@@ -45,12 +45,19 @@ def test_whoever_follows_learns_what_changed_since_they_looked() -> None:
     facts = ToldFacts({"battery_level": 0.5})
     low, high = Condition("battery_level < 0.3"), Condition("battery_level > 0.9")
     watched = WatchedConditions(facts)
-    watched.watch([low, high], 0)
-    changed = watched.follow()
+    watched.watch([high], 0)
+    changed = watched.follow([low], 0)
+    assert changed == {low.text: low}
+    changed.clear()
+
+    facts.observed["battery_level"] = 0.95
+    watched.touch(BATTERY)
+    watched.renew(1)
+    assert changed == {}
 
     facts.observed["battery_level"] = 0.2
     watched.touch(BATTERY)
-    watched.renew(1)
+    watched.renew(2)
     assert changed == {low.text: low}
 
 

@@ -1,5 +1,7 @@
 """What is told of signals, errors, the emergency stop and the state of the robot."""
 
+from dataclasses import replace
+
 import pytest
 
 from domain.events.event import Event
@@ -10,6 +12,8 @@ from domain.events.health import (
     ErrorAcknowledged,
     ErrorCleared,
     ErrorRaised,
+    ErrorReported,
+    PropagationNotSeen,
     SignalLimitsChanged,
     SignalNotRead,
     SignalPending,
@@ -18,7 +22,9 @@ from domain.events.health import (
     SystemStateChanged,
 )
 from domain.snapshot import SystemState
+from domain.state_and_mode import PartName
 
+ARM = PartName("arm")
 IDLE, ERROR = SystemState.IDLE, SystemState.ERROR
 
 
@@ -56,6 +62,12 @@ IDLE, ERROR = SystemState.IDLE, SystemState.ERROR
         ),
         (ErrorRaised("ESTOP", "it is pressed", True, None), "ESTOP: it is pressed"),
         (ErrorCleared("ESTOP"), "ESTOP cleared"),
+        (ErrorReported(ARM, "JAMMED", True, "it is stuck", 3), "arm.JAMMED reported: it is stuck"),
+        (ErrorReported(ARM, "JAMMED", False, "", None), "arm.JAMMED reported over"),
+        (
+            PropagationNotSeen("LATE", ARM, "GPS_LOST", None, 2.0),
+            "GPS_LOST has been on for 2 s without arm.LATE",
+        ),
         (ErrorAcknowledged("ESTOP"), "ESTOP acknowledged"),
         (EmergencyStopEngaged("a child"), "emergency stop engaged: a child"),
         (EmergencyStopReleased("track clear"), "emergency stop released"),
@@ -70,3 +82,10 @@ def test_an_event_says_in_words_what_happened(event: Event, words: str) -> None:
 def test_an_error_that_may_still_not_come_is_detail() -> None:
     assert not SignalPending("gps_accuracy", "GPS_LOST").notable
     assert ErrorRaised("ESTOP", "it is pressed", True, None).notable
+
+
+def test_what_another_error_explains_is_detail() -> None:
+    late = ErrorRaised("LATE", "the map is old", 2.0, 1.0, ARM)
+    assert late.notable
+    assert not replace(late, root_cause=False).notable
+    assert not ErrorCleared("LATE", ARM, root_cause=False).notable

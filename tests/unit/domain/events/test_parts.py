@@ -4,6 +4,7 @@ import pytest
 
 from domain.events.event import Event
 from domain.events.parts import (
+    CheckpointReached,
     DeviationBegan,
     DeviationEnded,
     NodeReachable,
@@ -27,6 +28,7 @@ ARM, ACTUATION = PartName("arm"), PartName("actuation")
         ),
         (NodeReported(ARM, reachable=False), "arm reports unreachable"),
         (NodeReported(ARM, reachable=True), "arm reports that it is reachable"),
+        (CheckpointReached(ARM, "cycle"), "arm reached cycle"),
         (NodeReachable(ARM), "arm is reachable"),
         (NodeUnreachable(ARM), "arm is unreachable"),
         (

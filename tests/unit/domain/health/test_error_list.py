@@ -47,12 +47,15 @@ def test_an_error_counts_how_often_it_was_raised_and_pending_does_not_count(
         errors.note(OFF, on(), at + 1)
         assert errors.view(OFF).since == at + 1
         errors.note(OFF, NORMAL, at + 2)
+        assert (errors.view(OFF).state, errors.view(OFF).since) == (S.RETURNED, at + 1)
+    errors.acknowledge(OFF)
     assert (errors.view(OFF).count, errors.view(OFF).since) == (2, None)
 
 
 def test_acknowledging_raises_nothing_anew(errors: ErrorList) -> None:
     errors.note(LOW, on(), 5)
-    errors.note(LOW, on(state=S.ACKNOWLEDGED), 8)
+    errors.acknowledge(LOW)
+    assert errors.view(LOW).state is S.ACKNOWLEDGED
     errors.note(LOW, on(state=S.LATCHED), 9)
     assert (errors.view(LOW).since, errors.view(LOW).count) == (5, 1)
     assert errors.is_on(LOW)
@@ -97,6 +100,7 @@ def test_only_a_difference_is_a_change() -> None:
 
 def test_what_is_forgotten_was_never_raised(errors: ErrorList) -> None:
     errors.note(LOST, on(), 0)
+    errors.mark_start()
     errors.forget(LOST)
     assert errors.view(LOST).count == 0
     assert not errors.open_ones()

@@ -7,11 +7,11 @@ from typing import cast
 import pytest
 
 from domain.events.event import RecordedEvent
+from domain.events.health import ErrorAcknowledged
 from domain.events.service import TimeWasDue
 from domain.health.health import Health
 from domain.health.signals import Recovery, SignalSettings, default_signals
 from domain.inputs import (
-    AcknowledgeRequest,
     Reading,
     Readings,
     Restored,
@@ -22,7 +22,7 @@ from domain.kept import KeptError
 from domain.outbox import Outbox, Outputs
 from domain.restart import Restart
 from domain.robot_state import RobotState
-from domain.snapshot import TaskStatus
+from domain.snapshot import ErrorKey, TaskStatus
 from domain.storage import Storage
 from domain.tasks.driving import Driving
 from domain.timebase import Instant, seconds
@@ -55,7 +55,8 @@ class Robot:
         return self._taken()
 
     def acknowledge(self, error: str) -> list[RecordedEvent]:
-        self.health.acknowledge(AcknowledgeRequest(error), self.now)
+        self.outbox.begin(self.now, ErrorAcknowledged(error))
+        self.health.acknowledge(ErrorKey(None, error), self.now)
         return self._taken()
 
     def restore(self, *kept: KeptError) -> list[RecordedEvent]:
@@ -130,6 +131,7 @@ def test_an_error_is_told_with_its_value_its_limit_and_the_reading_that_caused_i
         "value": 0.42,
         "threshold": 0.5,
         "part": None,
+        "root_cause": True,
     }
 
 
@@ -154,7 +156,11 @@ def test_the_end_of_an_error_is_told(health: Robot) -> None:
     health.read(battery_level=0.42)
     health.pass_time(0.5)
     events = health.read(**GOOD)
-    assert _only(events, "error.cleared").data == {"error": "BATTERY_LOW", "part": None}
+    assert _only(events, "error.cleared").data == {
+        "error": "BATTERY_LOW",
+        "part": None,
+        "root_cause": True,
+    }
     assert _only(events, "system_state.changed").data["state"] == "IDLE"
 
 

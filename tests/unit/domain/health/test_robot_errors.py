@@ -4,10 +4,9 @@ from dataclasses import replace
 
 import pytest
 
-from domain.actor import Actor
 from domain.health.health import Health
 from domain.health.signals import Recovery, default_signals
-from domain.inputs import AcknowledgeRequest, Reading, Readings, SignalValue
+from domain.inputs import Reading, Readings, SignalValue
 from domain.outbox import Outbox
 from domain.snapshot import ErrorKey, ErrorState, ErrorView
 from domain.timebase import seconds
@@ -32,7 +31,8 @@ class Robot:
         self.health.take_readings(Readings(items, "test"), seconds(at_s))
 
     def acknowledge(self, error: str, at_s: float) -> None:
-        self.health.acknowledge(AcknowledgeRequest(error, Actor("ada")), seconds(at_s))
+        self.health.acknowledge(ErrorKey(None, error), seconds(at_s))
+        self.health.error_list.acknowledge(ErrorKey(None, error))
 
     def error(self, name: str) -> ErrorView:
         return self.health.error_list.view(ErrorKey(None, name))
@@ -68,7 +68,16 @@ def test_an_error_is_active_with_what_was_measured_and_then_normal() -> None:
     assert (low.since, low.count) == (seconds(1), 1)
     assert robot.outbox.take().errors == {ErrorKey(None, "BATTERY_LOW")}
     robot.read(3, battery_level=0.9)
+    robot.acknowledge("BATTERY_LOW", 4)
     assert (robot.error("BATTERY_LOW").state, robot.error("BATTERY_LOW").message) == (S.NORMAL, "")
+
+
+def test_an_error_that_ended_unseen_has_returned_with_what_was_measured() -> None:
+    robot = Robot()
+    robot.read(1, battery_level=0.4)
+    robot.read(3, battery_level=0.9)
+    low = robot.error("BATTERY_LOW")
+    assert (low.state, low.value, low.since) == (S.RETURNED, 0.4, seconds(1))
 
 
 def test_an_error_that_needs_time_is_pending_and_settles() -> None:

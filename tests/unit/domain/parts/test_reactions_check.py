@@ -5,8 +5,9 @@ import pytest
 from domain.conditions.condition import Condition
 from domain.lifecycle import LifecycleState
 from domain.parts.declared_errors import DeclaredError
-from domain.parts.declared_reactions import Action, DeclaredReaction, Escalation, Until
+from domain.parts.declared_reactions import DeclaredReaction, Escalation
 from domain.parts.reactions_check import check_reactions
+from domain.reaction_terms import Action, Until
 from domain.snapshot import ErrorKey
 from domain.state_and_mode import ModeName, PartName, StateAndMode
 from domain.timebase import seconds

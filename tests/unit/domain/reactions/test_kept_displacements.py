@@ -79,7 +79,7 @@ def test_what_was_kept_is_restored_in_its_order() -> None:
     assert [watch for _, watch in found] == [WATCH, WATCH]
     assert kept.since(found[0][0]) == 30
     assert found[0][0].targets == displaced().targets
-    assert (found[0][0].rule, found[0][0].cause) == ("park", 7)
+    assert (found[0][0].name, found[0][0].cause) == ("park", 7)
 
 
 def test_a_part_of_which_something_was_requested_later_does_not_inherit() -> None:

@@ -76,6 +76,16 @@ def test_fewer_readings_than_asked_for_are_not_enough() -> None:
     assert filled.crosses_at(above(9.0), after(3.0)) == after(6.0)
 
 
+def test_readings_may_be_there_and_have_no_value_all_the_same() -> None:
+    level = window(Statistic.TIME_TO_LIMIT, window_s=5.0, limit=below(0.2))
+    assert not level.has_enough(after(0.0))
+
+    fill(level, [(1.0, 0.9), (2.0, 0.9), (3.0, 0.9)])
+
+    assert (level.value(after(3.0)), level.has_enough(after(3.0))) == (None, True)
+    assert not level.has_enough(after(7.0))
+
+
 def test_the_newest_readings_of_a_number_stay_however_old_they_are() -> None:
     filled = fill(window(Statistic.MEAN, window_n=2), [(1.0, 4.0), (2.0, 5.0), (3.0, 7.0)])
 

@@ -90,6 +90,7 @@ def test_a_finding_is_where_the_file_says_it(keys: Keys, place: Keys) -> None:
             "the template disk has no parameter 'pth'; did you mean path?",
         ),
         ([{"network": {}}], (0,), "the template network requires interface"),
+        (["cpu"] * 101, (100,), "at most 100 templates"),
         (["cpu", "cpu"], (1,), "an earlier template has cpu_load already; give one another name"),
     ],
 )

@@ -4,8 +4,9 @@ import pytest
 from pydantic import ValidationError
 
 from domain.errors import InvalidValueError
+from service.files.model_file import read_model
 from service.files.robot_file import InvalidRobotFileError, read_robot_file, robot_settings_of
-from service.files.ros2_block import Ros2Block, SignalTopicBlock
+from service.files.ros2_block import Ros2Block, SignalTopicBlock, StatisticBlock
 from tests.support.models import actuation_model
 
 MODEL = actuation_model()
@@ -208,3 +209,72 @@ def test_a_signal_that_is_declared_may_have_a_topic() -> None:
     }
 
     assert robot_settings_of(sent, MODEL).ros2.signals["wind"].offset == -1.0
+
+
+DIAGNOSTICS = """
+lidar:
+  ros__parameters:
+    type: node
+    errors:
+      LINK: {hint: look at the cable}
+      SILENT: {when: "not lidar.reachable"}
+"""
+
+
+@pytest.mark.parametrize(
+    ("error", "code"),
+    [
+        ("lidar.LINK", None),
+        ("/lidar.LINK", None),
+        ("lidar.SILENT", "INVALID_VALUE"),
+        ("lidar.UNREACHABLE", "UNKNOWN_ERROR"),
+        ("lidar.NONE", "UNKNOWN_ERROR"),
+        ("camera.LINK", "UNKNOWN_PART"),
+        ("LINK", "INVALID_VALUE"),
+    ],
+)
+def test_diagnostics_report_errors_that_the_model_leaves_to_others(
+    error: str, code: str | None
+) -> None:
+    text = f"ros2:\n  diagnostics:\n    errors:\n      'lidar_driver: Connection': {error}\n"
+    model = read_model(DIAGNOSTICS).model
+
+    if code is None:
+        assert read_robot_file(text, model).ros2.diagnostics is not None
+        return
+    with pytest.raises(InvalidRobotFileError) as caught:
+        read_robot_file(text, model)
+    (finding,) = caught.value.findings
+    assert (finding.line, finding.code) == (4, code)
+
+
+def test_statistics_are_of_declared_numbers_and_of_nothing_that_has_another_source() -> None:
+    text = """
+signals:
+  scan_rate: {}
+  scan_gap: {}
+  slow: {of: scan_rate, statistic: mean, window_s: 5}
+ros2:
+  signals:
+    scan_gap: {topic: /gap, type: std_msgs/msg/Float64}
+  statistics:
+    scan_rate: {topic: /scan, type: sensor_msgs/msg/LaserScan, statistic: rate}
+    scan_gap: {topic: /scan, type: sensor_msgs/msg/LaserScan, statistic: gap}
+    estop: {topic: /scan, type: sensor_msgs/msg/LaserScan, statistic: rate}
+    slow: {topic: /scan, type: sensor_msgs/msg/LaserScan, statistic: rate}
+    other: {topic: /scan, type: sensor_msgs/msg/Image, statistic: age}
+"""
+    assert faults(text) == [
+        (11, 5, "INVALID_VALUE"),
+        (12, 5, "INVALID_VALUE"),
+        (13, 5, "INVALID_VALUE"),
+        (14, 5, "UNKNOWN_SIGNAL"),
+        (14, 27, "INVALID_VALUE"),
+    ]
+
+
+def test_an_age_has_no_window() -> None:
+    with pytest.raises(ValidationError, match="window_s is for rate and gap only"):
+        StatisticBlock.model_validate(
+            {"topic": "/t", "type": FLOAT, "statistic": "age", "window_s": 1}
+        )

@@ -2,14 +2,8 @@ import pytest
 
 from domain.conditions.condition import Condition
 from domain.lifecycle import LifecycleState
-from domain.parts.declared_reactions import (
-    Action,
-    Arm,
-    Budget,
-    DeclaredReaction,
-    Escalation,
-    Until,
-)
+from domain.parts.declared_reactions import Budget, DeclaredReaction, Escalation
+from domain.reaction_terms import Action, Arm, Until
 from domain.state_and_mode import DEFAULT_MODE, ModeName, PartName, StateAndMode
 from domain.timebase import seconds
 from service.files.model_file import check_model, read_model, with_signals

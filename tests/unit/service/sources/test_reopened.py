@@ -30,3 +30,14 @@ def test_a_device_is_opened_when_it_is_first_needed_and_kept_open() -> None:
     device.close()
     device.close()
     assert opened[1].closed == 1
+
+
+def test_a_device_that_does_not_close_either_says_why_it_broke() -> None:
+    class Broken(Opened):
+        def close(self) -> None:
+            raise OSError(9, "Bad file descriptor")
+
+    broken = Broken()
+    broken.is_there = False
+    with pytest.raises(OSError, match="Remote"):
+        Reopened(lambda: broken).use(lambda found: found.ask(1))

@@ -332,8 +332,27 @@ def test_without_errors_of_parts_nothing_is_said_of_them() -> None:
 
 
 def test_errors_of_parts_are_counted_and_named_the_newest_first() -> None:
-    assert drawn_errors(error("UNREACHABLE", "arm")) == ["1 error of parts: arm.UNREACHABLE"]
+    assert drawn_errors(error("UNREACHABLE", "arm")) == [
+        "errors of parts: 1 urgent: arm.UNREACHABLE"
+    ]
     many = [error("DEVIATES", f"n{number}") for number in range(100)]
     (line,) = drawn_errors(*many)
-    assert line.startswith("100 errors of parts: n99.DEVIATES, n98.DEVIATES, ")
+    assert line.startswith("errors of parts: 100 urgent: n99.DEVIATES, n98.DEVIATES, ")
     assert line.endswith(" n80.DEVIATES")
+
+
+def test_the_worst_errors_of_parts_are_named_first() -> None:
+    blind = {**error("BLIND", "carrier"), "severity": "critical"}
+    (line,) = drawn_errors(blind, error("SILENT", "lidar"))
+    assert line == "errors of parts: 1 critical, 1 urgent: carrier.BLIND, lidar.SILENT"
+
+
+def test_what_follows_or_is_silenced_is_only_counted() -> None:
+    late = {**error("LATE", "mapper"), "root_cause": False}
+    hidden = {**error("HOT", "arm"), "suppressed": True}
+    gone = error("SLOW", "arm", "returned")
+    (line,) = drawn_errors(error("SILENT", "lidar"), late, hidden, gone)
+    assert line == (
+        "errors of parts: 1 urgent: lidar.SILENT, 1 follow from these, 1 returned unseen,"
+        " 1 not announced"
+    )

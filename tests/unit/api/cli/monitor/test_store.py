@@ -162,6 +162,12 @@ def test_errors_are_known_until_they_are_told_to_be_normal() -> None:
     assert known.errors == {"arm.UNREACHABLE": lost}
 
 
+def test_an_error_that_is_shelved_is_known_though_it_is_normal() -> None:
+    shelved = {**error("BATTERY_LOW", state="normal"), "shelved_until_at": AT}
+    known = fold(robot(), frame(errors={"BATTERY_LOW": shelved}))
+    assert known.errors == {"BATTERY_LOW": shelved}
+
+
 def test_after_a_reconnection_only_the_errors_of_the_next_frame_are_known() -> None:
     known = fold(robot(), frame(errors={"arm.DEVIATES": error("DEVIATES", "arm")}))
     assert fold(known, hello()).errors == {}

@@ -23,6 +23,8 @@ ERROR_FIELDS = {
     "value",
     "threshold",
     "since_at",
+    "ended_at",
+    "shelved_because",
     "count",
     "hint",
 }

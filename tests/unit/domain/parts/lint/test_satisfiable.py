@@ -6,9 +6,9 @@ from hypothesis import strategies as st
 from domain.conditions.condition import Condition
 from domain.conditions.evaluation import Truth, compare, truth_of
 from domain.conditions.facts import Observation
-from domain.conditions.tree import Comparison, Node, Subject, Value
+from domain.conditions.tree import Comparison, Node, Subject, Value, negated
 from domain.parts.lint.budget import Budget
-from domain.parts.lint.satisfiable import Satisfiability, equals, negated
+from domain.parts.lint.satisfiable import Satisfiability, equals
 from domain.parts.lint.values import Values
 
 SEARCH = Satisfiability(Budget(10**9)).can_be_true

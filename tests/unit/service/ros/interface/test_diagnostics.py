@@ -9,7 +9,11 @@ from domain.identifiers import ChangeId
 from domain.lifecycle import LifecycleState
 from domain.snapshot import (
     Actual,
+    ErrorKey,
+    ErrorState,
+    ErrorView,
     PartView,
+    Severity,
     SignalView,
     SystemState,
     SystemStateView,
@@ -28,9 +32,10 @@ def diagnosed(
     parts: Sequence[PartView] = (),
     signals: Sequence[SignalView] = (),
     system_state: SystemStateView = IDLE,
+    errors: Sequence[ErrorView] = (),
 ) -> list[Any]:
     """Return the statuses of a frame."""
-    complete = frame(1, parts, signals, full=True, system_state=system_state)
+    complete = frame(1, parts, signals, errors, full=True, system_state=system_state)
     found: list[Any] = diagnostic_array(complete, ManualClock())["status"]
     return found
 
@@ -157,6 +162,31 @@ UNDECIDABLE = Actual(LifecycleState.UNKNOWN, undecidable=True, reason="lidar is 
 )
 def test_a_part_says_what_is_wrong_with_it(part: PartView, level: Level, message: str) -> None:
     assert told(diagnosed([part])[1]) == (level, "pilothouse: manipulator", message)
+
+
+def error(severity: Severity, state: ErrorState = ErrorState.ACTIVE) -> ErrorView:
+    key = ErrorKey(ARM.name, "LATE")
+    return ErrorView(key, severity, state, True, "its map is late", None, None, 0, 1)
+
+
+@pytest.mark.parametrize(
+    ("severity", "level"),
+    [
+        (Severity.WARNING, Level.WARN),
+        (Severity.URGENT, Level.ERROR),
+        (Severity.CRITICAL, Level.ERROR),
+        (Severity.FATAL, Level.ERROR),
+    ],
+)
+def test_a_part_is_as_bad_as_its_worst_error(severity: Severity, level: Level) -> None:
+    found = diagnosed([ARM], errors=[error(severity)])[1]
+    assert told(found) == (level, "pilothouse: manipulator", "LATE: its map is late")
+    assert values(found)["errors"] == "LATE"
+
+
+def test_an_error_that_is_over_is_no_problem_of_its_part() -> None:
+    found = diagnosed([ARM], errors=[error(Severity.FATAL, ErrorState.RETURNED)])[1]
+    assert told(found) == (Level.OK, "pilothouse: manipulator", "active.STRONG")
 
 
 def test_a_part_shows_what_it_is_and_should_be() -> None:

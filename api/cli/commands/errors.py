@@ -1,0 +1,116 @@
+"""`pilothouse errors`: which errors the robot has; acknowledges and shelves them."""
+
+import argparse
+import json
+from collections.abc import Callable
+from typing import TYPE_CHECKING
+
+from api.cli.commands.command import Command, add_url, with_service
+from api.cli.error_lines import error_lines, is_on
+from api.client.outcomes import Outcome
+
+if TYPE_CHECKING:
+    from api.client.service_client import ServiceClient
+
+_ABOUT = "list the errors of the robot; acknowledge and shelve them"
+_TEXT = """\
+List the errors that are not normal or are shelved: roots first, what follows
+from each below it, what is not announced last. A name is that of an error of
+the robot itself, such as BATTERY_LOW, or has its part in front: lidar.SILENT.
+
+Shelving and suppressing silence an error; its state, its bit and its reactions
+stay as they are.
+
+exit code: 0 no error is on, or all that was asked for is done;
+           1 an error is on, or something was rejected; 2 no answer
+"""
+_UNITS = {"s": 1.0, "min": 60.0, "h": 3_600.0}
+
+
+def _add_options(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument("--part", help="only errors of this system or node")
+    parser.add_argument(
+        "--ack", metavar="NAME", action="append", default=[], help="acknowledge an error"
+    )
+    parser.add_argument(
+        "--shelve", metavar="NAME", action="append", default=[], help="shelve an error"
+    )
+    parser.add_argument(
+        "--for",
+        dest="for_s",
+        metavar="TIME",
+        type=shelf_time,
+        default=600.0,
+        help="how long, such as 90s, 10min or 8h; default: 10min",
+    )
+    parser.add_argument("--reason", default="", help="why it is shelved; needed")
+    parser.add_argument(
+        "--unshelve", metavar="NAME", action="append", default=[], help="announce an error again"
+    )
+    parser.add_argument(
+        "--format", choices=("text", "json"), default="text", help="default: %(default)s"
+    )
+    add_url(parser)
+
+
+def shelf_time(text: str) -> float:
+    """Read a time with its unit, s, min or h; without one it is in seconds.
+
+    Raises:
+        ArgumentTypeError: It is no such time.
+    """
+    number = text.rstrip("smhin")
+    try:
+        return float(number) * _UNITS[text[len(number) :] or "s"]
+    except (ValueError, KeyError):
+        raise argparse.ArgumentTypeError(f"invalid time {text!r}; such as 10min") from None
+
+
+def _run(options: argparse.Namespace) -> int:
+    def ask(client: "ServiceClient") -> Outcome:
+        if not (options.ack or options.shelve or options.unshelve):
+            return list_errors(client, options.part, options.format, print)
+        for name in options.ack:
+            client.call("POST", f"{_path(client, name)}/acknowledge")
+        for name in options.shelve:
+            shelf = {"for_s": options.for_s, "reason": options.reason}
+            client.call("PUT", f"{_path(client, name)}/shelf", shelf)
+        for name in options.unshelve:
+            client.call("DELETE", f"{_path(client, name)}/shelf")
+        return Outcome.SUCCEEDED
+
+    return with_service(options.url, ask)
+
+
+ERRORS = Command("errors", _ABOUT, _TEXT, _add_options, _run)
+
+
+def list_errors(
+    client: "ServiceClient", part: str | None, how: str, say: Callable[[str], None]
+) -> Outcome:
+    """List the errors that an operator may want to see; return whether none is on.
+
+    Args:
+        client: The service.
+        part: Only of this system or node; None: all.
+        how: `text` or `json`.
+        say: Prints a line for the user.
+
+    Raises:
+        ServiceProblemError: There is no such part.
+        NoAnswerError: The service did not answer.
+    """
+    query = {"open": "true"} if part is None else {"open": "true", "part": part}
+    found = client.call("GET", "/errors", query=query)
+    if how == "json":
+        say(json.dumps(found, indent=2))
+    else:
+        for line in error_lines(found["items"]) if found["items"] else ("no errors",):
+            say(line)
+    return Outcome.FAILED if any(map(is_on, found["items"])) else Outcome.SUCCEEDED
+
+
+def _path(client: "ServiceClient", name: str) -> str:
+    """Return the path of an error by its name among all."""
+    part, _, error = name.rpartition(".")
+    return f"{client.path_of(part) if part else ''}/errors/{error}"

@@ -1,0 +1,287 @@
+"""Which errors explain which: what the model file declares, and what follows from the parts."""
+
+from collections.abc import Callable, Container, Iterable, Iterator, Mapping
+from itertools import chain, islice, pairwise
+from typing import TypeAlias
+
+from domain.circles import circles
+from domain.conditions.condition import Condition
+from domain.conditions.tree import Comparison, Operator, TopicKind, comparisons
+from domain.health.built_in_errors import (
+    ALL_OF_NODES,
+    DEVIATES,
+    OF_EVERY_PART,
+    OF_NODES,
+    UNREACHABLE,
+)
+from domain.parts.declared_errors import DeclaredError
+from domain.parts.errors_check import named_errors
+from domain.parts.system_model import SmhModel
+from domain.snapshot import ErrorKey
+from domain.state_and_mode import PartName
+
+MAX_SHOWN = 20
+"""Largest number of causes of one error that are looked for; more would not be read."""
+
+Place: TypeAlias = tuple[int, int, int]
+"""Where an error stands in the order of decisions: its level, its part, its place there."""
+
+_POSITIONS = {error: position for position, error in enumerate(ALL_OF_NODES)}
+
+_Link: TypeAlias = tuple[ErrorKey, ErrorKey]
+"""An error, and another one that explains it."""
+
+
+class ErrorCauses:
+    """The graph of errors of one robot; it has no circle.
+
+    Beside what is declared: what rests on whether nodes are reachable is explained by UNREACHABLE
+    of these nodes, and that a system deviates by the parts that do. Such a link is left out where
+    it would close a circle, since what is declared prevails.
+    """
+
+    def __init__(self, model: SmhModel, with_checkpoints: Container[PartName] = ()) -> None:
+        """Gather what explains what.
+
+        Args:
+            model: Systems and nodes, with the errors that the file declares.
+            with_checkpoints: Nodes whose checkpoints are supervised.
+        """
+        self._model = model
+        self._with_checkpoints = with_checkpoints
+        self.declared: Mapping[ErrorKey, DeclaredError] = {
+            ErrorKey(part, name): own
+            for part, of_part in model.errors.items()
+            for name, own in of_part.items()
+        }
+        """All errors of the model file, in its order."""
+        self._rank = {part: number for number, part in enumerate(model.parts)}
+        self._implied = {key: self._implied_of(key.part, own) for key, own in self.declared.items()}
+        self._left_out = set[_Link]()
+        if any(own.caused_by and self.is_built_in(key) for key, own in self.declared.items()):
+            self._leave_out_circles()
+        self._causes = {key: tuple(self._all_causes(key)) for key in self.declared}
+        self._effects: dict[ErrorKey, list[ErrorKey]] = {}
+        for key, causes in self._causes.items():
+            for cause in causes:
+                self._effects.setdefault(cause, []).append(key)
+        self._levels: dict[ErrorKey, int] = {}
+        """How far errors are from what depends on nothing; `_level` knows those of most."""
+        self._find_levels()
+        self._places = {
+            ErrorKey(part, name): position
+            for part in model.errors
+            for position, name in enumerate(self.names_of(part))
+        }
+
+    # --- what can be seen ------------------------------------------------------------------------
+
+    def names_of(self, part: PartName) -> Iterable[str]:
+        """Return the errors that a part can have: the built-in ones, then those of the file."""
+        built_in = OF_NODES if part in self._model.nodes else OF_EVERY_PART
+        if part in self._with_checkpoints:
+            built_in = ALL_OF_NODES
+        own = self._model.errors.get(part)
+        return (*built_in, *(name for name in own if name not in built_in)) if own else built_in
+
+    def place(self, key: ErrorKey) -> Place:
+        """Return where an error is decided: after all that it depends on; ties as in the file."""
+        if key.part is None:
+            return (0, -1, 0)
+        return (self._level(key), self._rank.get(key.part, -1), self._position(key))
+
+    def effects(self, key: ErrorKey) -> Iterator[ErrorKey]:
+        """Yield the errors that an error explains."""
+        yield from self._effects.get(key, ())
+        part, error = key
+        if part is None or error not in (UNREACHABLE, DEVIATES):
+            return
+        if error == UNREACHABLE and part in self._model.nodes:
+            yield from self._without_declared(key, (ErrorKey(part, DEVIATES),))
+        for system in self._model.ancestors.get(part, ()):
+            if self._is_direct(system, part):
+                yield from self._without_declared(key, (ErrorKey(system, DEVIATES),))
+
+    def present(
+        self,
+        key: ErrorKey,
+        on: Mapping[str, Mapping[PartName, None]],
+        is_on: Callable[[ErrorKey], bool],
+    ) -> tuple[ErrorKey, ...]:
+        """Return the causes of an error that are on, in their order; at most `MAX_SHOWN`.
+
+        Args:
+            key: The error.
+            on: By name of an error, the parts that have it.
+            is_on: Tells whether an error is on.
+        """
+        found: Iterator[ErrorKey]
+        if key in self._causes:
+            found = (cause for cause in self._causes[key] if is_on(cause))
+        elif key.part is None or key.error != DEVIATES:
+            return ()
+        elif key.part in self._model.systems:
+            found = self._deviating_below(key.part, on)
+        else:
+            found = filter(is_on, (ErrorKey(key.part, UNREACHABLE),))
+        return tuple(islice(found, MAX_SHOWN))
+
+    def _position(self, key: ErrorKey) -> int:
+        position = self._places.get(key)
+        return _POSITIONS.get(key.error, len(_POSITIONS)) if position is None else position
+
+    def is_built_in(self, key: ErrorKey) -> bool:
+        """Tell whether a part has an error without a word in the model file."""
+        return key.error in (ALL_OF_NODES if key.part in self._model.nodes else OF_EVERY_PART)
+
+    def is_reported(self, key: ErrorKey) -> bool:
+        """Tell whether an error is declared, and others find it and report it."""
+        own = self.declared.get(key)
+        if own is None or self.is_built_in(key):
+            return False
+        return own.when is None and not own.caused_by
+
+    # --- what the parts imply --------------------------------------------------------------------
+
+    def _implied_of(self, part: PartName | None, own: DeclaredError) -> tuple[ErrorKey, ...]:
+        """Return the errors of nodes on whose reachability a condition rests."""
+        if own.when is None or part is None:
+            return ()
+        nodes = chain.from_iterable(
+            self._model.nodes_below(name)
+            for name in _unreachable_parts(own.when)
+            if name in self._model
+        )
+        return tuple(ErrorKey(node, UNREACHABLE) for node in dict.fromkeys(nodes))
+
+    def _all_causes(self, key: ErrorKey) -> Iterator[ErrorKey]:
+        own = self.declared[key]
+        yield from own.caused_by
+        implied = self._implied[key]
+        if key.error == DEVIATES and key.part is not None:
+            implied = tuple(self._of_deviation(key.part))
+        for cause in implied:
+            if cause not in own.caused_by and (key, cause) not in self._left_out:
+                yield cause
+
+    def _of_deviation(self, part: PartName) -> Iterator[ErrorKey]:
+        """Yield what can explain that a part deviates, apart from what is declared."""
+        if part in self._model.nodes:
+            yield ErrorKey(part, UNREACHABLE)
+        for below in self._parts_of(part):
+            yield ErrorKey(below, DEVIATES)
+            if below in self._model.nodes:
+                yield ErrorKey(below, UNREACHABLE)
+
+    def _parts_of(self, part: PartName) -> tuple[PartName, ...]:
+        system = self._model.systems.get(part)
+        return () if system is None else system.named_parts
+
+    def _is_direct(self, system: PartName, part: PartName) -> bool:
+        return any(part in wanted for wanted in self._model.systems[system].modes.values())
+
+    def _without_declared(self, cause: ErrorKey, effects: Iterable[ErrorKey]) -> Iterator[ErrorKey]:
+        """Yield the effects of which the file says nothing; the others are listed anyway."""
+        for effect in effects:
+            if effect not in self._causes and (effect, cause) not in self._left_out:
+                yield effect
+
+    def _deviating_below(
+        self, system: PartName, on: Mapping[str, Mapping[PartName, None]]
+    ) -> Iterator[ErrorKey]:
+        """Yield which parts of a system deviate or are unreachable; looks at the smaller side."""
+        for error in (DEVIATES, UNREACHABLE):
+            with_it = on.get(error, {})
+            parts = (
+                self._parts_of(system)
+                if len(with_it) > MAX_SHOWN
+                else sorted(
+                    (part for part in with_it if self._is_direct(system, part)),
+                    key=self._rank.__getitem__,
+                )
+            )
+            for part in parts:
+                key = ErrorKey(part, error)
+                if part in with_it and (ErrorKey(system, DEVIATES), key) not in self._left_out:
+                    yield key
+
+    # --- order -----------------------------------------------------------------------------------
+
+    def _needs(self, key: ErrorKey) -> tuple[ErrorKey, ...]:
+        """Return what has to be decided before an error."""
+        own = self.declared.get(key)
+        if own is None:
+            if key.part is None or key.error != DEVIATES:
+                return ()
+            causes = self._of_deviation(key.part)
+            return tuple(c for c in causes if (key, c) not in self._left_out)
+        return (*self._all_causes(key), *named_errors(own.when), *named_errors(own.unless))
+
+    def _leave_out_circles(self) -> None:
+        """Leave out an implied link of each circle, until there is none."""
+        starts = [*self.declared, *(ErrorKey(part, DEVIATES) for part in self._model.systems)]
+        while True:
+            needs: dict[ErrorKey, tuple[ErrorKey, ...]] = {}
+            waiting = list(starts)
+            while waiting:
+                key = waiting.pop()
+                if key not in needs:
+                    needs[key] = self._needs(key)
+                    waiting.extend(needs[key])
+            found = list(circles(needs))
+            if not found:
+                return
+            for circle in found:
+                links = pairwise(circle)
+                self._left_out.add(next(link for link in links if not self._is_declared(link)))
+
+    def _is_declared(self, link: _Link) -> bool:
+        own = self.declared.get(link[0])
+        if own is None:
+            return False
+        return link[1] in (*own.caused_by, *named_errors(own.when), *named_errors(own.unless))
+
+    def _level(self, key: ErrorKey) -> int:
+        level = self._levels.get(key)
+        if level is not None:
+            return level
+        return 1 if key.error == DEVIATES and key.part is not None else 0
+
+    def _find_levels(self) -> None:
+        waiting = [*self.declared, *(ErrorKey(part, DEVIATES) for part in self._model.systems)]
+        while waiting:
+            key = waiting[-1]
+            needs = () if key in self._levels else self._needs(key)
+            open_ones = [n for n in needs if self._has_level(n) and n not in self._levels]
+            if open_ones:
+                waiting.extend(open_ones)
+                continue
+            if key not in self._levels:
+                self._levels[key] = 1 + max(map(self._level, needs), default=-1)
+            waiting.pop()
+
+    def _has_level(self, key: ErrorKey) -> bool:
+        """Tell whether the level of an error has to be found."""
+        return key in self.declared or (key.error == DEVIATES and key.part in self._model.systems)
+
+
+NO_CAUSES = ErrorCauses(SmhModel({}, {}))
+"""Of a robot without parts."""
+
+
+def _unreachable_parts(condition: Condition) -> Iterator[PartName]:
+    """Yield the parts that a condition asks not to be reachable, or not to have converged."""
+    for leaf in comparisons(condition.root):
+        kind, name, _ = leaf.subject.topic
+        is_asked = leaf.subject.attribute in ("reachable", "converged") and _asks_for_false(leaf)
+        if kind is TopicKind.PART and is_asked:
+            yield PartName(name)
+
+
+def _asks_for_false(leaf: Comparison) -> bool:
+    match leaf.operator:
+        case Operator.EQUAL | Operator.IN:
+            return False in leaf.values
+        case Operator.NOT_EQUAL | Operator.NOT_IN:
+            return False not in leaf.values
+    return False
