@@ -9,7 +9,7 @@ from domain.conditions.watched import WatchedConditions
 from domain.inputs import NodeReport
 from domain.outbox import Outbox
 from domain.parts.parts import Parts
-from domain.snapshot import Actual, ErrorKey
+from domain.snapshot import ErrorKey
 from domain.state_and_mode import PartName
 from domain.tasks.driving import Driving
 from domain.timebase import Instant
@@ -40,13 +40,12 @@ class FactChanges(Concern):
         self._is_idle = not topics
         self._signals = _by_name(topics, TopicKind.SIGNAL)
         self._parts = _by_name(topics, TopicKind.PART)
-        self._converging = watched.parts_named_by("converged")
-        self._actuals = parts.inference.actuals
+        names = watched.parts_named_by("converged")
+        self._converging = {name: self._parts[name] for name in sorted(names)}
+        self._inference = parts.inference
         self._ancestors = parts.model.ancestors
-        self._told: dict[str, Actual] = {}
-        """Actual state and mode of each named part as they were evaluated last."""
-        self._reported: set[str] = set()
-        """Nodes that reported since the last `settle`, and the systems above them."""
+        self._reported: set[PartName] = set()
+        """Parts about which more than their target may have changed since the last `settle`."""
         self._errors = {
             ErrorKey(PartName(topic.part) if topic.part else None, topic.name): topic
             for topic in topics
@@ -63,11 +62,20 @@ class FactChanges(Concern):
 
     def _take_report(self, report: NodeReport, now: Instant) -> None:
         """Touch a node that reports parameters: they may change nothing else about it."""
+        self._watched.may_have_changed = True
         topic = self._parts.get(report.node)
         if topic is not None and report.parameters:
             self._watched.touch(topic)
         if self._parts:
             self._reported.update((report.node, *self._ancestors[report.node]))
+
+    def wake_at(self) -> Instant | None:
+        """Return when time alone changes a fact: the concerns before know."""
+        return None
+
+    def pass_time(self, now: Instant) -> None:
+        """Note that a signal may have become stale."""
+        self._watched.may_have_changed = True
 
     def settle(self, now: Instant) -> bool:
         """Evaluate the conditions that name what changed; return whether one has another value."""
@@ -94,15 +102,12 @@ class FactChanges(Concern):
         A request gives ten thousand of them other targets. A condition cannot name these, but it
         can name whether a part has converged.
         """
-        if self._outbox.parts and self._parts:
-            actuals, told = self._actuals, self._told
-            for topic in _named(self._outbox.parts, self._parts):
-                name = PartName(topic.name)
-                is_same = told.get(name) is actuals[name]
-                if not is_same or name in self._reported or name in self._converging:
-                    told[name] = actuals[name]
-                    self._watched.touch(topic)
-        self._reported.clear()
+        self._reported |= self._inference.take_moved()
+        if self._reported:
+            self._touch(_named(self._reported, self._parts))
+            self._reported.clear()
+        if self._converging and self._outbox.parts:
+            self._touch(_named(self._outbox.parts, self._converging))
 
     def _touch(self, topics: Iterable[Topic]) -> None:
         for topic in topics:

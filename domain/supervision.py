@@ -101,13 +101,13 @@ class Supervision:
         self._now = start
         outbox = self._outbox = Outbox()
         parts = self._parts = Parts(model, outbox)
-        health = self._health = Health(settings.signals, outbox, start, ErrorCauses(model))
+        causes = ErrorCauses(model, settings.checkpoints)
+        health = self._health = Health(settings.signals, outbox, start, causes)
         stop = self._emergency_stop = EmergencyStop(health, outbox)
         self.driving = Driving(settings.tasks, settings.vehicle, health, stop, outbox, start)
         storage = Storage(outbox)
         self._robot_state = RobotState(health, self.driving, storage, outbox)
-        errors = PartErrors(parts, health.error_list, outbox, start, settings.checkpoints)
-        self._part_errors = errors
+        errors = self._part_errors = PartErrors(parts, health.error_list, outbox, start)
         self.facts = RobotFacts(parts, health, self.driving, errors.reason)
         """What conditions are evaluated over."""
         self.conditions = WatchedConditions(self.facts)

@@ -16,6 +16,7 @@ def make_onboard(model: SmhModel, robot: RobotSettings, start: Instant) -> Onboa
         robot.to_change_settings(),
         robot.to_task_settings(),
         limits,
+        robot.to_rule_settings(),
         checkpoints=robot.to_checkpoint_settings(),
     )
     core = Supervision(model, settings, start)

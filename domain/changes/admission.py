@@ -3,7 +3,7 @@
 `GET .../modes` shows the same blockers that a request would meet.
 """
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence, Set
 from dataclasses import replace
 from itertools import islice
 
@@ -15,7 +15,7 @@ from domain.findings import Blocker
 from domain.inputs import ChangeRequest, ModeRequest, TransitionRequest
 from domain.lifecycle import LifecycleState, Transition, arrival, is_legal_request
 from domain.parts.claims import Claims
-from domain.parts.node_doubts import IN_DOUBT, UNKNOWN_STATE, UNREACHABLE, doubt_of
+from domain.parts.node_doubts import UNKNOWN_STATE, UNREACHABLE, doubt_of
 from domain.parts.node_facts import NodeFacts
 from domain.parts.system_model import SmhModel
 from domain.state_and_mode import PartName, StateAndMode
@@ -34,11 +34,22 @@ class ChangeAdmission:
         self,
         model: SmhModel,
         facts: Mapping[PartName, NodeFacts],
+        doubtful: Set[PartName],
         guards: Guards,
         claims: Claims,
     ) -> None:
+        """Judge requests from here on.
+
+        Args:
+            model: The model.
+            facts: Facts about all nodes.
+            doubtful: Nodes in a state that is unknown, or that they do not leave; kept up to date.
+            guards: Of all modes.
+            claims: What reactions keep in force.
+        """
         self._model = model
         self._facts = facts
+        self._doubtful = doubtful
         self._guards = guards
         self._claims = claims
         self._goals = NodeGoals(model)
@@ -142,7 +153,9 @@ class ChangeAdmission:
         part = part_of(request)
         resting = isinstance(request, TransitionRequest) and request.transition in TOWARDS_REST
         facts = self._facts
-        doubtful = [node for node in goal.nodes if facts[node].known_state in IN_DOUBT]
+        doubtful: list[PartName] = []
+        if not self._doubtful.isdisjoint(goal.nodes):
+            doubtful = [node for node in goal.nodes if node in self._doubtful]
         # Those that reject come first; of the others, no more are made than are told.
         doubtful.sort(key=lambda node: facts[node].known_state is LifecycleState.UNKNOWN)
         doubts = (self._doubt(part, node, goal.nodes[node], resting) for node in doubtful)

@@ -208,7 +208,7 @@ class Changes:
     def _ask(self, change: Change) -> None:
         """Set the targets that a change is to reach, and keep them over a restart."""
         if change.schedule.on_failure is OnFailure.ROLLBACK:
-            change.targets_before = {name: self._parts.asked(name) for name in change.targets}
+            change.targets_before = self._parts.asked_of(change.targets)
         self._parts.ask(change.targets)
         if change.targets:
             self._kept_targets.note(change.part, change.targets)

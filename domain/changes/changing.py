@@ -64,7 +64,9 @@ class Changing(Concern):
         self._health = health
         self._outbox = outbox
         self._guards = guards
-        self._admission = ChangeAdmission(parts.model, parts.facts, guards, parts.claims)
+        self._admission = ChangeAdmission(
+            parts.model, parts.facts, parts.inference.doubtful, guards, parts.claims
+        )
         self._changes = Changes(parts, settings, outbox, health, guards, part_errors)
         self._whys = Whys(parts, self._admission, health)
         self._waiting = Waiting(

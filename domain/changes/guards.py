@@ -91,10 +91,11 @@ class Guards:
         self, parts: Iterable[PartName], targets: Mapping[PartName, StateAndMode]
     ) -> Iterator[Blocker]:
         """Return why parts cannot go on to their target modes: of invariants, without grace."""
+        # The report that lets the step begin may be what breaks a guard.
+        why_not = self._watched.explain if self._watched.may_have_changed else self._why_not
         for part in parts:
             has_grace = self._settings(part, targets[part]).grace > 0
-            # The report that lets the step begin may be what breaks a guard.
-            for blocker in self._blockers(part, targets[part], self._watched.explain):
+            for blocker in self._blockers(part, targets[part], why_not):
                 if not (has_grace and blocker.code == INVARIANT):
                     yield blocker
 

@@ -22,7 +22,7 @@ class _Watched:
     since: Instant
     broken_since: Instant | None
     """Since when it is false or unknown; None: it is true."""
-    followers: "list[dict[str, Condition]]" = field(default_factory=list)
+    followers: list[dict[str, Condition]] = field(default_factory=list)
     """Where it is noted that its value changed."""
 
 
@@ -52,6 +52,8 @@ class WatchedConditions:
         self._by_topic: dict[Topic, dict[Subject, list[_Leaf]]] = {}
         self._touched: dict[Topic, None] = {}
         """In the order in which they were touched."""
+        self.may_have_changed = False
+        """Whether facts may have changed since the last `renew`."""
         self.revision = 0
         """Rises whenever a condition gets another value."""
         self.leaf_revision = 0
@@ -112,6 +114,7 @@ class WatchedConditions:
 
         They come in the order in which they were touched, and then in which they were added.
         """
+        self.may_have_changed = False
         doubtful: dict[str, _Watched] = {}
         touched, self._touched = self._touched, {}
         for topic in touched:

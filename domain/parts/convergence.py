@@ -8,6 +8,7 @@ converged.
 from bisect import bisect_left
 from collections.abc import Collection, Iterable, Mapping, Set
 from heapq import heapify, heappop, heappush
+from itertools import chain
 
 from domain.errors import shortened
 from domain.events.event import because
@@ -133,11 +134,12 @@ class Convergence:
         Returns:
             Parts of which `converged` or `reason` changed.
         """
-        moved = set(parts)
+        # In bulk where it can be: there may be ten thousand.
+        moved, parents = set(parts), self._parents
         waiting = moved & self._rank.keys()
-        renewed = self._renew_nodes(part for part in parts if part not in waiting)
-        for node in renewed:
-            waiting.update(self._parents.get(node, ()))
+        renewed = self._renew_nodes([part for part in parts if part not in waiting])
+        above = [parents[node] for node in renewed if node in parents]
+        waiting.update(chain.from_iterable(above))
         order = [self._rank[name] for name in waiting]
         heapify(order)
         while order:

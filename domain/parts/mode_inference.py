@@ -17,6 +17,7 @@ from domain.inputs import NodeReport
 from domain.lifecycle import LifecycleState
 from domain.parameters import same_value
 from domain.parts.convergence import Convergence, bottom_up, is_there
+from domain.parts.node_doubts import IN_DOUBT
 from domain.parts.node_facts import NodeFacts
 from domain.parts.system_inference import SystemInference, by_bytes
 from domain.parts.system_model import NodeModel, SmhModel
@@ -44,6 +45,10 @@ class ModeInference:
         }
         self._fitting: dict[PartName, tuple[ModeName, ...]] = {}
         """Modes that the parameters of an active node match; kept until it reports others."""
+        self.doubtful: set[PartName] = set()
+        """Nodes in a state that is unknown, or that they do not leave; read only for others."""
+        self._moved: set[PartName] = set()
+        """Parts of which the actual changed since somebody asked for them."""
         self._wavering: set[PartName] = set()
         """Nodes whose mode depends on their target, since their parameters match several."""
         self._shared: dict[tuple[LifecycleState, ModeName | None, bool], Actual] = {}
@@ -57,6 +62,7 @@ class ModeInference:
         self._convergence = Convergence(
             model, self._parents, self._targets, self._actual, self._plain
         )
+        self.doubtful.update(model.nodes)
         self._infer((*model.nodes, *model.systems))
 
     def report(self, report: NodeReport, now: Instant | None = None) -> set[PartName]:
@@ -174,6 +180,11 @@ class ModeInference:
                 found.append((part, self._targets[part], seen))
         return found
 
+    def take_moved(self) -> set[PartName]:
+        """Return the parts of which the actual changed since the last call."""
+        moved, self._moved = self._moved, set()
+        return moved
+
     def _infer(self, parts: Iterable[PartName]) -> set[PartName]:
         """Infer parts, and bottom-up the systems above those that changed, each once."""
         changed: set[PartName] = set()
@@ -183,6 +194,8 @@ class ModeInference:
                 waiting.add(part)
             elif self._renew(part, self._infer_node(part)):
                 changed.add(part)
+                is_in_doubt = self._actual[part].state in IN_DOUBT
+                (self.doubtful.add if is_in_doubt else self.doubtful.discard)(part)
                 waiting.update(self._parents.get(part, ()))
         if not waiting:
             return changed
@@ -205,6 +218,7 @@ class ModeInference:
         if actual is known or actual == known:
             return False
         self._actual[part] = actual
+        self._moved.add(part)
         self._tell_parents(part)
         return True
 

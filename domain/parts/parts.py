@@ -232,6 +232,10 @@ class Parts(Concern):
         """Return the requested target of a part; None: there is none."""
         return self._targets.asked(part)
 
+    def asked_of(self, parts: Iterable[PartName]) -> dict[PartName, StateAndMode | None]:
+        """Return the requested target of each of several parts."""
+        return self._targets.asked_of(parts)
+
     @property
     def displacements(self) -> Sequence[Displacement]:
         """Return which systems are displaced, those that prevail last; read only."""

@@ -20,6 +20,7 @@ from domain.parameters import Parameters
 from domain.parts.declared_errors import DeclaredError
 from domain.parts.declared_reactions import DeclaredReaction
 from domain.parts.errors_check import error_circles
+from domain.parts.invariant_circles import invariant_circles
 from domain.parts.mode_settings import ModeSettings
 from domain.parts.reactions_check import all_reactions, check_reactions
 from domain.parts.settings_check import check_settings
@@ -107,7 +108,7 @@ class SmhModel:
     """Every system that a part belongs to, directly or indirectly; children before parents."""
     parents: Mapping[PartName, tuple[PartName, ...]] = field(init=False)
     """The systems that name each part, in the order of the file; what none names is left out."""
-    shared_parts: tuple[PartName, ...] = field(init=False)
+    shared_parts: frozenset[PartName] = field(init=False)
     """The parts that several systems name."""
 
     def __post_init__(self) -> None:
@@ -124,7 +125,7 @@ class SmhModel:
             self, "ancestors", MappingProxyType(_ancestors(self.systems, self.nodes))
         )
         parents = _parents(self.systems.values())
-        shared = tuple(part for part, systems in parents.items() if len(systems) > 1)
+        shared = frozenset(part for part, systems in parents.items() if len(systems) > 1)
         object.__setattr__(self, "parents", MappingProxyType(parents))
         object.__setattr__(self, "shared_parts", shared)
 
@@ -133,6 +134,7 @@ class SmhModel:
         for part, settings in self.mode_settings.items():
             parts = self.systems[part].named_parts if part in self.systems else ()
             findings.extend(check_settings(part, settings, self.modes_of(part), parts))
+        findings.extend(invariant_circles(self.mode_settings, self.errors))
         findings.extend(error_circles(self.errors))
         modes_of = {part: self.modes_of(part) for part in self.reactions}
         reactions = all_reactions(self.reactions)

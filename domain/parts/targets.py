@@ -1,6 +1,6 @@
 """Targets of parts: requested and in force."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 
 from domain.findings import Blocker
@@ -176,6 +176,11 @@ class Targets:
     def asked(self, part: PartName) -> StateAndMode | None:
         """Return the requested target of a part; None: there is none."""
         return self._asked.get(part)
+
+    def asked_of(self, parts: Iterable[PartName]) -> dict[PartName, StateAndMode | None]:
+        """Return the requested target of each of several parts."""
+        asked = self._asked
+        return {part: asked.get(part) for part in parts}
 
     def effective(self, part: PartName) -> EffectiveTarget | None:
         """Return the target in force of a part, with its reason; None: there is none."""

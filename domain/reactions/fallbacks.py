@@ -142,9 +142,9 @@ class Fallbacks(Concern):
             return list(self._rank)
         if seen != self._revision:
             review |= known
-        touched = self._rank.keys() & (moved | self._outbox.parts)
-        review |= touched & known
-        review.update(self._guards.failing(touched))
+        for touched in (moved, self._outbox.parts):
+            review |= touched & known
+            review.update(self._rank.keys() & self._guards.failing(touched))
         return sorted(review, key=self._rank.__getitem__)
 
     def _follow_requests(self, parts: Iterable[PartName]) -> bool:

@@ -17,6 +17,7 @@ from domain.health.checkpoints import CheckpointSettings
 from domain.health.signals import ESTOP_SIGNAL, SignalSettings
 from domain.navigation import NavigationSettings
 from domain.parts.system_model import SmhModel
+from domain.reactions.settings import RuleSettings
 from domain.state_and_mode import PartName
 from domain.tasks.settings import TaskSettings
 from domain.timebase import seconds
@@ -33,7 +34,7 @@ from service.files.includes import (
 from service.files.limits_block import LimitsBlock
 from service.files.monitor_templates import Parameter, TemplateName
 from service.files.parameter_file import scalar_value
-from service.files.robot_settings import ChangesBlock, NodeBlock, SignalsBlock
+from service.files.robot_settings import ChangesBlock, NodeBlock, RulesBlock, SignalsBlock
 from service.files.ros2_block import Ros2Block
 from service.files.settings_block import SettingsBlock, bare_names
 from service.files.signal_faults import Fault, faults_of_signals
@@ -80,6 +81,8 @@ class RobotSettings(SettingsBlock):
     """Settings of nodes that differ from the default, by name."""
     changes: ChangesBlock = ChangesBlock()
     """Deadlines of changes."""
+    rules: RulesBlock = RulesBlock()
+    """When rules of the model act."""
     vehicle: VehicleBlock = VehicleBlock()
     """Limits of the vehicle, and dynamics of a simulated one."""
     driving: DrivingBlock = DrivingBlock()
@@ -115,6 +118,10 @@ class RobotSettings(SettingsBlock):
             transition_deadline=seconds(self.changes.transition_deadline_s),
             parameters_deadline=seconds(self.changes.parameters_deadline_s),
         )
+
+    def to_rule_settings(self) -> RuleSettings:
+        """Return when rules act."""
+        return self.rules.to_domain()
 
     def to_checkpoint_settings(self) -> dict[PartName, CheckpointSettings]:
         """Return what is supervised of the checkpoints of nodes."""

@@ -17,6 +17,7 @@ from domain.health.signals import (
     default_signals,
     signal_name,
 )
+from domain.reactions.settings import RuleSettings
 from domain.timebase import Duration, seconds
 from service.files.checkpoints_block import CheckpointsBlock
 from service.files.declared_signal import STALE_BETWEEN, AnySignal, DeclaredSignal
@@ -197,6 +198,18 @@ class ChangesBlock(SettingsBlock):
     """Deadline of a lifecycle transition, in seconds."""
     parameters_deadline_s: Seconds = 2.0
     """Deadline of setting parameters, in seconds."""
+
+
+class RulesBlock(SettingsBlock):
+    """When rules of the model act."""
+
+    grace_s: Seconds = 1.0
+    """How long a deviation must last before a rule acts on it, and how long its cause must be gone
+    before the system returns to its requested target, in seconds."""
+
+    def to_domain(self) -> RuleSettings:
+        """Return these settings for the core."""
+        return RuleSettings(seconds(self.grace_s))
 
 
 def _duration(own: float | None, usual: Duration) -> Duration:

@@ -84,6 +84,13 @@ SETTINGS = (
         "Let fallbacks lead in one direction.",
     ),
     FindingCode(
+        "INVARIANT_CIRCLE",
+        ERROR,
+        "An invariant names an `INVARIANT_BROKEN` that rests on this very invariant, directly or "
+        "through others: it would never come to rest, or never hold again.",
+        "Name what lies behind the other invariant instead.",
+    ),
+    FindingCode(
         "UNREACHABLE_MODE",
         WARNING,
         "No plan reaches the mode: through several systems it requires different states of one "
@@ -111,8 +118,7 @@ ERRORS = (
     FindingCode(
         "NAME_TAKEN",
         ERROR,
-        "The name of an error is that of the emergency stop, or that of an error of a signal of "
-        "the same part.",
+        "The name of an error is that of the emergency stop.",
         "Use another name.",
     ),
     FindingCode(

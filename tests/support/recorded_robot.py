@@ -74,6 +74,7 @@ class RecordedRobot(CoreRobot):
             robot.to_change_settings(),
             robot.to_task_settings(),
             robot.to_vehicle_limits(),
+            robot.to_rule_settings(),
         )
         super().__init__(model, settings, start=boot.started_at)
 

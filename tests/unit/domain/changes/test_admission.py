@@ -1,5 +1,7 @@
 """Whether a change may begin, and what stands against it."""
 
+from collections.abc import Mapping
+
 import pytest
 
 from domain.changes.admission import ADVISORY, ChangeAdmission
@@ -10,6 +12,7 @@ from domain.lifecycle import LifecycleState, Transition
 from domain.parameters import Parameters
 from domain.parts.claims import Claims
 from domain.parts.mode_inference import ModeInference
+from domain.parts.node_doubts import IN_DOUBT
 from domain.parts.node_facts import NodeFacts
 from domain.parts.system_model import SmhModel, SystemModel
 from domain.state_and_mode import ModeName, PartName
@@ -31,6 +34,10 @@ def _node(
     return NodeFacts(state, reachable=reachable, has_lifecycle=not plain)
 
 
+def _doubtful(facts: Mapping[PartName, NodeFacts]) -> set[PartName]:
+    return {node for node, known in facts.items() if known.known_state in IN_DOUBT}
+
+
 def _admission(
     base: NodeFacts | LifecycleState | None = S.UNCONFIGURED,
     arm: NodeFacts | LifecycleState | None = S.UNCONFIGURED,
@@ -40,7 +47,8 @@ def _admission(
     for name, given in ((BASE, base), (ARM, arm)):
         facts[name] = given if isinstance(given, NodeFacts) else _node(given)
     model = model or actuation_model()
-    return ChangeAdmission(model, facts, unguarded(model), Claims(ModeInference(model)))
+    claims = Claims(ModeInference(model))
+    return ChangeAdmission(model, facts, _doubtful(facts), unguarded(model), claims)
 
 
 def _codes(admission: ChangeAdmission, request: ChangeRequest) -> list[str]:
@@ -361,7 +369,8 @@ def test_of_many_blockers_what_refuses_comes_first_and_the_rest_is_cut() -> None
     last = list(model.nodes)[-1]
     facts[last] = _node(S.FINALIZED)
 
-    admission = ChangeAdmission(model, facts, unguarded(model), Claims(ModeInference(model)))
+    claims = Claims(ModeInference(model))
+    admission = ChangeAdmission(model, facts, _doubtful(facts), unguarded(model), claims)
     blockers = admission.blockers(ModeRequest(model.parts[0], "FAST"), ())
 
     assert (len(blockers), blockers[0].code, blockers[0].path[-1]) == (100, "FINALIZED", last)

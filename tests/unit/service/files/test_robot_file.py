@@ -10,6 +10,7 @@ from domain.findings import Finding
 from domain.health.signals import default_signals
 from domain.navigation import NavigationSettings
 from domain.parts.system_model import NodeModel, SmhModel
+from domain.reactions.settings import RuleSettings
 from domain.state_and_mode import PartName
 from domain.tasks.settings import TaskSettings
 from domain.timebase import seconds
@@ -47,6 +48,7 @@ def test_a_robot_of_which_nothing_is_said_is_as_usual(text: str) -> None:
     assert settings.to_change_settings().transition_deadline == seconds(10)
     assert settings.to_change_settings().parameters_deadline == seconds(2)
     assert settings.to_change_settings().restored_nodes == set()
+    assert settings.to_rule_settings() == RuleSettings()
     assert settings.to_vehicle_limits() == VehicleLimits()
     assert settings.to_task_settings() == TaskSettings()
     assert settings.to_navigation_settings() == NavigationSettings()
@@ -70,6 +72,7 @@ mock: off
 signals: {stale_after_s: 0}
 nodes: {manipulator: {fault: fail}}
 changes: {transition_deadline_s: 4}
+rules: {grace_s: 0.2}
 """,
         MODEL,
     )
@@ -78,6 +81,7 @@ changes: {transition_deadline_s: 4}
     assert {signal.stale_after for signal in settings.to_signal_settings()} == {0}
     assert settings.nodes["manipulator"].fault == "fail"
     assert settings.to_change_settings().transition_deadline == seconds(4)
+    assert settings.to_rule_settings().grace == seconds(0.2)
 
 
 def test_what_is_said_of_vehicle_and_driving_holds() -> None:
