@@ -25,6 +25,7 @@ from api.http.routes import (
     changes,
     checkpoints,
     emergency_stop,
+    error_reports,
     errors,
     example_tracks,
     holds,
@@ -65,6 +66,7 @@ _RESOURCES = (
     errors.router,
     reactions.router,
     announcing.router,
+    error_reports.router,
     analysis.router,
     emergency_stop.router,
     mock.router,
@@ -93,7 +95,13 @@ def _resources() -> list[BaseRoute]:
     for resource in _RESOURCES:
         router.include_router(resource)
     for prefix in ("systems", "nodes"):
-        for resource in (announcing.part_router, reactions.part_router, parts.router):
+        of_parts = (
+            announcing.part_router,
+            error_reports.part_router,
+            reactions.part_router,
+            parts.router,
+        )
+        for resource in of_parts:
             router.include_router(resource, prefix=f"/{prefix}", tags=[prefix])
     return router.routes
 

@@ -13,7 +13,6 @@ from domain.identifiers import ChangeId, TaskId
 from domain.inputs import ChangeRequest, SignalValue
 from domain.lifecycle import LifecycleState, Transition
 from domain.parameters import ParameterValue
-from domain.reaction_terms import Action, Arm, ReactionState, Until
 from domain.state_and_mode import ModeName, PartName, StateAndMode
 from domain.timebase import Duration, Instant
 from domain.vehicle import DriveCommand, Point, VehicleState
@@ -402,36 +401,6 @@ class ErrorView:
     def is_open(self) -> bool:
         """Tell whether an operator may want to see it: it is not normal, or it is shelved."""
         return self.state is not ErrorState.NORMAL or self.marks.shelf is not None
-
-
-@dataclass(frozen=True, slots=True)
-class ReactionView:
-    """One reaction of a part."""
-
-    reaction: str
-    part: PartName
-    arm: Arm
-    state: ReactionState
-    action: Action
-    target: StateAndMode | None
-    since: Instant | None
-    """Since when it stands so; None: since the start."""
-    blockers: tuple[Blocker, ...]
-    """What calls for it, or what keeps it from acting."""
-    left: int | None
-    """How often it may act before its budget is used up; None: at any time."""
-    when: str
-    """Its condition."""
-    lasts: Duration
-    """How long its condition has to be true."""
-    until: Until
-    waits_for: str
-    """What has to happen next, in words."""
-
-    @property
-    def name(self) -> str:
-        """Return its name among those of all parts, such as `vehicle.LIMP`."""
-        return f"{self.part}.{self.reaction}"
 
 
 @dataclass(frozen=True, slots=True)

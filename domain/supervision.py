@@ -40,6 +40,7 @@ from domain.parts.system_model import SmhModel
 from domain.reactions.displacing import Displacing
 from domain.reactions.fallbacks import Fallbacks
 from domain.reactions.reaction import Reaction, reactions_of
+from domain.reactions.reaction_view import ReactionView
 from domain.reactions.reactions import Reactions
 from domain.reactions.rules import Rules
 from domain.reactions.settings import RuleSettings
@@ -56,7 +57,6 @@ from domain.snapshot import (
     ParameterView,
     PartView,
     PlanView,
-    ReactionView,
     SignalView,
     SystemStateView,
 )
@@ -101,18 +101,14 @@ class Supervision:
         self._now = start
         outbox = self._outbox = Outbox()
         parts = self._parts = Parts(model, outbox)
-        causes = ErrorCauses(model)
+        causes = ErrorCauses(model, settings.checkpoints)
         health = self._health = Health(settings.signals, outbox, start, causes)
-        self._emergency_stop = EmergencyStop(self._health, self._outbox)
-        self.driving = Driving(
-            settings.tasks, settings.vehicle, self._health, self._emergency_stop, outbox, start
-        )
-        storage = Storage(self._outbox)
-        self._robot_state = RobotState(self._health, self.driving, storage, self._outbox)
-        errors = self._part_errors = PartErrors(
-            parts, health.error_list, outbox, start, settings.checkpoints
-        )
-        self.facts = RobotFacts(self._parts, self._health, self.driving, self._part_errors.reason)
+        stop = self._emergency_stop = EmergencyStop(health, outbox)
+        self.driving = Driving(settings.tasks, settings.vehicle, health, stop, outbox, start)
+        storage = Storage(outbox)
+        self._robot_state = RobotState(health, self.driving, storage, outbox)
+        errors = self._part_errors = PartErrors(parts, health.error_list, outbox, start)
+        self.facts = RobotFacts(parts, health, self.driving, errors.reason)
         """What conditions are evaluated over."""
         self.conditions = WatchedConditions(self.facts)
         """The conditions of the model, kept up to date; read only."""

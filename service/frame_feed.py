@@ -4,12 +4,12 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
 from typing import Generic, TypeVar
 
+from domain.reactions.reaction_view import ReactionView
 from domain.snapshot import (
     EmergencyStopView,
     ErrorView,
     HoldView,
     PartView,
-    ReactionView,
     SignalView,
     SystemStateView,
     TaskView,

@@ -7,7 +7,8 @@ from itertools import islice
 from typing import Generic, TypeVar
 
 from domain.outbox import Outputs
-from domain.snapshot import ErrorKey, ErrorView, PartView, ReactionView, SignalView
+from domain.reactions.reaction_view import ReactionView
+from domain.snapshot import ErrorKey, ErrorView, PartView, SignalView
 from domain.state_and_mode import PartName
 from domain.supervision import Supervision
 from domain.timebase import Instant, seconds, to_seconds

@@ -49,6 +49,9 @@ _LARGE = 200
 class Supervisor:
     """Owns the core and every task that feeds it; `run` ends only on cancellation or failure."""
 
+    sources: Sequence[SourceStatus] = ()
+    """How the sources of its signals are doing; set by who makes them."""
+
     def __init__(
         self,
         loaded: LoadedModel,
@@ -59,7 +62,6 @@ class Supervisor:
         simulated: Sequence[str] = (),
         events: EventLog | None = None,
         stores: Stores = NO_STORES,
-        sources: Sequence[SourceStatus] = (),
     ) -> None:
         """Prepare; nothing runs yet.
 
@@ -72,7 +74,6 @@ class Supervisor:
             simulated: The simulated pieces of the robot, as in `Frame`.
             events: The event log; None: a new one.
             stores: Keep what must survive a restart, and bring it back.
-            sources: How the sources of its own signals are doing.
         """
         self.core: Supervision = onboard.core
         """Only for reading; inputs go through `submit`."""
@@ -80,7 +81,6 @@ class Supervisor:
         self.started_at = clock.now()
         """Start of this run of the service, and of its epoch."""
         self.simulated = tuple(simulated)
-        self.sources = tuple(sources)
         self.journal, self.trends = stores.journal, stores.trends
         """What keeps what must survive a restart, and the history of signals; None: nothing."""
         self._sampling = _sampling(stores, onboard.core)

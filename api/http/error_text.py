@@ -46,8 +46,9 @@ def error_text(view: ErrorView, show: Callable[[Instant], str]) -> str:
 
 
 def _hint(view: ErrorView) -> str | None:
-    """Return what would help: to calm an error that chatters, else what the model file says."""
+    """Return what would help, as the model file says it, and what calms an error that chatters."""
     if not view.marks.chattering:
         return view.hint or None
     calming = view.marks.calming
-    return chatter_words(None if calming is None else to_seconds(calming))
+    words = chatter_words(None if calming is None else to_seconds(calming))
+    return f"{view.hint}; {words}" if view.hint else words

@@ -85,6 +85,7 @@ MESSAGES: Mapping[str, tuple[str, ...]] = MappingProxyType(
             "diagnostic_msgs/KeyValue[] values",
         ),
         "diagnostic_msgs/msg/KeyValue": ("string key", "string value"),
+        "std_msgs/msg/String": ("string data",),
         "std_msgs/msg/Header": ("builtin_interfaces/Time stamp", "string frame_id"),
         "builtin_interfaces/msg/Time": ("int32 sec", "uint32 nanosec"),
     }

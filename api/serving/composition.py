@@ -195,15 +195,9 @@ def _with_simulated(
     onboard = make_onboard(loaded.model, robot, now)
     stores = replace(stores, memories=memories_of(simulated))
     supervisor = Supervisor(
-        loaded,
-        onboard,
-        clock,
-        whole,
-        backend.readings,
-        simulated.what,
-        stores=stores,
-        sources=status,
+        loaded, onboard, clock, whole, backend.readings, simulated.what, stores=stores
     )
+    supervisor.sources = status
     limits, parts = ServiceLimits.of(robot.limits), SimulatedParts(onboard, simulated)
     return Composition(supervisor, limits, simulated=parts)
 
@@ -228,18 +222,12 @@ def _with_ros2(
         mock = MockSource(signals, clock)
         backend, status = _with_sources(loaded, robot, clock, ros, (ros, mock))
         supervisor = Supervisor(
-            loaded,
-            onboard,
-            clock,
-            backend,
-            mock.readings,
-            ("signals",),
-            stores=stores,
-            sources=status,
+            loaded, onboard, clock, backend, mock.readings, ("signals",), stores=stores
         )
     else:
         backend, status = _with_sources(loaded, robot, clock, ros, (ros,))
-        supervisor = Supervisor(loaded, onboard, clock, backend, stores=stores, sources=status)
+        supervisor = Supervisor(loaded, onboard, clock, backend, stores=stores)
+    supervisor.sources = status
     mapped = {block.topic for block in robot.ros2.signals.values()}
     gateway = RosGateway(RosInterface(supervisor), graph, mapped)
     return Composition(supervisor, ServiceLimits.of(robot.limits), gateway)

@@ -13,12 +13,12 @@ from api.http.schemas.reactions import ReactionJson
 from api.http.schemas.tasks import HoldJson, TaskJson, VehicleJson
 from domain.actor import Actor
 from domain.events.event import RecordedEvent
+from domain.reactions.reaction_view import ReactionView
 from domain.snapshot import (
     EmergencyStopView,
     ErrorView,
     HoldView,
     PartView,
-    ReactionView,
     SignalView,
     SystemStateView,
     TaskView,

@@ -8,7 +8,7 @@ from domain.changes.admission import ADVISORY
 from domain.changes.guards import INVARIANT
 from domain.conditions.explanation import CONDITION, UNKNOWN_VALUE
 from domain.errors import BackendUnavailableError
-from domain.health.built_in_errors import OF_NODES
+from domain.health.built_in_errors import ALL_OF_NODES
 from domain.health.part_errors import DEVIATES_AFTER
 from domain.health.signals import (
     DECLARED_BIT,
@@ -65,6 +65,11 @@ _OF_PARTS = {
     "change that drives the part succeeds, also over a restart.",
     "INVARIANT_BROKEN": "An invariant of the mode that is in force has been broken for longer than "
     "its `grace_s`, and the mode has no `fallback` that could replace it.",
+    "CHECKPOINT_TOO_FEW": "A [checkpoint](../how-to/supervise-checkpoints.md) of the node is "
+    "reached less often than `min_hz` of the robot file requires.",
+    "CHECKPOINT_TOO_MANY": "A checkpoint is reached more often than `max_hz` allows.",
+    "CHECKPOINT_LATE": "A checkpoint did not follow another one within `within_s`.",
+    "CHECKPOINT_WRONG_ORDER": "A checkpoint is not one of those that `order` lets come next.",
 }
 _WARNINGS = {
     "CLOCK_SKEW": "The stamps of a signal differ from the local clock by more than a second.",
@@ -122,7 +127,7 @@ def blockers_page() -> str:
     require_described("blockers", of_changes, set(_OF_CHANGES))
     of_conditions = codes_in("domain/robot_reasons.py") | {CONDITION, UNKNOWN_VALUE}
     require_described("conditions", of_conditions, set(_OF_CONDITIONS))
-    require_described("errors of parts", set(OF_NODES), set(_OF_PARTS))
+    require_described("errors of parts", set(ALL_OF_NODES), set(_OF_PARTS))
     require_described("warnings", codes_given_to("WarningJson"), set(_WARNINGS))
     changes = (
         (code(name), "no" if name in ADVISORY else "yes", about)
@@ -152,7 +157,7 @@ def blockers_page() -> str:
         _PARTS,
         table(
             ("error", "severity", "when"),
-            ((code(name), OF_NODES[name], about) for name, about in _OF_PARTS.items()),
+            ((code(name), ALL_OF_NODES[name], about) for name, about in _OF_PARTS.items()),
         ),
         "## Standstill",
         _VEHICLE,

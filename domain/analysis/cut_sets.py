@@ -22,11 +22,11 @@ MAX_CUT_SETS = 10_000
 MAX_LISTED = 100_000
 """Minimal cut sets of all top events together."""
 
-MAX_STEPS = 20_000_000
+MAX_STEPS = 6_000_000
 """Unions and comparisons of sets for all cut sets, and again for those of few events: about a
 second each."""
 
-MAX_STEPS_OF_GATE = MAX_STEPS // 5
+MAX_STEPS_OF_GATE = MAX_STEPS // 4
 """Unions and comparisons for one gate, so that one does not use up what others need."""
 
 
@@ -196,20 +196,43 @@ class _Pass:
         return joined
 
     def _minimal(self, sets: Iterable[int]) -> _Family:
-        """Return the sets that contain no other one.
+        """Return the sets that contain no other one; those of few events first.
 
-        Sets of as many events as each other are compared with smaller ones only.
+        A set is compared with smaller ones whose lowest event it has.
         """
         kept: list[int] = []
+        smaller: dict[int, list[int]] = {}
+        """By lowest bit."""
+        starts = 0
+        """All these bits."""
         for _, of_size in groupby(sorted(sets, key=int.bit_count), key=int.bit_count):
-            smaller = tuple(kept)
-            for each in of_size:
-                self._budget.spend(len(smaller) + 1)
-                if not any(each & other == other for other in smaller):
-                    kept.append(each)
-            if len(kept) > MAX_CUT_SETS:
+            found = [each for each in of_size if not self._contains_one(each, smaller, starts)]
+            if len(kept) + len(found) > MAX_CUT_SETS:
                 raise _TooManyError
+            kept += found
+            for each in found:
+                smaller.setdefault(each & -each, []).append(each)
+                starts |= each & -each
         return tuple(kept)
+
+    def _contains_one(self, bits: int, others: Mapping[int, Sequence[int]], starts: int) -> bool:
+        """Tell whether a set contains one of others.
+
+        Args:
+            bits: The set.
+            others: By lowest bit.
+            starts: All lowest bits of the others.
+        """
+        left = bits & starts
+        self._budget.spend(1)
+        while left:
+            lowest = left & -left
+            left ^= lowest
+            starting = others[lowest]
+            self._budget.spend(len(starting) + 1)
+            if any(bits & other == other for other in starting):
+                return True
+        return False
 
 
 def _as_events(family: _Family) -> tuple[tuple[Event, ...], ...]:

@@ -22,7 +22,7 @@ class _Watched:
     since: Instant
     broken_since: Instant | None
     """Since when it is false or unknown; None: it is true."""
-    followers: "list[dict[str, Condition]]" = field(default_factory=list)
+    followers: list[dict[str, Condition]] = field(default_factory=list)
     """Where it is noted that its value changed."""
 
 
@@ -56,6 +56,8 @@ class WatchedConditions:
         """Whether facts may have changed since the last `renew`."""
         self.revision = 0
         """Rises whenever a condition gets another value."""
+        self.leaf_revision = 0
+        """Rises whenever a comparison does, and so the reason of a condition may be another one."""
 
     @property
     def topics(self) -> Collection[Topic]:
@@ -122,6 +124,7 @@ class WatchedConditions:
                     truth = compare(leaf.comparison, observed)
                     if truth is not leaf.truth:
                         leaf.truth, leaf.since = truth, now
+                        self.leaf_revision += 1
                         doubtful.update((each.condition.text, each) for each in leaf.conditions)
         changed = []
         for watched in doubtful.values():

@@ -58,12 +58,18 @@ class Alarms:
         self._from_start.discard(key)
         self._kept.add(key)
 
-    def put(self, view: ErrorView, alarm: Alarm) -> ErrorKey | None:
+    @property
+    def returned(self) -> tuple[ErrorKey, ...]:
+        """Return the errors that ended unacknowledged, the oldest first."""
+        return tuple(self._returned)
+
+    def put(self, view: ErrorView, alarm: Alarm, *, is_announced: bool = True) -> ErrorKey | None:
         """Note how an error is announced now.
 
         Args:
             view: The error as it is shown with it.
             alarm: How it is announced.
+            is_announced: Whether it is announced by itself, and so kept until somebody sees it.
 
         Returns:
             An error that has returned and counts as seen, since there are too many; None: none.
@@ -75,7 +81,7 @@ class Alarms:
             self._alarms[key] = alarm
         if not alarm.state.is_on:
             self._from_start.discard(key)
-        self._keep(view, is_unseen=alarm.unseen)
+        self._keep(view, is_unseen=alarm.unseen and is_announced)
         if alarm.state is not ErrorState.RETURNED:
             self._returned.pop(key, None)
         elif key not in self._returned:
@@ -84,13 +90,17 @@ class Alarms:
                 return next(iter(self._returned))
         return None
 
+    def keep_no_longer(self, key: ErrorKey) -> None:
+        """Forget over a restart that nobody saw an error."""
+        if key in self._kept:
+            self._kept.discard(key)
+            self._outbox.forget(KeptUnacknowledged, key.name)
+
     def _keep(self, view: ErrorView, *, is_unseen: bool) -> None:
         """Keep over a restart that nobody saw an error, from when it was raised."""
         key = view.key
         if not is_unseen:
-            if key in self._kept:
-                self._kept.discard(key)
-                self._outbox.forget(KeptUnacknowledged, key.name)
+            self.keep_no_longer(key)
         elif self._keeps and key not in self._kept and key not in self._from_start:
             self._keep_new(view)
 

@@ -64,10 +64,9 @@ class Announcing(Concern):
             for name, error in declared.items():
                 if error.needs_acknowledgement:
                     self._errors.declare(ErrorKey(part, name), latches=True)
-        watched.watch(self._suppressing, start)
-        self._suppressed: frozenset[ErrorKey] = frozenset()
-        self._revision: int | None = None
-        """That of the conditions when they were looked at last."""
+        self._changed = watched.follow(self._suppressing, start)
+        """Conditions whose value changed, by their text."""
+        self._suppressed = set[ErrorKey]()
 
     # --- what happens ----------------------------------------------------------------------------
 
@@ -157,8 +156,7 @@ class Announcing(Concern):
         for turn in self._errors.take_turns():
             self._chatter.note(turn)
             self._mark(turn.key)
-        if self._suppressing and self._revision != self._watched.revision:
-            self._revision = self._watched.revision
+        if self._changed:
             self._suppress()
         return False
 
@@ -201,15 +199,16 @@ class Announcing(Concern):
             self._errors.tell_raised(key)
 
     def _suppress(self) -> None:
-        suppressed = frozenset(
-            key
-            for condition, keys in self._suppressing.items()
-            if self._watched.truth(condition) is Truth.TRUE
-            for key in keys
-        )
-        changed, self._suppressed = self._suppressed ^ suppressed, suppressed
-        for key in sorted(changed, key=str):
-            self._mark(key)
+        """Silence errors, or no longer, as the conditions that changed say."""
+        for condition in self._changed.values():
+            keys = self._suppressing[condition]
+            if self._watched.truth(condition) is Truth.TRUE:
+                self._suppressed.update(keys)
+            else:
+                self._suppressed.difference_update(keys)
+            for key in keys:
+                self._mark(key)
+        self._changed.clear()
 
     def _mark(self, key: ErrorKey) -> None:
         """Tell what is so about the announcing of an error now."""

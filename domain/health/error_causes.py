@@ -1,6 +1,6 @@
 """Which errors explain which: what the model file declares, and what follows from the parts."""
 
-from collections.abc import Callable, Iterable, Iterator, Mapping
+from collections.abc import Callable, Container, Iterable, Iterator, Mapping
 from itertools import chain, islice, pairwise
 from typing import TypeAlias
 
@@ -40,8 +40,15 @@ class ErrorCauses:
     it would close a circle, since what is declared prevails.
     """
 
-    def __init__(self, model: SmhModel) -> None:
+    def __init__(self, model: SmhModel, with_checkpoints: Container[PartName] = ()) -> None:
+        """Gather what explains what.
+
+        Args:
+            model: Systems and nodes, with the errors that the file declares.
+            with_checkpoints: Nodes whose checkpoints are supervised.
+        """
         self._model = model
+        self._with_checkpoints = with_checkpoints
         self.declared: Mapping[ErrorKey, DeclaredError] = {
             ErrorKey(part, name): own
             for part, of_part in model.errors.items()
@@ -72,6 +79,8 @@ class ErrorCauses:
     def names_of(self, part: PartName) -> Iterable[str]:
         """Return the errors that a part can have: the built-in ones, then those of the file."""
         built_in = OF_NODES if part in self._model.nodes else OF_EVERY_PART
+        if part in self._with_checkpoints:
+            built_in = ALL_OF_NODES
         own = self._model.errors.get(part)
         return (*built_in, *(name for name in own if name not in built_in)) if own else built_in
 

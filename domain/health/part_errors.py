@@ -17,7 +17,6 @@ from domain.health.built_in_errors import (
     DEVIATES,
     ERROR_PROCESSING,
     INVARIANT_BROKEN,
-    OF_CHECKPOINTS,
     PARAMETERS_DRIFTED,
     UNREACHABLE,
 )
@@ -63,24 +62,7 @@ class PartErrors(Concern):
     it is how each node of each robot begins.
     """
 
-    def __init__(
-        self,
-        parts: Parts,
-        errors: ErrorList,
-        outbox: Outbox,
-        start: Instant,
-        with_checkpoints: Container[PartName] = (),
-    ) -> None:
-        """Begin with all nodes unheard.
-
-        Args:
-            parts: Whose errors these are.
-            errors: Where they are noted.
-            outbox: Where they are told.
-            start: The current time.
-            with_checkpoints: Nodes whose checkpoints are supervised.
-        """
-        self._with_checkpoints = with_checkpoints
+    def __init__(self, parts: Parts, errors: ErrorList, outbox: Outbox, start: Instant) -> None:
         self.model = parts.model
         self._parts = parts
         self._errors = errors
@@ -252,9 +234,9 @@ class PartErrors(Concern):
     def names_of(self, part: PartName) -> Iterable[str]:
         """Return the errors that a part can have, apart from those of signals."""
         names = self._errors.causes.names_of(part)
-        if part not in self._with_checkpoints:
+        if part not in self._parts.model.errors:
             return names
-        return dict.fromkeys((*names, *OF_CHECKPOINTS))
+        return [name for name in names if not self._errors.is_of_signal(ErrorKey(part, name))]
 
     @property
     def unheard(self) -> Container[PartName]:

@@ -75,6 +75,8 @@ class Propagation(Concern):
         self._deadlines: Deadlines[ErrorKey] = Deadlines()
         self._expected: Deadlines[tuple[ErrorKey, ErrorKey]] = Deadlines()
         """When an error should have followed a cause."""
+        self._overdue: list[tuple[ErrorKey, ErrorKey]] = []
+        """Those of which the time is up, unless they follow in this very step."""
 
     def _conditions(self) -> Iterable[Condition]:
         for own in self._causes.declared.values():
@@ -88,11 +90,11 @@ class Propagation(Concern):
         return min((at for at in due if at is not None), default=None)
 
     def pass_time(self, now: Instant) -> None:
-        """Let `settle` decide about what is due; tell what did not follow in time."""
+        """Let `settle` decide about what is due, and tell what did not follow in time."""
         while (key := self._deadlines.pop_due(now)) is not None:
             self._push(key)
         while (expected := self._expected.pop_due(now)) is not None:
-            self._tell_not_seen(*expected)
+            self._overdue.append(expected)
 
     def settle(self, now: Instant) -> bool:
         """Decide about what changed, or let later turns do so; return whether that changed errors.
@@ -101,11 +103,12 @@ class Propagation(Concern):
         """
         self._take_changed()
         self._take_switched(now)
-        if not self._heap:
-            return False
         moved = False
         if len(self._heap) <= LOOKS_AT_ONCE:
             moved = self._decide_some(now)
+        overdue, self._overdue = self._overdue, []
+        for expected in overdue:
+            self._tell_not_seen(*expected)
         if self._heap and self._origin is None:
             self._origin = (self._outbox.record_input(), self._outbox.actor)
         return moved
@@ -134,7 +137,7 @@ class Propagation(Concern):
         """Queue the errors whose conditions have other values."""
         if self._changed:
             for text in self._changed:
-                for key in self._users[text]:
+                for key in self._users.get(text, ()):
                     self._push(key)
             self._changed.clear()
 
@@ -159,7 +162,7 @@ class Propagation(Concern):
             own = self._causes.declared.get(key)
             if own is not None and own.when is not None:
                 self._detect(key, own, own.when, now)
-            elif own is not None and own.caused_by and not self._causes.is_built_in(key):
+            elif own is not None and own.caused_by and not self._is_found_elsewhere(key):
                 self._follow(key, own, now)
             if self._renew_roots(key):
                 moved = True
@@ -190,6 +193,9 @@ class Propagation(Concern):
     def _detect(self, key: ErrorKey, own: DeclaredError, when: Condition, now: Instant) -> None:
         """Decide about an error with a condition of its own; an unknown one keeps it as it is."""
         truth, since = self._watched.truth(when), self._watched.since(when)
+        if key in self._silent and (truth is not Truth.TRUE or not self._is_unheard(key)):
+            # That a node was not yet heard of begins nothing that stays.
+            self._clear(key, None)
         if truth is Truth.TRUE and key not in self._present:
             if since + own.for_ > now:
                 self._wait(key, since + own.for_, since)
@@ -289,6 +295,10 @@ class Propagation(Concern):
     def _are_unheard(self, roots: Collection[ErrorKey]) -> bool:
         are_so = all(root.error == UNREACHABLE and root.part in self._unheard for root in roots)
         return bool(roots) and are_so
+
+    def _is_found_elsewhere(self, key: ErrorKey) -> bool:
+        """Tell whether its causes explain an error only: it is built in, or that of a signal."""
+        return self._causes.is_built_in(key) or self._errors.is_of_signal(key)
 
     def _tell_not_seen(self, effect: ErrorKey, cause: ErrorKey) -> None:
         own = self._causes.declared[effect]

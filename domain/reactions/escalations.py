@@ -75,16 +75,16 @@ class Escalations:
         """Return by when the next effect must be seen."""
         return self._deadlines.next()
 
-    def judge(self, now: Instant) -> bool:
-        """Note which effects are there, and escalate what is late; return whether any is."""
+    def judge(self, now: Instant) -> list[Reaction]:
+        """Note which effects are there; escalate what is late, and return it."""
         for reaction in [each for each in self._unverified if self._is_verified(each)]:
             self.end(reaction)
-        is_late = False
+        escalated = []
         while (late := self._deadlines.pop_due(now)) is not None:
             self._unverified.discard(late)
             self._escalate(late)
-            is_late = True
-        return is_late
+            escalated.append(late)
+        return escalated
 
     def _escalate(self, reaction: Reaction) -> None:
         self._escalated[reaction] = None

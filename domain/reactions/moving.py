@@ -3,6 +3,7 @@
 from collections.abc import Mapping, Sequence
 
 from domain.changes.changing import Changing
+from domain.changes.guards import Guards
 from domain.health.health import Health
 from domain.inputs import Restored
 from domain.outbox import Outbox
@@ -26,6 +27,7 @@ class Moving:
         parts: Parts,
         changing: Changing,
         health: Health,
+        guards: Guards,
         displacing: Displacing,
         restarts: Restarts,
         outbox: Outbox,
@@ -33,6 +35,7 @@ class Moving:
         self._reactions = [each for each in reactions if each.declared.action.has_target]
         self._changing = changing
         self._health = health
+        self._guards = guards
         self._displacing = displacing
         self._restarts = restarts
         self._outbox = outbox
@@ -143,10 +146,24 @@ class Moving:
         self._displacing.let_go(reaction, is_over=True)
         if self._returns.stays(reaction):
             return False
+        if self._falls_back(reaction):
+            # What replaces the target below it is not up to reactions.
+            self._returns.forget(reaction)
+            self._displacing.take_back(reaction, None, reaction.event, now)
+            self._forget_ended()
+            return True
         self._returns.note(reaction, now, 0, is_gone=True)
         if self._health.is_stopped:
             self._returns.stop()
         return False
+
+    def _falls_back(self, reaction: Reaction) -> bool:
+        """Tell whether the target below that of a reaction is replaced by its fallback."""
+        part, target = reaction.part, self._displacing.target_back(reaction)
+        if target is None or target.mode is None:
+            return False
+        has_fallback = self._guards.fallback_of(part, target) is not None
+        return has_fallback and not self._guards.can_stay(part, target.mode)
 
     def _is_free(self, reaction: Reaction) -> bool:
         """Tell whether a part could return now."""

@@ -7,8 +7,8 @@ from domain.outbox import Outbox
 from domain.reaction_terms import Arm, ReactionState, Until
 from domain.reactions.budgets import Budgets
 from domain.reactions.reaction import Reaction
+from domain.reactions.reaction_view import ReactionView
 from domain.reactions.triggers import Triggers
-from domain.snapshot import ReactionView
 from domain.timebase import to_seconds
 
 

@@ -33,10 +33,10 @@ from domain.reactions.kept_reactions import KeptReactions
 from domain.reactions.moving import Moving
 from domain.reactions.obstacles import Obstacles
 from domain.reactions.reaction import Reaction
+from domain.reactions.reaction_view import ReactionView
 from domain.reactions.reaction_views import ReactionViews
 from domain.reactions.restarts import Restarts
 from domain.reactions.triggers import Triggers
-from domain.snapshot import ReactionView
 from domain.state_and_mode import PartName
 from domain.tasks.driving import Driving
 from domain.timebase import Instant
@@ -87,7 +87,9 @@ class Reactions(Concern):
         restarts = Restarts(parts, changing, health, outbox)
         self._escalations = Escalations(self._by_name, parts, driving, restarts)
         self._effects = Effects(driving, emergency_stop, outbox)
-        self._moving = Moving(reactions, parts, changing, health, displacing, restarts, outbox)
+        self._moving = Moving(
+            reactions, parts, changing, health, guards, displacing, restarts, outbox
+        )
         self._kept = KeptReactions(
             self._by_name, self._triggers, self._budgets, self._escalations, outbox
         )
@@ -142,6 +144,7 @@ class Reactions(Concern):
             self._begin_afresh(reaction, now)
         self._triggers.acknowledge(reaction)
         self._kept.renew(reaction, now)
+        self._views.note(reaction)
         self._revision = None
 
     def _begin_afresh(self, reaction: Reaction, now: Instant) -> None:
@@ -214,7 +217,7 @@ class Reactions(Concern):
         return not self._outbox.parts.isdisjoint(self._moving.parts)
 
     def _conditions_revision(self) -> int:
-        return self._reactions[0].conditions.revision
+        return self._reactions[0].conditions.leaf_revision
 
     def _follow_stop(self, now: Instant) -> None:
         """Let what ESTOP prevents, or what its end makes true, activate nothing."""
@@ -233,17 +236,18 @@ class Reactions(Concern):
     def _judge(self, now: Instant) -> bool:
         """Decide, and carry out what was decided; return whether anything changed."""
         self._triggers.review(now)
-        called = self._called()
+        called = self._called(now)
         outcome = self._contest.decide(called, lambda each: each.is_exhausted, now)
         changed = self._carry_out(outcome, now)
         self._parts.claims.set([claim_of(reaction) for reaction in outcome.claiming])
         for reaction in self._reactions:
             self._views.explain(reaction)
-        if self._escalations.judge(now):
+        for reaction in self._escalations.judge(now):
+            self._kept.renew(reaction, now)
             self._revision, changed = None, True
         return changed
 
-    def _called(self) -> list[Reaction]:
+    def _called(self, now: Instant) -> list[Reaction]:
         """Return the reactions that something calls for; escalations end with their reaction."""
         while True:
             called: list[Reaction] = []
@@ -251,7 +255,10 @@ class Reactions(Concern):
             for each in self._reactions:
                 is_called = self._triggers.calls_for(each) or each.is_exhausted
                 (called if is_called else others).append(each)
-            if not [each for each in others if self._escalations.withdraw(each)]:
+            withdrawn = [each for each in others if self._escalations.withdraw(each)]
+            for each in withdrawn:
+                self._kept.renew(each, now)
+            if not withdrawn:
                 return called
 
     def _carry_out(self, outcome: Outcome, now: Instant) -> bool:

@@ -114,7 +114,8 @@ class RosGateway:
 
     def _hear(self, heard: SubscribedTopic) -> None:
         take = partial(self._take, heard)
-        self._node(OWN_NODE).subscribe(heard.name, heard.type, Qos.SENSOR, fields_of, take)
+        qos = Qos.EVENTS if heard.needs_all else Qos.SENSOR
+        self._node(OWN_NODE).subscribe(heard.name, heard.type, qos, fields_of, take)
 
     def _take(self, heard: SubscribedTopic, message: Fields) -> None:
         """Submit a message; a rejected one, which is logged, must not end the subscription."""

@@ -113,6 +113,24 @@ def acknowledge(_: Page, service: Service) -> None:
         time.sleep(0.5)
 
 
+def errors(page: Page, service: Service) -> None:
+    """An error with what follows from it, one that comes and goes, one that is over, a shelf."""
+    post(service, "/systems/actuation/mode", {"mode": "PERFORMANCE"})
+    for value in (60, 30) * 3:
+        service.request("PATCH", "/mock/temperature", {"value": value})
+        time.sleep(0.4)
+    acknowledge(page, service)
+    known = {"for_s": 1800, "reason": "the scale is being calibrated"}
+    service.request("PUT", "/errors/OVERLOAD/shelf", known)
+    page.wait_for_timeout(5000)
+
+
+def errors_shelving(page: Page, service: Service) -> None:
+    errors(page, service)
+    page.get_by_role("button", name="Shelve …").first.click()
+    page.locator("ph-shelve-form").first.scroll_into_view_if_needed()
+
+
 def low_battery(_: Page, service: Service) -> None:
     service.request("PATCH", "/mock/battery_level", {"value": 0.314})
     service.request("PATCH", "/mock/gps_accuracy", {"value": 250})
@@ -240,6 +258,8 @@ STATES: dict[str, tuple[Robot, Act]] = {
     "rolled_back": ("guarded_failing", rolled_back),
     "waiting": ("guarded", waiting),
     "acknowledge": ("troubled", acknowledge),
+    "errors": ("troubled", errors),
+    "errors_shelving": ("troubled", errors_shelving),
     "low_battery": ("example", low_battery),
     "rejected": ("example", rejected),
     "sending": ("example", sending),

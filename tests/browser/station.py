@@ -131,6 +131,18 @@ class Service:
         while self.request("GET", "/system_state")["state"] != "IDLE":
             assert time.monotonic() < end, self.request("GET", "/system_state")
             time.sleep(0.02)
+        self._see_all_errors()
+
+    def _see_all_errors(self) -> None:
+        """Acknowledge what is over, and announce all errors again."""
+        for error in self.request("GET", "/errors?open=true")["items"]:
+            path = f"/errors/{error['error']}"
+            if error["part"] is not None:
+                systems = self.request("GET", "/systems")["items"]
+                is_system = error["part"] in [system["name"] for system in systems]
+                path = f"/{'systems' if is_system else 'nodes'}/{error['part']}{path}"
+            self.request("POST", f"{path}/acknowledge")
+            self.request("DELETE", f"{path}/shelf")
 
     def _is_ready(self) -> bool:
         try:

@@ -216,6 +216,24 @@ _HEALTH = (
         )
     ),
     Asked(
+        "POST /systems/{part}/errors/{error}",
+        "One that Pilothouse finds itself",
+        ACTUATOR | {"error": "DEVIATES"},
+        body={"active": True, "message": "the arm is elsewhere"},
+    ),
+    Asked(
+        "POST /nodes/{part}/errors/{error}",
+        "One that Pilothouse finds itself",
+        BASE | {"error": "UNREACHABLE"},
+        body={"active": False},
+    ),
+    Asked(
+        "POST /errors/{error}",
+        "One of the robot itself",
+        {"error": "BATTERY_LOW"},
+        body={"active": False},
+    ),
+    Asked(
         "POST /signals",
         "Two at once, from a named sender",
         body={"battery_level": 0.9, "estop": False, "source": "bench"},

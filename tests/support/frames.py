@@ -7,6 +7,7 @@ from types import MappingProxyType
 from domain.actor import Actor
 from domain.events.event import Event, RecordedEvent
 from domain.lifecycle import LifecycleState
+from domain.reactions.reaction_view import ReactionView
 from domain.snapshot import (
     Actual,
     EmergencyStopView,
@@ -15,7 +16,6 @@ from domain.snapshot import (
     ErrorView,
     HoldView,
     PartView,
-    ReactionView,
     Severity,
     SignalView,
     SystemState,

@@ -11,6 +11,7 @@ from domain.inputs import (
     CancelTaskRequest,
     ChangeRequest,
     EmergencyStopRequest,
+    ErrorReport,
     HoldRequest,
     Input,
     ModeRequest,
@@ -61,6 +62,14 @@ class HttpOperator(OperatorVerbs[Awaitable[Any], Awaitable[str], Awaitable[None]
             case UnshelveRequest():
                 path = f"{self._error_path(given.part, given.error)}/shelf"
                 return await self._ask("DELETE", path, HTTPStatus.NO_CONTENT)
+            case ErrorReport():
+                path = self._error_path(given.part, given.error)
+                report = {
+                    "active": given.active,
+                    "message": given.message,
+                    "value": given.value,
+                }
+                return await self._ask("POST", path, HTTPStatus.OK, json=report)
             case ModeRequest():
                 path, body = f"{self._path(given.part)}/mode", {"mode": given.mode}
                 return await self._ask("POST", path, HTTPStatus.ACCEPTED, json=body)

@@ -6,6 +6,8 @@
  * STOP), `replay` (how a recording is to go on) and `restart_read` (the notice was dismissed).
  */
 
+import { isOn } from "/web/js/error_groups.js";
+
 const EVENTS_KEPT = 200;
 const MAX_EVENTS_KEPT = 5000;
 
@@ -46,7 +48,6 @@ export function currentTask({ task }) {
 
 /** The errors of a part that are on, in the order in which they were told. */
 export function errorsOf({ errors }, part) {
-  const isOn = ({ state }) => state !== "pending";
   return Object.values(errors).filter((error) => error.part === part && isOn(error));
 }
 

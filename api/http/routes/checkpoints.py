@@ -3,7 +3,7 @@
 from http import HTTPStatus
 from typing import Annotated
 
-from fastapi import APIRouter, Path
+from fastapi import APIRouter, Path, Response
 
 from api.http.dependencies import ActorDep, PartDep, SupervisorDep
 from api.http.route_policy import Permission, policy
@@ -16,7 +16,11 @@ CheckpointPath = Annotated[
 ]
 
 
-@router.post("/{part:path}/checkpoints/{checkpoint}", status_code=HTTPStatus.NO_CONTENT)
+@router.post(
+    "/{part:path}/checkpoints/{checkpoint}",
+    status_code=HTTPStatus.NO_CONTENT,
+    response_class=Response,
+)
 @policy(Permission.REPORT)
 async def report_checkpoint(
     part: PartDep, checkpoint: CheckpointPath, supervisor: SupervisorDep, actor: ActorDep

@@ -3,10 +3,14 @@
 from pydantic import Field
 
 from api.http.schemas.base import Body, Json, Timestamp
+from api.http.schemas.sent_values import SentSignalValue
 from domain.findings import Fact
 from domain.inputs import MAX_SHELF
 from domain.snapshot import ErrorState, Severity
 from domain.timebase import to_seconds
+
+MAX_MESSAGE = 500
+"""Largest length of what was found, in characters."""
 
 MAX_REASON = 500
 """Largest length of the reason why an error is shelved, in characters."""
@@ -62,6 +66,14 @@ class ShelfBody(Body):
         gt=0, le=to_seconds(MAX_SHELF), allow_inf_nan=False, description="At most 8 h"
     )
     reason: str = Field(min_length=1, max_length=MAX_REASON, pattern=r"\S")
+
+
+class ErrorReportBody(Body):
+    """Whether an error is there, as somebody found."""
+
+    active: bool = Field(description="false: it is over")
+    message: str = Field(default="", max_length=MAX_MESSAGE, description="What was found")
+    value: SentSignalValue | None = Field(default=None, description="What was measured, if any")
 
 
 class ErrorsJson(Json):

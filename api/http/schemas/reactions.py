@@ -11,7 +11,7 @@ from api.http.schemas.base import (
     timestamp_or_none,
 )
 from domain.reaction_terms import Action, Arm, ReactionState, Until
-from domain.snapshot import ReactionView
+from domain.reactions.reaction_view import ReactionView
 from domain.timebase import to_seconds
 from service.clock import Clock
 

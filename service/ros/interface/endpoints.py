@@ -70,6 +70,8 @@ class SubscribedTopic:
     Raises:
         PilothouseError: The message is rejected; nothing was changed.
     """
+    needs_all: bool = False
+    """Whether each message counts; False: an older one means nothing once there is a newer one."""
 
 
 class Listeners:

@@ -9,6 +9,7 @@ from itertools import chain
 from domain.timebase import seconds
 from service.event_log import EventReader, Gap
 from service.ros.interface.audit import audited
+from service.ros.interface.checkpoint_topic import checkpoint_topic
 from service.ros.interface.endpoints import (
     Fields,
     Listeners,
@@ -52,7 +53,8 @@ class RosInterface:
         """By full name."""
         self.topics: Mapping[str, OfferedTopic] = {topic.name: topic for topic in topics}
         """By full name."""
-        self.heard: Mapping[str, SubscribedTopic] = {t.name: t for t in reading_topics(supervisor)}
+        heard = (*reading_topics(supervisor), checkpoint_topic(supervisor))
+        self.heard: Mapping[str, SubscribedTopic] = {topic.name: topic for topic in heard}
         """By full name."""
 
     def listen(self, topic: str, take: Callable[[Fields], None]) -> Callable[[], None]:

@@ -8,6 +8,7 @@ import pytest
 from domain.actor import Actor
 from domain.conditions.condition import Condition
 from domain.health.alarms import MAX_RETURNED
+from domain.health.signals import default_signals
 from domain.inputs import (
     AcknowledgeRequest,
     ModeRequest,
@@ -15,17 +16,18 @@ from domain.inputs import (
     Restored,
     ShelveRequest,
     TimePassed,
+    TransitionRequest,
     UnshelveRequest,
 )
 from domain.kept import Kept, KeptShelf, KeptUnacknowledged
-from domain.lifecycle import LifecycleState
+from domain.lifecycle import LifecycleState, Transition
 from domain.outbox import Outputs
 from domain.parts.declared_errors import DeclaredError
 from domain.parts.system_model import SmhModel
 from domain.snapshot import ErrorKey, ErrorState, ErrorView
 from domain.state_and_mode import PartName
 from domain.supervision import Supervision, SupervisionSettings
-from domain.timebase import Instant, seconds
+from domain.timebase import Duration, Instant, seconds
 from tests.support.big_model import big_model
 from tests.support.good import GOOD
 from tests.support.models import ACTUATION, ARM, BASE, actuation_model
@@ -44,9 +46,15 @@ def model_with(errors: Mapping[PartName, Mapping[str, DeclaredError]]) -> SmhMod
 class Robot(OperatorVerbs[Outputs, None, None]):
     """A core whose nodes are heard, with the questions that these stories ask."""
 
-    def __init__(self, model: SmhModel | None = None, start: Instant = 0) -> None:
+    def __init__(
+        self,
+        model: SmhModel | None = None,
+        start: Instant = 0,
+        settings: SupervisionSettings | None = None,
+    ) -> None:
         self.now = start
-        self.core = Supervision(model or actuation_model(), SupervisionSettings(), start)
+        settings = settings or SupervisionSettings()
+        self.core = Supervision(model or actuation_model(), settings, start)
         self.kinds: list[str] = []
         self.kept: dict[tuple[type[Kept], str], Kept | None] = {}
 
@@ -185,6 +193,42 @@ def test_one_that_was_acknowledged_before_ends_with_its_cause(latching: Robot) -
     assert latching.kinds[-1] == "error.cleared"
 
 
+@pytest.fixture
+def deviating(robot: Robot) -> Robot:
+    """Return a robot that lost its base, which deviates because of that."""
+    robot.give(TransitionRequest(BASE, Transition.CONFIGURE))
+    robot.give(NodeReport(BASE, state=LifecycleState.INACTIVE))
+    robot.hear(reachable=False)
+    robot.advance(2)
+    assert robot.error("DEVIATES").roots == (ErrorKey(BASE, LOST),)
+    return robot
+
+
+def end(robot: Robot) -> None:
+    robot.give(NodeReport(BASE, state=LifecycleState.INACTIVE, reachable=True))
+    robot.advance(2)
+
+
+def test_what_followed_from_an_error_is_seen_with_it(deviating: Robot) -> None:
+    end(deviating)
+    assert (deviating.state(), deviating.state("DEVIATES")) == (S.RETURNED, S.RETURNED)
+    deviating.see()
+    assert (deviating.state(), deviating.state("DEVIATES")) == (S.NORMAL, S.NORMAL)
+
+
+def test_what_follows_from_an_error_that_was_seen_leaves_nothing_to_see(deviating: Robot) -> None:
+    deviating.see()
+    assert deviating.state("DEVIATES") is S.ACTIVE
+    end(deviating)
+    assert (deviating.state(), deviating.state("DEVIATES")) == (S.NORMAL, S.NORMAL)
+
+
+def test_what_follows_from_another_error_is_not_kept_over_a_restart(deviating: Robot) -> None:
+    unseen = {name for kind, name in deviating.kept if kind is KeptUnacknowledged}
+    kept = {name for name in unseen if deviating.kept[KeptUnacknowledged, name] is not None}
+    assert kept == {"drive_base.UNREACHABLE"}
+
+
 def test_of_very_many_that_returned_the_oldest_count_as_seen() -> None:
     model = big_model(MAX_RETURNED + 10)
     robot = Robot(model)
@@ -214,6 +258,14 @@ def test_a_shelved_error_is_told_as_such_for_a_time_and_stays_as_it_is(robot: Ro
     robot.advance(1)
     assert not robot.error().marks.is_silenced
     assert robot.kinds.count("error.unshelved") == 1
+
+
+def test_what_is_silenced_is_not_in_a_short_list_of_events(robot: Robot) -> None:
+    robot.shelve(error="BATTERY_LOW", part=None)
+    for level in (0.4, 0.9):
+        told = {event.kind: event.event for event in robot.read(battery_level=level).events}
+        robot.advance(0.3)
+        assert told["error.raised" if level < 0.5 else "error.cleared"].notable is False
 
 
 def test_somebody_may_end_the_shelving_before(robot: Robot) -> None:
@@ -265,6 +317,26 @@ def test_an_error_that_comes_and_goes_chatters_with_what_would_calm_it(robot: Ro
     assert robot.kinds.count("error.chattering") == 1
     robot.advance(600)
     assert not robot.error().marks.chattering
+
+
+def flapping(clear_for: Duration) -> Robot:
+    """Return a robot whose battery was low for 1 s, and not for 2 s, several times."""
+    battery, *others = default_signals()
+    signals = (replace(battery, clear_for=clear_for, stale_after=0), *others)
+    robot = Robot(settings=SupervisionSettings(signals=signals))
+    for _ in range(6):
+        for level, lasts_s in ((0.4, 1), (0.9, 2)):
+            robot.read(battery_level=level)
+            robot.advance(lasts_s)
+    return robot
+
+
+def test_the_time_that_is_advised_calms_the_error() -> None:
+    chattering = flapping(0).error("BATTERY_LOW", None)
+    assert (chattering.marks.chattering, chattering.count) == (True, 6)
+    assert chattering.marks.calming is not None
+    calm = flapping(chattering.marks.calming).error("BATTERY_LOW", None)
+    assert (calm.marks.chattering, calm.count) == (False, 1)
 
 
 # --- over a restart ------------------------------------------------------------------------------
@@ -322,6 +394,13 @@ def test_a_shelving_survives_and_does_not_run_down_while_the_service_is_down(
     assert after.error().marks.is_silenced
     after.advance(6)
     assert not after.error().marks.is_silenced
+
+
+def test_a_node_that_is_heard_after_a_restart_is_shelved_as_before(robot: Robot) -> None:
+    robot.shelve(60)
+    after = robot.restarted()
+    after.hear()
+    assert (after.state(), after.error().marks.is_silenced) == (S.NORMAL, True)
 
 
 def test_errors_that_no_longer_exist_are_told_and_forgotten(robot: Robot) -> None:

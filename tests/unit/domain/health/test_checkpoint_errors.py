@@ -1,17 +1,22 @@
 """Checkpoints of nodes, as an operator sees what is wrong with them."""
 
+from collections.abc import Mapping
+from dataclasses import replace
+
 import pytest
 
-from domain.errors import UnknownCheckpointError, UnknownPartError
+from domain.errors import NotReportedError, UnknownCheckpointError, UnknownPartError
 from domain.health.checkpoints import AliveLimits, CheckpointSettings
-from domain.inputs import CheckpointReport, ServiceStall
+from domain.inputs import CheckpointReport, ErrorReport, ServiceStall
+from domain.parts.declared_errors import DeclaredError
 from domain.simulation.node_settings import Fault
-from domain.snapshot import ErrorKey, ErrorView
+from domain.snapshot import ErrorKey, ErrorView, Severity
 from domain.state_and_mode import PartName
 from domain.supervision import SupervisionSettings
 from domain.timebase import seconds
 from service.checkpoint import checkpoint_of, core_of_checkpoint
 from tests.support.core_robot import CoreRobot
+from tests.support.good import GOOD
 from tests.support.models import ARM, BASE, actuation_model
 
 FEW, ORDER = "CHECKPOINT_TOO_FEW", "CHECKPOINT_WRONG_ORDER"
@@ -19,13 +24,15 @@ SETTINGS = CheckpointSettings(
     alive=(AliveLimits("cycle", seconds(1), at_least=5, at_most=20),),
     order={"sense": ("act",), "act": ("sense",)},
 )
+NOTHING_DECLARED: Mapping[str, DeclaredError] = {}
 
 
 class Robot(CoreRobot):
     """A robot whose drive base has checkpoints."""
 
-    def __init__(self) -> None:
-        super().__init__(actuation_model(), SupervisionSettings(checkpoints={BASE: SETTINGS}))
+    def __init__(self, errors: Mapping[str, DeclaredError] = NOTHING_DECLARED) -> None:
+        model = replace(actuation_model(), errors={BASE: errors})
+        super().__init__(model, SupervisionSettings(checkpoints={BASE: SETTINGS}))
 
     def reach(self, *names: str) -> None:
         for name in names:
@@ -127,6 +134,22 @@ def test_a_node_that_dies_has_the_error_that_it_is_unreachable(robot: Robot) -> 
 def test_nodes_without_checkpoints_have_none_of_these_errors(robot: Robot) -> None:
     assert ORDER in [view.key.error for view in robot.core.errors_of(BASE)]
     assert ORDER not in [view.key.error for view in robot.core.errors_of(ARM)]
+
+
+def test_the_model_file_says_how_bad_it_is() -> None:
+    robot = Robot({FEW: DeclaredError(severity=Severity.CRITICAL, hint="restart the planner")})
+    robot.read(**GOOD)
+    robot.activate()
+
+    robot.advance(1.5)
+
+    assert robot.error(FEW).hint == "restart the planner"
+    assert f"{BASE}.{FEW}" in robot.core.system_state().errors
+
+
+def test_nobody_but_the_node_itself_reports_them(robot: Robot) -> None:
+    with pytest.raises(NotReportedError):
+        robot.give(ErrorReport(BASE, FEW, active=True))
 
 
 @pytest.mark.parametrize("node", [BASE, ARM])

@@ -25,6 +25,7 @@ def test_everything_is_found_by_its_full_name() -> None:
         "/battery_level",
         "/estop",
         "/gps_accuracy",
+        "/pilothouse/checkpoints",
         "/signal_strength",
         "/temperature",
     }
