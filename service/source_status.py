@@ -1,6 +1,6 @@
 """How the sources of signals are doing."""
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 
 from domain.timebase import Duration
 
@@ -17,5 +17,3 @@ class SourceStatus:
     """Readings that could not be had, or were refused."""
     duration: Duration | None = None
     """How long it last took to measure; None: it does not say."""
-    faults: dict[str, str] = field(default_factory=dict)
-    """Why there is no reading now, by signal."""

@@ -124,14 +124,19 @@ class ErrorRaised(Event):
     """None: the robot's own."""
     root_cause: bool = True
     """No other error explains it."""
+    silenced: bool = False
+    """It is shelved, or the model suppresses it."""
 
     def _words(self) -> str:
         return f"{ErrorKey(self.part, self.error).name}: {self.message}"
 
     @property
     def notable(self) -> bool:
-        """Tell whether no other event of a short list says the same, or explains it."""
-        return self.part is None or (self.root_cause and self.error not in _TOLD_ALREADY)
+        """Tell whether it is announced, and no other event of a short list says so or explains it.
+
+        An error that is silenced still sets its bit, which other events tell.
+        """
+        return not self.silenced and _is_told_by_itself(self.part, self.error, self.root_cause)
 
 
 @dataclass(frozen=True, slots=True)
@@ -145,6 +150,8 @@ class ErrorCleared(Event):
     """As in `error.raised`."""
     root_cause: bool = True
     """No other error explained it."""
+    silenced: bool = False
+    """As in `error.raised`."""
 
     def _words(self) -> str:
         return f"{ErrorKey(self.part, self.error).name} cleared"
@@ -152,7 +159,11 @@ class ErrorCleared(Event):
     @property
     def notable(self) -> bool:
         """As of `error.raised`."""
-        return self.part is None or (self.root_cause and self.error not in _TOLD_ALREADY)
+        return not self.silenced and _is_told_by_itself(self.part, self.error, self.root_cause)
+
+
+def _is_told_by_itself(part: PartName | None, error: str, root_cause: bool) -> bool:
+    return part is None or (root_cause and error not in _TOLD_ALREADY)
 
 
 @dataclass(frozen=True, slots=True)

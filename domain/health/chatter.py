@@ -30,8 +30,8 @@ class Chattering:
     """An error chatters."""
 
     calming: Duration
-    """For how long its cause would have to be gone before it clears: longer than it was off at any
-    turn that is remembered."""
+    """For how long its cause would have to be gone before it clears: longer than it was gone
+    between any two turns that are remembered."""
 
 
 class Chatter:
@@ -85,7 +85,7 @@ def _chatters(turns: tuple[Turn, ...]) -> bool:
 
 
 def _gaps(turns: tuple[Turn, ...]) -> Iterator[Duration]:
-    """Yield how long the error was off between two turns."""
+    """Yield how long the cause of the error was gone between two turns."""
     for ended, raised in pairwise(turns):
         if raised.raised:
-            yield raised.at - ended.at
+            yield raised.at - (ended.at if ended.gone is None else ended.gone)

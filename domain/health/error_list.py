@@ -129,9 +129,15 @@ class ErrorList:
         self._alarms.note_told(key)
         view = self._open[key]
         raised = ErrorRaised(
-            key.error, view.message, view.value, view.threshold, key.part, view.is_root
+            key.error,
+            view.message,
+            view.value,
+            view.threshold,
+            key.part,
+            view.is_root,
+            view.marks.is_silenced,
         )
-        self._tell(key, self._outbox.emit(raised, cause))
+        self.note_told(key, self._outbox.emit(raised, cause))
 
     def clear(self, key: ErrorKey, cause: int | None = None) -> None:
         """Note that the cause of an error of a part is gone, and tell it if the error ended.
@@ -153,8 +159,14 @@ class ErrorList:
             cause: Id of the event that led to it; None: the current input.
         """
         key = before.key
-        cleared = ErrorCleared(key.error, key.part, before.is_root)
-        self._tell(key, self._outbox.emit(cleared, cause))
+        cleared = ErrorCleared(key.error, key.part, before.is_root, before.marks.is_silenced)
+        self.note_told(key, self._outbox.emit(cleared, cause))
+
+    def note_told(self, key: ErrorKey, event: int) -> None:
+        """Note which event told that an error was raised or cleared."""
+        self._told[key] = event
+        if self._severity_of(key).stops_task and key.part is not None:
+            self.severe.decided_by = event
 
     def forget(self, key: ErrorKey) -> None:
         """Forget an error that is on since the start, as if it had never been raised."""
@@ -163,9 +175,8 @@ class ErrorList:
             self.note(key, NORMAL, 0)
             return
         self._alarms.discard(key)
-        del self._open[key]
-        self._outbox.errors.add(key)
-        self._put_severe(self.view(key))
+        marks = self._open.pop(key).marks
+        self._put(replace(self.view(key), marks=marks))
         self._switch(key, on=False)
 
     def renew_roots(self, key: ErrorKey) -> bool:
@@ -253,11 +264,16 @@ class ErrorList:
         view = self._open.get(key)
         return view is not None and view.state.is_on
 
+    def is_of_signal(self, key: ErrorKey) -> bool:
+        """Tell whether a signal raises an error; what the model says of it only explains it."""
+        return key in self._severities
+
     def names_of(self, part: PartName | None) -> Iterable[str]:
         """Return all errors of a part, those of signals last; None: of the robot itself."""
+        of_signals = self._of_signals.get(part, ())
         if part is not None:
-            yield from self.causes.names_of(part)
-        yield from dict.fromkeys(self._of_signals.get(part, ()))
+            yield from (name for name in self.causes.names_of(part) if name not in of_signals)
+        yield from dict.fromkeys(of_signals)
 
     def view(self, key: ErrorKey) -> ErrorView:
         """Return an error; the same object until it changes, unless it was never raised."""
@@ -277,7 +293,7 @@ class ErrorList:
         return causes, tuple(islice(dict.fromkeys(chain.from_iterable(found)), MAX_SHOWN))
 
     def told_by(self, key: ErrorKey) -> int | None:
-        """Return the newest event that told of an error of a part; None: there is none."""
+        """Return the newest event that told of an error; None: there is none."""
         return self._told.get(key)
 
     def open_ones(self) -> Mapping[str, ErrorView]:
@@ -291,16 +307,13 @@ class ErrorList:
 
     # --- inside ----------------------------------------------------------------------------------
 
-    def _tell(self, key: ErrorKey, event: int) -> None:
-        self._told[key] = event
-        if self._severity_of(key).stops_task:
-            self.severe.decided_by = event
-
     def _severity_of(self, key: ErrorKey) -> Severity:
+        if (severity := self._severities.get(key)) is not None:
+            return severity
         declared = self.causes.declared.get(key)
         if declared is not None and declared.severity is not None:
             return declared.severity
-        return self._severities.get(key) or severity_of(key)
+        return severity_of(key)
 
     def _hint_of(self, key: ErrorKey) -> str:
         declared = self.causes.declared.get(key)
@@ -346,7 +359,7 @@ class ErrorList:
         )
         self._put(view)
         if state.is_on is not was_on:
-            self._turns.append(Turn(view.key, raised, self._outbox.now))
+            self._turns.append(Turn(view.key, raised, self._outbox.now, before.ended))
             self._switch(view.key, on=raised)
         view = self.view(view.key)
         is_announced = view.is_root or view.key in self._latching
@@ -371,7 +384,7 @@ class ErrorList:
 
     def _put_severe(self, view: ErrorView) -> None:
         """Signals set the bits of their errors themselves, and declare each of them."""
-        if view.key.part is not None and view.key not in self._severities:
+        if view.key.part is not None and not self.is_of_signal(view.key):
             self.severe.put(view)
 
     def _switch(self, key: ErrorKey, *, on: bool) -> None:

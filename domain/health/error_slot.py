@@ -11,8 +11,16 @@ class ErrorSlot:
     time or not, since the robot stays in ERROR either way.
     """
 
-    def __init__(self, min_on: Duration, recovery: Recovery) -> None:
+    def __init__(self, min_on: Duration, recovery: Recovery, clear_for: Duration = 0) -> None:
+        """Begin without an error.
+
+        Args:
+            min_on: Minimum time that an error stays active.
+            recovery: Whether it stays active until it is acknowledged.
+            clear_for: How long its cause has to be gone.
+        """
         self._min_on = min_on
+        self._clear_for = clear_for
         self._recovery = recovery
         self._hold_until: Instant = 0
         self._acknowledged = False
@@ -44,6 +52,8 @@ class ErrorSlot:
             self.error = cause
             self.since = now
             self._hold_until = now + self._min_on
+        if cause is None and self.cause is not None:
+            self._hold_until = max(self._hold_until, now + self._clear_for)
         self.cause = cause
         if self._ends_with_time and now >= self._hold_until:
             self.error = None

@@ -300,14 +300,23 @@ class Health(Concern):
         for signal in changes.skewed:
             emit(SignalSkewed(signal))
         for key, why in changes.raised:
-            raised = ErrorRaised(key.error, why.message, why.value, why.threshold, key.part)
+            found, is_silenced = (why.message, why.value, why.threshold), self._is_silenced(key)
+            is_root = not self.error_list.explanation_of(key)[1]
+            raised = ErrorRaised(key.error, *found, key.part, is_root, is_silenced)
             self._decided_by = emit(raised, self._pending.pop(key, None))
+            self.error_list.note_told(key, self._decided_by)
         for key in changes.cleared:
-            self._decided_by = emit(ErrorCleared(key.error, key.part))
+            is_root = self.error_list.view(key).is_root
+            cleared = ErrorCleared(key.error, key.part, is_root, self._is_silenced(key))
+            self._decided_by = emit(cleared)
+            self.error_list.note_told(key, self._decided_by)
         self._robot_errors.follow(changes, now)
         self._outbox.signals |= changes.signals
         for signal in changes.signals & self._waiting:
             self._keep(signal)
+
+    def _is_silenced(self, key: ErrorKey) -> bool:
+        return self.error_list.view(key).marks.is_silenced
 
     def _keep(self, name: str) -> None:
         """Keep the error of a signal from when it waits for an acknowledgement until it does not.

@@ -233,7 +233,10 @@ class PartErrors(Concern):
 
     def names_of(self, part: PartName) -> Iterable[str]:
         """Return the errors that a part can have, apart from those of signals."""
-        return self._errors.causes.names_of(part)
+        names = self._errors.causes.names_of(part)
+        if part not in self._parts.model.errors:
+            return names
+        return [name for name in names if not self._errors.is_of_signal(ErrorKey(part, name))]
 
     @property
     def unheard(self) -> Container[PartName]:

@@ -162,7 +162,7 @@ class Propagation(Concern):
             own = self._causes.declared.get(key)
             if own is not None and own.when is not None:
                 self._detect(key, own, own.when, now)
-            elif own is not None and own.caused_by and not self._causes.is_built_in(key):
+            elif own is not None and own.caused_by and not self._is_found_elsewhere(key):
                 self._follow(key, own, now)
             if self._renew_roots(key):
                 moved = True
@@ -295,6 +295,10 @@ class Propagation(Concern):
     def _are_unheard(self, roots: Collection[ErrorKey]) -> bool:
         are_so = all(root.error == UNREACHABLE and root.part in self._unheard for root in roots)
         return bool(roots) and are_so
+
+    def _is_found_elsewhere(self, key: ErrorKey) -> bool:
+        """Tell whether its causes explain an error only: it is built in, or that of a signal."""
+        return self._causes.is_built_in(key) or self._errors.is_of_signal(key)
 
     def _tell_not_seen(self, effect: ErrorKey, cause: ErrorKey) -> None:
         own = self._causes.declared[effect]

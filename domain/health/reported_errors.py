@@ -65,7 +65,7 @@ class ReportedErrors(Concern):
             if not isinstance(kept, KeptReport):
                 continue
             key = ErrorKey(kept.part, kept.error)
-            if not self._errors.causes.is_reported(key):
+            if not self._is_reported(key):
                 self._outbox.forget(KeptReport, kept.name)
                 why = f"nobody reports {key.name} any more"
                 self._outbox.emit(NotRestored(f"the error {key.name}", why))
@@ -73,12 +73,15 @@ class ReportedErrors(Concern):
             found = Found(ErrorState.ACTIVE, kept.message, kept.value)
             self._errors.raise_(key, found, min(kept.since, now))
 
+    def _is_reported(self, key: ErrorKey) -> bool:
+        return self._errors.causes.is_reported(key) and not self._errors.is_of_signal(key)
+
     def _check(self, report: ErrorReport) -> PartName:
         """Return the part whose error is reported."""
         part, error = report.part, report.error
         if part is not None and part not in self._model:
             raise UnknownPartError("part", part, self._model.parts)
-        if part is not None and self._errors.causes.is_reported(ErrorKey(part, error)):
+        if part is not None and self._is_reported(ErrorKey(part, error)):
             return part
         known = tuple(self._errors.names_of(part))
         if error in known:

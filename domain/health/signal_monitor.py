@@ -84,7 +84,7 @@ class SignalMonitor:
         """Bounds that are met and will become the cause when they are due."""
         self.can_raise: Mapping[str, Raisable] = MappingProxyType(settings.can_raise())
         """The errors that it can raise, by name."""
-        self._value_slot = ErrorSlot(settings.min_on, settings.recovery)
+        self._value_slot = ErrorSlot(settings.min_on, settings.recovery, settings.clear_for)
         self._stale_slot = ErrorSlot(settings.min_on, Recovery.AUTOMATIC)
         if settings.stale_after:
             # No minimum time: the first reading clears it at once.

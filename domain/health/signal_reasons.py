@@ -83,6 +83,8 @@ def kept_reason(settings: SignalSettings, slot: ErrorSlot) -> str:
     gone = f"{_label(settings.spec)} no longer causes {slot.error}, which"
     if slot.waits_for_acknowledgement:
         return f"{gone} waits for acknowledgement"
+    if settings.clear_for:
+        return f"{gone} ends once that has lasted {_duration(settings.clear_for)}"
     return f"{gone} stays active for at least {_duration(settings.min_on)}"
 
 

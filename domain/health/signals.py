@@ -265,6 +265,8 @@ class SignalSettings:
     """Readings older than this are stale; 0 turns staleness off."""
     min_on: Duration = seconds(0.2)
     """Minimum time that an error of this signal stays active, so that a short one is seen."""
+    clear_for: Duration = 0
+    """How long the cause of a value error has to be gone before the error clears."""
     recovery: Recovery = Recovery.AUTOMATIC
     """Recovery of value errors; staleness always recovers automatically."""
     counts_from: CountsFrom = CountsFrom.FIRST_BAD
@@ -282,7 +284,11 @@ class SignalSettings:
     def __post_init__(self) -> None:
         if len({bound.key for bound in self.bounds}) != len(self.bounds):
             raise self._invalid("key", "must differ between bounds")
-        for duration, setting in ((self.stale_after, "stale_after_s"), (self.min_on, "min_on_s")):
+        for duration, setting in (
+            (self.stale_after, "stale_after_s"),
+            (self.min_on, "min_on_s"),
+            (self.clear_for, "clear_for_s"),
+        ):
             if duration < 0:
                 raise self._invalid(setting, "must not be negative")
         for bound in (*self.bounds, *self._bounds_of_modes()):
@@ -342,6 +348,7 @@ class SignalSettings:
         facts |= {
             "stale_after_s": to_seconds(self.stale_after),
             "min_on_s": to_seconds(self.min_on),
+            "clear_for_s": to_seconds(self.clear_for),
             "recovery": str(self.recovery),
         }
         if self.spec.kind is SignalKind.NUMBER:

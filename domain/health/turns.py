@@ -12,3 +12,5 @@ class Turn(NamedTuple):
     key: ErrorKey
     raised: bool
     at: Instant
+    gone: Instant | None = None
+    """Of an end: when its cause was gone, which may be earlier; None: just then."""

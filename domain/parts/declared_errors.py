@@ -12,7 +12,8 @@ class DeclaredError:
     """What a model file says about one error of a part.
 
     With `when`, the error is detected; with `caused_by` alone, it follows; with neither, it is
-    reported. A declaration under the name of a built-in error sets what is said and nothing else.
+    reported. A declaration under the name of a built-in error, or of one that a signal of the part
+    raises, sets what is said and nothing else.
     """
 
     when: Condition | None = None
@@ -41,3 +42,9 @@ class DeclaredError:
     """What it means, in words; empty: its condition or its causes say so."""
     hint: str = ""
     """What to do about it."""
+
+    @property
+    def says_how(self) -> bool:
+        """Tell whether it says how the error is found or follows, and not just what it means."""
+        is_found = self.when is not None or self.for_ or self.clear_for
+        return bool(is_found or self.unless is not None or self.after or self.need_all)

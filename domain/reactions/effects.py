@@ -1,6 +1,6 @@
 """What reactions do besides moving parts: they tell, hold the task, and stop the robot."""
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
 
 from domain.events.event import Event
 from domain.events.reactions import (
@@ -19,8 +19,6 @@ from domain.reactions.reaction import Reaction
 from domain.tasks.driving import Driving
 from domain.timebase import Instant, to_seconds
 
-_ENDED = (ReactionState.IDLE, ReactionState.PENDING)
-
 
 class Effects:
     """Holds of reactions, their stops, and their events."""
@@ -30,12 +28,16 @@ class Effects:
         self._emergency_stop = emergency_stop
         self._outbox = outbox
         self._holding: set[Reaction] = set()
+        self._acting: set[Reaction] = set()
+        """Reactions that were told to act, or to act too often."""
         self._stopped: set[Reaction] = set()
         """Reactions that engaged the emergency stop, until they end."""
 
     def restore(self, reaction: Reaction) -> None:
         """Hold again what a reaction held in an earlier run; the emergency stop is kept itself."""
         action = _action_of(reaction)
+        if action is not None:
+            self._acting.add(reaction)
         if action is not None and action.holds:
             self._holding.add(reaction)
             since = reaction.since or 0
@@ -76,31 +78,38 @@ class Effects:
             cause: Id of the event with which its condition began to hold; None: it does not.
             now: The current time.
         """
-        event = self._event(reaction, standing)
-        if event is None:
-            return
-        self._outbox.begin(now, event, reaction.actor, cause or self._outbox.record_input())
-        reaction.event = self._outbox.record_input()
+        events = [*self._ends(reaction, standing), *_begins(reaction, standing)]
+        for event in events:
+            self._outbox.begin(now, event, reaction.actor, cause or self._outbox.record_input())
+            reaction.event = self._outbox.record_input()
 
-    def _event(self, reaction: Reaction, standing: Standing) -> Event | None:
-        part, name, action = reaction.part, reaction.name, reaction.declared.action
+    def _ends(self, reaction: Reaction, standing: Standing) -> Iterator[Event]:
+        """Yield that what was told to act does so no more; one that is overruled is told so."""
         is_active = reaction.arm is Arm.ACTIVE
-        was_acting = reaction.state in (ReactionState.ACTING, ReactionState.EXHAUSTED)
-        match standing.state:
-            case ReactionState.ACTING:
-                return ReactionActing(part, name, action, _words(reaction.why()))
-            case ReactionState.PASSIVE:
-                return ReactionWouldAct(part, name, action, _words(reaction.why()))
-            case ReactionState.OVERRULED if is_active:
-                return ReactionOverruled(part, name, action, _words(standing.kept_from))
-            case ReactionState.EXHAUSTED if is_active:
-                budget = reaction.declared.budget
-                often = f"it acted {budget.at_most} times in {to_seconds(budget.within):g} s"
-                return ReactionExhausted(part, name, reaction.declared.on_exhausted, often)
-            case state if state in _ENDED and was_acting:
-                return ReactionEnded(part, name, action, _end_reason(reaction))
-            case _:
-                return None
+        if is_active and standing.state in (ReactionState.ACTING, ReactionState.EXHAUSTED):
+            self._acting.add(reaction)
+        elif reaction in self._acting:
+            self._acting.discard(reaction)
+            if standing.state is not ReactionState.OVERRULED:
+                part, name, action = reaction.part, reaction.name, reaction.declared.action
+                yield ReactionEnded(part, name, action, _end_reason(reaction))
+
+
+def _begins(reaction: Reaction, standing: Standing) -> Iterator[Event]:
+    """Yield what is told of how a reaction is to stand."""
+    part, name, action = reaction.part, reaction.name, reaction.declared.action
+    is_active = reaction.arm is Arm.ACTIVE
+    match standing.state:
+        case ReactionState.ACTING:
+            yield ReactionActing(part, name, action, _words(reaction.why()))
+        case ReactionState.PASSIVE:
+            yield ReactionWouldAct(part, name, action, _words(reaction.why()))
+        case ReactionState.OVERRULED if is_active:
+            yield ReactionOverruled(part, name, action, _words(standing.kept_from))
+        case ReactionState.EXHAUSTED if is_active:
+            budget = reaction.declared.budget
+            often = f"it acted {budget.at_most} times in {to_seconds(budget.within):g} s"
+            yield ReactionExhausted(part, name, reaction.declared.on_exhausted, often)
 
 
 def _action_of(reaction: Reaction) -> Action | None:

@@ -40,6 +40,9 @@ class AnySignal(SettingsBlock):
     signals."""
     min_on_s: Seconds | None = None
     """Minimum time in seconds that an error of this signal stays active. Default: 0.2."""
+    clear_for_s: Seconds | None = None
+    """Time in seconds for which the cause of an error has to be gone before the error clears: it
+    calms one that comes and goes. Default: 0."""
     recovery: Literal["automatic", "acknowledge"] | None = None
     """Whether an error clears when its cause is gone, or only after it was acknowledged as well.
     Default: automatic."""
@@ -64,6 +67,7 @@ class AnySignal(SettingsBlock):
             bounds=tuple(self._bound(bound) for bound in settings.bounds),
             stale_after=_duration(self.stale_after_s, settings.stale_after),
             min_on=_duration(self.min_on_s, settings.min_on),
+            clear_for=_duration(self.clear_for_s, settings.clear_for),
             recovery=Recovery(self.recovery) if self.recovery else settings.recovery,
         )
 

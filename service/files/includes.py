@@ -21,11 +21,12 @@ _NAMED_BLOCKS: tuple[tuple[str, ...], ...] = (
 """Blocks of a robot file, by name of a signal, to which templates add."""
 
 
-class InvalidIncludeError(InvalidValueError):
-    """What cannot be included; `keys` lead to it."""
+class InvalidIncludeError(ValueError):
+    """What cannot be included; `keys` lead to it. Whoever reads robot files says where that is."""
 
     def __init__(self, message: str, *keys: int | str) -> None:
         super().__init__(message)
+        self.message = message
         self.keys: Keys = (INCLUDE, *keys)
 
 

@@ -41,8 +41,8 @@ def _of_part(signal: DeclaredSignal, model: SmhModel) -> Iterator[Fault]:
     elif signal.error in OF_NODES:
         message = f"{signal.error} is an error that Pilothouse itself raises"
         yield ("error",), "DUPLICATE_ERROR", message
-    elif signal.error in model.errors.get(part, {}):
-        message = f"{part} has an error {signal.error} in the model file already"
+    elif (own := model.errors.get(part, {}).get(str(signal.error))) is not None and own.says_how:
+        message = f"the model file says how {signal.error} of {part} is found already"
         yield ("error",), "DUPLICATE_ERROR", message
 
 

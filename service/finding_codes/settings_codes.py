@@ -118,8 +118,7 @@ ERRORS = (
     FindingCode(
         "NAME_TAKEN",
         ERROR,
-        "The name of an error is that of the emergency stop, or that of an error of a signal of "
-        "the same part.",
+        "The name of an error is that of the emergency stop.",
         "Use another name.",
     ),
     FindingCode(

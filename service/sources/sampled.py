@@ -133,9 +133,10 @@ class SampledSource:
     async def _read(self, plans: Sequence[_Plan], thread: CallThread, sink: Sink) -> None:
         batch = _Batch([plan.probe for plan in plans])
         reading = thread.run(batch.read)
-        if not await self._is_in_time(reading):
+        if not await self._is_in_time(reading, DEADLINE):
             self._tell_hanging(batch, sink)
-            await reading
+            while not await self._is_in_time(reading, LONGEST_PAUSE):
+                self._tell_hanging(batch, sink)
             for plan in plans:
                 plan.fail(self._clock.now())
             return
@@ -152,8 +153,8 @@ class SampledSource:
             plan.succeed(now)
             sink.take(plan.probe.signal, value)
 
-    async def _is_in_time(self, reading: "asyncio.Future[_Batch]") -> bool:
-        deadline = asyncio.ensure_future(self._clock.sleep_until(self._clock.now() + DEADLINE))
+    async def _is_in_time(self, reading: "asyncio.Future[_Batch]", limit: Duration) -> bool:
+        deadline = asyncio.ensure_future(self._clock.sleep_until(self._clock.now() + limit))
         try:
             await asyncio.wait((reading, deadline), return_when=asyncio.FIRST_COMPLETED)
         finally:
@@ -161,7 +162,10 @@ class SampledSource:
         return reading.done()
 
     def _tell_hanging(self, batch: _Batch, sink: Sink) -> None:
-        """Say of all signals that they have no reading, since one call does not return."""
+        """Say of all signals that they have no reading, since one call does not return.
+
+        Again and again while it lasts, since a sink may not take every reason.
+        """
         hanging = batch.probes[min(len(batch.ends), len(batch.probes) - 1)].signal
         limit = f"{to_seconds(DEADLINE):g} s"
         for signal in self.signals:

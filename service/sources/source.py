@@ -30,7 +30,7 @@ class Sink(Protocol):
         ...
 
     def fail(self, signal: str, why: str) -> None:
-        """Take why there is no reading of a signal now."""
+        """Take why there is no reading of a signal now; what lasts is told again and again."""
         ...
 
     def note_duration(self, duration: Duration) -> None:

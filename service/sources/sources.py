@@ -9,7 +9,7 @@ from domain.health.signals import SignalKind, SignalSpec
 from domain.inputs import Reading, Readings, SourceFault
 from domain.timebase import Duration, Instant, seconds
 from service.clock import Clock
-from service.ports import Deliver
+from service.ports import BackendMessage, Deliver
 from service.running import run_forever
 from service.source_status import SourceStatus
 from service.sources.source import Source, reason_of
@@ -21,6 +21,10 @@ FIRST_PAUSE: Duration = seconds(1.0)
 
 LONGEST_PAUSE: Duration = seconds(60.0)
 """Longest such time; a source that ran so long begins anew with the first one."""
+
+
+QUIET: Duration = seconds(10.0)
+"""Least time between two faults of a signal that are told: each of them is recorded."""
 
 
 class Sources:
@@ -46,11 +50,16 @@ class Sources:
         self.status = tuple(SourceStatus(source.name, source.signals) for source in sources)
 
     async def run(self, deliver: Deliver) -> None:
-        """Deliver readings and faults of all sources until cancelled."""
-        work = {
-            f"source {source.name}": self._keep(source, _Sink(status, self._specs, deliver))
-            for source, status in zip(self._sources, self.status, strict=True)
-        }
+        """Deliver readings and faults of all sources until cancelled.
+
+        Raises:
+            ExceptionGroup: What `deliver` raised, in a `TaskFailedError`.
+        """
+        delivery = _Delivery(deliver)
+        work = {"delivery of readings": delivery.failed()}
+        for source, status in zip(self._sources, self.status, strict=True):
+            sink = _Sink(status, self._specs, self._clock, delivery.deliver)
+            work[f"source {source.name}"] = self._keep(source, sink)
         await run_forever(work)
 
     async def _keep(self, source: Source, sink: "_Sink") -> None:
@@ -65,6 +74,25 @@ class Sources:
                 pause = FIRST_PAUSE
             await self._clock.sleep_until(now + pause)
             pause = min(2 * pause, LONGEST_PAUSE)
+
+
+class _Delivery:
+    """Delivers, and tells the adapter if that fails: it is no failure of the source."""
+
+    def __init__(self, deliver: Deliver) -> None:
+        self._deliver = deliver
+        self._failed: asyncio.Future[None] = asyncio.get_running_loop().create_future()
+
+    def deliver(self, message: BackendMessage) -> None:
+        try:
+            self._deliver(message)
+        except Exception as error:
+            if not self._failed.done():
+                self._failed.set_exception(error)
+            raise
+
+    async def failed(self) -> None:
+        await self._failed
 
 
 async def _end_of(source: Source, sink: "_Sink") -> str:
@@ -85,10 +113,18 @@ class _Sink:
     """Checks what one source has to say, delivers it, and logs what changed."""
 
     def __init__(
-        self, status: SourceStatus, specs: Mapping[str, SignalSpec], deliver: Deliver
+        self,
+        status: SourceStatus,
+        specs: Mapping[str, SignalSpec],
+        clock: Clock,
+        deliver: Deliver,
     ) -> None:
         self._status = status
         self._specs = specs
+        self._clock = clock
+        self._told: dict[str, str] = {}
+        """Why there is no reading, by signal, as it was told."""
+        self._quiet_until: dict[str, Instant] = {}
         self._deliver = deliver
 
     def take(self, signal: str, value: object, stamp: Instant | None = None) -> None:
@@ -103,17 +139,18 @@ class _Sink:
             self.fail(signal, f"refused: {error.message}")
             return
         status.reads += 1
-        if status.faults.pop(signal, None) is not None:
+        if self._told.pop(signal, None) is not None:
             log.info("%s reads %s again", status.name, signal)
         self._deliver(Readings((Reading(signal, checked, stamp),), status.name))
 
     def fail(self, signal: str, why: str) -> None:
-        """Deliver why there is no reading, unless that is known."""
-        status = self._status
+        """Deliver why there is no reading, unless that is known, or another reason just was."""
+        status, now = self._status, self._clock.now()
         status.failures += 1
-        if status.faults.get(signal) == why:
+        if self._told.get(signal) == why or now < self._quiet_until.get(signal, now):
             return
-        status.faults[signal] = why
+        self._quiet_until[signal] = now + QUIET
+        self._told[signal] = why
         log.warning("%s does not read %s: %s", status.name, signal, why)
         self._deliver(SourceFault(signal, status.name, why))
 

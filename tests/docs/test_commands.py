@@ -23,6 +23,7 @@ PAGES = [
     PROJECT / "README.md",
     *sorted((PROJECT / "docs").rglob("*.md")),
     PROJECT / "examples" / "mobile_manipulator" / "README.md",
+    PROJECT / "examples" / "mobile_robot" / "README.md",
 ]
 NOT_RUN = {
     # What is meant by this is run by tests/ros2/test_example.py.

@@ -17,6 +17,7 @@ PAGES = [
     PROJECT / "README.md",
     *sorted((PROJECT / "docs").rglob("*.md")),
     PROJECT / "examples" / "mobile_manipulator" / "README.md",
+    PROJECT / "examples" / "mobile_robot" / "README.md",
 ]
 BLOCKS = [block for page in PAGES for block in read_blocks(page)]
 

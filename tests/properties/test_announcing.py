@@ -103,7 +103,7 @@ ANNOUNCING = {"error.shelved", "error.unshelved", "error.chattering"}
 def told(outputs: Outputs) -> list[tuple[Instant, str, str]]:
     """Return what was told besides the announcing; ids differ, since more is told."""
     return [
-        (event.at, event.kind, str({**event.data, "cause": None}))
+        (event.at, event.kind, str({**event.data, "silenced": None}))
         for event in outputs.events
         if event.kind not in ANNOUNCING
     ]

@@ -103,11 +103,13 @@ class ReactingRobot(RestartingRobot):
         )
         signals = flag_signals()
         super().__init__(read_model(text, signals).model, SupervisionSettings(signals))
-        self.read(**GOOD, **dict.fromkeys(FLAGS, False))
+        self.read(**GOOD)
         if asked:
             self.ask_mode("carrier", "FAST")
             self.advance(1)
             assert self.actual("carrier") == "active.FAST"
+        # Only now: what is false may call for something, too.
+        self.read(**GOOD, **dict.fromkeys(FLAGS, False))
 
     def see(self, wait_s: float = 1.0, **flags: bool) -> "ReactingRobot":
         """Hand in what is so, and let that take effect."""

@@ -23,10 +23,9 @@ def os_sources(blocks: Mapping[str, OsBlock], clock: Clock) -> Iterator[SampledS
         clock: Of the service.
     """
     probes = defaultdict[str, list[Probe]](list)
-    processes: dict[str, Processes] = {}
     for signal, block in blocks.items():
-        read = _reader(block, processes)
-        probes[_thread_of(block)].append(Probe(signal, seconds(block.seconds_between), read))
+        probe = Probe(signal, seconds(block.seconds_between), _reader(block))
+        probes[_thread_of(block)].append(probe)
     for name, some in probes.items():
         yield SampledSource(name, some, clock)
 
@@ -46,9 +45,9 @@ def _thread_of(block: OsBlock) -> str:
     return "os clock" if block.what == "clock_offset_s" else "os"
 
 
-def _reader(block: OsBlock, processes: dict[str, Processes]) -> _Read:
+def _reader(block: OsBlock) -> _Read:
     if block.process is not None:
-        return processes.setdefault(block.process, Processes(block.process)).reader(block.what)
+        return Processes(block.process).reader(block.what)
     if block.cgroup is not None:
         return Group(block.cgroup).reader(block.what)
     return clock_offset_s if block.what == "clock_offset_s" else reader_of(block)

@@ -15,6 +15,10 @@ _LONGEST_COMM: Final = 15
 """The kernel cuts off longer names; psutil takes the rest from the command line."""
 
 
+_ENDED: Final = psutil.STATUS_ZOMBIE
+"""Of a process whose parent has not asked yet how it ended."""
+
+
 class Processes:
     """The processes of one name, found anew at each look: a node that crashed has a new one.
 
@@ -47,7 +51,7 @@ class Processes:
                 with suppress(psutil.NoSuchProcess):
                     known = self._known.get(pid)
                     process = known if known and known.is_running() else psutil.Process(pid)
-                    if process.name() == self._name:
+                    if process.name() == self._name and process.status() != _ENDED:
                         found[pid] = process
         self._known = found
         return list(found.values())
@@ -90,7 +94,7 @@ def _without_ended(
     for process in processes:
         try:
             yield of(process)
-        except (psutil.NoSuchProcess, psutil.ZombieProcess):
+        except psutil.NoSuchProcess:
             continue
         except psutil.AccessDenied as error:
             raise SourceError(f"process {process.pid} belongs to another user") from error

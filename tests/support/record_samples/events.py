@@ -179,6 +179,7 @@ EVENTS: Mapping[str, tuple[object, ...]] = {
         ErrorCleared(error="LOW_BATTERY"),
         ErrorCleared(error="DEVIATES", part=PartName("arm")),
         ErrorCleared(error="SILENT", part=PartName("left/arm"), root_cause=False),
+        ErrorCleared(error="SILENT", part=PartName("left/arm"), silenced=True),
     ),
     "error.raised": (
         ErrorRaised(error="LOW_BATTERY", message="12.5 % < 20 %", value=12.5, threshold=12.5),
@@ -196,6 +197,13 @@ EVENTS: Mapping[str, tuple[object, ...]] = {
             threshold=None,
             part=PartName("left/arm"),
             root_cause=False,
+        ),
+        ErrorRaised(
+            error="LOW_BATTERY",
+            message="12.5 % < 20 %",
+            value=12.5,
+            threshold=12.5,
+            silenced=True,
         ),
     ),
     "error.reported": (

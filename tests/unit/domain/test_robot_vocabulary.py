@@ -1,6 +1,6 @@
 from domain.conditions.check import check
 from domain.conditions.condition import Condition
-from domain.health.built_in_errors import OF_NODES
+from domain.health.built_in_errors import ALL_OF_NODES
 from domain.health.signals import SignalKind, SignalSettings, SignalSpec, default_signals
 from domain.parts.declared_errors import DeclaredError
 from domain.parts.system_model import NodeModel, SmhModel
@@ -57,5 +57,5 @@ def test_conditions_can_name_the_errors_that_a_part_declares() -> None:
     )
 
     terms = vocabulary_of(model, default_signals(), is_complete=True).parts
-    assert terms["lidar"].errors == (*OF_NODES, "SILENT")
-    assert terms["camera"].errors == tuple(OF_NODES)
+    assert terms["lidar"].errors == (*ALL_OF_NODES, "SILENT")
+    assert terms["camera"].errors == tuple(ALL_OF_NODES)

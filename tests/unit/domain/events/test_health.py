@@ -89,3 +89,9 @@ def test_what_another_error_explains_is_detail() -> None:
     assert late.notable
     assert not replace(late, root_cause=False).notable
     assert not ErrorCleared("LATE", ARM, root_cause=False).notable
+
+
+def test_an_error_that_is_silenced_is_detail() -> None:
+    assert not ErrorRaised("ESTOP", "it is pressed", True, None, silenced=True).notable
+    assert not ErrorCleared("ESTOP", silenced=True).notable
+    assert ErrorCleared("ESTOP").notable

@@ -8,6 +8,7 @@ import pytest
 from domain.actor import Actor
 from domain.conditions.condition import Condition
 from domain.health.alarms import MAX_RETURNED
+from domain.health.signals import default_signals
 from domain.inputs import (
     AcknowledgeRequest,
     ModeRequest,
@@ -26,7 +27,7 @@ from domain.parts.system_model import SmhModel
 from domain.snapshot import ErrorKey, ErrorState, ErrorView
 from domain.state_and_mode import PartName
 from domain.supervision import Supervision, SupervisionSettings
-from domain.timebase import Instant, seconds
+from domain.timebase import Duration, Instant, seconds
 from tests.support.big_model import big_model
 from tests.support.good import GOOD
 from tests.support.models import ACTUATION, ARM, BASE, actuation_model
@@ -45,9 +46,15 @@ def model_with(errors: Mapping[PartName, Mapping[str, DeclaredError]]) -> SmhMod
 class Robot(OperatorVerbs[Outputs, None, None]):
     """A core whose nodes are heard, with the questions that these stories ask."""
 
-    def __init__(self, model: SmhModel | None = None, start: Instant = 0) -> None:
+    def __init__(
+        self,
+        model: SmhModel | None = None,
+        start: Instant = 0,
+        settings: SupervisionSettings | None = None,
+    ) -> None:
         self.now = start
-        self.core = Supervision(model or actuation_model(), SupervisionSettings(), start)
+        settings = settings or SupervisionSettings()
+        self.core = Supervision(model or actuation_model(), settings, start)
         self.kinds: list[str] = []
         self.kept: dict[tuple[type[Kept], str], Kept | None] = {}
 
@@ -253,6 +260,14 @@ def test_a_shelved_error_is_told_as_such_for_a_time_and_stays_as_it_is(robot: Ro
     assert robot.kinds.count("error.unshelved") == 1
 
 
+def test_what_is_silenced_is_not_in_a_short_list_of_events(robot: Robot) -> None:
+    robot.shelve(error="BATTERY_LOW", part=None)
+    for level in (0.4, 0.9):
+        told = {event.kind: event.event for event in robot.read(battery_level=level).events}
+        robot.advance(0.3)
+        assert told["error.raised" if level < 0.5 else "error.cleared"].notable is False
+
+
 def test_somebody_may_end_the_shelving_before(robot: Robot) -> None:
     robot.shelve()
     robot.give(UnshelveRequest(LOST, ADA, BASE))
@@ -302,6 +317,26 @@ def test_an_error_that_comes_and_goes_chatters_with_what_would_calm_it(robot: Ro
     assert robot.kinds.count("error.chattering") == 1
     robot.advance(600)
     assert not robot.error().marks.chattering
+
+
+def flapping(clear_for: Duration) -> Robot:
+    """Return a robot whose battery was low for 1 s, and not for 2 s, several times."""
+    battery, *others = default_signals()
+    signals = (replace(battery, clear_for=clear_for, stale_after=0), *others)
+    robot = Robot(settings=SupervisionSettings(signals=signals))
+    for _ in range(6):
+        for level, lasts_s in ((0.4, 1), (0.9, 2)):
+            robot.read(battery_level=level)
+            robot.advance(lasts_s)
+    return robot
+
+
+def test_the_time_that_is_advised_calms_the_error() -> None:
+    chattering = flapping(0).error("BATTERY_LOW", None)
+    assert (chattering.marks.chattering, chattering.count) == (True, 6)
+    assert chattering.marks.calming is not None
+    calm = flapping(chattering.marks.calming).error("BATTERY_LOW", None)
+    assert (calm.marks.chattering, calm.count) == (False, 1)
 
 
 # --- over a restart ------------------------------------------------------------------------------
@@ -359,6 +394,13 @@ def test_a_shelving_survives_and_does_not_run_down_while_the_service_is_down(
     assert after.error().marks.is_silenced
     after.advance(6)
     assert not after.error().marks.is_silenced
+
+
+def test_a_node_that_is_heard_after_a_restart_is_shelved_as_before(robot: Robot) -> None:
+    robot.shelve(60)
+    after = robot.restarted()
+    after.hear()
+    assert (after.state(), after.error().marks.is_silenced) == (S.NORMAL, True)
 
 
 def test_errors_that_no_longer_exist_are_told_and_forgotten(robot: Robot) -> None:

@@ -68,3 +68,13 @@ def test_errors_that_turned_long_ago_are_forgotten() -> None:
     for number in range(60):
         chatter.note(Turn(OTHER, number % 2 == 0, WITHIN * (2 + number)))
     assert len(chatter) == 1
+
+
+def test_what_would_calm_it_counts_from_when_the_cause_was_gone() -> None:
+    chatter = Chatter()
+    for number in range(6):
+        at = seconds(number)
+        chatter.note(Turn(KEY, number % 2 == 0, at, None if number % 2 == 0 else at - seconds(0.5)))
+    found = chatter.find(KEY)
+    assert found is not None
+    assert found.calming == seconds(1.6)

@@ -151,3 +151,16 @@ def test_an_error_of_an_earlier_run_waits_without_a_cause() -> None:
     slot.acknowledge()
     slot.update(None, 100)
     assert slot.error is None
+
+
+def test_an_error_clears_once_its_cause_has_been_gone_for_long_enough() -> None:
+    slot = ErrorSlot(5, Recovery.AUTOMATIC, clear_for=20)
+    slot.update("ESTOP", 10)
+    slot.update(None, 12)
+    assert slot.wake_at == 32
+    slot.update("ESTOP", 31)
+    slot.update(None, 40)
+    slot.update(None, 59)
+    assert (slot.error, slot.since) == ("ESTOP", 10)
+    slot.update(None, 60)
+    assert slot.error is None

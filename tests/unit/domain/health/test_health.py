@@ -132,6 +132,7 @@ def test_an_error_is_told_with_its_value_its_limit_and_the_reading_that_caused_i
         "threshold": 0.5,
         "part": None,
         "root_cause": True,
+        "silenced": False,
     }
 
 
@@ -160,6 +161,7 @@ def test_the_end_of_an_error_is_told(health: Robot) -> None:
         "error": "BATTERY_LOW",
         "part": None,
         "root_cause": True,
+        "silenced": False,
     }
     assert _only(events, "system_state.changed").data["state"] == "IDLE"
 

@@ -150,6 +150,7 @@ FACTS = {
         "for_s": 0.0,
         "stale_after_s": 2.0,
         "min_on_s": 0.2,
+        "clear_for_s": 0.0,
         "recovery": "automatic",
         "minimum": 0.0,
         "maximum": 1.0,
@@ -159,10 +160,17 @@ FACTS = {
         "low_for_s": 20.0,
         "stale_after_s": 2.0,
         "min_on_s": 0.2,
+        "clear_for_s": 0.0,
         "recovery": "automatic",
         "members": "CONNECTED, LOW_SIGNAL, NOT_CONNECTED",
     },
-    "estop": {"for_s": 0.0, "stale_after_s": 2.0, "min_on_s": 0.2, "recovery": "automatic"},
+    "estop": {
+        "for_s": 0.0,
+        "stale_after_s": 2.0,
+        "min_on_s": 0.2,
+        "clear_for_s": 0.0,
+        "recovery": "automatic",
+    },
 }
 
 

@@ -25,6 +25,7 @@ def test_thresholds_and_times_are_those_that_are_said() -> None:
                 "for_s": 1.5,
                 "stale_after_s": 4,
                 "min_on_s": 0,
+                "clear_for_s": 3,
                 "recovery": "acknowledge",
             }
         }
@@ -36,6 +37,7 @@ def test_thresholds_and_times_are_those_that_are_said() -> None:
         "for_s": 1.5,
         "stale_after_s": 4.0,
         "min_on_s": 0.0,
+        "clear_for_s": 3.0,
         "recovery": "acknowledge",
         "minimum": 0.0,
         "maximum": 1.0,

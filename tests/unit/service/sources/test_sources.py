@@ -155,7 +155,6 @@ async def test_a_source_that_ends_is_run_again_and_the_others_go_on(
         await robot.clock.advance(1)
         assert (bad.runs, good.runs) == (2, 1)
         bad.take("disk", 2.0)
-        assert robot.sources.status[0].faults == {}
     assert robot.readings() == [("cpu", 1.0), ("disk", 2.0)]
 
 
@@ -191,6 +190,7 @@ async def test_only_what_changes_is_logged_and_told(caplog: pytest.LogCaptureFix
     async with running(source) as robot:
         for _ in range(10):
             source.fail("disk", "no answer")
+        await robot.clock.advance(10)
         source.fail("disk", "no such device")
         for _ in range(10):
             source.take("disk", 1.0)
@@ -202,6 +202,37 @@ async def test_only_what_changes_is_logged_and_told(caplog: pytest.LogCaptureFix
         "bus reads disk again",
     ]
     assert (robot.sources.status[0].reads, robot.sources.status[0].failures) == (10, 11)
+
+
+async def test_a_source_that_fails_with_ever_new_words_does_not_fill_the_record() -> None:
+    source = Scripted("bus", "disk", "cpu")
+    async with running(source) as robot:
+        for number in range(600):
+            source.take("disk", f"garbage {number}")
+            source.take("disk", 1.0)
+            await robot.clock.advance(0.1)
+        source.fail("cpu", "no answer")
+        assert len(robot.faults()) == 6 + 1
+
+        source.fail("disk", "no such device")
+        await robot.clock.advance(10)
+        source.fail("disk", "no such device")
+    assert robot.faults()[-1] == ("disk", "no such device")
+
+
+async def test_what_the_core_raises_is_no_failure_of_a_source_and_ends_the_adapter() -> None:
+    def fail(_: BackendMessage) -> None:
+        raise ZeroDivisionError
+
+    source = Scripted("os", "cpu")
+    task = asyncio.create_task(Sources((source,), SPECS, ManualClock()).run(fail))
+    await settle()
+    with pytest.raises(ZeroDivisionError):
+        source.take("cpu", 1.0)
+
+    with pytest.raises(ExceptionGroup) as caught:
+        await task
+    assert isinstance(caught.value.exceptions[0].__cause__, ZeroDivisionError)
 
 
 async def test_a_source_may_give_readings_before_it_first_waits() -> None:

@@ -18,8 +18,8 @@ from service.sources.source import SourceError
 
 pytestmark = pytest.mark.skipif(sys.platform != "linux", reason="reads /proc")
 
-NAME = "a camera driver with a long name"
-"""Longer than the kernel keeps."""
+NAME = f"a camera driver {os.getpid()}"
+"""Longer than the kernel keeps; and not that of another run of these tests."""
 
 
 @pytest.fixture
@@ -98,6 +98,17 @@ def test_a_process_that_ends_meanwhile_is_left_out(monkeypatch: pytest.MonkeyPat
 
     monkeypatch.setattr(processes, "_pss", pss)
     assert Processes(NAME).reader("memory_bytes")() == 5.0
+
+
+def test_a_process_that_ended_and_nobody_asked_how_does_not_count(tmp_path: Path) -> None:
+    program = tmp_path / f"short{os.getpid()}"
+    program.symlink_to("/bin/true")
+    ended = subprocess.Popen((str(program),))
+    while psutil.Process(ended.pid).status() != psutil.STATUS_ZOMBIE:
+        time.sleep(0.01)
+
+    assert Processes(program.name).reader("processes")() == 0
+    ended.wait()
 
 
 def test_the_name_of_a_process_that_ended_is_empty() -> None:
