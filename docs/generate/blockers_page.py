@@ -21,6 +21,8 @@ from domain.health.signals import (
     SignalSettings,
     default_signals,
 )
+from domain.reactions.obstacles import AT_REST, NO_LIFECYCLE, NOT_REQUESTED
+from domain.reactions.reaction import ACKNOWLEDGE, REACTION
 from domain.reactions.returns import RESTART, TOO_OFTEN
 from domain.reactions.rule_watch import RULE
 from domain.tasks.standstill import STANDSTILL_UNKNOWN, STILL_MOVING
@@ -48,6 +50,13 @@ _OF_CONDITIONS = {
 }
 _OF_TARGETS = {
     RULE: "A part is as a rule of the model says.",
+    REACTION: "A [reaction](../how-to/let-the-robot-react.md) acts, or a stronger one does; it "
+    "refuses requests that lead elsewhere.",
+    AT_REST: "The part was deactivated, cleaned up or shut down on request; a reaction does not "
+    "activate it.",
+    NOT_REQUESTED: "Nothing was ever requested of the part; a reaction does not activate it.",
+    NO_LIFECYCLE: "The node has no lifecycle, so that a reaction cannot restart it.",
+    ACKNOWLEDGE: "The cause of a reaction is gone, and nobody has acknowledged it.",
     INVARIANT: "An invariant of the mode is broken, or the time for which its guards have to hold "
     "is not over.",
     ESTOP: "ESTOP was active when the part would have returned.",

@@ -62,6 +62,7 @@ from tests.support.good import GOOD
 from tests.support.guarded_model import guarded_model
 from tests.support.http_robot import ACTUATION
 from tests.support.models import ARM, BASE, active, actuation_model
+from tests.support.reacting_robot import REST, ReactingRobot
 from tests.support.ruled_robot import RuledRobot, degrading_model
 from tests.support.shared import PROJECT
 
@@ -312,6 +313,20 @@ def a_step_left_out() -> list[RecordedEvent]:
     return [event for given in inputs for event in core.handle(given, 1).events]
 
 
+def a_carrier_that_reacts() -> list[RecordedEvent]:
+    """A reaction acts until it may no more, is acknowledged, overruled, and put on trial."""
+    limp = 'LIMP: {when: "a", action: mode, target: active.SLOW, at_most: 1}'
+    robot = ReactingRobot(limp, REST).see(a=True).see(b=True).see(b=False, a=False).see(a=True)
+    robot.acknowledge_reaction("LIMP")
+    robot.see(b=True)
+    robot.stop()
+    robot.see(a=False, b=False)
+    robot.arm("LIMP", "passive")
+    robot.release_stop()
+    robot.see(a=True)
+    return robot.events
+
+
 def a_wait() -> list[RecordedEvent]:
     """A request waits until the battery is charged."""
     robot = CoreRobot(guarded_model())
@@ -361,6 +376,7 @@ def test_events_that_happen_are_listed_with_what_they_carry() -> None:
         an_error_that_does_not_spread,
         a_mode_with_other_limits,
         a_lost_arm,
+        a_carrier_that_reacts,
         a_wait,
         a_step_left_out,
         the_examples,

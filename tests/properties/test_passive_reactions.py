@@ -3,6 +3,7 @@
 `make soak` compares 10,000 pairs of robots, `make test` 200.
 """
 
+import os
 from typing import NamedTuple
 
 import hypothesis.strategies as st
