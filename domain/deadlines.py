@@ -19,6 +19,11 @@ class Deadlines(Generic[KeyT]):
     def __init__(self) -> None:
         self._at: dict[KeyT, tuple[Instant, int]] = {}
         self._heap: list[tuple[Instant, int, KeyT]] = []
+        self._queued: dict[KeyT, tuple[Instant, int]] = {}
+        """By key, the entry of the heap that its deadline is found by: the same, or an earlier one.
+
+        A deadline that is put off, as by each reading, leaves the heap alone until it comes up.
+        """
         self._count = 0
 
     def __contains__(self, key: KeyT) -> bool:
@@ -28,12 +33,10 @@ class Deadlines(Generic[KeyT]):
     def set(self, key: KeyT, at: Instant) -> None:
         """Set the deadline of `key`; it replaces an earlier one."""
         self._count += 1
-        self._at[key] = (at, self._count)
-        heapq.heappush(self._heap, (at, self._count, key))
-        if len(self._heap) > 2 * len(self._at) + _SPARE:
-            # A deadline that is put off with each reading would fill the memory before it comes.
-            self._heap = [(at, count, key) for key, (at, count) in self._at.items()]
-            heapq.heapify(self._heap)
+        entry = self._at[key] = (at, self._count)
+        queued = self._queued.get(key)
+        if queued is None or queued[0] > at:
+            self._queue(key, entry)
 
     def clear(self, key: KeyT) -> None:
         """Remove the deadline of `key`, if any."""
@@ -53,12 +56,30 @@ class Deadlines(Generic[KeyT]):
         if not self._heap or self._heap[0][0] > now:
             return None
         _, _, key = heapq.heappop(self._heap)
-        del self._at[key]
+        del self._at[key], self._queued[key]
         return key
 
+    def _queue(self, key: KeyT, entry: tuple[Instant, int]) -> None:
+        self._queued[key] = entry
+        heapq.heappush(self._heap, (*entry, key))
+        if len(self._heap) > 2 * len(self._at) + _SPARE:
+            # What was replaced by an earlier deadline would fill the memory before it comes up.
+            self._queued = dict(self._at)
+            self._heap = [(at, count, key) for key, (at, count) in self._at.items()]
+            heapq.heapify(self._heap)
+
     def _drop_forgotten(self) -> None:
-        while self._heap and self._at.get(self._heap[0][2]) != self._heap[0][:2]:
+        """Take from the top of the heap what is no deadline, or one that was put off."""
+        while self._heap:
+            at, count, key = self._heap[0]
+            entry = self._at.get(key)
+            if entry == (at, count):
+                return
             heapq.heappop(self._heap)
+            if self._queued.get(key) == (at, count):
+                del self._queued[key]
+                if entry is not None:
+                    self._queue(key, entry)
 
 
 class SharedDeadlines(Generic[KeyT]):

@@ -244,6 +244,23 @@ class KeptReaction:
 
 
 @dataclass(frozen=True, slots=True)
+class KeptBound:
+    """How often something happened that may happen only so often within a time."""
+
+    kind: str
+    """`rule`: that one acts; `rule_return`, `invariant_return`: that a part returns."""
+    bounded: str
+    """Which rule, as `SYSTEM.RULE`, or which part."""
+    ages: tuple[Duration, ...] = ()
+    """How long ago it happened, when this was kept: while the service is down, no time passes."""
+
+    @property
+    def name(self) -> str:
+        """Return its name among those of its kind."""
+        return f"{self.kind}:{self.bounded}"
+
+
+@dataclass(frozen=True, slots=True)
 class KeptTask:
     """A task as it was submitted; its progress is kept apart, since that changes often."""
 
@@ -304,6 +321,7 @@ Kept: TypeAlias = (
     | KeptReport
     | KeptHold
     | KeptReaction
+    | KeptBound
     | KeptTask
     | KeptProgress
 )

@@ -22,6 +22,11 @@ class ErrorSource(Protocol):
         ...
 
     @property
+    def is_on(self) -> bool:
+        """Tell whether an error is active."""
+        ...
+
+    @property
     def errors(self) -> frozenset[str]:
         """Return the active errors."""
         ...
@@ -103,6 +108,8 @@ class ErrorRegistry:
         self._code = 0
         self._touched: dict[int, None] = dict.fromkeys(range(len(self._sources)))
         self._deadlines: Deadlines[int] = Deadlines()
+        self._wakes: list[Instant | None] = [None] * len(self._sources)
+        """The deadline of each source."""
         self.renew()
 
     # --- what happens ----------------------------------------------------------------------------
@@ -126,6 +133,7 @@ class ErrorRegistry:
     def judge(self, now: Instant) -> None:
         """Raise and clear the errors of the sources that are due."""
         while (position := self._deadlines.pop_due(now)) is not None:
+            self._wakes[position] = None
             self._sources[position].judge(now)
             self.touch(position)
 
@@ -136,6 +144,8 @@ class ErrorRegistry:
         for position in self.touched():
             source, before = self._sources[position], self._noted[position]
             self._set_deadline(position, source.wake_at())
+            if before is _NOTHING and not source.is_on:
+                continue
             after = self._look(position, source)
             if after == before:
                 continue
@@ -197,6 +207,9 @@ class ErrorRegistry:
     # --- inside ----------------------------------------------------------------------------------
 
     def _set_deadline(self, position: int, at: Instant | None) -> None:
+        if at == self._wakes[position]:
+            return
+        self._wakes[position] = at
         if at is None:
             self._deadlines.clear(position)
         else:

@@ -21,7 +21,14 @@ from domain.findings import Blocker
 from domain.health.error_causes import NO_CAUSES, ErrorCauses
 from domain.health.error_list import ErrorList
 from domain.health.robot_errors import RobotErrors
-from domain.health.signals import DECLARED_BIT, ESTOP, Comparison, ModeLimit, SignalSettings
+from domain.health.signals import (
+    DECLARED_BIT,
+    ESTOP,
+    Comparison,
+    ModeLimit,
+    Recovery,
+    SignalSettings,
+)
 from domain.health.state_manager import HealthChanges, StateManager
 from domain.inputs import Readings, Restored, SourceFault
 from domain.kept import KeptError
@@ -65,7 +72,8 @@ class Health(Concern):
             start: The current time; the times of silent signals count from here.
             causes: Which errors of parts explain which.
         """
-        self._manager = StateManager(signals, start)
+        declared = tuple(signals)
+        self._manager = StateManager(declared, start)
         self._outbox = outbox
         self.error_list = ErrorList(outbox, causes)
         """All errors; later concerns note those of parts there."""
@@ -76,6 +84,9 @@ class Health(Concern):
             self._keys_of.setdefault(key.part, []).append(key)
         self._pending: dict[ErrorKey, int] = {}
         """By error, the event that recorded it as pending."""
+        acknowledge = Recovery.ACKNOWLEDGE
+        self._waiting = {item.spec.name for item in declared if item.recovery is acknowledge}
+        """Signals whose error may wait for an acknowledgement."""
         self._kept: dict[str, ErrorKey] = {}
         """By signal, the error that is kept, since it waits for an acknowledgement."""
         self._decided_by: int | None = None
@@ -301,7 +312,7 @@ class Health(Concern):
             self.error_list.note_told(key, self._decided_by)
         self._robot_errors.follow(changes, now)
         self._outbox.signals |= changes.signals
-        for signal in changes.signals:
+        for signal in changes.signals & self._waiting:
             self._keep(signal)
 
     def _is_silenced(self, key: ErrorKey) -> bool:

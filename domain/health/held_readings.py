@@ -66,7 +66,7 @@ class HeldReadings:
     @property
     def value(self) -> SignalValue | None:
         """Return the value in force: the last one, or true while a source presses a stop."""
-        if self.pressing:
+        if self.settings.spec.is_stop and self.pressing:
             return True
         return None if self.newest is None else self.newest.value
 
@@ -109,23 +109,32 @@ class HeldReadings:
             source: Who measured.
             now: When it arrived.
         """
+        if not self.settings.spec.is_stop:
+            self._hold("", self.newest, reading, source, now)
+            return
         key = self._key(source)
         if key == FURTHER_SOURCES:
             source = FURTHER_SOURCES
         # Appended at the end, so that the dictionary stays in order of arrival.
-        held = self._by_source.pop(key, None)
-        stamps = [] if held is None or held.newest_stamp is None else [held.newest_stamp]
-        if reading.stamp is not None and reading.stamp <= now + MAX_SKEW:
-            stamps.append(reading.stamp)
-        self.newest = self._by_source[key] = HeldReading(
-            value=reading.value,
-            source=source,
-            received_at=now,
-            stamp=reading.stamp,
-            newest_stamp=max(stamps, default=None),
-            since=held.since if held is not None and held.value == reading.value else now,
-        )
+        self._hold(key, self._by_source.pop(key, None), reading, source, now)
         self._forget_quiet_source()
+
+    def _hold(
+        self, key: str, held: HeldReading | None, reading: Reading, source: str, now: Instant
+    ) -> None:
+        """Hold a reading instead of the one that is held under a key."""
+        newest_stamp, since = reading.stamp, now
+        if newest_stamp is not None and newest_stamp > now + MAX_SKEW:
+            newest_stamp = None
+        if held is not None:
+            stamp = held.newest_stamp
+            if newest_stamp is None or (stamp is not None and stamp > newest_stamp):
+                newest_stamp = stamp
+            if held.value == reading.value:
+                since = held.since
+        self.newest = self._by_source[key] = HeldReading(
+            reading.value, source, now, reading.stamp, newest_stamp, since
+        )
 
     def _key(self, source: str) -> str:
         """Return under which name the readings of a source are held."""

@@ -89,8 +89,12 @@ class SignalMonitor:
         if settings.stale_after:
             # No minimum time: the first reading clears it at once.
             self._stale_slot.begin_with(self._stale, start)
-        self.state = self._make_state(self._is_stale(start))
-        """The same object until something changes."""
+        self.version = 0
+        """Differs whenever something about the signal does."""
+        self.is_calm = False
+        """Nothing is wrong, counts or is pressed: a good reading changes nothing but the value."""
+        self._state: SignalState | None = self._make_state(self._is_stale(start))
+        """None: to be made when somebody asks."""
         self._view: SignalView | None = None
 
     # --- what happens ----------------------------------------------------------------------------
@@ -103,7 +107,12 @@ class SignalMonitor:
             source: Who measured.
             now: When it arrived.
         """
+        before = self.readings.newest
         self.readings.take(reading, source, now)
+        if self.is_calm and not self._met_by_readings():
+            if self.readings.newest != before:
+                self._note_change(None)
+            return
         if self.fault is not None and self.fault.source == source:
             self.fault = None
         self._judge(self._count(now), now)
@@ -175,6 +184,8 @@ class SignalMonitor:
 
     def wake_at(self) -> Instant | None:
         """Return the next instant at which time alone changes something; None: never."""
+        if self.is_calm:
+            return self._stale_at()
         since = self._counting_since
         due = [] if since is None else [since + bound.for_ for bound in self._waiting]
         others = (self._stale_at(), self._value_slot.wake_at, self._stale_slot.wake_at)
@@ -204,12 +215,52 @@ class SignalMonitor:
         self._value_slot.update(None if cause is None else cause.error, now)
         self._stale_slot.update(self._stale if is_stale else None, now)
         self._waiting = () if self._counting_since is None else tuple(self._before_cause(met))
-        state = self._make_state(is_stale)
-        if state != self.state:
-            self.state = state
-            self._view = None
+        before, state = self.state, self._make_state(is_stale)
+        self.is_calm = (
+            cause is None
+            and self._counting_since is None
+            and not self.is_on
+            and self._engaged_since is None
+            and self.fault is None
+            and not self.settings.spec.is_stop
+        )
+        if state != before:
+            self._note_change(state)
+
+    def _note_change(self, state: SignalState | None) -> None:
+        self.version += 1
+        self._state, self._view = state, None
 
     # --- what can be seen ------------------------------------------------------------------------
+
+    @property
+    def state(self) -> SignalState:
+        """Return what can change about the signal; the same object until something does."""
+        if self._state is None:
+            self._state = self._make_state(is_stale=False)
+        return self._state
+
+    @property
+    def is_on(self) -> bool:
+        """Tell whether an error is active."""
+        return self._value_slot.error is not None or self._stale_slot.error is not None
+
+    @property
+    def pending_error(self) -> str | None:
+        """Return the error that will be raised next if the signal stays bad."""
+        coming = min(self._waiting, key=_needs, default=None)
+        return coming.error if coming else None
+
+    @property
+    def is_skewed(self) -> bool:
+        """Tell whether the sender's clock differs from ours."""
+        newest = self.readings.newest
+        return newest is not None and newest.skewed
+
+    @property
+    def waits_for_acknowledgement(self) -> bool:
+        """Tell whether an operator has yet to acknowledge the error of the value."""
+        return self._value_slot.waits_for_acknowledgement
 
     @property
     def view(self) -> SignalView:
@@ -301,7 +352,7 @@ class SignalMonitor:
             coming.error if coming else None,
             self._counting_since if coming else None,
             coming.for_ if coming else None,
-            newest.skewed if newest else False,
+            self.is_skewed,
             self._value_slot.waits_for_acknowledgement,
             self._facts,
             self._fault_reason or None,

@@ -102,21 +102,52 @@ class _Gathered:
         self.errors.update(changes.explained)
         self.state_changed = True
 
-    def add_signal(self, before: SignalState, monitor: SignalMonitor) -> None:
+    def add_signal(self, before: "_Told", after: "_Told", monitor: SignalMonitor) -> None:
         """Add what became of a signal."""
-        after, settings = monitor.state, monitor.settings
-        name = settings.spec.name
+        name = monitor.settings.spec.name
         self.signals.add(name)
         if before.pending_error != after.pending_error:
-            if before.pending_error is not None:
-                self.errors.add(ErrorKey(settings.part, before.pending_error))
-                if before.pending_error != after.error:
-                    self.settled.append((name, before.pending_error, after.stale))
-            if after.pending_error is not None:
-                self.errors.add(ErrorKey(settings.part, after.pending_error))
-                self.pending.append((name, after.pending_error))
+            self._add_pending(before.pending_error, after.pending_error, monitor)
         if after.skewed and not before.skewed:
             self.skewed.append(name)
+
+    def _add_pending(self, before: str | None, after: str | None, monitor: SignalMonitor) -> None:
+        name, part = monitor.settings.spec.name, monitor.settings.part
+        if before is not None:
+            self.errors.add(ErrorKey(part, before))
+            if before != monitor.state.error:
+                self.settled.append((name, before, monitor.state.stale))
+        if after is not None:
+            self.errors.add(ErrorKey(part, after))
+            self.pending.append((name, after))
+
+
+class _Told(NamedTuple):
+    """How a signal was when it was told last."""
+
+    version: int
+    pending_error: str | None
+    skewed: bool
+
+    @classmethod
+    def of(cls, monitor: SignalMonitor) -> "_Told":
+        if monitor.is_calm:
+            return cls(monitor.version, None, monitor.is_skewed)
+        return cls(monitor.version, monitor.pending_error, monitor.is_skewed)
+
+
+class _Trial:
+    """Readings that are held as a trial: of several of one signal, each has to fit those before."""
+
+    def __init__(self, monitors: Mapping[str, SignalMonitor]) -> None:
+        self._monitors = monitors
+        self._copies: dict[str, HeldReadings] = {}
+
+    def readings(self, name: str) -> HeldReadings:
+        """Return a copy of the readings of a signal, the same for each call."""
+        if name not in self._copies:
+            self._copies[name] = self._monitors[name].readings.copy()
+        return self._copies[name]
 
 
 class StateManager:
@@ -146,12 +177,15 @@ class StateManager:
         """By signal, the monitors that its readings go to."""
         self._position = {name: position for position, name in enumerate(self._monitors)}
         """By signal, its position in the registry."""
-        self._names = tuple(self._monitors)
+        self._by_position = tuple(self._monitors.values())
         self._registry = ErrorRegistry(self._monitors.values())
+        self._stops = {item.spec.name for item in declared if item.spec.is_stop}
         self.is_late = False
         """While set, deadlines that passed are not judged: what has arrived is taken in first."""
-        self._told = {name: monitor.state for name, monitor in self._monitors.items()}
-        """As the signals were when they were told last."""
+        self._told = [_Told.of(monitor) for monitor in self._monitors.values()]
+        """By position, how the signals were when they were told last."""
+        self._checked_last: tuple[Readings | None, list[Reading]] = (None, [])
+        """The readings that were checked last: `receive` follows `check`."""
         self._shown: Mapping[str, SignalView] | None = None
         """A copy of the views; None: to be made when somebody asks."""
 
@@ -166,21 +200,25 @@ class StateManager:
                 is the name of its signal.
             OutdatedReadingError: A newer reading of the signal is held, and this one is no worse.
         """
-        trial: dict[str, HeldReadings] = {}
-        for reading in self._checked(readings):
+        checked = self._checked(readings)
+        names = {reading.signal for reading in checked}
+        trial = _Trial(self._monitors) if len(names) < len(checked) else None
+        for reading in checked:
             name = reading.signal
-            held = trial.setdefault(name, self._monitors[name].readings.copy())
+            held = self._monitors[name].readings if trial is None else trial.readings(name)
             behind = held.behind(reading, readings.source)
             if behind is not None:
                 raise OutdatedReadingError(name, to_seconds(behind))
-            held.take(reading, readings.source, now)
+            if trial is not None:
+                held.take(reading, readings.source, now)
 
     def released_by(self, readings: Readings) -> tuple[str, ...]:
         """Return the stops that their source would release with readings that passed `check`."""
         return tuple(
             reading.signal
             for reading in readings.items
-            if self._monitors[reading.signal].readings.is_released_by(reading, readings.source)
+            if reading.signal in self._stops
+            and self._monitors[reading.signal].readings.is_released_by(reading, readings.source)
         )
 
     def receive(self, readings: Readings, now: Instant) -> HealthChanges:
@@ -195,7 +233,8 @@ class StateManager:
                     value = number_of(monitor.settings.spec, reading.value)
                     self._feed(reading.signal, value, now, fed)
             for name in fed:
-                self._touched(name).judge(now)
+                self._windows[name].compute(now)
+                self._touched(name)
         return self._build(gathered)
 
     def set_limit(self, signal: str, limit: ModeLimit | None, now: Instant) -> HealthChanges:
@@ -356,6 +395,8 @@ class StateManager:
         return monitor
 
     def _checked(self, readings: Readings) -> list[Reading]:
+        if readings is self._checked_last[0]:
+            return self._checked_last[1]
         checked = []
         for reading in readings.items:
             settings = self._monitor(reading.signal).settings
@@ -363,11 +404,20 @@ class StateManager:
                 words = f"{reading.signal} is computed from {settings.monitor.of}; post that"
                 raise InvalidValueError(words, reading.signal)
             value = settings.spec.checked(reading.value)
-            checked.append(Reading(reading.signal, value, reading.stamp))
+            is_same = type(value) is type(reading.value) and value == reading.value and value
+            checked.append(reading if is_same else Reading(reading.signal, value, reading.stamp))
+        self._checked_last = (readings, checked)
         return checked
 
     def _feed(self, signal: str, value: float, now: Instant, fed: dict[str, None]) -> None:
-        """Hand a value to the monitors of a signal, and theirs to those that they feed."""
+        """Hand a value to the monitors of a signal, and theirs to those that they feed.
+
+        Args:
+            signal: One that feeds monitors.
+            value: Its reading.
+            now: The current time.
+            fed: Takes the monitors.
+        """
         for name in self._fed[signal]:
             monitor = self._windows[name]
             monitor.feed(value, now)
@@ -393,11 +443,10 @@ class StateManager:
     def _gather(self, gathered: _Gathered) -> None:
         """Gather what became of the signals that were touched; the others are as they were."""
         for position in self._registry.touched():
-            name = self._names[position]
-            before, monitor = self._told[name], self._monitors[name]
-            if monitor.state is not before:
-                gathered.add_signal(before, monitor)
-                self._told[name] = monitor.state
+            before, monitor = self._told[position], self._by_position[position]
+            if monitor.version != before.version:
+                after = self._told[position] = _Told.of(monitor)
+                gathered.add_signal(before, after, monitor)
                 self._shown = None
         changes = self._registry.renew()
         if changes.explained:

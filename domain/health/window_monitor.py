@@ -6,12 +6,12 @@ from domain.findings import Blocker
 from domain.health.held_readings import HeldReading
 from domain.health.signal_monitor import SignalMonitor
 from domain.health.signal_reasons import unknown_reason
-from domain.health.signals import Bound, Comparison, MonitorSettings, SignalSettings
+from domain.health.signals import Bound, Comparison, ModeLimit, MonitorSettings, SignalSettings
 from domain.inputs import SignalValue
 from domain.snapshot import MonitorView
 from domain.timebase import Instant, seconds
 from domain.windows.crossings import earliest
-from domain.windows.settings import Statistic, Threshold
+from domain.windows.settings import OF_ARRIVALS, Statistic, Threshold
 from domain.windows.window import Window
 
 SOURCE = "monitor"
@@ -20,11 +20,15 @@ SOURCE = "monitor"
 SHOWN_EVERY = seconds(0.5)
 """How often a value that time alone changes is computed only to be shown."""
 
-LEAVING_EVERY = seconds(0.05)
-"""How often a value is computed at most because readings leave the window. A reading computes it
-anew anyway, and most signals are read more often."""
+COMPUTED_EVERY = seconds(0.05)
+"""How often readings lead to a new value at most, unless one of them is beyond a bound itself: a
+signal may be read a thousand times a second."""
 
-_OF_ALL_VALUES = frozenset(
+LATEST = seconds(0.1)
+"""Time after a value was computed until a reading since then is taken account of at the latest, and
+one that left the window at the earliest: a signal that is read more often wakes nobody."""
+
+_MOVED_BY_EACH = frozenset(
     {
         Statistic.MEAN,
         Statistic.STD,
@@ -34,6 +38,9 @@ _OF_ALL_VALUES = frozenset(
     }
 )
 """Statistics that any reading may take across a bound when it leaves the window."""
+
+_AMONG_READINGS = frozenset({Statistic.MEAN, Statistic.MIN, Statistic.MAX, Statistic.PERCENTILE})
+"""Statistics that only a reading beyond a bound takes across it."""
 
 
 class WindowMonitor(SignalMonitor):
@@ -47,40 +54,77 @@ class WindowMonitor(SignalMonitor):
     def __init__(self, settings: SignalSettings, monitor: MonitorSettings, start: Instant) -> None:
         self.of = monitor.of
         self.window = Window(monitor.window, start)
-        self._patience = LEAVING_EVERY if monitor.window.statistic in _OF_ALL_VALUES else 0
+        self._statistic = monitor.window.statistic
+        self._changes_with_time = (
+            monitor.window.length is not None
+            or self._statistic is Statistic.TIME_TO_LIMIT
+            or self._statistic in OF_ARRIVALS
+            or self._statistic is Statistic.STUCK_FOR
+        )
         self._was_fed = False
+        self._computed_at = start - COMPUTED_EVERY
+        """When readings were taken account of last."""
         self._value_known: SignalValue | None = None
         """The last value that was known."""
-        self._look_at: Instant | None = None
-        """When the value has to be computed again without a reading."""
+        self._owed_at: Instant | None = None
+        """When a reading has to be taken account of; None: all are."""
+        self._crosses_at: Instant | None = None
+        """When time alone may take the value across a bound; None: it cannot."""
+        self._shown_at: Instant | None = None
+        """When the value has to be computed to be shown; None: time does not change it."""
         super().__init__(settings, start)
         self.judge(start)
 
     def feed(self, value: float, now: Instant) -> None:
-        """Take in a reading; `judge` computes what follows from it, once for all of one message."""
+        """Take in a reading; `compute` follows, once for all readings of one message."""
         self.window.add(now, value)
         self._was_fed = True
+        if self._owed_at is None:
+            self._owed_at = max(now, self._computed_at + COMPUTED_EVERY)
+        if self._owed_at > now and self._is_beyond_bound(value):
+            self._owed_at = now
+
+    def compute(self, now: Instant) -> None:
+        """Take account of the readings, unless the value was computed only just now."""
+        if self._owed_at is not None and now >= self._owed_at:
+            self.judge(now)
 
     def judge(self, now: Instant) -> None:
         """Compute the value as of `now`, and what follows from it."""
         value = self.window.value(now)
+        is_same = False
         if value is None:
-            self.readings.newest = None
-            self._counting_since = None
+            self._lose_value()
             # Without readings an error is not known to be over. With readings that have no value it
             # is: no trend leads to the limit any more.
             cause = None if self.window.has_enough(now) else self._cause
-            met = [] if cause is None else [cause]
+            self._judge([] if cause is None else [cause], now)
+        elif self.is_calm and not self._is_bad(value):
+            is_same = self._was_fed and self.readings.newest is not None
+            if self._hold(value, now):
+                self._note_change(None)
         else:
             self._hold(value, now)
-            met = self._count(now)
-        self._was_fed = False
-        self._judge(met, now)
-        self._look_at = self._next_look(now)
+            self._judge(self._count(now), now)
+        self._plan(now, is_same=is_same)
+        if self._was_fed:
+            self._computed_at = now
+        self._owed_at, self._was_fed = None, False
+
+    def set_limit(self, limit: ModeLimit | None, now: Instant) -> None:
+        """Put another limit in force, and judge the value anew; see `SignalMonitor`."""
+        value = self.window.value(now)
+        if value is None:
+            self._lose_value()
+        else:
+            self._hold(value, now)
+        super().set_limit(limit, now)
 
     def wake_at(self) -> Instant | None:
         """Return the next instant at which time alone changes something; None: never."""
-        return earliest(super().wake_at(), self._look_at)
+        owed_at = None if self._owed_at is None else self._computed_at + LATEST
+        at = earliest(owed_at, self._crosses_at, self._shown_at)
+        return at if self.is_calm else earliest(at, super().wake_at())
 
     def reasons(self) -> Iterator[Blocker]:
         """Yield why the errors are active, one reason per cause."""
@@ -112,23 +156,61 @@ class WindowMonitor(SignalMonitor):
 
     # --- inside ----------------------------------------------------------------------------------
 
-    def _hold(self, value: float, now: Instant) -> None:
-        """Hold the value; it is as old as the last reading, or as what time made of it."""
+    def _hold(self, value: float, now: Instant) -> bool:
+        """Hold the value, and tell whether that changed anything.
+
+        It is as old as the last reading, or as what time made of it.
+        """
         newest = self.readings.newest
-        if newest is None or self._was_fed or value != newest.value:
-            since = now if newest is None or newest.value != value else newest.since
-            self.readings.newest = HeldReading(value, SOURCE, now, None, None, since)
-            self._value_known = value
+        if newest is not None and not self._was_fed and value == newest.value:
+            return False
+        since = now if newest is None or newest.value != value else newest.since
+        self.readings.newest = HeldReading(value, SOURCE, now, None, None, since)
+        self._value_known = value
+        return True
 
-    def _next_look(self, now: Instant) -> Instant | None:
+    def _lose_value(self) -> None:
+        self.readings.newest = None
+        self._counting_since = None
+
+    def _is_bad(self, value: float) -> bool:
+        return any(bound.is_met_by(value) for bound in self.settings.bounds)
+
+    def _is_beyond_bound(self, value: float) -> bool:
+        """Tell whether a reading may take the value across a bound at once."""
+        return self._statistic in _AMONG_READINGS and self._cause is None and self._is_bad(value)
+
+    def _plan(self, now: Instant, *, is_same: bool) -> None:
+        """Note when the value has to be computed again without a reading.
+
+        Args:
+            now: The current time.
+            is_same: The value was known and good before, and readings left it so. They put off
+                when time alone takes it across a bound, or leave that as it is.
+        """
+        crosses_at = self._crosses_at
+        if is_same and self._is_put_off_by_readings:
+            self._shown_at = now + SHOWN_EVERY if self._changes_with_time else None
+            if crosses_at is None or crosses_at > now:
+                if crosses_at is not None and self._statistic in _MOVED_BY_EACH:
+                    self._crosses_at = max(crosses_at, now + LATEST)
+                return
         changes_at = self.window.changes_at(now)
-        if changes_at is None:
-            return None
-        shown_at = max(changes_at, now + SHOWN_EVERY)
-        return earliest(shown_at, *(self._crosses_at(bound, now) for bound in self.settings.bounds))
+        self._shown_at = None if changes_at is None else max(changes_at, now + SHOWN_EVERY)
+        crossings = (self._crossing(bound, now) for bound in self.settings.bounds)
+        self._crosses_at = None if changes_at is None else earliest(*crossings)
 
-    def _crosses_at(self, bound: Bound, now: Instant) -> Instant | None:
+    @property
+    def _is_put_off_by_readings(self) -> bool:
+        """Tell whether no good reading lets time take the value across a bound earlier."""
+        if self._statistic is Statistic.GAP:
+            # A silence that is over can leave the window.
+            below = (bound.comparison is Comparison.BELOW for bound in self.settings.bounds)
+            return not any(below)
+        return self._statistic is not Statistic.TIME_TO_LIMIT
+
+    def _crossing(self, bound: Bound, now: Instant) -> Instant | None:
         limit = bound.clear_limit if bound is self._cause else float(bound.threshold)
         threshold = Threshold(limit, above=bound.comparison is Comparison.ABOVE)
         at = self.window.crosses_at(threshold, now)
-        return None if at is None else max(at, now + self._patience)
+        return max(at, now + LATEST) if at and self._statistic in _MOVED_BY_EACH else at

@@ -13,6 +13,7 @@ from itertools import chain
 from domain.parts.mode_settings import TransitionSettings
 from domain.parts.system_model import SmhModel
 from domain.plans.scope import Links, Scope
+from domain.plans.timing import Timing
 from domain.plans.walk import Walk
 from domain.state_and_mode import PartName
 from domain.timebase import Duration
@@ -25,14 +26,13 @@ class Order:
         """Begin with no node done."""
         self._scope = scope
         self._walk = None if scope is None else Walk(scope)
-        self._stages: Mapping[PartName, int] | None = None
-        """Of all nodes; None: nobody asked for them yet."""
+        self._timing = None if scope is None else Timing(scope)
         self._after: dict[tuple[PartName, PartName], tuple[PartName, ...]] = {}
         """By system and part, the nodes that the part waits for, once somebody asked for them."""
 
     def waits(self, node: PartName) -> bool:
         """Tell whether a node of the change waits for others."""
-        return self._walk is not None and node not in self._walk.begins
+        return self._walk is not None and node not in self._walk.begun
 
     @property
     def blocked(self) -> list[PartName]:
@@ -44,12 +44,13 @@ class Order:
     @property
     def stages(self) -> int:
         """Return how many stages there are; nodes of one stage may run side by side."""
-        return 1 + max(self._numbered().values(), default=0)
+        if self._scope is None or self._timing is None:
+            return 1
+        return max(1, self._timing.end(self._scope.part))
 
     def stage(self, node: PartName) -> int:
         """Return the stage of a node, from 0: the most nodes in a row that come before it."""
-        begun = {} if self._walk is None else self._walk.begins
-        return begun[node] if node in begun else self._numbered().get(node, 0)
+        return 0 if self._timing is None else self._timing.begin(node)
 
     def after(self, node: PartName) -> tuple[PartName, ...]:
         """Return the nodes that a node waits for, without those that these wait for."""
@@ -77,21 +78,11 @@ class Order:
             return None
         if self._scope is None:
             return max(times.values(), default=0)
-        return Walk(self._scope, times).to_the_end().ends[self._scope.part]
+        return Timing(self._scope, times).end(self._scope.part)
 
     def turned(self, nodes: Collection[PartName]) -> "Order":
         """Return the order in which some of the nodes go back: what came last goes first."""
         return Order() if self._scope is None else Order(_possible(self._scope.turned(nodes)))
-
-    def _numbered(self) -> Mapping[PartName, int]:
-        if self._stages is None:
-            self._stages = {} if self._scope is None else _stages(self._scope)
-        return self._stages
-
-
-def _stages(scope: Scope) -> Mapping[PartName, int]:
-    begins = Walk(scope).to_the_end().begins
-    return {node: begins[node] for node in scope.nodes}
 
 
 def order_of(
@@ -131,7 +122,7 @@ def _possible(scope: Scope) -> Scope:
     if not scope.has_shared_parts:
         return scope
     scope = scope.without_empty()
-    begun = Walk(scope).to_the_end().begins
+    begun = Walk(scope).to_the_end().begun
     left = [node for node in scope.nodes if node not in begun]
     return scope.freed(chain.from_iterable(map(scope.places, left)))
 

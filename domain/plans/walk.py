@@ -1,28 +1,19 @@
 """The parts of a change as their turns come."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 
 from domain.plans.scope import Scope
 from domain.state_and_mode import PartName
-from domain.timebase import Duration
 
 
 class Walk:
-    """Which parts have begun, and which are done; time passes as if every node took its time."""
+    """Which parts have begun, and which are done."""
 
-    def __init__(self, scope: Scope, times: Mapping[PartName, Duration] | None = None) -> None:
-        """Begin with no node done.
-
-        Args:
-            scope: What is ordered.
-            times: How long each node takes; None: one stage each.
-        """
+    def __init__(self, scope: Scope) -> None:
+        """Begin with no node done."""
         self._scope = scope
-        self._times = times
-        self.begins: dict[PartName, int] = {}
-        """When each part that may begin does, at the earliest."""
-        self.ends: dict[PartName, int] = {}
-        """When it is done; of a system, as far as it has come."""
+        self.begun: set[PartName] = set()
+        """The parts whose turn has come."""
         self._open: dict[PartName, int] = {}
         """Of each system that has begun, how many of its parts are not done."""
         self._waits: dict[tuple[PartName, PartName], int] = {}
@@ -36,7 +27,6 @@ class Walk:
     def done(self, node: PartName) -> list[PartName]:
         """Note that a node is done; return those whose turn comes by that."""
         self._free = []
-        self.ends[node] = self.begins[node] + (1 if self._times is None else self._times[node])
         self._begin_and_end([], [node])
         return self._free
 
@@ -63,46 +53,38 @@ class Walk:
             self._let_begin[part] = let = self._let_begin.get(part, 0) + 1
             if let < len(systems):
                 return
-        begin = 0
-        for system in systems:
-            begin = max(begin, self.begins[system])
-            links = scope.links.get(system)
-            if links is not None:
-                for name in links.before.get(part, ()):
-                    begin = max(begin, self.ends[name])
-        self.begins[part] = self.ends[part] = begin
+        self.begun.add(part)
         inside = scope.inside(part)
         if inside:
             self._open[part] = len(inside)
-            self._begin_inside(part, begin, begun)
+            self._begin_inside(part, inside, begun)
         elif part in scope.nodes:
             self._free.append(part)
         else:
             ended.append(part)
 
-    def _begin_inside(self, system: PartName, begin: int, begun: list[PartName]) -> None:
+    def _begin_inside(
+        self, system: PartName, inside: Sequence[PartName], begun: list[PartName]
+    ) -> None:
         """Let those parts of a system begin that wait for no other one."""
-        scope = self._scope
-        first: Sequence[PartName] = scope.inside(system)
+        scope, first = self._scope, inside
         if (links := scope.links.get(system)) is not None:
-            first = [part for part in first if not links.before.get(part)]
+            first = [part for part in inside if not links.before.get(part)]
         if scope.nodes.keys() >= set(first) and scope.model.shared_parts.isdisjoint(first):
             # Nodes of no other system begin in bulk: there may be ten thousand.
-            self.begins.update(dict.fromkeys(first, begin))
+            self.begun.update(first)
             self._free += first
         else:
             begun.extend(reversed(first))
 
     def _end(self, part: PartName, begun: list[PartName], ended: list[PartName]) -> None:
         """Note in the systems of a part that it is done, and let those begin that waited for it."""
-        scope, end = self._scope, self.ends[part]
+        scope = self._scope
         for system in scope.systems_of(part):
-            self.ends[system] = max(self.ends[system], end)
             self._open[system] -= 1
             if not self._open[system]:
                 ended.append(system)
-            links = scope.links.get(system)
-            if links is not None:
+            if (links := scope.links.get(system)) is not None:
                 for name in reversed(links.followers.get(part, ())):
                     if self._waits_no_more(system, name, links.before[name]):
                         begun.append(name)
@@ -114,6 +96,5 @@ class Walk:
         if len(before) == 1:
             return True
         place = (system, part)
-        left = self._waits.get(place, len(before)) - 1
-        self._waits[place] = left
+        self._waits[place] = left = self._waits.get(place, len(before)) - 1
         return not left

@@ -19,10 +19,11 @@ from domain.inputs import BackendStatus, Restored
 from domain.outbox import Outbox
 from domain.parts.convergence import bottom_up
 from domain.parts.parts import Parts
+from domain.reactions.bounds import Bounds
 from domain.reactions.displacing import Displacing, Ground
 from domain.reactions.fallback import Fallback
 from domain.reactions.returns import Returns
-from domain.reactions.settings import HEARD_WITHIN, MIN_RELIEF
+from domain.reactions.settings import HEARD_WITHIN, MAX_RETURNS, MIN_RELIEF
 from domain.snapshot import Because
 from domain.state_and_mode import PartName, StateAndMode
 from domain.timebase import Instant, to_seconds
@@ -68,7 +69,8 @@ class Fallbacks(Concern):
         """The fallback that replaces the mode of a part, or did until the current input."""
         self._changes: dict[PartName, ChangeId] = {}
         """The change that led a part to its fallback."""
-        self._returns = Returns(self._rank, parts, displacing, outbox, self._is_free)
+        bounds = Bounds("invariant_return", self._rank, MAX_RETURNS, outbox)
+        self._returns = Returns(parts, displacing, outbox, self._is_free, bounds)
         self._broken: dict[PartName, int] = {}
         """Parts with a broken invariant, and the event with which it broke."""
         self._deadlines: Deadlines[PartName] = Deadlines()
@@ -93,6 +95,7 @@ class Fallbacks(Concern):
         fallbacks = self._fallbacks.values()
         acting = self._displacing.restore(restored, Because.INVARIANT, fallbacks, now)
         self._acting = {fallback.system: self._of(fallback) for fallback in acting}
+        self._returns.restore(restored.kept, now)
         self._revision = None
         if restored.is_restart:
             self._unknown_from = now + HEARD_WITHIN

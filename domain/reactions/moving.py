@@ -17,9 +17,6 @@ from domain.snapshot import Because
 from domain.state_and_mode import PartName
 from domain.timebase import Instant
 
-_ANY_NUMBER = 1_000_000
-"""Of returns: budgets limit how often a reaction acts, and so how often its part returns."""
-
 
 class Moving:
     """Displaces the targets of parts while reactions act, and lets the parts return."""
@@ -46,10 +43,7 @@ class Moving:
         """By part, the reaction whose target stands, also after it has ended."""
         self._restarting: dict[PartName, Reaction] = {}
         """By node, the reaction that restarts it as long as it acts."""
-        systems = {reaction.part for reaction in self._reactions}
-        self._returns: Returns[Reaction] = Returns(
-            systems, parts, displacing, outbox, self._is_free, _ANY_NUMBER
-        )
+        self._returns: Returns[Reaction] = Returns(parts, displacing, outbox, self._is_free)
 
     @property
     def parts(self) -> set[PartName]:

@@ -8,14 +8,14 @@ from typing import Generic, TypeVar
 
 from domain.findings import Blocker
 from domain.health.signals import ESTOP
+from domain.kept import Kept
 from domain.outbox import Outbox
 from domain.parts.parts import Parts
-from domain.reactions.bound import Bound
+from domain.reactions.bounds import Bounds
 from domain.reactions.displacer import Displacer
 from domain.reactions.displacing import Displacing
 from domain.reactions.settings import MAX_RETURNS, RETRY, WINDOW
 from domain.reactions.waits import Wait, Waits
-from domain.state_and_mode import PartName
 from domain.timebase import Duration, Instant, to_seconds
 
 RESTART = "RESTART"
@@ -36,22 +36,20 @@ class Returns(Generic[DisplacerT]):
 
     def __init__(
         self,
-        systems: Iterable[PartName],
         parts: Parts,
         displacing: Displacing,
         outbox: Outbox,
         is_free: Callable[[DisplacerT], bool],
-        most: int = MAX_RETURNS,
+        bounds: Bounds | None = None,
     ) -> None:
         """Begin without a displacement.
 
         Args:
-            systems: Parts that may be displaced.
             parts: Tell which parts wait for an operator.
             displacing: What is displaced.
             outbox: Receives events.
             is_free: Tells whether no change keeps a part from returning now.
-            most: How often a part may return within a time.
+            bounds: How often a part may return within a time; None: at any time.
         """
         self._parts = parts
         self._displacing = displacing
@@ -59,7 +57,7 @@ class Returns(Generic[DisplacerT]):
         self._is_free = is_free
         self._relieved: Waits[DisplacerT] = Waits()
         """Displacements whose cause is gone."""
-        self._bounds = {system: Bound(most, WINDOW) for system in systems}
+        self._bounds = bounds
         self._staying: set[DisplacerT] = set()
         """Displacements that nothing but a request ends."""
 
@@ -87,12 +85,20 @@ class Returns(Generic[DisplacerT]):
         self._relieved.stop_since(now)
 
     def wake_at(self) -> Instant | None:
-        """Return when the next cause has been gone for long enough."""
-        return self._relieved.wake_at()
+        """Return when the next cause has been gone for long enough, or a return counts no more."""
+        times = (self._relieved.wake_at(), None if self._bounds is None else self._bounds.wake_at())
+        return min((at for at in times if at is not None), default=None)
 
     def pass_time(self, now: Instant) -> None:
         """Note which causes have been gone for long enough."""
         self._relieved.pass_time(now)
+        if self._bounds is not None:
+            self._bounds.pass_time(now)
+
+    def restore(self, kept: Iterable[Kept], now: Instant) -> None:
+        """Note how often parts returned in an earlier run."""
+        if self._bounds is not None:
+            self._bounds.restore(kept, now)
 
     def act(self, now: Instant) -> bool:
         """Let the first part return that may; return whether one did, or what is shown changed."""
@@ -118,7 +124,8 @@ class Returns(Generic[DisplacerT]):
             self._relieved.postpone(displacer, now + RETRY)
             return self._displacing.explain(displacer, obstacles)
         self.forget(displacer)
-        self._bounds[displacer.system].note(now)
+        if self._bounds is not None:
+            self._bounds.note(displacer.system, now)
         self._displacing.take_back(displacer, way, wait.cause, now)
         return True
 
@@ -130,7 +137,7 @@ class Returns(Generic[DisplacerT]):
             code, why = ESTOP, STOPPED
         elif self._parts.waits_for_operator(system):
             code, why = RESTART, RESTARTED
-        elif self._bounds[system].free_at(now) > now:
+        elif self._bounds is not None and self._bounds.free_at(system, now) > now:
             code, why = TOO_OFTEN, often
         else:
             return None

@@ -18,11 +18,11 @@ from domain.inputs import BackendStatus, Restored
 from domain.outbox import Outbox
 from domain.parts.convergence import bottom_up
 from domain.parts.parts import Parts
-from domain.reactions.bound import Bound
+from domain.reactions.bounds import Bounds
 from domain.reactions.displacing import Displacing, Ground
 from domain.reactions.returns import RESTARTED, STOPPED, WITHIN, Returns
 from domain.reactions.rule_watch import RuleWatch
-from domain.reactions.settings import MAX_FIRINGS, WINDOW, RuleSettings
+from domain.reactions.settings import MAX_FIRINGS, MAX_RETURNS, RuleSettings
 from domain.reactions.waits import Wait, Waits
 from domain.snapshot import Because
 from domain.state_and_mode import PartName
@@ -61,9 +61,11 @@ class Rules(Concern):
         self._about = _by_part(self._rules)
         self._matching: Waits[RuleWatch] = Waits()
         """Rules that match, and do not act yet."""
-        self._firings = {rule: Bound(MAX_FIRINGS, WINDOW) for rule in self._rules}
+        names = [_bounded(rule) for rule in self._rules]
+        self._firings = Bounds("rule", names, MAX_FIRINGS, outbox)
         systems = {rule.system for rule in self._rules}
-        self._returns = Returns(systems, parts, displacing, outbox, self._is_free)
+        bounds = Bounds("rule_return", systems, MAX_RETURNS, outbox)
+        self._returns = Returns(parts, displacing, outbox, self._is_free, bounds)
 
     # --- what happens ----------------------------------------------------------------------------
 
@@ -75,18 +77,21 @@ class Rules(Concern):
     def restore(self, restored: Restored, now: Instant) -> None:
         """Displace what an earlier run had displaced."""
         self._displacing.restore(restored, Because.RULE, self._rules, now)
+        self._firings.restore(restored.kept, now)
+        self._returns.restore(restored.kept, now)
 
     def _follow_backend(self, status: BackendStatus, now: Instant) -> None:
         self._review(self._rules, now)
 
     def wake_at(self) -> Instant | None:
-        """Return when the next condition has lasted long enough."""
-        times = (self._matching.wake_at(), self._returns.wake_at())
+        """Return when the next condition has lasted long enough, or a firing counts no more."""
+        times = (self._matching.wake_at(), self._firings.wake_at(), self._returns.wake_at())
         return min((at for at in times if at is not None), default=None)
 
     def pass_time(self, now: Instant) -> None:
         """Note which conditions have lasted long enough."""
         self._matching.pass_time(now)
+        self._firings.pass_time(now)
         self._returns.pass_time(now)
 
     def settle(self, now: Instant) -> bool:
@@ -148,7 +153,7 @@ class Rules(Concern):
             self._refuse(rule, why, wait, now)
             wait.is_idle = True
             return
-        free_at = self._firings[rule].free_at(now)
+        free_at = self._firings.free_at(_bounded(rule), now)
         if free_at > now:
             often = f"it was applied {MAX_FIRINGS} times {WITHIN}"
             self._postpone(rule, often, wait, free_at, now)
@@ -156,7 +161,7 @@ class Rules(Concern):
             self._postpone(rule, guard.message, wait, now + self._grace, now)
         else:
             self._matching.end(rule)
-            self._firings[rule].note(now)
+            self._firings.note(_bounded(rule), now)
             ground = Ground(rule.reason, (rule.cause(wait.since),), wait.since, wait.cause)
             self._displacing.displace(rule, way, ground, now)
             self._displacing.set_out(rule, way, now)
@@ -191,6 +196,11 @@ def _rules_of(parts: Parts) -> list[RuleWatch]:
         RuleWatch(system, rule, number, parts.inference)
         for number, (system, rule) in enumerate(own)
     ]
+
+
+def _bounded(rule: RuleWatch) -> str:
+    """Return the name of a rule among those of all systems."""
+    return f"{rule.system}.{rule.name}"
 
 
 def _number(rule: RuleWatch) -> int:

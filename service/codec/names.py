@@ -71,6 +71,7 @@ NAMES: Mapping[type, str] = {
     kept.KeptReport: "kept_report",
     kept.KeptHold: "kept_hold",
     kept.KeptReaction: "kept_reaction",
+    kept.KeptBound: "kept_bound",
     kept.KeptTask: "kept_task",
     kept.KeptProgress: "kept_progress",
     # Events have the name that clients know as well.

@@ -54,6 +54,7 @@ STEP_S = 30.0
 """Longer than the bench: nodes that obey would be measured, too."""
 
 
+@pytest.mark.timeout(300)
 def test_how_long_a_request_holds_the_core() -> None:
     rows = {
         f"{nodes:,} nodes{kind}": _holds(text(nodes))
@@ -76,6 +77,7 @@ def test_how_long_a_request_holds_the_core() -> None:
             assert rows[f"{nodes:,} nodes{kind}"]["request_ms"] < most_ms
 
 
+@pytest.mark.timeout(600)
 async def test_how_long_a_request_holds_the_event_loop(tmp_path: Path) -> None:
     rows: dict[str, Row] = {}
     for nodes in SIZES:

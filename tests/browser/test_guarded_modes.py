@@ -188,6 +188,30 @@ def test_a_change_that_waits_says_for_what_and_can_be_canceled(
     expect(change(desktop).get_by_role("button")).to_be_hidden()
 
 
+def test_a_mode_is_entered_as_soon_as_it_may_if_that_was_asked(
+    desktop: Page, service: Service
+) -> None:
+    drain(service)
+    manipulate = mode(desktop, "MANIPULATE")
+    manipulate.locator("summary").click()
+    manipulate.get_by_role("button", name="Enter as soon as it may, within 10 min").click()
+    expect(change(desktop)).to_contain_text("waiting for ")
+    service.request("PATCH", "/mock/battery_level", {"value": 0.9})
+    expect(change(desktop)).to_contain_text("succeeded after", timeout=SLOW_MS)
+
+
+def test_waiting_for_what_it_cannot_help_is_rejected_with_the_reason(
+    desktop: Page, service: Service
+) -> None:
+    service.request("PATCH", "/mock/temperature", {"value": 52})
+    manipulate = mode(desktop, "MANIPULATE")
+    manipulate.locator("summary").click()
+    before = service.request("GET", "/changes")["items"][0]["id"]
+    manipulate.get_by_role("button", name="Enter as soon as it may").click()
+    expect(desktop.locator("ph-change")).to_contain_text("needs < 50")
+    assert service.request("GET", "/changes")["items"][0]["id"] == before
+
+
 def test_a_change_that_waited_begins_when_it_may(desktop: Page, service: Service) -> None:
     drain(service)
     expect(mode(desktop, "MANIPULATE").get_by_role("button")).to_be_disabled()

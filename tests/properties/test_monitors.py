@@ -215,10 +215,11 @@ def input_of(act: Act) -> Input:
 
 
 @pytest.fixture(autouse=True, scope="module")
-def _looks_as_soon_as_something_leaves() -> Iterator[None]:
-    """Let the means be computed at each instant: 50 ms are longer than all of a story."""
+def _computes_at_once() -> Iterator[None]:
+    """Let values be computed at each instant: the usual 50 ms are longer than all of a story."""
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(window_monitor, "LEAVING_EVERY", 0)
+        patch.setattr(window_monitor, "COMPUTED_EVERY", 0)
+        patch.setattr(window_monitor, "LATEST", 0)
         yield
 
 

@@ -8,12 +8,14 @@ from typing import TYPE_CHECKING, Any
 import pytest
 
 from domain.commands import Drive
-from domain.inputs import DriveStatus, Readings, SignalValue, VehicleReport
+from domain.inputs import DriveStatus, ErrorReport, Readings, SignalValue, VehicleReport
 from domain.vehicle import DriveCommand, VehicleLimits
 from service.clock import MonotonicClock
 from service.files.robot_file import robot_settings_of
-from service.files.ros2_block import Ros2Block
+from service.files.ros2_block import DiagnosticsBlock, Ros2Block
+from service.ros.backend.diagnostics import ReportedDiagnostics
 from service.ros.backend.signals import SignalTopics
+from service.ros.backend.topic_statistics import TopicStatistics
 from service.ros.backend.vehicle import RosVehicle
 from service.ros.graph.graph import Fields, Lane, Message, Qos, RosNode, UnknownTypeError
 from tests.support.models import actuation_model
@@ -248,3 +250,56 @@ def publishes(node: RosNode, topic: dict[str, Any], fields: Fields) -> Callable[
     """Return what publishes a message on a topic, each time that it is called."""
     publisher = node.publisher(topic["topic"], topic["type"], Qos.EVENTS)
     return lambda: publisher.publish(fields)
+
+
+async def test_the_rate_of_a_real_topic_is_right(link: "RosLink", somebody: RosNode) -> None:
+    watched = {"topic": "/scan", "type": "sensor_msgs/msg/LaserScan"}
+    sent = {
+        "signals": {"scan_rate": {}, "scan_age": {}},
+        "ros2": {
+            "statistics": {
+                "scan_rate": {**watched, "statistic": "rate", "window_s": 2.0},
+                "scan_age": {**watched, "statistic": "age"},
+            }
+        },
+    }
+    statistics = TopicStatistics(robot_settings_of(sent, actuation_model()), link, MonotonicClock())
+    values: dict[str, float] = {}
+
+    def take(readings: Readings) -> None:
+        values.update((item.signal, float(item.value)) for item in readings.items)
+
+    statistics.start()
+    running = asyncio.create_task(statistics.run(take))
+    publisher = somebody.publisher("/scan", "sensor_msgs/msg/LaserScan", Qos.SENSOR)
+    loop = asyncio.get_running_loop()
+    due = loop.time()
+    for _ in range(150):
+        due += 1 / 30
+        await asyncio.sleep(max(0.0, due - loop.time()))
+        publisher.publish({"header": HEADER})
+    running.cancel()
+
+    # A busy machine may be late with a message or two at either end of the window.
+    assert values["scan_rate"] == pytest.approx(30, abs=2)
+    assert values["scan_age"] > 1e6
+
+
+async def test_a_real_message_of_diagnostics_is_an_error_of_a_part(
+    link: "RosLink", somebody: RosNode
+) -> None:
+    settings = DiagnosticsBlock.model_validate({"errors": {"lidar_driver: Link": "lidar.LINK"}})
+    heard: list[ErrorReport] = []
+    ReportedDiagnostics(settings, link).start(heard.append)
+    publisher = somebody.publisher(
+        "/diagnostics", "diagnostic_msgs/msg/DiagnosticArray", Qos.EVENTS
+    )
+    array = {"status": [{"name": "lidar_driver: Link", "level": 2, "message": "cable"}]}
+
+    await until(
+        every_time(lambda: publisher.publish(array), until_it_is=lambda: bool(heard)), PAUSE_S
+    )
+
+    assert [(r.part, r.error, r.active, r.message) for r in heard] == [
+        ("lidar", "LINK", True, "lidar_driver: Link: ERROR: cable")
+    ]

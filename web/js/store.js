@@ -148,7 +148,7 @@ const FOLDERS = {
 
 /** An error that ended is told once more, as normal; one that is shelved stays listed. */
 function withoutEnded(errors) {
-  const isOpen = ([, error]) => error.state !== "normal" || error.shelved_until_at !== null;
+  const isOpen = ([, error]) => error.state !== "normal" || Boolean(error.shelved_until_at);
   return Object.fromEntries(Object.entries(errors).filter(isOpen));
 }
 

@@ -11,6 +11,7 @@ from domain.identifiers import ChangeId, GoalId, TaskId
 from domain.inputs import TimePassed
 from domain.kept import (
     Keeping,
+    KeptBound,
     KeptChange,
     KeptClock,
     KeptEffectiveTarget,
@@ -252,6 +253,10 @@ OTHERS: Mapping[str, tuple[object, ...]] = {
             value=12.5,
             since=1764420000123456789,
         ),
+    ),
+    "kept_bound": (
+        KeptBound(kind="rule", bounded="left/arm.SLOW", ages=(2_000_000_000, 0)),
+        KeptBound(kind="rule_return", bounded="arm"),
     ),
     "kept_hold": (
         KeptHold(

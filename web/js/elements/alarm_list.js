@@ -11,6 +11,8 @@ const SHOWN_AT_MOST = 50;
 class AlarmList extends HTMLElement {
   #lines = new Map();
   #shown = SHOWN;
+  #known = null;
+  #groups = null;
 
   connectedCallback() {
     if (this.on) return;
@@ -36,8 +38,9 @@ class AlarmList extends HTMLElement {
   }
 
   update({ state, contact, knownAt, volatile }) {
-    const groups = errorGroups(state.errors);
-    const { on, returned, silenced } = groups;
+    if (this.#known !== state.errors) this.#groups = errorGroups(state.errors);
+    this.#known = state.errors;
+    const { on, returned, silenced } = this.#groups;
     const total = on.length + returned.length + silenced.length;
     setAttribute(this.closest("section"), "hidden", total === 0);
     setText(this.count, on.length ? `(${on.length})` : "");

@@ -1,7 +1,8 @@
 /** <ph-mode-switcher>: buttons for lifecycle and mode, each mode with its first blocker.
  *
  * A mode that cannot be entered is disabled; a blocker that does not refuse is only a warning. What
- * is behind the first blocker, and the conditions of a mode, can be opened beside it.
+ * is behind the first blocker, and the conditions of a mode, can be opened beside it. There a request
+ * can be sent that waits until the conditions are met; the server rejects it if waiting cannot help.
  *
  * Dispatches `ph-change` with the change that the server started, or `ph-problem`; `ph-plan` with the
  * plan of it, if that is to be seen first.
@@ -13,6 +14,7 @@ import { nearestWords, reasonTree } from "/web/js/reasons.js";
 import { requestPlan } from "/web/js/part_watch.js";
 import { whileSending } from "/web/js/sending.js";
 
+const WAIT_S = 600;
 const TRANSITIONS = ["configure", "activate", "deactivate", "cleanup", "shutdown"];
 
 class ModeSwitcher extends HTMLElement {
@@ -91,7 +93,9 @@ class ModeSwitcher extends HTMLElement {
     const [title, content] = [el("span"), el("div")];
     const summary = el("summary", {}, title, el("span", { class: "visually-hidden" }, ` ${mode}`));
     const whole = el("details", { class: "reasons-of" }, summary, content);
-    const details = { whole, title, content, item: null };
+    const body = { mode, wait_for_s: WAIT_S };
+    const wait = (button) => this.#send(button, "mode", body);
+    const details = { whole, title, content, wait, item: null };
     whole.addEventListener("toggle", () => fillDetails(details));
     return details;
   }
@@ -119,12 +123,24 @@ class ModeSwitcher extends HTMLElement {
   }
 
   #ask(button, what, body) {
+    if (!this.planFirst.checked) return this.#send(button, what, body);
     const path = `${partPath(this.subject)}/${what}`;
-    const isPlan = this.planFirst.checked;
+    return this.#whileAsking(button, async () =>
+      this.#emit("ph-plan", await requestPlan({ path, body })),
+    );
+  }
+
+  #send(button, what, body) {
+    const path = `${partPath(this.subject)}/${what}`;
+    return this.#whileAsking(button, async () =>
+      this.#emit("ph-change", await request("POST", path, body)),
+    );
+  }
+
+  #whileAsking(button, act) {
     return whileSending(button, async () => {
       try {
-        if (isPlan) this.#emit("ph-plan", await requestPlan({ path, body }));
-        else this.#emit("ph-change", await request("POST", path, body));
+        await act();
       } catch (error) {
         this.#emit("ph-problem", error.problem);
       }
@@ -136,16 +152,24 @@ class ModeSwitcher extends HTMLElement {
   }
 }
 
-function fillDetails({ whole, title, content, item }) {
+function fillDetails({ whole, title, content, wait, item }) {
   const { can_enter, blockers, requires = [], invariants = [] } = item ?? { blockers: [] };
   setAttribute(whole, "hidden", blockers.length + requires.length + invariants.length === 0);
   setText(title, blockers.length === 0 ? "Conditions" : can_enter ? "Why the warning" : "Why not");
   if (!whole.open) return;
-  renderOnce(content, JSON.stringify([blockers, requires, invariants]), () => [
+  renderOnce(content, JSON.stringify([can_enter, blockers, requires, invariants]), () => [
     ...(blockers.length ? [reasonTree(blockers)] : []),
+    ...(can_enter ? [] : [waitButton(wait)]),
     ...conditionList("Required to enter", requires),
     ...conditionList("Required to enter and to stay", invariants),
   ]);
+}
+
+function waitButton(wait) {
+  const words = `Enter as soon as it may, within ${WAIT_S / 60} min`;
+  const button = el("button", { type: "button" }, words);
+  button.addEventListener("click", () => wait(button));
+  return button;
 }
 
 function conditionList(title, conditions) {

@@ -28,6 +28,10 @@ class Door:
         self.is_open = False
 
     @property
+    def is_on(self) -> bool:
+        return self.is_open
+
+    @property
     def errors(self) -> frozenset[str]:
         return frozenset({self.error}) if self.is_open else frozenset()
 

@@ -114,6 +114,24 @@ def test_a_signal_that_is_read_often_wakes_nobody_for_what_leaves_the_window() -
     assert deadlines == [], "each reading computes it anyway"
 
 
+def test_a_signal_that_is_read_often_is_computed_now_and_then() -> None:
+    robot = WatchedRobot(LOAD, monitor(Statistic.RANGE, above(50)))
+    for number in range(100):
+        robot.read(10 + number * 0.001, load=float(number))
+        assert robot.value() in (None, 0.0, 50.0) or number == 0
+    robot.pass_time(10.15)
+    assert robot.value() == 99.0, "all readings since 10.05 s"
+    assert robot.errors() == ("HIGH",)
+
+
+def test_a_reading_beyond_the_bound_is_taken_account_of_at_once() -> None:
+    robot = WatchedRobot(LOAD, monitor(Statistic.MAX, above(50)))
+    robot.read(10, load=1.0)
+    robot.read(10.001, load=1.0)
+    robot.read(10.002, load=60.0)
+    assert robot.errors() == ("HIGH",)
+
+
 def test_an_unknown_monitor_raises_nothing_and_an_error_that_is_on_stays() -> None:
     robot = WatchedRobot(LOAD, monitor(Statistic.MEAN, above(50)))
     robot.read(1, load=60.0)
