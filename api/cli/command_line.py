@@ -20,6 +20,7 @@ from api.cli.commands import (
     export,
     monitor,
     profile,
+    reactions,
     replay,
     serve,
     simulate,
@@ -44,6 +45,7 @@ _COMMANDS = (
     change.STATE,
     why.WHY,
     errors.ERRORS,
+    reactions.COMMAND,
     task.COMMAND,
     simulate.COMMAND,
     profile.COMMAND,
@@ -59,6 +61,7 @@ examples:
   pilothouse analyse robot.yaml           find single points of failure
   pilothouse serve robot.yaml --port 9000 supervise it, with simulated nodes
   pilothouse errors                       list what is wrong, roots first
+  pilothouse reactions                    list what it does about that
   pilothouse mode actuation PERFORMANCE   change a mode, and follow the steps
   pilothouse state drive_base deactivate  request a lifecycle transition
   pilothouse task track.csv --preview     preview the waypoints of a task

@@ -21,6 +21,8 @@ from domain.health.signals import (
     SignalSettings,
     default_signals,
 )
+from domain.reactions.obstacles import AT_REST, NO_LIFECYCLE, NOT_REQUESTED
+from domain.reactions.reaction import ACKNOWLEDGE, REACTION
 from domain.reactions.returns import RESTART, TOO_OFTEN
 from domain.reactions.rule_watch import RULE
 from domain.tasks.standstill import STANDSTILL_UNKNOWN, STILL_MOVING
@@ -48,6 +50,13 @@ _OF_CONDITIONS = {
 }
 _OF_TARGETS = {
     RULE: "A part is as a rule of the model says.",
+    REACTION: "A [reaction](../how-to/let-the-robot-react.md) acts, or a stronger one does; it "
+    "refuses requests that lead elsewhere.",
+    AT_REST: "The part was deactivated, cleaned up or shut down on request; a reaction does not "
+    "activate it.",
+    NOT_REQUESTED: "Nothing was ever requested of the part; a reaction does not activate it.",
+    NO_LIFECYCLE: "The node has no lifecycle, so that a reaction cannot restart it.",
+    ACKNOWLEDGE: "The cause of a reaction is gone, and nobody has acknowledged it.",
     INVARIANT: "An invariant of the mode is broken, or the time for which its guards have to hold "
     "is not over.",
     ESTOP: "ESTOP was active when the part would have returned.",
@@ -104,10 +113,12 @@ task is held or the robot is in ERROR. A reason that says that it does not is th
 when the vehicle stands, or when a task drives it again."""
 
 _PARTS = """\
-Parts have these errors without a word in the model file; systems have the last two. `GET /errors`
-lists them beside those of signals, and so does the topic `errors` of the stream. None of them puts
-the robot into ERROR: an error does so by its severity, which is `critical` for those of signals.
-A node that was not yet heard of since the start is UNREACHABLE; no event tells that."""
+Parts have these errors without a word in the model file; systems have the last three.
+`GET /errors` lists them beside those of signals, and so does the topic `errors` of the stream.
+A model file can [declare further ones](../how-to/say-what-an-error-does.md), and give these another
+severity. An error puts the robot into ERROR if its severity is `critical` or `fatal`: it sets bit
+128, and is a reason whose `path` is its part. Errors of signals are `critical` unless they say
+otherwise. A node that was not yet heard of since the start is UNREACHABLE; no event tells that."""
 
 _SIGNALS = """\
 `error_code` is the sum of the bits of all active errors. An error clears when its cause does, but

@@ -77,11 +77,12 @@ class ReactionExhausted(Event):
     part: PartName
     reaction: str
     action: Action
-    """What it does instead until somebody acknowledges it."""
+    instead: Action
+    """What it does until somebody acknowledges it."""
     reason: str
 
     def _words(self) -> str:
-        words = f"reaction {self.reaction} of {self.part} acts no more: {self.action} instead"
+        words = f"reaction {self.reaction} of {self.part} acts no more: {self.instead} instead"
         return because(words, self.reason)
 
 

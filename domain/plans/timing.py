@@ -1,16 +1,14 @@
 """When each part of a change begins and ends, if every node takes its time."""
 
 from collections.abc import Iterator, Mapping
-from typing import NamedTuple
+from typing import TypeAlias
 
 from domain.plans.scope import Scope
 from domain.state_and_mode import PartName
 from domain.timebase import Duration
 
-
-class _Moment(NamedTuple):
-    part: PartName
-    is_end: bool
+_Moment: TypeAlias = tuple[PartName, bool]
+"""A part, and whether it is its end; there are twenty thousand of a large robot."""
 
 
 class Timing:
@@ -29,11 +27,11 @@ class Timing:
 
     def begin(self, part: PartName) -> int:
         """Return when a part begins, at the earliest."""
-        return self._at(_Moment(part, is_end=False))
+        return self._at((part, False))
 
     def end(self, part: PartName) -> int:
         """Return when a part is done, at the earliest."""
-        return self._at(_Moment(part, is_end=True))
+        return self._at((part, True))
 
     def _at(self, moment: _Moment) -> int:
         """Return when a moment is; without recursion, since a row may have ten thousand parts."""
@@ -45,23 +43,24 @@ class Timing:
             if unknown:
                 left += unknown
                 continue
-            known[last] = max((known[each] for each in earlier), default=0) + self._lasts(last)
+            known[last] = max(map(known.__getitem__, earlier), default=0) + self._lasts(last)
             left.pop()
         return known[moment]
 
     def _before(self, moment: _Moment) -> Iterator[_Moment]:
         """Yield the moments that decide when another one is."""
-        scope, part = self._scope, moment.part
-        if moment.is_end:
-            yield _Moment(part, is_end=False)
-            yield from (_Moment(inner, is_end=True) for inner in scope.inside(part))
+        scope, (part, is_end) = self._scope, moment
+        if is_end:
+            yield (part, False)
+            yield from ((inner, True) for inner in scope.inside(part))
             return
         for system in scope.systems_of(part):
-            yield _Moment(system, is_end=False)
+            yield (system, False)
             if (links := scope.links.get(system)) is not None:
-                yield from (_Moment(name, is_end=True) for name in links.before.get(part, ()))
+                yield from ((name, True) for name in links.before.get(part, ()))
 
     def _lasts(self, moment: _Moment) -> int:
-        if not moment.is_end or moment.part not in self._scope.nodes:
+        part, is_end = moment
+        if not is_end or part not in self._scope.nodes:
             return 0
-        return 1 if self._times is None else self._times[moment.part]
+        return 1 if self._times is None else self._times[part]

@@ -69,18 +69,18 @@ class Effects:
                 self._outbox.resume(now, reaction.event, reaction.actor)
                 self._driving.release_for_reaction(reaction.name, now)
 
-    def tell(self, reaction: Reaction, standing: Standing, cause: int | None, now: Instant) -> None:
+    def tell(self, reaction: Reaction, standing: Standing, cause: int, now: Instant) -> None:
         """Tell that a reaction is going to stand differently; note the event as its cause.
 
         Args:
             reaction: As it stood so far.
             standing: How it is to stand.
-            cause: Id of the event with which its condition began to hold; None: it does not.
+            cause: Id of the event that led to that.
             now: The current time.
         """
         events = [*self._ends(reaction, standing), *_begins(reaction, standing)]
         for event in events:
-            self._outbox.begin(now, event, reaction.actor, cause or self._outbox.record_input())
+            self._outbox.begin(now, event, reaction.actor, cause)
             reaction.event = self._outbox.record_input()
 
     def _ends(self, reaction: Reaction, standing: Standing) -> Iterator[Event]:
@@ -109,7 +109,7 @@ def _begins(reaction: Reaction, standing: Standing) -> Iterator[Event]:
         case ReactionState.EXHAUSTED if is_active:
             budget = reaction.declared.budget
             often = f"it acted {budget.at_most} times in {to_seconds(budget.within):g} s"
-            yield ReactionExhausted(part, name, reaction.declared.on_exhausted, often)
+            yield ReactionExhausted(part, name, action, reaction.declared.on_exhausted, often)
 
 
 def _action_of(reaction: Reaction) -> Action | None:

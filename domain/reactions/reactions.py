@@ -273,19 +273,29 @@ class Reactions(Concern):
             reaction.kept_from = standing.kept_from
             if standing.state is not reaction.state:
                 changed.append((reaction, standing))
+        origin = self._outbox.record_input() if changed else 0
         changed.sort(key=lambda each: each[1].state is not ReactionState.ACTING)
         for reaction, standing in changed:
-            self._change(reaction, standing, now)
+            self._change(reaction, standing, origin, now)
         self._effects.begin(self._reactions, now)
         has_moved = self._moving.move(outcome.moving, now)
         self._effects.end(self._reactions, now)
         return bool(changed) or has_moved
 
-    def _change(self, reaction: Reaction, standing: Standing, now: Instant) -> None:
-        """Let a reaction stand differently, and tell."""
+    def _change(self, reaction: Reaction, standing: Standing, origin: int, now: Instant) -> None:
+        """Let a reaction stand differently, and tell.
+
+        Args:
+            reaction: The reaction.
+            standing: How it is to stand.
+            origin: Id of the event of the current input.
+            now: The current time.
+        """
         was, state = reaction.state, standing.state
         begun = self._triggers.begun(reaction)
-        cause = begun.cause if begun is not None else None
+        # What time alone began was caused by the reading with which its condition began to hold.
+        is_new = begun is not None and was in (ReactionState.IDLE, ReactionState.PENDING)
+        cause = begun.cause if begun is not None and is_new else origin
         self._effects.tell(reaction, standing, cause, now)
         reaction.state = state
         reaction.since = begun.since if state is ReactionState.PENDING and begun else now

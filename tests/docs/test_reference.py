@@ -1,6 +1,7 @@
 """Pages of the reference that follow from the code are what the code says."""
 
 import re
+from dataclasses import replace
 from importlib.metadata import version
 from pathlib import Path
 
@@ -18,6 +19,7 @@ from docs.generate.pages import FOLDER, PAGES
 from docs.generate.source_scan import UndescribedError, codes_given_to, require_described
 from domain.actor import Actor
 from domain.changes.admission import ADVISORY
+from domain.conditions.condition import Condition
 from domain.events.event import RecordedEvent
 from domain.events.kinds import EVENTS
 from domain.health.checkpoints import CheckpointSettings
@@ -34,6 +36,7 @@ from domain.inputs import (
     BackendStatus,
     CheckpointReport,
     DriveStatus,
+    ErrorReport,
     Input,
     ModeRequest,
     NodeReport,
@@ -42,12 +45,15 @@ from domain.inputs import (
     ShelveRequest,
     SourceFault,
     StorageStatus,
+    TimePassed,
     UnshelveRequest,
     WriteRecord,
 )
 from domain.kept import KeptHold, KeptTarget
 from domain.lifecycle import LifecycleState
+from domain.parts.declared_errors import DeclaredError
 from domain.parts.system_model import Rule
+from domain.snapshot import ErrorKey
 from domain.state_and_mode import ModeName, PartName, StateAndMode
 from domain.supervision import Supervision, SupervisionSettings
 from domain.timebase import seconds
@@ -55,7 +61,8 @@ from tests.support.core_robot import CoreRobot
 from tests.support.good import GOOD
 from tests.support.guarded_model import guarded_model
 from tests.support.http_robot import ACTUATION
-from tests.support.models import BASE, active, actuation_model
+from tests.support.models import ARM, BASE, active, actuation_model
+from tests.support.reacting_robot import REST, ReactingRobot
 from tests.support.ruled_robot import RuledRobot, degrading_model
 from tests.support.shared import PROJECT
 
@@ -246,6 +253,18 @@ def an_error_that_comes_and_goes() -> list[RecordedEvent]:
     return told(*heard, shelved, UnshelveRequest("UNREACHABLE", part=BASE))
 
 
+def an_error_that_does_not_spread() -> list[RecordedEvent]:
+    """The base is reported to slip, and the arm, which should shake, is not found to."""
+    slips = ErrorKey(BASE, "SLIPS")
+    shakes = DeclaredError(
+        when=Condition("temperature > 90"), caused_by=(slips,), expected_within=seconds(1)
+    )
+    errors = {BASE: {"SLIPS": DeclaredError()}, ARM: {"SHAKES": shakes}}
+    core = Supervision(replace(actuation_model(), errors=errors), SupervisionSettings(), 0)
+    report = core.handle(ErrorReport(BASE, "SLIPS", active=True), 1)
+    return [*report.events, *core.handle(TimePassed(), seconds(3)).events]
+
+
 def a_mode_with_other_limits() -> list[RecordedEvent]:
     bound = Bound("LOAD_HIGH", Comparison.ABOVE, 60.0)
     limit = ModeLimit(bound, BASE, ModeName("FAST"))
@@ -294,6 +313,20 @@ def a_step_left_out() -> list[RecordedEvent]:
     return [event for given in inputs for event in core.handle(given, 1).events]
 
 
+def a_carrier_that_reacts() -> list[RecordedEvent]:
+    """A reaction acts until it may no more, is acknowledged, overruled, and put on trial."""
+    limp = 'LIMP: {when: "a", action: mode, target: active.SLOW, at_most: 1}'
+    robot = ReactingRobot(limp, REST).see(a=True).see(b=True).see(b=False, a=False).see(a=True)
+    robot.acknowledge_reaction("LIMP")
+    robot.see(b=True)
+    robot.stop()
+    robot.see(a=False, b=False)
+    robot.arm("LIMP", "passive")
+    robot.release_stop()
+    robot.see(a=True)
+    return robot.events
+
+
 def a_wait() -> list[RecordedEvent]:
     """A request waits until the battery is charged."""
     robot = CoreRobot(guarded_model())
@@ -340,8 +373,10 @@ def test_events_that_happen_are_listed_with_what_they_carry() -> None:
         a_full_disk,
         a_lost_sensor,
         an_error_that_comes_and_goes,
+        an_error_that_does_not_spread,
         a_mode_with_other_limits,
         a_lost_arm,
+        a_carrier_that_reacts,
         a_wait,
         a_step_left_out,
         the_examples,

@@ -5,6 +5,8 @@ in which the graph was made. `make soak` tells 10,000 stories, `make test` 200.
 """
 
 import os
+import subprocess
+import sys
 from dataclasses import dataclass, field
 from random import Random
 from typing import Literal, TypeAlias
@@ -23,6 +25,7 @@ from domain.snapshot import ErrorKey, Severity, SystemState
 from domain.state_and_mode import PartName
 from domain.supervision import Supervision, SupervisionSettings
 from domain.timebase import Instant, seconds
+from tests.support.shared import PROJECT
 
 STORIES = 10_000 if os.environ.get("PILOTHOUSE_SOAK") == "1" else 200
 MOST_ERRORS = 40
@@ -278,6 +281,7 @@ class Story:
         )
         self.core = Supervision(self.model, SupervisionSettings(never_stale + further), 0)
         self.now: Instant = 0
+        self.told: list[str] = []
         for part in PARTS:
             inactive = LifecycleState.INACTIVE
             self.core.handle(NodeReport(part, reachable=True, state=inactive), 0)
@@ -320,10 +324,16 @@ class Story:
     def step(self, given: Input) -> None:
         before = self.expected.on()
         outputs = self.core.handle(given, self.now)
+        self.told += map(str, outputs.events)
+        self.told.append(self.first())
         self.expected.look(self.now)
         self.compare()
         self.compare_events(outputs, before)
         self.compare_first(before)
+
+    def first(self) -> str:
+        """Return the error that was first out, in words."""
+        return " ".join(view.key.name for view in self.core.errors() if view.first_out)
 
     # --- what has to be ------------------------------------------------------------------------
 
@@ -382,3 +392,31 @@ class Story:
 def test_a_graph_of_errors_settles_where_a_look_at_each_error_in_order_leads(seed: int) -> None:
     random = Random(seed)
     Story(random).tell(steps=random.randint(1, 25))
+
+
+def told(seeds: range) -> str:
+    """Return what is told in some stories, and which errors were the first."""
+    lines: list[str] = []
+    for seed in seeds:
+        random = Random(seed)
+        story = Story(random)
+        story.tell(steps=random.randint(1, 25))
+        lines += story.told
+    return "\n".join(lines)
+
+
+def test_a_replay_elsewhere_tells_the_same_and_finds_the_same_first_error() -> None:
+    words = f"from {__name__} import told; print(told(range(10)))"
+    elsewhere = [
+        subprocess.run(
+            [sys.executable, "-c", words],
+            cwd=PROJECT,
+            env={**os.environ, "PYTHONHASHSEED": hash_seed},
+            capture_output=True,
+            text=True,
+            check=True,
+        ).stdout
+        for hash_seed in ("1", "2")
+    ]
+    assert elsewhere[0] == elsewhere[1]
+    assert "ErrorRaised" in elsewhere[0]

@@ -29,7 +29,7 @@ from domain.snapshot import Severity
 from domain.supervision import SupervisionSettings
 from domain.timebase import seconds
 from domain.windows.settings import Statistic, WindowSettings
-from tests.support.document_story import CHECKPOINTS, CSV, JSON, STORY, Asked
+from tests.support.document_story import CHECKPOINTS, CSV, JSON, REACTING, STORY, Asked
 from tests.support.good import GOOD
 from tests.support.http_robot import HttpRobot, http_robot
 from tests.support.manual_clock import ManualClock
@@ -58,7 +58,7 @@ _PARSED = (JSON, MEDIA_TYPE)
 
 async def record() -> Examples:
     """Let the story happen, and return what was asked, answered and streamed."""
-    async with http_robot(settings=_SETTINGS) as robot:
+    async with http_robot(REACTING, settings=_SETTINGS) as robot:
         await robot.pass_time(1)
         requests = [
             _exchange(asked, await _answer_of_a_record(asked))

@@ -7,6 +7,25 @@ from domain.health.checkpoints import CheckpointSettings
 from domain.state_and_mode import PartName
 from tests.support.http_robot import ACTUATION
 
+REACTING = ACTUATION.replace(
+    "drive_base:\n",
+    """\
+    reactions:
+      COOL_DOWN: {when: "temperature > 50", action: mode, target: active.MODERATE}
+drive_base:
+""",
+    1,
+).replace(
+    "manipulator:\n",
+    """\
+    reactions:
+      RESTART_BASE: {when: "drive_base.errors.ERROR_PROCESSING", for_s: 1, action: restart}
+manipulator:
+""",
+    1,
+)
+"""The robot of D4.8, Annex 4, with a reaction of a system and one of a node."""
+
 JSON = "application/json"
 YAML = "application/yaml"
 CSV = "text/csv"
@@ -232,6 +251,29 @@ _HEALTH = (
         "One of the robot itself",
         {"error": "BATTERY_LOW"},
         body={"active": False},
+    ),
+    Asked("GET /reactions", "What they wait for"),
+    Asked("GET /systems/{part}/reactions", "What it waits for", ACTUATOR),
+    Asked("GET /nodes/{part}/reactions", "What it waits for", BASE),
+    *(
+        asked
+        for kind, reaction in (
+            ("systems", ACTUATOR | {"reaction": "COOL_DOWN"}),
+            ("nodes", BASE | {"reaction": "RESTART_BASE"}),
+        )
+        for asked in (
+            Asked(
+                f"PATCH /{kind}/{{part}}/reactions/{{reaction}}",
+                "Only tell when it would act",
+                reaction,
+                body={"arm": "passive", "reason": "on trial"},
+            ),
+            Asked(
+                f"POST /{kind}/{{part}}/reactions/{{reaction}}/acknowledge",
+                "It is seen",
+                reaction,
+            ),
+        )
     ),
     Asked(
         "POST /signals",

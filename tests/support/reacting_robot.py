@@ -93,7 +93,19 @@ class ReactingRobot(RestartingRobot):
         of_drive: str = "",
         drive_settings: str = "",
         asked: bool = True,
+        calm: bool = True,
     ) -> None:
+        """Begin with good readings.
+
+        Args:
+            reactions: Of the carrier; for this and the next ones see `reacting_text`.
+            settings: Of its modes.
+            of_lidar: The one reaction of the lidar.
+            of_drive: The one reaction of the drive.
+            drive_settings: Of the modes of the drive.
+            asked: Whether it is asked for FAST.
+            calm: Whether all flags are false from the start; else they were never seen.
+        """
         text = reacting_text(
             *reactions,
             settings=settings,
@@ -104,12 +116,12 @@ class ReactingRobot(RestartingRobot):
         signals = flag_signals()
         super().__init__(read_model(text, signals).model, SupervisionSettings(signals))
         self.read(**GOOD)
+        if calm:
+            self.read(**dict.fromkeys(FLAGS, False))
         if asked:
             self.ask_mode("carrier", "FAST")
             self.advance(1)
             assert self.actual("carrier") == "active.FAST"
-        # Only now: what is false may call for something, too.
-        self.read(**GOOD, **dict.fromkeys(FLAGS, False))
 
     def see(self, wait_s: float = 1.0, **flags: bool) -> "ReactingRobot":
         """Hand in what is so, and let that take effect."""

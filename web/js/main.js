@@ -12,6 +12,7 @@ import "/web/js/elements/replay_bar.js";
 import "/web/js/elements/hold_button.js";
 import "/web/js/elements/acknowledge.js";
 import "/web/js/elements/alarm_list.js";
+import "/web/js/elements/reaction_list.js";
 import "/web/js/elements/state_bar.js";
 import "/web/js/elements/stop_button.js";
 import "/web/js/elements/map.js";
@@ -44,7 +45,7 @@ const map = document.querySelector("ph-map");
 const taskPanel = document.querySelector("ph-task-panel");
 const tokenForm = document.querySelector("ph-token-form");
 const elements = document.querySelectorAll(
-  "ph-replay-bar, ph-state-bar, ph-stop-button, ph-alarm-list, ph-task-panel, ph-part-tree, ph-map, ph-part-panel, " +
+  "ph-replay-bar, ph-state-bar, ph-stop-button, ph-alarm-list, ph-reaction-list, ph-task-panel, ph-part-tree, ph-map, ph-part-panel, " +
     "ph-signal-list, ph-event-list",
 );
 let state = emptyState();

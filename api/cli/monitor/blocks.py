@@ -255,6 +255,20 @@ def errors(view: View) -> list[Text]:
     return [Text(printable(told), style=style)] if told else []
 
 
+def reactions(view: View) -> list[Text]:
+    """Return which reactions do something or are kept from it; nothing if there is none."""
+    by_state: dict[str, list[str]] = {}
+    for name, reaction in view.robot.reactions.items():
+        by_state.setdefault(reaction["state"], []).append(name)
+    told = [
+        f"{len(names)} {state}: {', '.join(names[:_NAMED])}"
+        for state in ("exhausted", "acting", "overruled", "passive")
+        if (names := by_state.get(state))
+    ]
+    style = _MARK_STYLES[WRONG] if by_state.keys() & {"exhausted", "acting"} else ""
+    return [Text(printable(f"reactions: {'; '.join(told)}"), style=style)] if told else []
+
+
 def _worst_first(roots: Sequence[tuple[str, Json]]) -> str:
     if not roots:
         return ""

@@ -40,6 +40,8 @@ class Robot:
     """By owner, the oldest first."""
     errors: Mapping[str, Json] = field(default_factory=dict)
     """By name, those that are not normal."""
+    reactions: Mapping[str, Json] = field(default_factory=dict)
+    """All, by name."""
     emergency_stop: Json | None = None
     last_event_id: int = 0
     notes: tuple[Note, ...] = ()
@@ -68,6 +70,7 @@ class Robot:
             "emergency_stop": self.emergency_stop,
             "holds": list((self.holds or {}).values()),
             "errors": list(self.errors.values()),
+            "reactions": list(self.reactions.values()),
         }
 
 
@@ -106,6 +109,7 @@ def _state(robot: Robot, frame: Json) -> Robot:
         vehicle=frame.get("vehicle", robot.vehicle),
         holds=frame.get("holds", robot.holds),
         errors=_open_ones(robot.errors, frame.get("errors", {})),
+        reactions={**robot.reactions, **frame.get("reactions", {})},
         emergency_stop=frame.get("emergency_stop", robot.emergency_stop),
     )
 

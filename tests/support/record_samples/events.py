@@ -358,7 +358,8 @@ EVENTS: Mapping[str, tuple[object, ...]] = {
         ReactionExhausted(
             part=PartName("left/arm"),
             reaction="LIMP",
-            action=Action.HOLD,
+            action=Action.MODE,
+            instead=Action.HOLD,
             reason='Größe ≤ 3 — "gripper\\jam"',
         ),
     ),

@@ -40,12 +40,13 @@ class HoldList extends HTMLElement {
     const { owner, by } = hold;
     const [reason, since] = [el("span"), el("span", { class: "quiet" })];
     // Pilothouse clears its own holds when their cause is gone, but for the one of a restart.
-    const release = !(owner in UNTIL) ? el("ph-hold-button", { label: `Release ${owner} (hold)` }) : null;
+    const isOfReaction = owner.startsWith("reaction:");
+    const release = !(owner in UNTIL) && !isOfReaction ? el("ph-hold-button", { label: `Release ${owner} (hold)` }) : null;
     release?.addEventListener("ph-held", ({ detail: { volatile } }) => {
       const detail = { owner, button: release.button, volatile };
       this.dispatchEvent(new CustomEvent("ph-release", { bubbles: true, detail }));
     });
-    const whose = by ? (by === owner ? "" : `, by ${by}`) : (OWN[owner] ?? "");
+    const whose = by ? (by === owner ? "" : `, by ${by}`) : (isOfReaction ? ", until that is over" : OWN[owner] ?? "");
     const words = el("div", {}, el("strong", {}, owner), reason, el("p", { class: "quiet" }, since, whose));
     const item = el("li", {}, words, release);
     this.list.append(item);

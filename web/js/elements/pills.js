@@ -32,7 +32,7 @@ class Pills extends HTMLElement {
 function setter(target) {
   if (!target?.because || target.because === "requested") return [];
   const title = target.blockers.map(({ message }) => message).join("; ");
-  return [el("span", { class: "setter", title }, ` ${target.because} ${target.rule ?? ""}`)];
+  return [el("span", { class: "setter", title }, ` ${target.because} ${target.rule ?? target.reaction ?? ""}`)];
 }
 
 /** Inferred is italic with (*), as in the mode monitor of system_modes. */

@@ -43,7 +43,8 @@ class Why extends HTMLElement {
 const SETTERS = { invariant: "a broken invariant", reaction: "a reaction" };
 
 function displacedWords({ target: requested }, target) {
-  const because = target.rule ? `${target.because} ${target.rule}` : (SETTERS[target.because] ?? target.because);
+  const name = target.rule ?? target.reaction;
+  const because = name ? `${target.because} ${name}` : (SETTERS[target.because] ?? target.because);
   const from = requested ? `, in place of ${label(requested)} that was requested` : "";
   return `Target ${label(target)}, set by ${because}${from}.`;
 }

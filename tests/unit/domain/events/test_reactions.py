@@ -40,7 +40,7 @@ LIMP = (ACTUATION, "LIMP", Action.MODE)
             "reaction LIMP of actuation is overruled: ESTOP is active",
         ),
         (
-            ReactionExhausted(ACTUATION, "LIMP", Action.HOLD, "it acted 3 times in 60 s"),
+            ReactionExhausted(*LIMP, Action.HOLD, "it acted 3 times in 60 s"),
             "reaction LIMP of actuation acts no more: hold instead: it acted 3 times in 60 s",
         ),
         (

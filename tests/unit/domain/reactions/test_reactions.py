@@ -8,6 +8,7 @@ from domain.inputs import BackendStatus, HoldRequest, ReleaseRequest
 from domain.reaction_terms import Arm
 from domain.snapshot import Because
 from domain.state_and_mode import PartName
+from service.checkpoint import checkpoint_of, core_of_checkpoint
 from tests.support.reacting_robot import HALT, LIMP, REST, ReactingRobot
 
 CARRIER = PartName("carrier")
@@ -348,3 +349,29 @@ def test_nobody_else_sets_or_releases_the_hold_of_a_reaction() -> None:
         robot.give(HoldRequest("reaction:ANY", "mine"))
 
     assert robot.holds == ["reaction:HALT"]
+
+
+# --- what a copy of the robot has ----------------------------------------------------------------
+
+
+def test_a_copy_of_a_robot_goes_on_with_its_reactions() -> None:
+    robot = ReactingRobot(LIMP, HALT, REST).see(a=True, c=True)
+    copy = core_of_checkpoint(checkpoint_of(robot.onboard, "1"), "1")
+    robot.onboard, robot.core = copy, copy.core
+    robot.see(b=True, c=False)
+
+    assert robot.target() == "inactive by reaction REST"
+    assert (robot.state("LIMP"), robot.holds) == ("overruled", [])
+
+
+def test_each_event_leads_back_to_the_input_that_brought_it_about() -> None:
+    robot = ReactingRobot(LIMP, REST).see(a=True).see(b=True)
+    robot.see(b=False)
+
+    events = {event.id: event for event in robot.events}
+    last = [event for event in robot.events if event.kind.startswith("reaction.")][-2:]
+    assert [event.kind for event in last] == ["reaction.acting", "reaction.ended"]
+    for event in last:
+        cause = events[event.cause or 0]
+        assert cause.kind == "signal.read"
+        assert "'b': False" in str(cause.data["values"])

@@ -193,6 +193,13 @@ def test_a_node_has_guards_and_deadlines() -> None:
             id="a circle through the fallback of all modes",
         ),
         pytest.param(
+            'FAST: {invariants: ["temperature < 50", "not carrier.errors.INVARIANT_BROKEN"]}',
+            "INVARIANT_CIRCLE",
+            9,
+            47,
+            id="an invariant that rests on itself",
+        ),
+        pytest.param(
             "FAST: {transition: {order: sequential, sequence: [arm, bas]}}",
             "UNKNOWN_PART",
             9,

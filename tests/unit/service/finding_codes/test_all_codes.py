@@ -9,6 +9,7 @@ _SOURCES = ("service/files", "domain/conditions", "domain/parts/lint")
 _MODULES = (
     "domain/health/monitor_graph.py",
     "domain/parts/errors_check.py",
+    "domain/parts/invariant_circles.py",
     "domain/parts/reactions_check.py",
     "domain/parts/settings_check.py",
     "domain/parts/system_model.py",
@@ -20,7 +21,8 @@ _NO_FINDINGS = frozenset(
         "INVALID_ROBOT_FILE",
         "INVALID_WAYPOINTS",
         "UNREADABLE_FILE",
-        # What conditions compare with, and codes of blockers.
+        # What conditions compare with, codes of blockers, and an error of parts.
+        "INVARIANT_BROKEN",
         "NO_TASK",
         "PAUSED_TASK",
         "RUNNING_TASK",

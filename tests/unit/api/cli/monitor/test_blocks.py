@@ -356,3 +356,23 @@ def test_what_follows_or_is_silenced_is_only_counted() -> None:
         "errors of parts: 1 urgent: lidar.SILENT, 1 follow from these, 1 returned unseen,"
         " 1 not announced"
     )
+
+
+# --- reactions -----------------------------------------------------------------------------------
+
+
+def drawn_reactions(**states: str) -> list[str]:
+    told = {f"carrier.{name}": {"state": state} for name, state in states.items()}
+    return plain(blocks.reactions(view(robot(frame(reactions=told)))))
+
+
+def test_reactions_that_are_idle_are_not_told() -> None:
+    assert drawn_reactions() == []
+    assert drawn_reactions(LIMP="idle", HALT="pending") == []
+
+
+def test_reactions_are_counted_and_named_by_how_they_stand() -> None:
+    assert drawn_reactions(LIMP="acting", HALT="exhausted", REST="acting", TRY="passive") == [
+        "reactions: 1 exhausted: carrier.HALT; 2 acting: carrier.LIMP, carrier.REST;"
+        " 1 passive: carrier.TRY"
+    ]

@@ -141,6 +141,7 @@ def test_as_json_it_has_each_member_as_an_answer_to_a_request_has_it() -> None:
         "emergency_stop",
         "holds",
         "errors",
+        "reactions",
     ]
     assert shown["parts"] == {"arm": part("arm")}
     assert shown["emergency_stop"] == stop()
@@ -171,3 +172,11 @@ def test_an_error_that_is_shelved_is_known_though_it_is_normal() -> None:
 def test_after_a_reconnection_only_the_errors_of_the_next_frame_are_known() -> None:
     known = fold(robot(), frame(errors={"arm.DEVIATES": error("DEVIATES", "arm")}))
     assert fold(known, hello()).errors == {}
+
+
+def test_reactions_are_known_as_they_were_told_last() -> None:
+    known = fold(robot(), frame(reactions={"a.LIMP": {"state": "idle"}}))
+    known = fold(known, frame(after(1), reactions={"a.LIMP": {"state": "acting"}}))
+
+    assert known.reactions == {"a.LIMP": {"state": "acting"}}
+    assert known.as_json()["reactions"] == [{"state": "acting"}]

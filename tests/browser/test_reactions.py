@@ -1,0 +1,100 @@
+"""The list of reactions, as an operator reads it and uses it."""
+
+from collections.abc import Iterator
+from typing import Any
+
+import pytest
+
+pytest.importorskip("playwright.sync_api", reason="playwright is not installed")
+
+from playwright.sync_api import Locator, Page, expect
+
+from tests.browser.station import Service, free_port
+
+pytestmark = pytest.mark.browser
+
+MODEL = """\
+carrier:
+  ros__parameters:
+    type: system
+    modes:
+      __DEFAULT__: {drive: active}
+      SLOW: {drive: active.SLOW}
+    reactions:
+      LIMP: {when: "temperature > 40", action: mode, target: active.SLOW}
+      HALT: {when: "temperature > 45", action: hold, until: acknowledged}
+drive:
+  ros__parameters:
+    type: node
+    modes:
+      __DEFAULT__: {ros__parameters: {speed: 0.9}}
+      SLOW: {ros__parameters: {speed: 0.1}}
+"""
+
+
+@pytest.fixture(scope="module")
+def running_service(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Service]:
+    """Return a carrier that slows down when it is warm."""
+    folder = tmp_path_factory.mktemp("reactions")
+    model = folder / "model.yaml"
+    model.write_text(MODEL)
+    with (folder / "output").open("w+b") as output:
+        service = Service(free_port(), output, (str(model),))
+        try:
+            service.start()
+            yield service
+        finally:
+            service.kill()
+
+
+@pytest.fixture
+def service(running_service: Service) -> Service:
+    running_service.make_healthy()
+    return running_service
+
+
+def section(page: Page) -> Locator:
+    return page.locator("section.place-reactions")
+
+
+def line(page: Page, name: str) -> Locator:
+    return section(page).locator("li").filter(has_text=name)
+
+
+def warm_up(service: Service, value: float) -> None:
+    service.request("POST", "/signals/temperature", {"value": value})
+
+
+def test_reactions_that_wait_are_folded(desktop: Page, service: Service) -> None:
+    expect(section(desktop)).to_contain_text("2 waiting")
+    expect(line(desktop, "carrier.LIMP")).not_to_be_visible()
+
+
+def test_one_that_acts_says_what_it_waits_for(desktop: Page, service: Service) -> None:
+    service.request("POST", "/systems/carrier/mode", {"mode": "__DEFAULT__"})
+    warm_up(service, 42.0)
+
+    expect(line(desktop, "carrier.LIMP")).to_contain_text("acting")
+    expect(line(desktop, "carrier.LIMP")).to_contain_text("waits for an end of: temperature > 40")
+    expect(section(desktop).locator("h2")).to_contain_text("1 acting")
+
+
+def test_a_hold_of_a_reaction_has_no_release_and_is_acknowledged(
+    desktop: Page, service: Service
+) -> None:
+    warm_up(service, 48.0)
+    expect(desktop.locator("ph-hold-list")).to_contain_text("reaction:HALT")
+    expect(desktop.get_by_role("button", name="Release reaction:HALT")).to_have_count(0)
+    warm_up(service, 30.0)
+    button = line(desktop, "carrier.HALT").get_by_role("button", name="Acknowledge (hold)")
+    button.click(delay=1200)
+    expect(desktop.locator("ph-hold-list")).not_to_contain_text("reaction:HALT")
+
+
+def test_a_reaction_is_armed_by_a_long_press(desktop: Page, service: Service) -> None:
+    section(desktop).locator("summary").click()
+    line(desktop, "carrier.LIMP").locator("select").select_option("disarmed")
+    line(desktop, "carrier.LIMP").get_by_role("button", name="Set (hold)").click(delay=1200)
+    expect(section(desktop)).to_contain_text("1 waiting")
+    armed: Any = service.request("GET", "/reactions")
+    assert [item["arm"] for item in armed["items"]] == ["disarmed", "active"]
