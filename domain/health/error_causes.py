@@ -1,6 +1,6 @@
 """Which errors explain which: what the model file declares, and what follows from the parts."""
 
-from collections.abc import Callable, Container, Iterable, Iterator, Mapping
+from collections.abc import Callable, Container, Iterable, Iterator, Mapping, Sequence
 from itertools import chain, islice, pairwise
 from typing import TypeAlias
 
@@ -90,17 +90,27 @@ class ErrorCauses:
             return (0, -1, 0)
         return (self._level(key), self._rank.get(key.part, -1), self._position(key))
 
-    def effects(self, key: ErrorKey) -> Iterator[ErrorKey]:
-        """Yield the errors that an error explains."""
+    def declared_effects(self, key: ErrorKey) -> Sequence[ErrorKey]:
+        """Return the errors of which the file says something and that an error explains."""
+        return self._effects.get(key, ())
+
+    def effects(self, key: ErrorKey, is_on: Callable[[ErrorKey], bool]) -> Iterator[ErrorKey]:
+        """Yield the errors that an error explains: those that are on, or may follow from it.
+
+        Args:
+            key: The error.
+            is_on: Tells whether an error is on.
+        """
         yield from self._effects.get(key, ())
         part, error = key
         if part is None or error not in (UNREACHABLE, DEVIATES):
             return
-        if error == UNREACHABLE and part in self._model.nodes:
-            yield from self._without_declared(key, (ErrorKey(part, DEVIATES),))
-        for system in self._model.ancestors.get(part, ()):
-            if self._is_direct(system, part):
-                yield from self._without_declared(key, (ErrorKey(system, DEVIATES),))
+        deviating = [ErrorKey(part, DEVIATES)] if error == UNREACHABLE else []
+        systems = (ErrorKey(system, DEVIATES) for system in self._model.ancestors.get(part, ()))
+        deviating += [each for each in systems if is_on(each) and self._is_direct(each.part, part)]
+        for effect in deviating:
+            if is_on(effect) and effect not in self._causes and (effect, key) not in self._left_out:
+                yield effect
 
     def present(
         self,
@@ -177,14 +187,10 @@ class ErrorCauses:
         system = self._model.systems.get(part)
         return () if system is None else system.named_parts
 
-    def _is_direct(self, system: PartName, part: PartName) -> bool:
-        return any(part in wanted for wanted in self._model.systems[system].modes.values())
-
-    def _without_declared(self, cause: ErrorKey, effects: Iterable[ErrorKey]) -> Iterator[ErrorKey]:
-        """Yield the effects of which the file says nothing; the others are listed anyway."""
-        for effect in effects:
-            if effect not in self._causes and (effect, cause) not in self._left_out:
-                yield effect
+    def _is_direct(self, system: PartName | None, part: PartName) -> bool:
+        return system is not None and any(
+            part in wanted for wanted in self._model.systems[system].modes.values()
+        )
 
     def _deviating_below(
         self, system: PartName, on: Mapping[str, Mapping[PartName, None]]

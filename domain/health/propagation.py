@@ -77,6 +77,9 @@ class Propagation(Concern):
         """When an error should have followed a cause."""
         self._overdue: list[tuple[ErrorKey, ErrorKey]] = []
         """Those of which the time is up, unless they follow in this very step."""
+        # What there is at the start is looked at in portions, as what many inputs bring.
+        self._take_changed()
+        self._take_switched(start)
 
     def _conditions(self) -> Iterable[Condition]:
         for own in self._causes.declared.values():
@@ -147,7 +150,7 @@ class Propagation(Concern):
         for key in switched:
             self._note_switched(key, now)
             self._watched.touch(Topic(TopicKind.ERROR, key.error, key.part or ""))
-            for effect in self._causes.effects(key):
+            for effect in self._causes.effects(key, self._errors.is_on):
                 self._push(effect)
         return bool(switched)
 
@@ -179,9 +182,9 @@ class Propagation(Concern):
             self._on_since[key] = now
         else:
             self._on_since.pop(key, None)
-        for effect in self._causes.effects(key):
-            own = self._causes.declared.get(effect)
-            if own is None or own.expected_within is None or key not in own.caused_by:
+        for effect in self._causes.declared_effects(key):
+            own = self._causes.declared[effect]
+            if own.expected_within is None or key not in own.caused_by:
                 continue
             if is_on and not self._is_unheard(key):
                 self._expected.set((effect, key), now + own.expected_within)
@@ -220,12 +223,12 @@ class Propagation(Concern):
 
     def _follow(self, key: ErrorKey, own: DeclaredError, now: Instant) -> None:
         """Decide about an error that follows from others."""
-        on = [cause for cause in own.caused_by if self._errors.is_on(cause)]
-        needs_more = len(on) < len(own.caused_by) if own.need_all else not on
-        if needs_more:
-            gone = next((cause for cause in own.caused_by if cause not in on), None)
-            self._end_following(key, None if gone is None else self._errors.told_by(gone))
+        is_on = self._errors.is_on
+        gone = next((cause for cause in own.caused_by if not is_on(cause)), None)
+        if gone is not None and (own.need_all or not any(map(is_on, own.caused_by))):
+            self._end_following(key, self._errors.told_by(gone))
             return
+        on = [cause for cause in own.caused_by if is_on(cause)]
         choose = max if own.need_all else min
         cause = choose(on, key=self._on_since.__getitem__)
         due = self._on_since[cause] + own.after
@@ -284,7 +287,7 @@ class Propagation(Concern):
         if key in self._silent and not self._is_unheard(key):
             self._silent.discard(key)
             self._errors.tell_raised(key)
-        for effect in self._causes.effects(key):
+        for effect in self._causes.effects(key, self._errors.is_on):
             self._push(effect)
         return True
 

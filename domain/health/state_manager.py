@@ -420,8 +420,8 @@ class StateManager:
         """
         for name in self._fed[signal]:
             monitor = self._windows[name]
-            monitor.feed(value, now)
-            fed[name] = None
+            if monitor.feed(value, now):
+                fed[name] = None
             if name in self._fed and (computed := monitor.window.value(now)) is not None:
                 self._feed(name, computed, now, fed)
 

@@ -75,14 +75,15 @@ class WindowMonitor(SignalMonitor):
         super().__init__(settings, start)
         self.judge(start)
 
-    def feed(self, value: float, now: Instant) -> None:
-        """Take in a reading; `compute` follows, once for all readings of one message."""
+    def feed(self, value: float, now: Instant) -> bool:
+        """Take in a reading, and tell whether `compute` has to follow after those beside it."""
         self.window.add(now, value)
         self._was_fed = True
-        if self._owed_at is None:
-            self._owed_at = max(now, self._computed_at + COMPUTED_EVERY)
-        if self._owed_at > now and self._is_beyond_bound(value):
-            self._owed_at = now
+        is_new, owed_at = self._owed_at is None, self._owed_at
+        if owed_at is None:
+            owed_at = max(now, self._computed_at + COMPUTED_EVERY)
+        self._owed_at = now if self._is_beyond_bound(value) else owed_at
+        return is_new or self._owed_at <= now
 
     def compute(self, now: Instant) -> None:
         """Take account of the readings, unless the value was computed only just now."""

@@ -1,6 +1,7 @@
 import functools
 import os
 import pickle
+import random
 from collections.abc import Callable
 from typing import Any
 
@@ -9,13 +10,24 @@ import pytest
 
 from domain.commands import Drive
 from domain.conditions.condition import Condition
-from domain.inputs import EmergencyStopRequest, HoldRequest, Input, TaskRequest, TimePassed
+from domain.health.signals import default_signals
+from domain.inputs import (
+    EmergencyStopRequest,
+    HoldRequest,
+    Input,
+    Reading,
+    Readings,
+    TaskRequest,
+    TimePassed,
+)
 from domain.onboard import Onboard
 from domain.outbox import Outbox
 from domain.parts.mode_settings import ModeSettings, OnFailure, TransitionSettings
 from domain.parts.system_model import EVERY_MODE, SmhModel
 from domain.paths.path import Path
+from domain.supervision import SupervisionSettings
 from domain.timebase import seconds
+from domain.windows.settings import Statistic
 from service.checkpoint import CheckpointError, checkpoint_of, core_of_checkpoint
 from tests.support.core_robot import CoreRobot
 from tests.support.good import GOOD
@@ -27,6 +39,7 @@ from tests.support.models import (
     actuation_model,
     nested_model,
 )
+from tests.support.watched_robot import above, monitor, signal
 
 HEAD = b"pilothouse checkpoint 1.2\n"
 
@@ -54,6 +67,27 @@ def test_a_copy_goes_on_as_the_core_does() -> None:
         assert copy.handle(given, at) == outputs
         assert copy.wake_at() == robot.onboard.wake_at()
     assert any(isinstance(command, Drive) for command in outputs.commands)
+
+
+@pytest.mark.parametrize("statistic", Statistic)
+def test_a_copy_computes_monitors_bit_for_bit(statistic: Statistic) -> None:
+    watched = monitor(statistic, above(5), window_s=2.0)
+    robot = CoreRobot(
+        actuation_model(), SupervisionSettings((*default_signals(), signal(), watched))
+    )
+    rng = random.Random(1)
+    for _ in range(50):
+        robot.read(load=1e6 + rng.random())
+        robot.advance(rng.choice([0.01, 0.1, 0.3]))
+
+    copy = core_of_checkpoint(checkpoint_of(robot.onboard, "1.2"), "1.2")
+
+    for step in range(50):
+        given = Readings((Reading("load", 1e6 + rng.random()),), "test")
+        at = robot.now + seconds(0.07 * step)
+        assert copy.handle(given, at) == robot.onboard.handle(given, at)
+        assert copy.core.monitors() == robot.onboard.core.monitors()
+        assert copy.wake_at() == robot.onboard.wake_at()
 
 
 def test_a_copy_has_the_settings_of_modes() -> None:
