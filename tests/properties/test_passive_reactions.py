@@ -7,12 +7,14 @@ import os
 from typing import NamedTuple
 
 import hypothesis.strategies as st
+import pytest
 from hypothesis import HealthCheck, given, settings
 
 from domain.timebase import Instant
 from tests.support.reacting_robot import FLAGS, ReactingRobot
 
-PAIRS = 10_000 if os.environ.get("PILOTHOUSE_SOAK") == "1" else 200
+SOAK = os.environ.get("PILOTHOUSE_SOAK") == "1"
+PAIRS = 10_000 if SOAK else 200
 
 ACTIONS = {
     "tell": "action: tell",
@@ -59,7 +61,7 @@ steps = st.builds(
     Step,
     st.dictionaries(st.sampled_from(FLAGS), st.booleans(), max_size=2),
     st.none() | st.integers(0, 3),
-    st.sampled_from([0.1, 0.5, 1.0, 2.0]),
+    st.sampled_from([0.1, 0.5, 1.0, 1.5]),
 )
 
 
@@ -94,7 +96,8 @@ def told(robot: ReactingRobot, twin: int, kind: str) -> list[tuple[Instant, obje
     ]
 
 
-@given(st.lists(bodies(), min_size=1, max_size=4), st.data(), st.lists(steps, max_size=12))
+@pytest.mark.timeout(0 if SOAK else 300)
+@given(st.lists(bodies(), min_size=1, max_size=4), st.data(), st.lists(steps, max_size=8))
 @settings(
     max_examples=PAIRS,
     deadline=None,
