@@ -460,7 +460,13 @@ class Changes:
     def _tell_end(self, change: Change, now: Instant) -> None:
         ended = CHANGE_ENDS[change.status](change.id, change.part, change.reason)
         event = self._outbox.emit(ended)
-        self._part_errors.note_end(ended, event, (change.targets, change.pursuits), now)
+        pursuits = change.pursuits
+        missed = [
+            node
+            for node, own in pursuits.items()
+            if own is not None and own.outcome in _UNHAPPY_ENDS
+        ]
+        self._part_errors.note_end(ended, event, (change.targets, pursuits), missed, now)
 
     def _let_go(self, change: Change, parts: Iterable[PartName]) -> None:
         """Release the parts of an ended change, except nodes that it is still driving."""

@@ -67,6 +67,8 @@ class ErrorList:
         self.severe = SevereErrors()
         self._told: dict[ErrorKey, int] = {}
         """By error, the newest event that told that it was raised or cleared."""
+        self._given: dict[ErrorKey, tuple[ErrorKey, ...]] = {}
+        """What explains an error by word of who found it."""
         self._first: ErrorKey | None = None
         """The error that was raised first since none was on."""
 
@@ -181,6 +183,18 @@ class ErrorList:
         if key == self._first:
             self._mark_first(self.on.oldest)
 
+    def explain(self, key: ErrorKey, causes: tuple[ErrorKey, ...]) -> None:
+        """Note what explains an error this time, beside what always does; until it is over.
+
+        Args:
+            key: The error, which is on or about to be raised.
+            causes: Other errors; empty: nothing does.
+        """
+        self._given[key] = causes
+        if key in self.on:
+            causes, roots = self.explanation_of(key)
+            self._put(replace(self._open[key], caused_by=causes, roots=roots))
+
     def renew_roots(self, key: ErrorKey) -> bool:
         """Find the roots of an error that is on anew; return whether they changed.
 
@@ -292,7 +306,9 @@ class ErrorList:
 
     def explanation_of(self, key: ErrorKey) -> tuple[tuple[ErrorKey, ...], tuple[ErrorKey, ...]]:
         """Return which causes of an error are on, and their roots; of each, only the first ones."""
-        causes = self.causes.present(key, self.on.parts_by_name, self.is_on)
+        known = self.causes.present(key, self.on.parts_by_name, self.is_on)
+        given = filter(self.is_on, self._given.get(key, ()))
+        causes = tuple(islice(dict.fromkeys(chain(known, given)), MAX_SHOWN))
         found = (self._open[cause].roots or (cause,) for cause in causes)
         return causes, tuple(islice(dict.fromkeys(chain.from_iterable(found)), MAX_SHOWN))
 
@@ -404,7 +420,9 @@ class ErrorList:
             if is_first:
                 self._mark_first(key)
             self.renew_roots(key)
-        elif self.on.is_empty:
+            return
+        self._given.pop(key, None)
+        if self.on.is_empty:
             self._mark_first(None)
 
     def _rank(self, key: ErrorKey | None) -> tuple[bool, int, int]:

@@ -1,6 +1,6 @@
 """The built-in errors of parts as a concern: found from facts, from targets and from changes."""
 
-from collections.abc import Container, Iterable, Iterator
+from collections.abc import Collection, Container, Iterable, Iterator
 from dataclasses import dataclass
 from itertools import islice
 
@@ -21,6 +21,7 @@ from domain.health.built_in_errors import (
     UNREACHABLE,
 )
 from domain.health.drift import drifted_parameter
+from domain.health.error_causes import MAX_SHOWN
 from domain.health.error_list import ErrorList, Found
 from domain.health.severe_errors import reason_of
 from domain.inputs import NodeReport, Restored
@@ -115,14 +116,22 @@ class PartErrors(Concern):
             self._reported.add(report.node)
 
     def note_end(
-        self, ended: ChangeEnded, event: int, driven: Iterable[Container[PartName]], now: Instant
+        self,
+        ended: ChangeEnded,
+        event: int,
+        driven: Iterable[Container[PartName]],
+        missed: Collection[PartName],
+        now: Instant,
     ) -> None:
         """Note how a change ended: CHANGE_FAILED stands until one that drove the part succeeds.
+
+        It follows from UNREACHABLE if no other node than unreachable ones failed.
 
         Args:
             ended: How it ended; superseded and canceled ones say nothing about a part.
             event: The id under which that was recorded.
             driven: Parts that it drove besides the requested one.
+            missed: Nodes that did not get where they should.
             now: The current time.
         """
         part, status = ended.part, ended.status
@@ -136,6 +145,9 @@ class PartErrors(Concern):
             how = f"change {ended.change} {status.replace('_', ' ')}"
             message = shortened(because(how, ended.reason), MAX_MESSAGE)
             self._failed.add(part)
+            lost = tuple(ErrorKey(n, UNREACHABLE) for n in missed if not self._is_reachable(n))
+            causes = lost if len(lost) == len(missed) else ()
+            self._errors.explain(ErrorKey(part, CHANGE_FAILED), causes[:MAX_SHOWN])
             self._raise(part, CHANGE_FAILED, Found(_ACTIVE, message, str(status)), now, event)
             since = self._view(part, CHANGE_FAILED).since or now
             self._outbox.keep(KeptFailedChange(part, ended.change, message, str(status), since))
@@ -258,6 +270,9 @@ class PartErrors(Concern):
 
     def _view(self, part: PartName, error: str) -> ErrorView:
         return self._errors.view(ErrorKey(part, error))
+
+    def _is_reachable(self, node: PartName) -> bool:
+        return bool(self._parts.facts[node].reachable)
 
     def _sorted(self, parts: Iterable[PartName]) -> list[PartName]:
         return sorted(parts, key=self._rank.__getitem__)

@@ -19,33 +19,6 @@ SETTINGS = (
         "See the message.",
     ),
     FindingCode(
-        "DUPLICATE_ERROR",
-        ERROR,
-        "A signal of the robot file gives a part an error of a name that the part has already: a "
-        "built-in one, or one of the model file.",
-        "Use another name.",
-    ),
-    FindingCode(
-        "MONITOR_CYCLE",
-        ERROR,
-        "A monitor is computed from itself, directly or through others.",
-        "Let each chain of monitors begin at a signal that is read.",
-    ),
-    FindingCode(
-        "NOT_CHAINABLE",
-        ERROR,
-        "A monitor is computed from an `age`, a `gap` or a `stuck_for`: these grow in silence, and "
-        "a monitor takes one value per reading.",
-        "Compute it from the signal itself.",
-    ),
-    FindingCode(
-        "WINDOW_TOO_LARGE",
-        ERROR,
-        "With the period of its source, the window of a monitor holds more than 100,000 readings "
-        "(20,000 for `percentile`). Windows of posted readings that do are unknown at run time.",
-        "Shorten the window, or read the source less often.",
-    ),
-    FindingCode(
         "NOT_FOR_CPP",
         WARNING,
         "C++ would reject or misread the file: a null, an alias, an empty list or map, a list "

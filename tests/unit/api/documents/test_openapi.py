@@ -135,7 +135,7 @@ def test_a_refusal_is_shown_with_its_blockers_or_its_errors(document: dict[str, 
     assert {
         problem["status"]: problem.get("errors")
         for problem in (example["value"] for example in shared["examples"].values())
-    }.keys() == {404, 422}
+    }.keys() == {404, 409, 422}
 
 
 def test_no_answer_is_described_that_is_never_given(document: dict[str, Any]) -> None:

@@ -270,6 +270,40 @@ def test_a_change_that_timed_out_is_an_error_of_the_requested_part_alone(robot: 
     assert robot.error(ACTUATION, "CHANGE_FAILED").value == "timed_out"
 
 
+def test_a_change_that_failed_for_want_of_a_node_follows_from_its_loss(robot: Robot) -> None:
+    robot.fault(BASE, Fault.SILENT)
+    robot.ask_mode(ACTUATION, "PERFORMANCE")
+    robot.advance(15)
+    error = robot.error(ACTUATION, "CHANGE_FAILED")
+    assert error.roots == (ErrorKey(BASE, "UNREACHABLE"),)
+    raised = [e for e in robot.events if e.kind == "error.raised" and e.data["root_cause"]]
+    assert [(e.data["part"], e.data["error"]) for e in raised] == [(BASE, "UNREACHABLE")]
+
+
+def test_a_change_that_failed_for_another_reason_as_well_follows_from_nothing(
+    robot: Robot,
+) -> None:
+    robot.fault(BASE, Fault.SILENT)
+    robot.fault(ARM, Fault.REFUSE)
+    robot.ask_mode(ACTUATION, "PERFORMANCE")
+    robot.advance(15)
+    assert robot.error(ACTUATION, "CHANGE_FAILED").roots == ()
+
+
+def test_a_second_failure_has_the_causes_of_its_own(robot: Robot) -> None:
+    robot.fault(BASE, Fault.SILENT)
+    robot.ask_mode(ACTUATION, "PERFORMANCE")
+    robot.advance(15)
+    robot.fault(BASE, None)
+    robot.advance(5)
+    kept = robot.error(ACTUATION, "CHANGE_FAILED")
+    assert kept.roots == (ErrorKey(BASE, "UNREACHABLE"),), "it keeps its root until it is over"
+    robot.fault(ARM, Fault.REFUSE)
+    robot.ask_transition(ACTUATION, "cleanup")
+    robot.advance(15)
+    assert robot.error(ACTUATION, "CHANGE_FAILED").roots == ()
+
+
 def test_a_second_failure_says_what_failed_last_and_is_not_told_twice(robot: Robot) -> None:
     robot.fault(BASE, Fault.REFUSE)
     robot.ask_transition(BASE, "configure")
