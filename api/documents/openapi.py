@@ -3,6 +3,7 @@
 import re
 from collections import defaultdict
 from collections.abc import Iterator, Mapping, Sequence
+from http import HTTPStatus
 from typing import Any
 
 from fastapi import FastAPI
@@ -117,7 +118,9 @@ def _add_examples(
             if parameter["in"] == "path":
                 parameter["example"] = exchanges[0].path[parameter["name"]]
     for exchange in exchanges:
-        if exchange.body_type is not None and exchange.answer_type != MEDIA_TYPE:
+        # What is refused as things are is asked rightly all the same.
+        is_right = exchange.answer_type != MEDIA_TYPE or exchange.status == HTTPStatus.CONFLICT
+        if exchange.body_type is not None and is_right:
             content = operation["requestBody"]["content"][exchange.body_type]
             _add_example(content, exchange.summary, exchange.body)
         if exchange.answer_type is not None:

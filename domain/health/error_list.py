@@ -178,17 +178,21 @@ class ErrorList:
         marks = self._open.pop(key).marks
         self._put(replace(self.view(key), marks=marks))
         self._switch(key, on=False)
+        if key == self._first:
+            self._mark_first(self.on.oldest)
 
     def renew_roots(self, key: ErrorKey) -> bool:
         """Find the roots of an error that is on anew; return whether they changed.
 
-        While none of its causes is on, it keeps those that it had.
+        While none of its causes is on, it keeps those that it had, unless they are forgotten.
         """
         if key not in self.on:
             return False
         causes, roots = self.explanation_of(key)
         view = self._open[key]
-        if not causes or (causes, roots) == (view.caused_by, view.roots):
+        if not causes and any(self.view(root).count for root in view.roots):
+            return False
+        if (causes, roots) == (view.caused_by, view.roots):
             return False
         self._put(replace(view, caused_by=causes, roots=roots))
         if key not in self._latching:

@@ -47,6 +47,11 @@ class OnErrors:
         return tuple(switched)
 
     @property
+    def oldest(self) -> ErrorKey | None:
+        """Return the one that was raised first of those that are on; None: there is none."""
+        return next(iter(self._all), None)
+
+    @property
     def is_empty(self) -> bool:
         """Tell whether no error is on."""
         return not self._all

@@ -296,8 +296,10 @@ class Propagation(Concern):
         return self._are_unheard(self._errors.view(key).roots or (key,))
 
     def _are_unheard(self, roots: Collection[ErrorKey]) -> bool:
-        are_so = all(root.error == UNREACHABLE and root.part in self._unheard for root in roots)
-        return bool(roots) and are_so
+        for part, error in roots:
+            if error != UNREACHABLE or part is None or part not in self._unheard:
+                return False
+        return bool(roots)
 
     def _is_found_elsewhere(self, key: ErrorKey) -> bool:
         """Tell whether its causes explain an error only: it is built in, or that of a signal."""

@@ -36,8 +36,8 @@ READY = "ready"
 TICK = seconds(0.5)
 """All times are multiples of it, so that each deadline is one at which the evaluator looks."""
 
-Truth: TypeAlias = Literal[0, 1, 2]
-"""False, unknown, true."""
+Truth: TypeAlias = int
+"""0: false, 1: unknown, 2: true."""
 
 
 @dataclass
@@ -386,7 +386,7 @@ class Story:
     deadline=None,
     derandomize=True,
     database=None,
-    suppress_health_check=list(HealthCheck),
+    suppress_health_check=[HealthCheck.too_slow],
 )
 @given(st.integers(0, 2**63))
 def test_a_graph_of_errors_settles_where_a_look_at_each_error_in_order_leads(seed: int) -> None:

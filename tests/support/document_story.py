@@ -10,6 +10,8 @@ from tests.support.http_robot import ACTUATION
 REACTING = ACTUATION.replace(
     "drive_base:\n",
     """\
+    errors:
+      BLOCKED: {severity: urgent, hint: clear the way}
     reactions:
       COOL_DOWN: {when: "temperature > 50", action: mode, target: active.MODERATE}
 drive_base:
@@ -18,6 +20,8 @@ drive_base:
 ).replace(
     "manipulator:\n",
     """\
+    errors:
+      OVERCURRENT: {severity: urgent, hint: look for what blocks the wheels}
     reactions:
       RESTART_BASE: {when: "drive_base.errors.ERROR_PROCESSING", for_s: 1, action: restart}
 manipulator:
@@ -96,6 +100,7 @@ BATTERY = {"signal": "battery_level"}
 OPERATOR = {"owner": "operator"}
 
 LOW_BATTERY = {"error": "BATTERY_LOW"}
+OVER = {"active": False}
 KNOWN = {"for_s": 600, "reason": "the charger is being mended"}
 CHECKPOINTS = {PartName("drive_base"): CheckpointSettings(order={"sense": ("act",)})}
 """What the robot of the story supervises of its nodes."""
@@ -233,6 +238,19 @@ _HEALTH = (
                 {**part, "error": "DEVIATES"},
             ),
         )
+    ),
+    *(
+        Asked(
+            f"POST /{kind}/{{part}}/errors/{{error}}",
+            summary,
+            part | {"error": error},
+            body={"active": active, "message": message, "value": 41.5} if active else OVER,
+        )
+        for kind, part, error, message in (
+            ("systems", ACTUATOR, "BLOCKED", "a box stands in the way"),
+            ("nodes", BASE, "OVERCURRENT", "overcurrent, in A"),
+        )
+        for summary, active in (("It is on", True), ("It is over", False))
     ),
     Asked(
         "POST /systems/{part}/errors/{error}",

@@ -1,6 +1,7 @@
 """Reports of errors that others find: a driver, a test, an operator."""
 
 from functools import partial
+from http import HTTPStatus
 from typing import Annotated
 
 from fastapi import APIRouter, Path, Response
@@ -14,8 +15,6 @@ from api.http.schemas.base import timestamp
 from api.http.schemas.errors import ErrorJson, ErrorReportBody
 from domain.inputs import ErrorReport
 from domain.snapshot import ErrorKey
-from domain.state_and_mode import PartName
-from service.supervisor import Supervisor
 
 router = APIRouter(prefix="/errors", tags=["health"], route_class=JsonRoute)
 part_router = APIRouter(route_class=JsonRoute)
@@ -24,21 +23,19 @@ part_router = APIRouter(route_class=JsonRoute)
 ErrorPath = Annotated[str, Path(description="As in `GET /errors`")]
 
 
-@router.post("/{error}", response_model=ErrorJson)
+@router.post("/{error}", status_code=HTTPStatus.CONFLICT)
 @policy(Permission.OPERATE)
 async def report_error(
     error: ErrorPath,
     body: ErrorReportBody,
-    supervisor: SupervisorDep,
     kept: KeptDep,
     actor: ActorDep,
     *,
     volatile: VolatileQuery = False,
-) -> Response:
+) -> None:
     """Report an error of the robot itself; it is rejected, since Pilothouse finds all of these."""
     report = ErrorReport(None, error, body.active, body.message, body.value, actor)
     await kept.submit(report, volatile=volatile)
-    return _answer(supervisor, None, error)
 
 
 @part_router.post("/{part:path}/errors/{error}", response_model=ErrorJson)
@@ -59,11 +56,6 @@ async def report_part_error(
     """
     report = ErrorReport(part, error, body.active, body.message, body.value, actor)
     await kept.submit(report, volatile=volatile)
-    return _answer(supervisor, part, error)
-
-
-def _answer(supervisor: Supervisor, part: PartName | None, error: str) -> Response:
-    """Return an error as it is now."""
     view = supervisor.core.error(ErrorKey(part, error))
     text = error_text(view, partial(timestamp, supervisor.clock))
     return Response(text, media_type="application/json")

@@ -17,7 +17,7 @@ def test_errors_are_found_by_name_while_they_are_on() -> None:
     on.switch(LOST, on=False)
     assert (LOST in on, OFF in on, LOW in on) == (False, True, True)
     assert {name: list(parts) for name, parts in on.parts_by_name.items()} == {"LOST": [BASE]}
-    assert not on.is_empty
+    assert (on.oldest, on.is_empty) == (OFF, False)
 
 
 def test_what_switched_is_taken_once_and_in_order() -> None:

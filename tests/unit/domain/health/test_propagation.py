@@ -1,19 +1,23 @@
 """Errors that the model file declares, as an operator sees them come and go."""
 
+from dataclasses import replace
 from typing import Any
 
 from domain.health.propagation import LOOKS_AT_ONCE
-from domain.inputs import ErrorReport, TimePassed
+from domain.health.signals import default_signals
+from domain.inputs import ErrorReport, NodeReport, Reading, Readings, TimePassed
 from domain.lifecycle import Transition
 from domain.simulation.node_settings import Fault
 from domain.snapshot import ErrorKey, ErrorState, ErrorView, SystemState
 from domain.state_and_mode import PartName
+from domain.supervision import Supervision, SupervisionSettings
 from service.checkpoint import checkpoint_of, core_of_checkpoint
 from service.files.model_file import read_model
 from tests.support.core_robot import CoreRobot
 from tests.support.good import GOOD
 
 S = ErrorState
+NEVER_STALE = tuple(replace(signal, stale_after=0) for signal in default_signals())
 
 SENSORS = """\
 vehicle:
@@ -410,3 +414,22 @@ def test_that_a_node_was_not_yet_heard_of_begins_nothing_that_stays() -> None:
     assert cold.core.signals()["temperature"].value is None
     bad = ErrorKey(PartName("lidar"), "BAD")
     assert cold.core.error(bad).state is S.NORMAL, "the temperature is not known"
+
+
+def test_a_node_that_was_not_yet_heard_of_explains_nothing_once_it_is_heard() -> None:
+    strong = "signal_strength == CONNECTED"
+    text = node("lidar", f"{{OLD: {{when: {strong!r}, caused_by: [lidar.UNREACHABLE]}}}}")
+    core = Supervision(read_model(text).model, SupervisionSettings(), 0)
+    old = ErrorKey(PartName("lidar"), "OLD")
+    core.handle(Readings((Reading("signal_strength", "CONNECTED"),), "test"), 1)
+    assert core.error(old).roots == (ErrorKey(PartName("lidar"), "UNREACHABLE"),)
+    core.handle(NodeReport(PartName("lidar"), reachable=True), 2)
+    assert (core.error(old).state.is_on, core.error(old).roots) == (True, ())
+
+
+def test_when_the_first_one_is_forgotten_the_next_one_was_the_first() -> None:
+    text = node("lidar", "{DIRTY: {severity: warning}}")
+    core = Supervision(read_model(text).model, SupervisionSettings(NEVER_STALE), 0)
+    core.handle(ErrorReport(PartName("lidar"), "DIRTY", active=True), 1)
+    core.handle(NodeReport(PartName("lidar"), reachable=True), 2)
+    assert [view.key.name for view in core.errors() if view.first_out] == ["lidar.DIRTY"]
