@@ -96,6 +96,7 @@ async def test_after_a_change_target_and_actual_tell_state_and_mode_and_why(
         "mode": "PERFORMANCE",
         "because": "requested",
         "rule": None,
+        "reaction": None,
         "cause": None,
         "blockers": [],
     }

@@ -46,6 +46,7 @@ def test_a_part_tells_what_was_asked_what_is_pursued_and_what_is() -> None:
         "mode": "SLOW",
         "because": "rule",
         "rule": "slow_down",
+        "reaction": None,
         "cause": 7,
     }
     assert blockers[0]["message"] == "arm is inactive"

@@ -10,6 +10,7 @@ def test_what_has_not_changed_is_left_out_of_a_frame() -> None:
         "parts",
         "signals",
         "errors",
+        "reactions",
         "task",
         "vehicle",
         "holds",
