@@ -26,8 +26,8 @@ Conditions stand in `requires` and `invariants` of modes, and in the `errors` an
 parts. A finding points at the character inside the condition, or at its start where it is folded
 over several lines."""
 _ROBOT_FILES = """\
-Robot files have the codes of YAML, `UNKNOWN_KEY`, `INVALID_VALUE`, `UNKNOWN_SIGNAL`, `UNKNOWN_PART`, `UNKNOWN_MODE`,
-`UNKNOWN_ERROR` and these.
+Robot files have the codes of YAML, `UNKNOWN_KEY`, `INVALID_VALUE`, `UNKNOWN_SIGNAL`,
+`UNKNOWN_PART`, `UNKNOWN_MODE`, `UNKNOWN_ERROR` and these.
 [robot-file.schema.json](robot-file.schema.json) lists all keys."""
 _WAYPOINT_FILES = """\
 [Waypoint files](../how-to/waypoint-files.md) says how files are read. At most 20 findings are
