@@ -20,6 +20,7 @@ from playwright.sync_api import Browser, Page, WebSocketRoute, sync_playwright
 from tests.browser.earlier_runs import tell_earlier_runs
 from tests.browser.robots import guarded_robot, large_robot, troubled_robot
 from tests.browser.station import CHROMIUM, CHROMIUM_ARGUMENTS, Service, free_port
+from tests.support.shared import PROJECT
 
 SCREENS = {"desktop": (1440, 900), "phone": (360, 640)}
 SCHEMES: tuple[Literal["light", "dark"], ...] = ("light", "dark")
@@ -27,7 +28,8 @@ UTM = (303_628.48, 3_900_696.88)
 LOST_MS = 3600
 
 Act = Callable[[Page, Service], None]
-Robot = Literal["example", "troubled", "large", "guarded", "guarded_failing"]
+MOBILE = PROJECT / "examples" / "mobile_robot"
+Robot = Literal["example", "troubled", "large", "guarded", "guarded_failing", "mobile"]
 MANIPULATION = "/systems/mobile_manipulation"
 
 
@@ -129,6 +131,21 @@ def errors_shelving(page: Page, service: Service) -> None:
     errors(page, service)
     page.get_by_role("button", name="Shelve …").first.click()
     page.locator("ph-shelve-form").first.scroll_into_view_if_needed()
+
+
+def reacting(page: Page, service: Service) -> None:
+    """Nothing sends scans or maps: the robot creeps, and what it would do besides is told."""
+    post(service, "/systems/rover/state?wait=15", {"transition": "activate"})
+    for _ in range(8):
+        post(service, "/signals", {"scan": 360.0, "map_age_s": 2.5})
+        time.sleep(0.1)
+    post(service, "/nodes/left_drive/errors/FAULT", {"active": True, "message": "overcurrent"})
+    page.wait_for_timeout(2500)
+
+
+def reactions_seen(page: Page, service: Service) -> None:
+    reacting(page, service)
+    page.locator("section.place-reactions").scroll_into_view_if_needed()
 
 
 def low_battery(_: Page, service: Service) -> None:
@@ -260,6 +277,8 @@ STATES: dict[str, tuple[Robot, Act]] = {
     "acknowledge": ("troubled", acknowledge),
     "errors": ("troubled", errors),
     "errors_shelving": ("troubled", errors_shelving),
+    "reacting": ("mobile", reacting),
+    "reactions": ("mobile", reactions_seen),
     "low_battery": ("example", low_battery),
     "rejected": ("example", rejected),
     "sending": ("example", sending),
@@ -283,6 +302,7 @@ def running_robot(kind: Robot) -> Iterator[Service]:
             "troubled": troubled_robot(folder),
             "large": large_robot(folder),
             "guarded": guarded_robot(folder),
+            "mobile": (str(MOBILE / "model.yaml"), "--robot", str(MOBILE / "robot.yaml")),
             "guarded_failing": guarded_robot(folder, "fail"),
         }
         with (folder / "output").open("w+b") as output:

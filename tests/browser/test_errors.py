@@ -149,6 +149,36 @@ def test_what_follows_from_an_error_is_folded_below_it(desktop: Page) -> None:
     assert found["returned"] == []
 
 
+def test_a_root_is_as_urgent_as_the_worst_that_follows_from_it(desktop: Page) -> None:
+    desktop.evaluate(
+        """async () => {
+          const { errorGroups, worseBelow } = await import("/web/js/error_groups.js");
+          window.names = (errors) => errorGroups(errors).on.map(({ error, below }) => [
+            error.error,
+            worseBelow(error, below)?.error ?? null,
+          ]);
+        }"""
+    )
+    drive = {"part": "drive", "error": "FAULT"}
+    fault = {**told(**drive), "severity": "urgent"}
+    lame = {
+        **told(part="base", error="LAME"),
+        "severity": "critical",
+        "root_cause": False,
+        "roots": [drive],
+    }
+    slow = {
+        **told(part="lidar", error="SLOW"),
+        "severity": "urgent",
+        "since_at": "2026-01-01T00:00:00.000Z",
+    }
+    errors = {"a": slow, "b": fault, "c": lame}
+    assert desktop.evaluate("errors => window.names(errors)", errors) == [
+        ["FAULT", "LAME"],
+        ["SLOW", None],
+    ]
+
+
 def test_the_list_fits_a_phone(phone: Page, service: Service) -> None:
     load(service, 300)
     expect(alarm(phone, "OVERLOAD")).to_be_visible()

@@ -38,8 +38,9 @@ export function errorGroups(errors) {
     if (root === undefined) alone.push({ error, below: [] });
     else roots.get(root).below.push(error);
   }
-  const trees = [...roots.values(), ...alone].sort(byUrgency);
+  const trees = [...roots.values(), ...alone];
   for (const { below } of trees) below.sort((a, b) => byUrgency({ error: a }, { error: b }));
+  trees.sort(byUrgency);
   const heard = trees.filter(({ error }) => !isSilenced(error));
   return {
     on: heard.filter(({ error, below }) => [error, ...below].some(isOn)),
@@ -48,10 +49,23 @@ export function errorGroups(errors) {
   };
 }
 
-function byUrgency({ error: a }, { error: b }) {
+/** The first of what follows from an error that is worse than the error itself; undefined: none is.
+ *
+ * `below` is sorted by urgency.
+ */
+export function worseBelow(error, below) {
+  return below.find((each) => isOn(each) && rank(each) < rank(error));
+}
+
+function rank({ severity }) {
+  return SEVERITIES.indexOf(severity);
+}
+
+/** A root is as urgent as the worst that follows from it. */
+function byUrgency({ error: a, below: ofA = [] }, { error: b, below: ofB = [] }) {
   return (
     URGENCY[a.state] - URGENCY[b.state] ||
-    SEVERITIES.indexOf(a.severity) - SEVERITIES.indexOf(b.severity) ||
+    rank(worseBelow(a, ofA) ?? a) - rank(worseBelow(b, ofB) ?? b) ||
     (a.since_at ?? "").localeCompare(b.since_at ?? "") ||
     errorName(a).localeCompare(errorName(b))
   );

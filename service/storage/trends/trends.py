@@ -38,7 +38,7 @@ class TrendsStatus:
     """How the history is doing."""
 
     bytes: int
-    """Size of the blocks, about."""
+    """Size of the blocks on disk, about."""
     dropped: int
     """Readings and rows of readings that this run could not keep."""
     reason: str | None
@@ -57,7 +57,9 @@ class Trends:
         """
         self._signals = KnownSignals(signals)
         self._known = self._signals.by_name
-        self._recorder = Recorder(self._signals, path, MEMORY_TIERS if path == MEMORY else TIERS)
+        self._is_in_memory = path == MEMORY
+        tiers = MEMORY_TIERS if self._is_in_memory else TIERS
+        self._recorder = Recorder(self._signals, path, tiers)
         self._intake = Intake()
         self._thread: CallThread | None = None
         """None: there was nothing to do yet."""
@@ -72,7 +74,8 @@ class Trends:
     def status(self) -> TrendsStatus:
         """Return how the history is doing."""
         recorder = self._recorder
-        return TrendsStatus(recorder.size, recorder.dropped + self._intake.dropped, recorder.reason)
+        size = 0 if self._is_in_memory else recorder.size
+        return TrendsStatus(size, recorder.dropped + self._intake.dropped, recorder.reason)
 
     def note(self, signal: str, at: Instant, value: SignalValue, error: str | None) -> None:
         """Take a reading.

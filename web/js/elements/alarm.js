@@ -5,7 +5,7 @@
 
 import { request, partPath } from "/web/js/api.js";
 import { el, renderOnce, setAttribute, setText } from "/web/js/dom.js";
-import { errorName, isOn, mayGoOn } from "/web/js/error_groups.js";
+import { errorName, isOn, mayGoOn, worseBelow } from "/web/js/error_groups.js";
 import { whileSending } from "/web/js/sending.js";
 import { duration, timeAndDay } from "/web/js/words.js";
 import "/web/js/elements/shelve_form.js";
@@ -73,13 +73,15 @@ class Alarm extends HTMLElement {
     setText(this.facts, factsOf(error, knownAt));
     setText(this.advice, error.hint ?? "");
     setAttribute(this.advice, "hidden", !error.hint);
-    this.#showBelow(below);
+    this.#showBelow(error, below);
     this.#showButtons(error, enabled, volatile);
   }
 
-  #showBelow(below) {
+  #showBelow(error, below) {
     setAttribute(this.below, "hidden", below.length === 0);
-    setText(this.summary, `${below.length} ${below.length === 1 ? "follows" : "follow"} from this`);
+    const worse = worseBelow(error, below);
+    const leadsTo = worse ? `: ${errorName(worse)}, ${worse.severity}` : "";
+    setText(this.summary, `${below.length} ${below.length === 1 ? "follows" : "follow"} from this${leadsTo}`);
     const shown = below.slice(0, BELOW_SHOWN).map((error) => [errorName(error), error.message, error.state]);
     renderOnce(this.list, JSON.stringify([shown, below.length]), () => [
       ...shown.map(([name, message, state]) =>
