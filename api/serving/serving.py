@@ -314,12 +314,22 @@ async def _offer(gateway: RosGateway) -> None:
 
 def _tell_failure(failure: BaseException) -> None:
     """Log why the service ends; without a traceback if the user can fix the cause."""
-    cause = failure.__cause__ or failure
-    causes = [*_leaves(cause)] if isinstance(cause, BaseExceptionGroup) else [cause]
-    if all(isinstance(cause, GraphFailedError | UnknownTypeError) for cause in causes):
-        log.critical("%s", "; ".join(str(cause) for cause in causes))
+    origins = [*_origins(failure)]
+    if all(isinstance(origin, GraphFailedError | UnknownTypeError) for origin in origins):
+        log.critical("%s", "; ".join(str(origin) for origin in origins))
     else:
-        log.critical("%s", failure, exc_info=cause)
+        log.critical("%s", failure, exc_info=failure.__cause__ or failure)
+
+
+def _origins(failure: BaseException) -> Iterator[BaseException]:
+    """Yield what a failure goes back to; a task may fail because one of its own did."""
+    if isinstance(failure, BaseExceptionGroup):
+        for each in failure.exceptions:
+            yield from _origins(each)
+    elif isinstance(failure, TaskFailedError) and failure.__cause__ is not None:
+        yield from _origins(failure.__cause__)
+    else:
+        yield failure
 
 
 def _leaves(group: BaseExceptionGroup[BaseException]) -> Iterator[BaseException]:

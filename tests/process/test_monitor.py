@@ -57,6 +57,7 @@ def test_once_as_json_is_one_object_with_each_member_as_the_interface_has_it() -
         "emergency_stop",
         "holds",
         "errors",
+        "reactions",
     ]
     assert seen["system_state"]["errors"] == ["BATTERY_LOW"]
     assert seen["parts"]["actuation"] == systems["items"][0]
