@@ -266,8 +266,24 @@ class SignalMonitor:
     def view(self) -> SignalView:
         """Return the signal; the same object until something changes."""
         if self._view is None:
-            spec = self.settings.spec
-            self._view = SignalView(spec.name, unit=spec.unit, **self.state._asdict())
+            spec, state = self.settings.spec, self.state
+            self._view = SignalView(
+                spec.name,
+                state.value,
+                spec.unit,
+                state.source,
+                state.received_at,
+                state.stamp,
+                state.stale,
+                state.error,
+                state.pending_error,
+                state.pending_since,
+                state.pending_needs,
+                state.skewed,
+                state.needs_acknowledgement,
+                state.settings,
+                state.source_fault,
+            )
         return self._view
 
     @property

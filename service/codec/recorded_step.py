@@ -2,6 +2,7 @@
 
 from collections.abc import Iterable
 from dataclasses import dataclass
+from functools import lru_cache
 from zlib import crc32
 
 from domain.commands import Command
@@ -10,6 +11,9 @@ from domain.inputs import Input
 from domain.kept import Keeping
 from domain.outbox import Outputs
 from domain.timebase import Instant
+
+_MANY = 1_000
+"""Names that take long to sort."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -49,4 +53,12 @@ def _checksum(outputs: Outputs) -> int:
 
 
 def _joined(names: Iterable[str]) -> str:
+    if isinstance(names, frozenset) and len(names) > _MANY:
+        return _joined_once(names)
+    return "\t".join(sorted(names))
+
+
+@lru_cache(maxsize=4)
+def _joined_once(names: frozenset[str]) -> str:
+    """Return many names in their order; requests of a large robot change the same ones again."""
     return "\t".join(sorted(names))

@@ -47,3 +47,11 @@ def test_a_step_has_the_input_and_what_followed(*, is_late: bool) -> None:
 
     assert (step.at, step.given, step.is_late) == (7, TimePassed(), is_late)
     assert (step.commands, step.events, step.kept) == ((), (), ())
+
+
+def test_many_views_have_the_checksum_that_does_not_depend_on_their_order() -> None:
+    names = [PartName(f"n{number}") for number in range(2_000)]
+    there, back = Outputs(parts=frozenset(names)), Outputs(parts=frozenset(reversed(names)))
+
+    assert views_of(there) == views_of(back) == views_of(there)
+    assert views_of(there) != views_of(Outputs(parts=frozenset(names[1:])))
