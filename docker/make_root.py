@@ -46,9 +46,14 @@ NOT_OF_THE_ENVIRONMENT = shutil.ignore_patterns(
     "activate*",
     "include",
     "tests",
-    # Build tools of numpy.
+    # Build tools of numpy, and those of its packages that it loads only when asked for.
     "distutils",
     "f2py*",
+    "fft",
+    "ma",
+    "polynomial",
+    "*.pxd",
+    "*.pyx",
     "*.a",
     "*.h",
     "*.pyi",
