@@ -4,11 +4,7 @@ For `make bench-ros2`; needs ROS 2.
 """
 
 import asyncio
-import subprocess
-import sys
 import time
-from collections.abc import Iterator
-from contextlib import contextmanager
 from importlib import import_module
 from importlib.util import find_spec
 
@@ -18,8 +14,9 @@ from domain.inputs import Readings
 from service.clock import MonotonicClock
 from service.files.robot_file import robot_settings_of
 from service.ros.backend.topic_statistics import TopicStatistics
+from tests.ros2.support.camera_process import camera
 from tests.ros2.support.isolation import isolate
-from tests.support.bench import PROJECT, report
+from tests.support.bench import report
 from tests.support.models import actuation_model
 
 pytestmark = [
@@ -27,7 +24,6 @@ pytestmark = [
     pytest.mark.skipif(find_spec("rclpy") is None, reason="needs ROS 2: make bench-ros2"),
 ]
 
-CAMERA = PROJECT / "tests" / "ros2" / "support" / "camera.py"
 RATE_HZ = 30.0
 SIZES = {"1 kB": 1_000, "1 MB": 1_000_000}
 SETTLE_S = 6.0
@@ -38,20 +34,6 @@ STATISTICS = {
     "image_gap": {**WATCHED, "statistic": "gap"},
     "image_age": {**WATCHED, "statistic": "age"},
 }
-
-
-@contextmanager
-def camera(size: int) -> Iterator[None]:
-    """Let a camera publish as long as the context lasts."""
-    command = [sys.executable, str(CAMERA), str(RATE_HZ), str(size)]
-    process = subprocess.Popen(command, stdout=subprocess.PIPE, text=True)
-    try:
-        assert process.stdout is not None
-        assert process.stdout.readline() == "ready\n"
-        yield
-    finally:
-        process.kill()
-        process.communicate()
 
 
 async def watch(*, watched: bool) -> dict[str, float]:
@@ -80,7 +62,7 @@ def test_watching_a_topic_of_large_messages() -> None:
     isolate()
     rows: dict[str, dict[str, float]] = {}
     for label, size in SIZES.items():
-        with camera(size):
+        with camera(RATE_HZ, size):
             rows[f"{label}, not watched"] = asyncio.run(watch(watched=False))
             rows[f"{label}, watched"] = asyncio.run(watch(watched=True))
     report(

@@ -3,12 +3,22 @@
 import asyncio
 import sys
 import threading
+from itertools import pairwise
+from statistics import median
 from typing import Any
 
 import pytest
 
 from domain.errors import InvalidValueError
-from service.ros.graph.graph import Client, GraphFailedError, Lane, Qos, UnknownTypeError
+from service.ros.graph.graph import (
+    Client,
+    GraphFailedError,
+    Lane,
+    Publisher,
+    Qos,
+    UnknownTypeError,
+)
+from tests.ros2.support.camera_process import camera
 from tests.ros2.support.links import POLL_S, WITHIN_S, Link, make_link, ready
 from tests.ros2.support.nodes_process import nodes_process
 from tests.support.waiting import until
@@ -90,6 +100,38 @@ async def test_messages_are_noticed_with_their_stamps_and_without_being_read(lin
     await until(lambda: told(None, lambda: beat.publish({})), POLL_S)
 
     assert set(heard) == {stamp_ns, None}
+
+
+async def test_large_messages_of_a_reliable_publisher_all_arrive(link: Link) -> None:
+    rate_hz, size = 30, 1_000_000
+    heard: list[int | None] = []
+    node = link.node("pilothouse", Lane.SENSORS)
+    node.watch_arrivals("/image", "sensor_msgs/msg/Image", heard.append)
+
+    with camera(rate_hz, size):
+        await until(lambda: len(heard) >= 60, POLL_S)
+
+    newest = [stamp for stamp in heard[-31:] if stamp is not None]
+    gaps_s = [(later - stamp) / 1e9 for stamp, later in pairwise(newest)]
+    assert len(newest) == 31
+    assert median(gaps_s) == pytest.approx(1 / rate_hz, rel=0.1)
+
+
+async def test_a_publisher_that_is_not_reliable_is_heard_after_one_that_is(link: Link) -> None:
+    heard: list[int | None] = []
+    link.node("pilothouse", Lane.SENSORS).watch_arrivals("/beat", EMPTY, heard.append)
+    talker = link.node("talker", Lane.GATEWAY)
+    reliable = talker.publisher("/beat", EMPTY, Qos.EVENTS)
+
+    def said(publisher: Publisher, wanted: int) -> bool:
+        publisher.publish({})
+        return len(heard) >= wanted
+
+    # Long enough for a look at the publishers.
+    await until(lambda: said(reliable, 150), POLL_S)
+    so_far = len(heard)
+    hasty = talker.publisher("/beat", EMPTY, Qos.SENSOR)
+    await until(lambda: said(hasty, so_far + 20), POLL_S)
 
 
 async def test_both_events_of_a_transition_are_heard(link: Link) -> None:

@@ -1,7 +1,7 @@
 """Signals that tell how a ROS topic arrives: its rate, its longest gap, the age of its messages.
 
-Of a message nothing but the stamp is read, so that a topic of images is watched as cheaply as one
-of numbers.
+Of a message nothing but the stamp is read, so that a topic of images costs little more than their
+transport.
 """
 
 from collections import deque

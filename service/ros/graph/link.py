@@ -16,6 +16,7 @@ from collections.abc import Awaitable, Callable, Sequence
 from typing import Any
 
 import rclpy
+from rclpy.clock import Clock, ClockType
 from rclpy.duration import Duration
 from rclpy.event_handler import PublisherEventCallbacks, SubscriptionEventCallbacks
 from rclpy.exceptions import NoTypeSupportImportedException
@@ -64,6 +65,9 @@ _SERVING = QoSProfile(depth=2 * MAX_UNANSWERED)
 _NO_EVENTS = SubscriptionEventCallbacks(use_default_callbacks=False)
 _NO_PUBLISHER_EVENTS = PublisherEventCallbacks(use_default_callbacks=False)
 _LIVELINESS_DEPTH = 8
+_ARRIVALS_DEPTH = 5
+_LOOK_S = 1.0
+"""Time between two looks at the publishers of a topic whose messages are counted."""
 _DOMAINS = range(233)
 _JOIN_S = 1.0
 _STOP_NODE = "pilothouse_stop"
@@ -270,9 +274,7 @@ class _Node:
         def arrive(serialized: bytes) -> None:
             hear(stamp_in(serialized) if has_stamp else None)
 
-        self._node.create_subscription(
-            kind, topic, arrive, _PROFILES[Qos.SENSOR], event_callbacks=_NO_EVENTS, raw=True
-        )
+        _ArrivalWatch(self._node, kind, topic, arrive)
 
     def watch_liveliness(
         self, topic: str, type_name: str, lease_s: float, take: Callable[[bool], None]
@@ -311,6 +313,47 @@ class _Node:
         kind = _find_type(type_name)
         server = Server(self._link.crossing, service, kind.Response, answer, self._spinner.do)
         server.attach(self._node.create_service(kind, service, server.accept, qos_profile=_SERVING))
+
+
+class _ArrivalWatch:
+    """A subscription to serialized messages that is as reliable as all their publishers are.
+
+    A reliable one hears no publisher that is not. With best effort, a message that travels in many
+    pieces, such as an image, is lost with any of them: of 30 images of 1 MB a second, one arrived.
+    """
+
+    def __init__(
+        self,
+        node: Any,  # noqa: ANN401
+        kind: Any,  # noqa: ANN401
+        topic: str,
+        arrive: Callable[[bytes], None],
+    ) -> None:
+        """Subscribe; the thread of the lane looks once a second for other publishers."""
+        self._node = node
+        self._kind = kind
+        self._topic = topic
+        self._arrive = arrive
+        self._reliability = ReliabilityPolicy.BEST_EFFORT
+        self._subscription = self._subscribe()
+        node.create_timer(_LOOK_S, self._look, clock=Clock(clock_type=ClockType.STEADY_TIME))
+
+    def _subscribe(self) -> Any:  # noqa: ANN401
+        profile = QoSProfile(depth=_ARRIVALS_DEPTH, reliability=self._reliability)
+        return self._node.create_subscription(
+            self._kind, self._topic, self._arrive, profile, event_callbacks=_NO_EVENTS, raw=True
+        )
+
+    def _look(self) -> None:
+        """Subscribe anew if the publishers are reliable now, or are not any more."""
+        known = self._node.get_publishers_info_by_topic(self._topic)
+        offered = {publisher.qos_profile.reliability for publisher in known}
+        is_reliable = offered == {ReliabilityPolicy.RELIABLE}
+        wanted = ReliabilityPolicy.RELIABLE if is_reliable else ReliabilityPolicy.BEST_EFFORT
+        if known and wanted is not self._reliability:
+            self._reliability = wanted
+            self._node.destroy_subscription(self._subscription)
+            self._subscription = self._subscribe()
 
 
 class _Client:
