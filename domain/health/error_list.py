@@ -359,8 +359,8 @@ class ErrorList:
             began = after.raised
         elif known.state is ErrorState.PENDING:
             began = known.since
-        if not found.message and after.unseen:
-            # What nobody has seen stays readable after its end.
+        if after.unseen and (found.lingers or not found.message):
+            # What nobody has seen stays readable after its end: what was measured, not that it ends.
             found = Found(found.state, known.message, known.value, known.threshold)
         raised = state.is_on and not was_on
         # What returned is still shown under its root.

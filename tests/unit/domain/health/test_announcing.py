@@ -13,6 +13,8 @@ from domain.inputs import (
     AcknowledgeRequest,
     ModeRequest,
     NodeReport,
+    Reading,
+    Readings,
     Restored,
     ShelveRequest,
     TimePassed,
@@ -227,6 +229,21 @@ def test_what_follows_from_another_error_is_not_kept_over_a_restart(deviating: R
     unseen = {name for kind, name in deviating.kept if kind is KeptUnacknowledged}
     kept = {name for name in unseen if deviating.kept[KeptUnacknowledged, name] is not None}
     assert kept == {"drive_base.UNREACHABLE"}
+
+
+def test_a_signal_whose_error_is_over_still_says_what_was_measured() -> None:
+    robot = Robot()
+    robot.give(Readings(tuple(Reading(*good) for good in GOOD.items()), "test"))
+    for level, after_s in ((0.42, 1.0), (0.9, 0.05)):
+        robot.give(Readings((Reading("battery_level", level),), "test"))
+        robot.advance(after_s)
+        error = robot.error("BATTERY_LOW", None)
+        assert (error.message, error.value) == ("battery 42 % is below 50 %", 0.42)
+    robot.give(Readings((Reading("battery_level", 0.2),), "test"))
+    robot.give(Readings((Reading("battery_level", 0.9),), "test"))
+    robot.advance(0.5)
+    over = robot.error("BATTERY_LOW", None)
+    assert (over.state, over.message) == (S.RETURNED, "battery 20 % is below 50 %")
 
 
 def test_of_very_many_that_returned_the_oldest_count_as_seen() -> None:
