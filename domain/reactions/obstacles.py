@@ -107,9 +107,8 @@ class Obstacles:
         if not self._changing.is_available:
             why = "the backend is not available"
             return self._blocker(reaction, BACKEND_UNAVAILABLE, why)
-        if self._was_stopped(reaction):
-            return self._of_activation(reaction)
-        if target is not None and target.state is _ACTIVE:
+        is_activating = target is not None and target.state is _ACTIVE
+        if is_activating or self._was_stopped(reaction):
             return self._of_activation(reaction)
         return None
 
