@@ -360,7 +360,7 @@ class ErrorList:
         elif known.state is ErrorState.PENDING:
             began = known.since
         if after.unseen and (found.lingers or not found.message):
-            # What nobody has seen stays readable after its end: what was measured, not that it ends.
+            # What nobody has seen stays readable: what was measured, and not that it is over.
             found = Found(found.state, known.message, known.value, known.threshold)
         raised = state.is_on and not was_on
         # What returned is still shown under its root.

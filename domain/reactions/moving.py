@@ -1,6 +1,6 @@
 """What reactions do to their parts: other targets in force, and restarts of nodes."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping, Sequence, Set
 
 from domain.changes.changing import Changing
 from domain.changes.guards import Guards
@@ -46,9 +46,9 @@ class Moving:
         self._returns: Returns[Reaction] = Returns(parts, displacing, outbox, self._is_free)
 
     @property
-    def parts(self) -> set[PartName]:
-        """Return the parts that reactions move."""
-        return self._displacer.keys() | self._restarts.nodes
+    def parts(self) -> Set[PartName]:
+        """Return the parts whose targets are those of reactions."""
+        return self._displacer.keys()
 
     def restore(self, restored: Restored, now: Instant) -> None:
         """Displace what an earlier run had displaced; nothing moves because of that."""

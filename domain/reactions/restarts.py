@@ -13,7 +13,7 @@ from domain.outbox import Outbox
 from domain.parts.parts import Parts
 from domain.reactions.reaction import Reaction
 from domain.snapshot import ChangeStatus
-from domain.state_and_mode import PartName, StateAndMode
+from domain.state_and_mode import StateAndMode
 from domain.timebase import Instant
 
 _UNCONFIGURED = StateAndMode(LifecycleState.UNCONFIGURED)
@@ -40,11 +40,6 @@ class Restarts:
         self._health = health
         self._outbox = outbox
         self._restarts: dict[Reaction, _Restart] = {}
-
-    @property
-    def nodes(self) -> set[PartName]:
-        """Return the nodes that are on their way."""
-        return {reaction.part for reaction, own in self._restarts.items() if not own.is_done}
 
     def begin(self, reaction: Reaction, cause: int, now: Instant) -> None:
         """Take the node of a reaction to rest first.

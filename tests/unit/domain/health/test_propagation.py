@@ -380,6 +380,28 @@ def test_what_goes_back_to_nodes_that_were_never_heard_of_is_on_without_a_word()
     assert ("raised", "base.BLIND") in robot.told()
 
 
+def test_what_was_on_without_a_word_is_told_with_its_first_cause_that_is_news() -> None:
+    lidar, camera = PartName("lidar"), PartName("camera")
+    text = node("lidar", "{DIRTY: {severity: warning}}") + node("camera", "{OLD: {hint: mend it}}")
+    text += node("base", "{BLIND: {caused_by: [lidar.UNREACHABLE, camera.OLD]}}")
+    core = Supervision(read_model(text).model, SupervisionSettings(NEVER_STALE), 0)
+    blind = ErrorKey(PartName("base"), "BLIND")
+    told: list[str] = []
+
+    def give(given: object, at: int) -> None:
+        events = core.handle(given, at).events  # type: ignore[arg-type]
+        told.extend(e.kind for e in events if e.data.get("error") == "BLIND")
+
+    give(NodeReport(camera, reachable=True), 1)
+    assert (core.error(blind).state.is_on, told) == (True, []), "the lidar was never heard of"
+    give(ErrorReport(camera, "OLD", active=True), 2)
+    assert told == ["error.raised"]
+    give(NodeReport(lidar, reachable=True), 3)
+    give(ErrorReport(camera, "OLD", active=False), 4)
+    assert told == ["error.raised", "error.cleared"]
+    assert core.error(blind).state is S.RETURNED, "nobody has seen it"
+
+
 def test_a_robot_goes_on_from_a_checkpoint_as_it_was() -> None:
     robot = sensors()
     robot.fault("lidar", Fault.SILENT)

@@ -57,6 +57,20 @@ def test_a_reaction_that_is_called_for_again_before_its_part_returned_goes_on() 
     assert robot.state("LIMP") == "acting"
 
 
+def test_a_part_that_was_to_return_from_one_reaction_stays_with_the_next() -> None:
+    crawl = 'CRAWL: {when: "c", action: mode, target: active.CRAWL}'
+    robot = ReactingRobot(LIMP, crawl, settings='{FAST: {requires: "not b"}}').see(a=True)
+    robot.see(a=False, b=True)
+    assert robot.target() == "active.SLOW by reaction LIMP", "FAST may not be entered yet"
+    robot.see(c=True)
+    assert robot.target() == "active.CRAWL by reaction CRAWL"
+
+    robot.see(3, b=False)
+    assert robot.target() == "active.CRAWL by reaction CRAWL"
+    robot.see(3, c=False)
+    assert robot.target() == "active.FAST"
+
+
 def test_what_is_shown_as_the_cause_is_what_calls_for_it_now() -> None:
     robot = ReactingRobot('LIMP: {when: "a or b", action: mode, target: active.SLOW}')
     robot.see(a=True).see(b=True).see(a=False)
