@@ -131,7 +131,7 @@ def test_an_error_that_comes_and_goes_says_what_would_calm_it(
 def test_what_follows_from_an_error_is_folded_below_it(desktop: Page) -> None:
     desktop.evaluate(
         """async () => {
-          const { errorGroups } = await import("/web/js/error_groups.js");
+          const { errorGroups } = await import("/web/js/base/error_groups.js");
           window.groups = errorGroups;
         }"""
     )
@@ -152,7 +152,7 @@ def test_what_follows_from_an_error_is_folded_below_it(desktop: Page) -> None:
 def test_a_root_is_as_urgent_as_the_worst_that_follows_from_it(desktop: Page) -> None:
     desktop.evaluate(
         """async () => {
-          const { errorGroups, worseBelow } = await import("/web/js/error_groups.js");
+          const { errorGroups, worseBelow } = await import("/web/js/base/error_groups.js");
           window.names = (errors) => errorGroups(errors).on.map(({ error, below }) => [
             error.error,
             worseBelow(error, below)?.error ?? null,

@@ -278,7 +278,7 @@ def test_progress_counts_steps_and_stages_and_not_the_way_back(
 ) -> None:
     said = desktop.evaluate(
         """async (change) => {
-            const { progressWords } = await import("/web/js/step_list.js");
+            const { progressWords } = await import("/web/js/base/step_list.js");
             return progressWords(change);
         }""",
         {"steps": made, "stage": stage},

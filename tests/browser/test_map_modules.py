@@ -29,7 +29,7 @@ VIEW = """
 const looks = await import("/web/js/map/view.js");
 const view = { ...looks.emptyView(), width: 600, height: 400, x_m: 3, y_m: -7, scale: 8 };
 """
-WORDS = 'const words = await import("/web/js/task_words.js");'
+WORDS = 'const words = await import("/web/js/base/task_words.js");'
 
 
 @pytest.fixture(scope="module")

@@ -364,7 +364,7 @@ def test_a_problem_is_told_in_words_of_the_page(
 ) -> None:
     told = desktop.evaluate(
         """async (problem) => {
-            const words = await import("/web/js/problem.js");
+            const words = await import("/web/js/base/problem.js");
             return [words.detailWords(problem), words.hintWords(problem)];
         }""",
         problem,

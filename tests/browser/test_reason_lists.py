@@ -19,7 +19,7 @@ RUNS = 300
 NAMES = ("arm", "<b>arm</b>", "left/arm", "ärm & Co.", 'a "b"', "x" * 200)
 
 SHOW_TREES = """async (every) => {
-    const { nearestWords, reasonTree } = await import("/web/js/reasons.js");
+    const { nearestWords, reasonTree } = await import("/web/js/base/reasons.js");
     const read = (list) => [...list.children].map((item) => ({
         message: item.firstElementChild.textContent,
         root_cause: item.querySelector(":scope > .root") !== null,
@@ -29,7 +29,7 @@ SHOW_TREES = """async (every) => {
 }"""
 
 SHOW_STEPS = """async (every) => {
-    const { stepLists } = await import("/web/js/step_list.js");
+    const { stepLists } = await import("/web/js/base/step_list.js");
     return every.map((steps) => {
         const nodes = stepLists(steps, 0);
         const titles = nodes.filter(({ tagName }) => tagName === "H4");

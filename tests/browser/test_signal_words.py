@@ -31,7 +31,7 @@ def page(browser: Browser, running_service: Service) -> Iterator[Page]:
 def run(page: Page, script: str, argument: object) -> Any:  # noqa: ANN401 - what it returns
     return page.evaluate(
         f"""async (given) => {{
-            const words = await import("/web/js/signal_words.js");
+            const words = await import("/web/js/base/signal_words.js");
             {script}
         }}""",
         argument,

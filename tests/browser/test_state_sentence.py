@@ -18,8 +18,8 @@ from tests.support.sentence_cases import CASES, STORAGE, Case, combinations
 pytestmark = pytest.mark.browser
 
 SAY = """async (frames) => {
-    const { emptyState, fold } = await import("/web/js/store.js");
-    const said = await import("/web/js/state_sentence.js");
+    const { emptyState, fold } = await import("/web/js/base/store.js");
+    const said = await import("/web/js/base/state_sentence.js");
     return frames.map((frame) => {
         const state = fold(emptyState(), frame);
         const { word, level, text, more } = said.robotSentence(state);
@@ -58,8 +58,8 @@ def test_page_and_terminal_say_the_same_in_every_combination(page: Page) -> None
 
 def test_the_page_says_of_storage_what_the_terminal_says(page: Page) -> None:
     script = """async (cases) => {
-        const { emptyState, fold } = await import("/web/js/store.js");
-        const { storageSentence } = await import("/web/js/state_sentence.js");
+        const { emptyState, fold } = await import("/web/js/base/store.js");
+        const { storageSentence } = await import("/web/js/base/state_sentence.js");
         return cases.map(([frame, level]) => {
             const said = storageSentence(fold(emptyState(), frame), { level });
             return said && [said.word, said.text];
@@ -74,8 +74,8 @@ def test_without_contact_the_page_tells_of_when_it_is_and_what_the_robot_was_in(
     page: Page,
 ) -> None:
     script = """async (frame) => {
-        const { emptyState, fold } = await import("/web/js/store.js");
-        const { stateSentence } = await import("/web/js/state_sentence.js");
+        const { emptyState, fold } = await import("/web/js/base/store.js");
+        const { stateSentence } = await import("/web/js/base/state_sentence.js");
         const state = fold(emptyState(), frame);
         return stateSentence(state, { level: "lost", silenceMs: 14000 });
     }"""

@@ -31,7 +31,7 @@ def fold(page: Page, *messages: dict[str, Any]) -> dict[str, Any]:
     """Return the state after `messages`; the state of each step is frozen, so that it is pure."""
     state: dict[str, Any] = page.evaluate(
         """async (messages) => {
-            const { emptyState, fold } = await import("/web/js/store.js");
+            const { emptyState, fold } = await import("/web/js/base/store.js");
             const frozen = (value) => {
                 if (value && typeof value === "object") {
                     Object.values(Object.freeze(value)).forEach(frozen);
@@ -47,7 +47,7 @@ def fold(page: Page, *messages: dict[str, Any]) -> dict[str, Any]:
 
 
 def current_task(page: Page, state: dict[str, Any]) -> object:
-    script = 'async (state) => (await import("/web/js/store.js")).currentTask(state)'
+    script = 'async (state) => (await import("/web/js/base/store.js")).currentTask(state)'
     return page.evaluate(script, state)
 
 
@@ -63,7 +63,7 @@ def test_an_error_of_a_part_is_known_until_it_is_told_to_be_normal(page: Page) -
     known = fold(page, told, frame(LATER))
     ended = fold(page, told, frame(LATER, errors={"arm.UNREACHABLE": {**lost, "state": "normal"}}))
 
-    script = 'async (state) => (await import("/web/js/store.js")).errorsOf(state, "arm")'
+    script = 'async (state) => (await import("/web/js/base/store.js")).errorsOf(state, "arm")'
     assert page.evaluate(script, known) == [lost]
     assert page.evaluate(script, ended) == []
     assert list(ended["errors"]) == ["BATTERY_LOW"]

@@ -1,6 +1,6 @@
 /** The AsyncAPI document as text and tables: the messages on the WebSocket. */
 
-import { el } from "/web/js/dom.js";
+import { el } from "/web/js/base/dom.js";
 
 const DIRECTIONS = { send: "to the client", receive: "from the client" };
 

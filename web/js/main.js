@@ -1,34 +1,34 @@
 /** Connects the stream, the store and the elements. */
 
-import { request } from "/web/js/api.js";
-import { localNow, ServerClock } from "/web/js/clock.js";
-import { Connection } from "/web/js/connection.js";
-import { PathWatch } from "/web/js/path_watch.js";
-import { robotSentence } from "/web/js/state_sentence.js";
-import { emptyState, fold } from "/web/js/store.js";
-import "/web/js/elements/token_form.js";
-import "/web/js/elements/pills.js";
-import "/web/js/elements/replay_bar.js";
-import "/web/js/elements/hold_button.js";
-import "/web/js/elements/acknowledge.js";
-import "/web/js/elements/alarm_list.js";
-import "/web/js/elements/reaction_list.js";
-import "/web/js/elements/state_bar.js";
-import "/web/js/elements/stop_button.js";
-import "/web/js/elements/map.js";
-import "/web/js/elements/hold_list.js";
-import "/web/js/elements/task_form.js";
-import "/web/js/elements/task_panel.js";
-import "/web/js/elements/part_tree.js";
-import "/web/js/elements/mode_switcher.js";
-import "/web/js/elements/plan.js";
-import "/web/js/elements/change.js";
-import "/web/js/elements/why.js";
-import "/web/js/elements/error_list.js";
-import "/web/js/elements/part_panel.js";
-import "/web/js/elements/mock_control.js";
-import "/web/js/elements/signal_list.js";
-import "/web/js/elements/event_list.js";
+import { request } from "/web/js/base/api.js";
+import { localNow, ServerClock } from "/web/js/base/clock.js";
+import { Connection } from "/web/js/base/connection.js";
+import { PathWatch } from "/web/js/base/path_watch.js";
+import { robotSentence } from "/web/js/base/state_sentence.js";
+import { emptyState, fold } from "/web/js/base/store.js";
+import "/web/js/header/token_form.js";
+import "/web/js/base/pills.js";
+import "/web/js/header/replay_bar.js";
+import "/web/js/base/hold_button.js";
+import "/web/js/header/acknowledge.js";
+import "/web/js/inspector/alarm_list.js";
+import "/web/js/inspector/reaction_list.js";
+import "/web/js/header/state_bar.js";
+import "/web/js/header/stop_button.js";
+import "/web/js/map/map.js";
+import "/web/js/header/hold_list.js";
+import "/web/js/task/task_form.js";
+import "/web/js/task/task_panel.js";
+import "/web/js/parts/part_tree.js";
+import "/web/js/inspector/mode_switcher.js";
+import "/web/js/inspector/plan.js";
+import "/web/js/inspector/change.js";
+import "/web/js/inspector/why.js";
+import "/web/js/inspector/error_list.js";
+import "/web/js/inspector/part_panel.js";
+import "/web/js/what_if/mock_control.js";
+import "/web/js/signals/signal_list.js";
+import "/web/js/timeline/event_list.js";
 
 const REDRAW_MS = 250;
 const MOCK_PAUSE_MS = 1000;
@@ -55,6 +55,8 @@ let preview = null;
 let drawAsked = false;
 let mockAsked = false;
 let refusedAt = -Infinity;
+/** The moment to which the panels are pinned: `{at, state}`, time in ms; null: they show now. */
+let moment = null;
 
 function take(message) {
   state = fold(state, message);
@@ -85,7 +87,20 @@ function draw() {
   // A disk may be too slow for one request without any fault that a frame tells.
   const isRefused = performance.now() - refusedAt < REFUSED_MS;
   const volatile = isRefused || Boolean(state.systemState?.storage_fault);
-  const view = { state, contact, mock, selected, preview, serverNow, knownAt, volatile };
+  const shown = moment?.state ?? state;
+  const view = {
+    state: shown,
+    live: state,
+    moment,
+    enabled: contact.level !== "lost" && moment === null && !state.replay,
+    contact,
+    mock,
+    selected,
+    preview,
+    serverNow: moment ? moment.at : serverNow,
+    knownAt: moment ? moment.at : knownAt,
+    volatile,
+  };
   for (const element of elements) element.update(view);
 }
 
@@ -176,6 +191,11 @@ document.addEventListener("ph-preview", ({ detail }) => {
   preview = detail;
   askToDraw();
 });
+document.addEventListener("ph-moment", ({ detail }) => {
+  moment = detail;
+  draw();
+});
+document.addEventListener("ph-tab", ({ detail }) => (document.body.dataset.tab = detail));
 document.addEventListener("ph-try-now", () => {
   connection.tryNow();
   askToDraw();

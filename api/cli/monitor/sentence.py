@@ -1,6 +1,6 @@
 """The sentences at the top: state of the robot, emergency stop, connection, storage, restart.
 
-`web/js/state_sentence.js` has the same rules; one test runs both over the same cases.
+`web/js/base/state_sentence.js` has the same rules; one test runs both over the same cases.
 """
 
 from collections.abc import Iterator, Mapping, Sequence

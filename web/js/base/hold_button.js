@@ -1,0 +1,131 @@
+/** <ph-hold-button label="...">: dispatches `ph-held` after a press of 1 s, by pointer or key.
+ *
+ * Screen readers and switches can only click: for them a second click within 5 s confirms.
+ *
+ * While it is `volatile`, its label says that a restart may forget what it does. The event has
+ * `{volatile}`: whether it said so when the press began.
+ */
+
+import { el, setAttribute, setText } from "/web/js/base/dom.js";
+
+const HOLD_MS = 1000;
+const TOLD_MS = 2500;
+const CONFIRM_MS = 5000;
+
+class HoldButton extends HTMLElement {
+  #label = "";
+  #volatile = false;
+  #consent = false;
+  #timer = null;
+  #clearing = null;
+  #clickedAt = -Infinity;
+
+  connectedCallback() {
+    if (this.button) return;
+    this.#label = this.getAttribute("label") ?? "";
+    this.text = el("span", {}, this.#label);
+    this.told = el("span", { class: "visually-hidden", role: "status" });
+    this.button = el(
+      "button",
+      { type: "button", "aria-description": "Press and hold for 1 s" },
+      el("span", { class: "fill" }),
+      this.text,
+    );
+    this.append(this.button, this.told);
+    this.#listen();
+  }
+
+  disconnectedCallback() {
+    this.#end();
+  }
+
+  set label(text) {
+    this.#label = text;
+    this.#showLabel();
+  }
+
+  set volatile(value) {
+    if (value === this.#volatile) return;
+    this.#volatile = value;
+    this.#showLabel();
+  }
+
+  get #words() {
+    return this.#volatile ? `${this.#label}; a restart may forget it` : this.#label;
+  }
+
+  #showLabel() {
+    if (this.#clearing === null) setText(this.text, this.#words);
+  }
+
+  set disabled(value) {
+    setAttribute(this.button, "disabled", value);
+    if (value) this.#end();
+  }
+
+  #listen() {
+    const { button } = this;
+    button.addEventListener("pointerdown", ({ button: which }) => which === 0 && this.#start());
+    for (const end of ["pointerup", "pointerleave", "pointercancel", "blur", "keyup"]) {
+      button.addEventListener(end, () => this.#letGo());
+    }
+    for (const kind of ["keydown", "keyup"]) {
+      button.addEventListener(kind, (event) => {
+        if (event.key !== " " && event.key !== "Enter") return;
+        event.preventDefault();
+        if (kind === "keydown" && !event.repeat) this.#start();
+      });
+    }
+    button.addEventListener("click", (event) => this.#click(event));
+    button.addEventListener("contextmenu", (event) => event.preventDefault());
+  }
+
+  #start() {
+    this.#end();
+    setAttribute(this, "holding", true);
+    this.#consent = this.#volatile;
+    this.#timer = setTimeout(() => this.#held(), HOLD_MS);
+  }
+
+  #held() {
+    this.#end();
+    this.#say(null);
+    const detail = { volatile: this.#consent };
+    this.dispatchEvent(new CustomEvent("ph-held", { bubbles: true, detail }));
+  }
+
+  #letGo() {
+    if (this.#timer === null) return;
+    this.#end();
+    this.#say("Keep it pressed for 1 s", TOLD_MS);
+  }
+
+  #end() {
+    clearTimeout(this.#timer);
+    this.#timer = null;
+    setAttribute(this, "holding", false);
+  }
+
+  /** A click that no pointer made: what pointer and keys do is handled before it. */
+  #click({ detail, pointerType }) {
+    if (detail > 0 || pointerType) return;
+    const isSecond = performance.now() - this.#clickedAt < CONFIRM_MS;
+    this.#clickedAt = isSecond ? -Infinity : performance.now();
+    if (isSecond) {
+      this.#held();
+      return;
+    }
+    this.#consent = this.#volatile;
+    this.#say(`${this.#words}: press again to confirm`, CONFIRM_MS);
+  }
+
+  /** Say something in place of the label for a while; null: the label. */
+  #say(text, forMs) {
+    clearTimeout(this.#clearing);
+    this.#clearing = text === null ? null : setTimeout(() => this.#say(null), forMs);
+    setText(this.text, text ?? this.#words);
+    setText(this.told, text ?? "");
+  }
+}
+
+customElements.define("ph-hold-button", HoldButton);

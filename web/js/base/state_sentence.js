@@ -1,0 +1,201 @@
+/** The sentences that tell the state of the robot: pure functions.
+ *
+ * `api/cli/monitor/sentence.py` has the same rules; one test runs both over the same cases.
+ */
+
+import { currentTask } from "/web/js/base/store.js";
+import { percent, speed, TASK_STATUS, waypointWords } from "/web/js/base/task_words.js";
+import { label, timeOfDay, wholeSeconds } from "/web/js/base/words.js";
+
+/** Below this a vehicle stands, m/s; the service uses the same limit. */
+const STANDSTILL_MPS = 0.05;
+const NAMED = 3;
+/** Words for a vehicle that should stand and does not, or of which it is not known. */
+const ALARMS = { STILL_MOVING: "STILL MOVING", STANDSTILL_UNKNOWN: "STANDSTILL UNKNOWN" };
+const NO_CONTACT = ["lost", "lost"];
+
+/** The sentence at the top of the page: `{level, sign, word, text, more}`.
+ *
+ * `level` is calm, attention, error, late or lost; `sign` names the icon; `more` has further lines.
+ */
+export function stateSentence(state, contact) {
+  if (contact.level === "lost") {
+    const text = state.at
+      ? `values shown are from ${timeOfDay(state.at)}`
+      : "no values received yet";
+    const [word, last] = [`No contact for ${wholeSeconds(contact.silenceMs)}`, robotSentence(state)];
+    const was = last ? [`it was ${last.word}: ${last.text}`, ...last.more] : [];
+    return sentence(NO_CONTACT, word, text, was);
+  }
+  const waiting = sentence(["late", "late"], "Connecting", "waiting for the first values");
+  return robotSentence(state) ?? waiting;
+}
+
+/** The sentence on the robot as it was in the last frame; null before the first. */
+export function robotSentence(state) {
+  if (state.systemState === null) return null;
+  const { state: name, errors, reasons } = state.systemState;
+  const task = currentTask(state);
+  const reasonTexts = reasons.map(({ message }) => message);
+  const alarm = ALARMS[reasons[0]?.code];
+  // An alarm tells already how fast the vehicle moves.
+  const found = [...(alarm ? [] : movement(state, name)), ...partProblems(state.parts)];
+  if (name === "ERROR") {
+    const [first = errors.join(", "), ...others] = reasonTexts;
+    const text = task ? `${first}, task ${task.id} is ${STANDS[task.status]}` : first;
+    const more = [...others, ...found, ...otherHolds(state), ...aborted(state)];
+    return sentence(["error", "error"], alarm ?? "ERROR", text, more);
+  }
+  const { word, text } = activity(state, task);
+  const [first, ...more] = [...reasonTexts, ...found];
+  const { vehicle, drive_process: undriven } = state.holds;
+  const isCalm = !first && !aborted(state).length && !vehicle && !undriven;
+  const level = alarm ? "error" : isCalm ? "calm" : "attention";
+  const sign = alarm ? "error" : word.toLowerCase();
+  return sentence([level, sign], alarm ?? word, first ? `${first}; ${text}` : text, more);
+}
+
+/** Whether the vehicle stands under the emergency stop. */
+export function standstillWords(state) {
+  const moves = movingAt(state);
+  if (ALARMS[state.systemState?.reasons[0]?.code])
+    return moves === null
+      ? "the vehicle may be moving: use the hardware stop"
+      : `the vehicle still moves at ${speed(moves)}: use the hardware stop`;
+  if (moves !== null) return `the vehicle moves at ${speed(moves)}`;
+  const isKnown = typeof state.vehicle?.speed_mps === "number" && !state.holds.vehicle;
+  if (!isKnown) return "it is not known whether the vehicle stands";
+  return state.emergencyStop?.standstill_at
+    ? "the vehicle is at a standstill"
+    : "no standstill yet";
+}
+
+/** Whether the vehicle moves, or should stand and may not. */
+export function mayMove(state) {
+  return movingAt(state) !== null || Boolean(ALARMS[state.systemState?.reasons[0]?.code]);
+}
+
+/** That what happens is not stored: `{word, text}`; null while it is. */
+export function storageSentence({ systemState }, contact) {
+  const fault = systemState?.storage_fault;
+  if (!fault) return null;
+  if (contact.level === "lost") return { word: "STORAGE FAILED", text: fault };
+  return { word: "STORAGE FAILS", text: `${fault}; a restart may forget what you ask now` };
+}
+
+/** What was lost in a restart of the service; empty without one. */
+export function restartWords({ restartedAt, boot }) {
+  if (restartedAt === null) return "";
+  const kept = boot > 1 ? "nothing moves before somebody asks" : "earlier tasks and holds are gone";
+  return `Service restarted at ${timeOfDay(restartedAt)}: ${kept}.`;
+}
+
+function sentence([level, sign], word, text, more = []) {
+  return { level, sign, word, text, more };
+}
+
+/** What the robot does apart from what is wrong; a task with a hold is never called running. */
+function activity(state, task) {
+  const { task_status } = state.systemState;
+  const held = heldBy(Object.values(state.holds));
+  if (task === null) {
+    if (task_status === "RUNNING_TASK") return { word: "RUNNING", text: "the task is running" };
+    if (task_status === "PAUSED_TASK") return { word: "PAUSED", text: "the task is paused" };
+    const [text = "no task"] = aborted(state);
+    return { word: "IDLE", text: held ? `${text}; a new one would be ${held}` : text };
+  }
+  const at = `task ${task.id} at ${percent(task.progress)}`;
+  const why = held || task.reason;
+  const text = why ? `${at}, ${why}` : at;
+  const moves = movingAt(state);
+  if (task.status === "PAUSING")
+    return { word: "STOPPING", text: moves === null ? text : `${text}, still at ${speed(moves)}` };
+  if (task.status === "PAUSED" || held) return { word: "PAUSED", text };
+  return {
+    word: "RUNNING",
+    text: `task ${task.id} ${percent(task.progress)}, ${waypointWords(task)}`,
+  };
+}
+
+/** "held by gate (the gate is shut), operator and loading"; empty without holds. */
+function heldBy(holds) {
+  const named = holds.slice(0, NAMED).map(holdWords);
+  if (holds.length > NAMED) named.push(`${holds.length - NAMED} more`);
+  const last = named.pop();
+  if (last === undefined) return "";
+  return `held by ${named.length ? `${named.join(", ")} and ${last}` : last}`;
+}
+
+/** The name of the hold of a restart says why; its reason says how it ends, in the list of holds. */
+function holdWords({ owner, reason }) {
+  return reason && owner !== "restart" ? `${owner} (${reason})` : owner;
+}
+
+/** In ERROR: the holds that stay when the error is gone. */
+function otherHolds({ holds }) {
+  const held = heldBy(Object.values(holds).filter(({ owner }) => owner !== "error"));
+  return held ? [`also ${held}`] : [];
+}
+
+function aborted({ task }) {
+  if (!task?.ended_at || task.status !== "ABORTED") return [];
+  const why = task.reason ? `: ${task.reason}` : "";
+  return [`task ${task.id} was ${TASK_STATUS.ABORTED.toLowerCase()} at ${timeOfDay(task.ended_at)}${why}`];
+}
+
+/** A vehicle that moves though no task drives or stops it. */
+function movement(state, name) {
+  const moves = movingAt(state);
+  const status = currentTask(state)?.status;
+  const isHeld = Object.keys(state.holds).length > 0;
+  const drives = status === "PAUSING" || (status === "RUNNING" && !isHeld);
+  if (moves === null || (drives && name !== "ERROR")) return [];
+  return [`the vehicle moves at ${speed(moves)}`];
+}
+
+/** Speed of a vehicle that is known to move, m/s; null: it stands, or it is not known. */
+function movingAt({ vehicle, holds }) {
+  const moves = vehicle?.speed_mps;
+  // The hold is set while there is no pose that is recent enough.
+  if (typeof moves !== "number" || holds.vehicle || Math.abs(moves) < STANDSTILL_MPS) return null;
+  return Math.abs(moves);
+}
+
+const problemsOf = new WeakMap();
+
+/** What is not as it should be with parts, the first few; a frame without parts costs nothing. */
+function partProblems(parts) {
+  if (!problemsOf.has(parts)) problemsOf.set(parts, findProblems(parts));
+  return problemsOf.get(parts);
+}
+
+function findProblems(parts) {
+  const found = new Map();
+  const isExplained = (part) =>
+    (part.parts ?? []).some((name) => found.has(name) || (parts[name] && isExplained(parts[name])));
+  // Nodes first: they explain why their systems deviate.
+  const nodesFirst = Object.values(parts).sort((a, b) => isSystem(a) - isSystem(b));
+  for (const part of nodesFirst) {
+    const words = problemOf(part);
+    if (words && !(isSystem(part) && isExplained(part))) found.set(part.name, words);
+  }
+  const all = [...new Set(found.values())];
+  const left = all.length - NAMED;
+  return left > 0 ? [...all.slice(0, NAMED), `${left} more such parts`] : all;
+}
+
+function isSystem({ kind }) {
+  return kind === "system" ? 1 : 0;
+}
+
+function problemOf(part) {
+  const { name, actual, change, converged } = part;
+  if (part.reachable === false && !isSystem(part)) return `${name} is unreachable`;
+  if (actual.state === "errorprocessing") return `${name} is in errorprocessing`;
+  const target = part.effective_target ?? part.target;
+  if (converged || change || !target) return null;
+  const is = actual.state === "unknown" ? "in an unknown state" : label(actual);
+  return part.deviation_reason ?? `${name} is ${is}, target ${label(target)}`;
+}
+
+const STANDS = { RUNNING: "running", PAUSING: "stopping", PAUSED: "paused" };
