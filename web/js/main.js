@@ -1,6 +1,7 @@
 /** Connects the stream, the store and the elements. */
 
 import { request } from "/web/js/base/api.js";
+import { attention } from "/web/js/base/attention.js";
 import { localNow, ServerClock } from "/web/js/base/clock.js";
 import { Connection } from "/web/js/base/connection.js";
 import { PathWatch } from "/web/js/base/path_watch.js";
@@ -112,7 +113,8 @@ function title() {
     document.title = "REPLAY · Pilothouse";
     return;
   }
-  const text = `${tokenForm.isOpen ? "Token needed" : known} · Pilothouse`;
+  const mark = tokenForm.isOpen ? "" : attention(state.errors);
+  const text = `${mark}${tokenForm.isOpen ? "Token needed" : known} · Pilothouse`;
   if (document.title !== text) document.title = text;
 }
 
