@@ -1,14 +1,15 @@
 /** What the tab of the page shows while nobody looks at the page. */
 
-import { isGrave, isSilenced, isWaiting } from "/web/js/base/error_groups.js";
+import { isGrave, isOn, isSilenced, isWaiting } from "/web/js/base/error_groups.js";
 
 let counted = null;
 let count = 0;
 
-/** How many critical and fatal errors wait for an acknowledgement; a silenced one waits for none. */
+/** How many critical and fatal errors are on and unacknowledged; a silenced one waits for nobody. */
 export function unseenCritical(errors) {
   if (counted === errors) return count;
-  const waits = (error) => isGrave(error) && isWaiting(error) && !isSilenced(error);
+  const waits = (error) =>
+    isGrave(error) && isOn(error) && isWaiting(error) && !isSilenced(error);
   counted = errors;
   count = Object.values(errors).filter(waits).length;
   return count;
