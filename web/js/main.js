@@ -12,8 +12,6 @@ import "/web/js/base/pills.js";
 import "/web/js/header/replay_bar.js";
 import "/web/js/base/hold_button.js";
 import "/web/js/header/acknowledge.js";
-import "/web/js/inspector/alarm_list.js";
-import "/web/js/inspector/reaction_list.js";
 import "/web/js/header/state_bar.js";
 import "/web/js/header/stop_button.js";
 import "/web/js/map/map.js";
@@ -21,11 +19,7 @@ import "/web/js/header/hold_list.js";
 import "/web/js/task/task_form.js";
 import "/web/js/task/task_panel.js";
 import "/web/js/parts/part_tree.js";
-import "/web/js/inspector/mode_switcher.js";
-import "/web/js/inspector/plan.js";
-import "/web/js/inspector/change.js";
 import "/web/js/inspector/why.js";
-import "/web/js/inspector/error_list.js";
 import "/web/js/inspector/part_panel.js";
 import "/web/js/what_if/mock_control.js";
 import "/web/js/signals/signal_list.js";
@@ -46,7 +40,7 @@ const map = document.querySelector("ph-map");
 const taskPanel = document.querySelector("ph-task-panel");
 const tokenForm = document.querySelector("ph-token-form");
 const elements = document.querySelectorAll(
-  "ph-replay-bar, ph-state-bar, ph-stop-button, ph-alarm-list, ph-reaction-list, ph-task-panel, ph-part-tree, ph-map, ph-part-panel, " +
+  "ph-replay-bar, ph-state-bar, ph-stop-button, ph-why, ph-task-panel, ph-part-tree, ph-map, ph-part-panel, " +
     "ph-signal-list, ph-event-list",
 );
 let state = emptyState();

@@ -6,6 +6,7 @@
 import { partPath, request } from "/web/js/base/api.js";
 import { el, renderOnce, setAttribute, setText } from "/web/js/base/dom.js";
 import { errorName, isOn, isWaiting, mayGoOn, worseBelow } from "/web/js/base/error_groups.js";
+import { isSame } from "/web/js/base/same.js";
 import { whileSending } from "/web/js/base/sending.js";
 import "/web/js/base/sparkline.js";
 import {
@@ -24,6 +25,7 @@ const BELOW_SHOWN = 20;
 class Alarm extends HTMLElement {
   #shown = null;
   #path = "";
+  #signal;
 
   connectedCallback() {
     if (this.details) return;
@@ -60,7 +62,8 @@ class Alarm extends HTMLElement {
   show({ error, below, view }) {
     const { state, enabled, knownAt, volatile } = view;
     setText(this.age, ageWords(error, knownAt));
-    const signal = signalOf(error, state.signals);
+    if (error !== this.#shown?.error) this.#signal = signalOf(error, state.signals);
+    const signal = this.#signal;
     if (signal && isOn(error)) this.spark.show(signal, view);
     const key = [error, enabled, volatile, ...below];
     if (this.#shown && isSame(key, this.#shown.key)) return;
@@ -194,10 +197,6 @@ class Alarm extends HTMLElement {
   #tell(name, detail) {
     this.dispatchEvent(new CustomEvent(name, { bubbles: true, detail }));
   }
-}
-
-function isSame(one, other) {
-  return one.length === other.length && one.every((item, index) => item === other[index]);
 }
 
 customElements.define("ph-alarm", Alarm);

@@ -4,10 +4,13 @@ import { isOn } from "/web/js/base/error_groups.js";
 import { describe } from "/web/js/base/signal_catalog.js";
 import { duration, timeAndDay, wholeSeconds } from "/web/js/base/words.js";
 
-/** Name of the signal that an error is of; undefined: of none, or that is not known. */
-export function signalOf({ error, message }, signals) {
-  const named = message.split(/[\s,:;]+/).find((word) => Object.hasOwn(signals, word));
-  return named ?? Object.values(signals).find((signal) => signal.error === error)?.signal;
+/** Name of the signal that an error is of; undefined: of none. */
+export function signalOf({ error, part, message }, signals) {
+  const isOf = ({ settings }) =>
+    (settings.part ?? null) === part &&
+    Object.entries(settings).some(([name, value]) => value === error && /(^|_)error$/.test(name));
+  const found = Object.values(signals).find(isOf)?.signal;
+  return found ?? message.split(/[\s,:;]+/).find((word) => Object.hasOwn(signals, word));
 }
 
 /** A message with signals called by their labels. */

@@ -1,52 +1,82 @@
-/** <ph-why>: why a part is not where it should be; the reasons are asked for while it is open.
+/** <ph-why>: what is wrong with the robot, why, and what it does about it by itself.
  *
- * Dispatches `ph-why` when it is opened or closed.
+ * Errors and further reasons are one list, the worst first. Once somebody selected a part they are
+ * closed, so that the part below is in sight; the event `ph-why` opens the first and goes there.
  */
 
 import { el, renderOnce, setAttribute, setText } from "/web/js/base/dom.js";
 import { reasonTree } from "/web/js/base/reasons.js";
-import { label } from "/web/js/base/words.js";
+import "/web/js/inspector/alarm_list.js";
+import "/web/js/inspector/reaction_list.js";
+
+/** Nobody reads a list that changes faster. */
+const PAUSE_MS = 200;
 
 class Why extends HTMLElement {
+  #seen = [];
+  #shownAt = -Infinity;
+  #isCompact = false;
+
   connectedCallback() {
-    if (this.details) return;
-    this.where = el("p", { class: "facts" });
+    if (this.heading) return;
+    this.count = el("span", { class: "quiet" });
+    this.heading = el("h2", { tabindex: -1 }, "Why ", this.count);
+    this.calm = el("p", { class: "quiet" });
     this.reasons = el("div");
-    this.details = el("details", { class: "reasons-of" });
-    this.summary = el("summary");
-    this.details.append(this.summary, this.where, this.reasons);
-    this.details.addEventListener("toggle", () =>
-      this.dispatchEvent(new CustomEvent("ph-why", { bubbles: true })),
-    );
-    this.append(this.details);
+    this.errors = el("ph-alarm-list");
+    this.reactions = el("ph-reaction-list");
+    this.append(this.heading, this.calm, this.reasons, this.errors, this.reactions);
+    document.addEventListener("ph-select", () => this.#fold(true));
+    document.addEventListener("ph-why", () => this.#open());
   }
 
-  get isOpen() {
-    return this.details.open && !this.hidden;
+  update(view) {
+    const { state, enabled, moment, knownAt, volatile } = view;
+    const changing = [state.errors, state.reactions, state.systemState, Math.floor(knownAt / 1000)];
+    const seen = [...changing, enabled, moment, volatile];
+    const isEqual = seen.map((item, index) => item === this.#seen[index]);
+    if (!isEqual.includes(false)) return;
+    const isAtOnce = isEqual.slice(changing.length).includes(false);
+    if (!isAtOnce && performance.now() - this.#shownAt < PAUSE_MS) return;
+    this.#seen = seen;
+    this.#shownAt = performance.now();
+    this.#show({ ...view, compact: this.#isCompact });
   }
 
-  /** Show the answer to `GET P/why` for a part; null: it is not there yet. */
-  show({ part, why }) {
-    const target = part.effective_target;
-    const isDisplaced = Boolean(target && target.because !== "requested");
-    setAttribute(this, "hidden", part.converged && !isDisplaced);
-    setText(this.summary, part.converged ? "Why this target" : "Why it deviates");
-    setText(this.where, isDisplaced ? displacedWords(part, target) : "");
-    renderOnce(this.reasons, JSON.stringify(why?.blockers), () => {
-      if (!why?.blockers) return [el("p", { class: "quiet" }, "Asking …")];
-      if (why.blockers.length === 0) return [el("p", { class: "quiet" }, "No reason is known.")];
-      return [reasonTree(why.blockers)];
-    });
+  #show(view) {
+    const { state } = view;
+    const others = otherReasons(state);
+    renderOnce(this.reasons, JSON.stringify(others), () => (others.length ? [reasonTree(others)] : []));
+    const { on, returned, silenced } = this.errors.show(view);
+    const acting = this.reactions.show({ reactions: state.reactions, view });
+    const wrong = on + others.length;
+    const known = state.at !== null;
+    setText(this.count, [counted(wrong, "wrong"), counted(acting, "acting")].filter(Boolean).join(", "));
+    setAttribute(this.calm, "hidden", wrong > 0);
+    const calm = returned + silenced ? "Nothing is wrong now" : "Nothing is wrong";
+    setText(this.calm, known ? calm : "No data yet");
+  }
+
+  #fold(isCompact) {
+    this.#isCompact = isCompact;
+    this.errors.compact = isCompact;
+  }
+
+  #open() {
+    this.#fold(false);
+    this.heading.scrollIntoView({ block: "start" });
+    this.heading.focus({ preventScroll: true });
   }
 }
 
-const SETTERS = { invariant: "a broken invariant", reaction: "a reaction" };
+/** Reasons why the robot is in ERROR that are no errors which could be acknowledged. */
+function otherReasons({ systemState, errors }) {
+  const known = new Set(Object.values(errors).map(({ error }) => error));
+  return (systemState?.reasons ?? []).filter(({ code }) => !known.has(code));
+}
 
-function displacedWords({ target: requested }, target) {
-  const name = target.rule ?? target.reaction;
-  const because = name ? `${target.because} ${name}` : (SETTERS[target.because] ?? target.because);
-  const from = requested ? `, in place of ${label(requested)} that was requested` : "";
-  return `Target ${label(target)}, set by ${because}${from}.`;
+function counted(count, word) {
+  return count ? `${count} ${word}` : "";
 }
 
 customElements.define("ph-why", Why);
