@@ -25,7 +25,8 @@ class Why extends HTMLElement {
     this.reasons = el("div");
     this.errors = el("ph-alarm-list");
     this.reactions = el("ph-reaction-list");
-    this.append(this.heading, this.calm, this.reasons, this.errors, this.reactions);
+    const head = el("div", { class: "why-head" }, this.heading, this.calm);
+    this.append(head, this.reasons, this.errors, this.reactions);
     document.addEventListener("ph-select", () => this.#fold(true));
     document.addEventListener("ph-why", () => this.#open());
   }
