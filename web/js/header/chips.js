@@ -22,7 +22,7 @@ class Chips extends HTMLElement {
     this.unstored = el("span", { class: "chip", role: "status", hidden: true });
     document.addEventListener("ph-unstored", () => (this.#unstoredAt = performance.now()));
     const contact = el("span", { class: "chip contact" }, this.contact, this.delay);
-    this.append(this.tryNow, this.unstored, this.holds, this.deviating, this.unreachable, contact, this.unreal);
+    this.append(this.tryNow, this.unstored, this.holds, this.deviating, this.unreachable, this.unreal, contact);
     this.whole = contact;
   }
 
