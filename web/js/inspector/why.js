@@ -1,11 +1,11 @@
 /** <ph-why>: what is wrong with the robot, why, and what it does about it by itself.
  *
  * Errors and further reasons are one list, the worst first. Once somebody selected a part they are
- * closed, so that the part below is in sight; the event `ph-why` opens the first and goes there.
+ * closed, so that the part below is in sight; the event `ph-why` opens the first again.
  */
 
-import { el, renderOnce, setAttribute, setText } from "/web/js/base/dom.js";
-import { reasonTree } from "/web/js/base/reasons.js";
+import { el, setAttribute, setText } from "/web/js/base/dom.js";
+import "/web/js/header/reason_list.js";
 import "/web/js/inspector/alarm_list.js";
 import "/web/js/inspector/reaction_list.js";
 
@@ -22,19 +22,19 @@ class Why extends HTMLElement {
     this.count = el("span", { class: "quiet" });
     this.heading = el("h2", { tabindex: -1 }, "Why ", this.count);
     this.calm = el("p", { class: "quiet" });
-    this.reasons = el("div");
+    this.reasons = el("ph-reason-list");
     this.errors = el("ph-alarm-list");
     this.reactions = el("ph-reaction-list");
     const head = el("div", { class: "why-head" }, this.heading, this.calm);
     this.append(head, this.reasons, this.errors, this.reactions);
     document.addEventListener("ph-select", () => this.#fold(true));
-    document.addEventListener("ph-why", () => this.#open());
+    document.addEventListener("ph-why", () => this.#fold(false));
   }
 
   update(view) {
-    const { state, enabled, moment, knownAt, volatile } = view;
+    const { state, enabled, moment, knownAt, volatile, contact } = view;
     const changing = [state.errors, state.reactions, state.systemState, Math.floor(knownAt / 1000)];
-    const seen = [...changing, enabled, moment, volatile];
+    const seen = [...changing, enabled, moment, volatile, contact.level];
     const isEqual = seen.map((item, index) => item === this.#seen[index]);
     if (!isEqual.includes(false)) return;
     const isAtOnce = isEqual.slice(changing.length).includes(false);
@@ -46,34 +46,20 @@ class Why extends HTMLElement {
 
   #show(view) {
     const { state } = view;
-    const others = otherReasons(state);
-    renderOnce(this.reasons, JSON.stringify(others), () => (others.length ? [reasonTree(others)] : []));
+    this.reasons.update(view);
     const { on, returned, silenced } = this.errors.show(view);
     const acting = this.reactions.show({ reactions: state.reactions, view });
-    const wrong = on + others.length;
-    const known = state.at !== null;
-    setText(this.count, [counted(wrong, "wrong"), counted(acting, "acting")].filter(Boolean).join(", "));
-    setAttribute(this.calm, "hidden", wrong > 0);
+    const counts = [counted(on, "wrong"), counted(acting, "acting")].filter(Boolean);
+    setText(this.count, counts.join(", "));
+    setAttribute(this.calm, "hidden", on > 0 || !this.reasons.hidden);
     const calm = returned + silenced ? "Nothing is wrong now" : "Nothing is wrong";
-    setText(this.calm, known ? calm : "No data yet");
+    setText(this.calm, state.at === null ? "No data yet" : calm);
   }
 
   #fold(isCompact) {
     this.#isCompact = isCompact;
     this.errors.compact = isCompact;
   }
-
-  #open() {
-    this.#fold(false);
-    this.heading.scrollIntoView({ block: "start" });
-    this.heading.focus({ preventScroll: true });
-  }
-}
-
-/** Reasons why the robot is in ERROR that are no errors which could be acknowledged. */
-function otherReasons({ systemState, errors }) {
-  const known = new Set(Object.values(errors).map(({ error }) => error));
-  return (systemState?.reasons ?? []).filter(({ code }) => !known.has(code));
 }
 
 function counted(count, word) {
