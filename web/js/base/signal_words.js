@@ -32,3 +32,10 @@ export function ageWords({ received_at, stale }, isLive, now) {
   const age = now - Date.parse(received_at);
   return age < 1000 && !stale && isLive ? "now" : `${duration(age)} old`;
 }
+
+/** A message with signals called by their labels. */
+export function plainMessage(message, signals) {
+  return message.replace(/[\w/]+/g, (word) =>
+    Object.hasOwn(signals, word) ? describe(word, signals[word].unit).label : word,
+  );
+}

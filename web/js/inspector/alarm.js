@@ -7,6 +7,7 @@ import { partPath, request } from "/web/js/base/api.js";
 import { el, renderOnce, setAttribute, setText } from "/web/js/base/dom.js";
 import { errorName, isOn, isWaiting, mayGoOn, worseBelow } from "/web/js/base/error_groups.js";
 import { isSame } from "/web/js/base/same.js";
+import { plainMessage } from "/web/js/base/signal_words.js";
 import { whileSending } from "/web/js/base/sending.js";
 import "/web/js/base/sparkline.js";
 import {
@@ -14,7 +15,6 @@ import {
   factsOf,
   hintOf,
   measured,
-  plainMessage,
   signalOf,
   tagsOf,
 } from "/web/js/inspector/error_words.js";
@@ -31,7 +31,7 @@ class Alarm extends HTMLElement {
     if (this.details) return;
     this.shape = el("span", { class: "shape" });
     this.name = el("strong");
-    this.part = el("span", { class: "alarm-part" });
+    this.owner = el("span", { class: "alarm-part" });
     this.tags = el("span", { class: "tags" });
     this.age = el("span", { class: "age" });
     this.message = el("span", { class: "alarm-message" });
@@ -43,7 +43,7 @@ class Alarm extends HTMLElement {
         "summary",
         {},
         this.shape,
-        el("span", { class: "alarm-title" }, this.name, this.part, this.tags),
+        el("span", { class: "alarm-title" }, this.name, this.owner, this.tags),
         this.age,
         this.message,
         this.spark,
@@ -81,7 +81,7 @@ class Alarm extends HTMLElement {
     showShape(this.shape, severity, isOn(error));
     setAttribute(this.details.firstChild, "title", errorName(error));
     setText(this.name, error.error);
-    setText(this.part, part === null ? "" : ` of ${part}`);
+    setText(this.owner, part === null ? "" : ` of ${part}`);
     renderOnce(this.tags, tagsOf(error).join(), () => tagsOf(error).map((tag) => el("span", { class: "tag" }, tag)));
     setText(this.message, plainMessage(error.message, signals));
   }
@@ -108,15 +108,15 @@ class Alarm extends HTMLElement {
     this.advice = el("p", { class: "hint" });
     this.list = el("ul");
     this.summary = el("summary");
-    this.below = el("details", { class: "reasons-of", hidden: true }, this.summary, this.list);
+    this.below = el("details", { class: "unfold", hidden: true }, this.summary, this.list);
     this.below.addEventListener("toggle", () => this.#fillBody());
     this.held = el("ph-hold-button", { label: "Acknowledge (hold)", hidden: true });
     this.held.addEventListener("ph-held", ({ detail }) => this.#acknowledge(this.held.button, detail));
     this.seen = this.#button("Acknowledge", () => this.#acknowledge(this.seen, {}));
     this.shelve = this.#button("Shelve …", () => this.#openForm());
     this.announce = this.#button("Announce again", () => this.#send(this.announce, "DELETE", "/shelf"));
-    this.link = this.#button("", () => this.#tell("ph-select", this.#shown.error.part));
-    this.moment = this.#button("On the timeline", () =>
+    this.link = this.#button("Show part", () => this.#tell("ph-select", this.#shown.error.part));
+    this.moment = this.#button("Timeline", () =>
       this.#tell("ph-show-moment", { at: Date.parse(this.#shown.error.since_at) }),
     );
     this.buttons = el("div", { class: "buttons" }, this.held, this.seen, this.shelve, this.announce, this.link, this.moment);
@@ -155,7 +155,6 @@ class Alarm extends HTMLElement {
     setAttribute(this.announce, "hidden", until === null);
     for (const button of [this.seen, this.shelve, this.announce]) setAttribute(button, "disabled", !enabled);
     setAttribute(this.link, "hidden", part === null);
-    if (part !== null) setText(this.link, `Show ${part}`);
     setAttribute(this.moment, "hidden", !since);
     if (until !== null) this.form?.close();
     if (this.form) this.form.enabled = enabled;

@@ -13,13 +13,6 @@ export function signalOf({ error, part, message }, signals) {
   return found ?? message.split(/[\s,:;]+/).find((word) => Object.hasOwn(signals, word));
 }
 
-/** A message with signals called by their labels. */
-export function plainMessage(message, signals) {
-  return message.replace(/[\w/]+/g, (word) =>
-    Object.hasOwn(signals, word) ? describe(word, signals[word].unit).label : word,
-  );
-}
-
 /** "2.5, limit 1": what was measured, if the message does not tell it; empty without both. */
 export function measured({ value, threshold, message }, signal) {
   if (typeof value !== "number" || typeof threshold !== "number") return "";

@@ -8,6 +8,7 @@ import { el, renderOnce, setAttribute, setText } from "/web/js/base/dom.js";
 import { reasonTree } from "/web/js/base/reasons.js";
 import { isSame } from "/web/js/base/same.js";
 import { whileSending } from "/web/js/base/sending.js";
+import { plainMessage } from "/web/js/base/signal_words.js";
 import { label, modeName, timeAndDay } from "/web/js/base/words.js";
 
 const ARMS = ["active", "passive", "disarmed"];
@@ -32,7 +33,7 @@ class Reaction extends HTMLElement {
     this.head = el("p", { class: "reaction-head" }, this.name, this.state, this.does);
     this.waits = el("p", { class: "quiet" });
     this.reasons = el("div");
-    this.why = el("details", { class: "reasons-of" }, el("summary", {}, "Why it acts"), this.reasons);
+    this.why = el("details", { class: "unfold" }, el("summary", {}, "Why it acts"), this.reasons);
     this.why.addEventListener("toggle", () => this.#fillWhy());
     this.arm = el("select", {}, ...ARMS.map((arm) => el("option", { value: arm }, arm)));
     this.arm.addEventListener("change", () => {
@@ -60,6 +61,7 @@ class Reaction extends HTMLElement {
     if (isSame(seen, this.#seen)) return;
     this.#seen = seen;
     this.reaction = reaction;
+    this.words = (text) => plainMessage(text, state.signals);
     const part = state.parts[reaction.part] ?? { kind: "node", name: reaction.part };
     this.path = `${partPath(part)}/reactions/${encodeURIComponent(reaction.reaction)}`;
     setAttribute(this, "data-state", reaction.state);
@@ -83,7 +85,7 @@ class Reaction extends HTMLElement {
 
   #fillWhy() {
     const { blockers } = this.reaction;
-    if (this.why.open) renderOnce(this.reasons, JSON.stringify(blockers), () => [reasonTree(blockers)]);
+    if (this.why.open) renderOnce(this.reasons, JSON.stringify(blockers), () => [reasonTree(blockers, this.words)]);
   }
 
   #showSet() {
