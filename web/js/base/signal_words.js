@@ -1,7 +1,7 @@
 /** Texts on signals: pure functions. `api/cli/monitor/words.py` has the same rules. */
 
 import { describe } from "/web/js/base/signal_catalog.js";
-import { duration } from "/web/js/base/words.js";
+import { duration, modeName } from "/web/js/base/words.js";
 
 /** The value as `[text, unit]`; the stop is engaged whatever its signal says. */
 export function valueWords(name, signal, emergencyStop) {
@@ -33,9 +33,9 @@ export function ageWords({ received_at, stale }, isLive, now) {
   return age < 1000 && !stale && isLive ? "now" : `${duration(age)} old`;
 }
 
-/** A message with signals called by their labels. */
+/** A message with signals called by their labels, and modes as on the page. */
 export function plainMessage(message, signals) {
   return message.replace(/[\w/]+/g, (word) =>
-    Object.hasOwn(signals, word) ? describe(word, signals[word].unit).label : word,
+    Object.hasOwn(signals, word) ? describe(word, signals[word].unit).label : modeName(word),
   );
 }

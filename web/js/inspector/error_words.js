@@ -22,11 +22,11 @@ export function measured({ value, threshold, message }, signal) {
   return `${said}, limit ${limit}`;
 }
 
-/** "12 s" for one that is on, since when it was over for another; empty: not known. */
+/** "12 s" for one that is on, when another one ended; empty: not known. */
 export function ageWords(error, knownAt) {
   const { state, since_at: since, ended_at: ended } = error;
   if (isOn(error)) return since ? wholeSeconds(knownAt - Date.parse(since)) : "";
-  return state === "returned" && ended ? `ended ${timeAndDay(ended)}` : "";
+  return state === "returned" && ended ? timeAndDay(ended) : "";
 }
 
 /** What is special about an error, each in a word or two. */

@@ -103,7 +103,7 @@ class ModeSwitcher extends HTMLElement {
   #fillDetails({ whole, title, content, shown, mode }) {
     const { can_enter, blockers, requires = [], invariants = [] } = shown;
     setAttribute(whole, "hidden", blockers.length + requires.length + invariants.length === 0);
-    setText(title, blockers.length === 0 ? "Conditions" : can_enter ? "Why the warning" : "Why not");
+    setText(title, blockers.length === 0 ? "Conditions of" : can_enter ? "Warning for" : "Why not");
     if (!whole.open) return;
     renderOnce(content, JSON.stringify([can_enter, blockers, requires, invariants]), () => [
       ...(blockers.length ? [reasonTree(blockers, this.words)] : []),
