@@ -4,14 +4,13 @@ import { el, setAttribute, setText } from "/web/js/base/dom.js";
 import { include } from "/web/js/map/bounds.js";
 import { drawScene } from "/web/js/map/draw.js";
 import { listen, ZOOM_STEP } from "/web/js/map/gestures.js";
+import { onSchemeChange, readInk } from "/web/js/map/ink.js";
 import { PathShape } from "/web/js/map/path_shape.js";
 import { Trail } from "/web/js/map/trail.js";
 import * as looks from "/web/js/map/view.js";
 import { currentTask } from "/web/js/base/store.js";
 import { mapSentence, offPath, poseAge, speedWords, viewSentence } from "/web/js/base/task_words.js";
 
-const INKS = ["ground", "grid", "axis", "ahead", "done", "trail", "aim", "vehicle", "outline"];
-const PAGE_INKS = ["text", "quiet", "accent", "alarm"];
 const SPOKEN_MS = 1000;
 
 class TrackMap extends HTMLElement {
@@ -115,7 +114,7 @@ class TrackMap extends HTMLElement {
       fit: () => this.#setMode("fit"),
     });
     new ResizeObserver(() => this.#resize()).observe(this.canvas);
-    matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => {
+    onSchemeChange(() => {
       this.#ink = null;
       this.#ask();
     });
@@ -238,15 +237,6 @@ function keysLine() {
 
 function touchLine() {
   return el("p", { class: "touch-only quiet" }, "Two fingers move and zoom the map.");
-}
-
-/** The colours of the style sheet, which differ between the schemes. */
-function readInk(element) {
-  const style = getComputedStyle(element);
-  const read = (name) => style.getPropertyValue(name).trim();
-  const own = INKS.map((name) => [name, read(`--map-${name}`)]);
-  const page = PAGE_INKS.map((name) => [name, read(`--${name}`)]);
-  return { ...Object.fromEntries([...own, ...page]), font: `11px ${style.fontFamily}` };
 }
 
 customElements.define("ph-map", TrackMap);
