@@ -17,8 +17,7 @@ import "/web/js/header/state_bar.js";
 import "/web/js/header/stop_button.js";
 import "/web/js/map/map.js";
 import "/web/js/header/hold_list.js";
-import "/web/js/task/task_form.js";
-import "/web/js/task/task_panel.js";
+import "/web/js/task/task_strip.js";
 import "/web/js/parts/part_tree.js";
 import "/web/js/inspector/mode_switcher.js";
 import "/web/js/inspector/plan.js";
@@ -42,10 +41,9 @@ const connection = new Connection(() =>
 const pathWatch = new PathWatch(take);
 const panel = document.querySelector("ph-part-panel");
 const map = document.querySelector("ph-map");
-const taskPanel = document.querySelector("ph-task-panel");
 const tokenForm = document.querySelector("ph-token-form");
 const elements = document.querySelectorAll(
-  "ph-replay-bar, ph-state-bar, ph-stop-button, ph-alarm-list, ph-reaction-list, ph-task-panel, ph-part-tree, ph-map, ph-part-panel, " +
+  "ph-replay-bar, ph-state-bar, ph-stop-button, ph-alarm-list, ph-reaction-list, ph-task-strip, ph-part-tree, ph-map, ph-part-panel, " +
     "ph-signal-list, ph-event-list",
 );
 let state = emptyState();
@@ -141,15 +139,8 @@ function hearMock({ kind, data }) {
   setTimeout(loadMock, MOCK_PAUSE_MS);
 }
 
-/** Without example tracks there is no button for them. */
-function loadTracks() {
-  load(["/examples/tracks"], ([{ items }]) => (taskPanel.tracks = items));
-  load(["/tasks"], ([{ controllers }]) => (taskPanel.controllers = controllers));
-}
-
 /** After a restart that kept the events, the stream goes on where it was cut off. */
 function greet({ epoch, boot }) {
-  loadTracks();
   loadMock();
   const goesOn = epoch === state.epoch || (state.epoch !== null && boot > 1);
   if (!goesOn) load(["/events?limit=50"], ([log]) => take({ ...log, type: "log" }));

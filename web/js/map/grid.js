@@ -50,7 +50,7 @@ export function drawGrid(context, view, ink) {
 
 export function drawScaleBar(context, view, ink) {
   const length = roundStep(LONGEST_BAR_PX / view.scale);
-  const [right, y] = [view.width - EDGE_PX - 4, 24];
+  const [right, y] = [view.width - EDGE_PX - 8, view.height - 34];
   const left = right - length * view.scale;
   context.strokeStyle = ink.text;
   context.lineWidth = 1.5;
