@@ -54,8 +54,8 @@ export function drawMoving(context, view, ink, ratio, scene) {
   if (runs.length > 0) drawRun(context, view, ink, ratio, runs.at(-1));
   if (target) drawTarget(context, view, ink, target, vehicle?.pose);
   if (!vehicle?.pose) return;
-  if (vehicle.lookahead) drawAim(context, view, ink, vehicle, scene.controller);
   drawVehicle(context, view, ink, vehicle, isOld);
+  if (vehicle.lookahead) drawAim(context, view, ink, vehicle, scene.controller);
 }
 
 /** Count in metres from `origin` until `act` returns; lengths in px are divided by the scale. */

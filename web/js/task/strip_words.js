@@ -21,19 +21,21 @@ const LOOKS = {
   ABORTED: ["ABORTED", "aborted"],
 };
 
-/** What the strip says: `{word, symbol, name, way, more, readings}`, `readings` as pairs. */
+/** What the strip says: `{word, symbol, name, controller, way, more, readings}`, the last as pairs. */
 export function stripWords(state, { at }) {
   const { task, vehicle } = state;
   const speed = ["Speed", speedWords(vehicle?.speed_mps)];
   if (state.systemState === null) return said("UNKNOWN", "late", "Nothing was received yet.", []);
   if (!task) return said("NO TASK", "idle", "The vehicle has no path to drive.", [speed]);
   const [word, symbol] = LOOKS[task.status];
-  const name = `${task.id}, ${controllerName(task.controller)}`;
-  if (task.ended_at) return { ...said(word, symbol, endLine(task), [speed]), name, more: pastLine(task) };
+  const name = `task ${task.id}`;
+  const controller = controllerName(task.controller);
+  if (task.ended_at)
+    return { word, symbol, name, controller, way: endLine(task), more: pastLine(task), readings: [speed] };
   const error = ["Off path", offPath(task.cross_track_error_m)];
   const way = capital(waypointWords(task));
   const readings = [etaReading(task, at), error, speed];
-  return { word, symbol, name, way, more: percent(task.progress), readings };
+  return { word, symbol, name, controller, way, more: percent(task.progress), readings };
 }
 
 /** "Held by gate: the gate is shut, +2 more"; empty where nothing holds. */
@@ -54,7 +56,7 @@ export function spokenWords({ id, status, reason }) {
 }
 
 function said(word, symbol, way, readings) {
-  return { word, symbol, name: "", way, more: "", readings };
+  return { word, symbol, name: "", controller: null, way, more: "", readings };
 }
 
 /** The time at which the task ends if nothing holds it, and how long that is. */

@@ -53,10 +53,12 @@ class TaskStrip extends HTMLElement {
       label: "Cancel (hold)",
       "onph-held": () => this.#ask(this.cancel.button, "DELETE", "/tasks/current"),
     });
+    const fresh = { class: "new-task", "aria-label": "New task", "aria-expanded": "false" };
+    this.freshText = el("span");
     this.fresh = el(
       "button",
-      { type: "button", class: "new-task", "aria-expanded": "false", onclick: () => this.#toggle() },
-      "New task",
+      { type: "button", title: "New task", onclick: () => this.#toggle(), ...fresh },
+      this.freshText,
     );
     return el("div", { class: "task-buttons" }, this.pause, this.resume, this.cancel, this.fresh);
   }
@@ -82,6 +84,7 @@ class TaskStrip extends HTMLElement {
     setText(this.word, words.word);
     const then = contact.level === "lost" && state.at ? `as of ${timeOfDay(state.at)}` : "";
     setText(this.name, [words.name, then].filter(Boolean).join(", "));
+    setAttribute(this.name, "title", words.controller);
     const held = task ? heldWords(holds) || (task.reason ?? "") : "";
     setText(this.way, held || words.way);
     setText(this.more, words.more);
@@ -108,6 +111,7 @@ class TaskStrip extends HTMLElement {
     setAttribute(this.pause, "hidden", task === null || Boolean(this.resumed));
     setAttribute(this.resume, "hidden", task === null || !this.resumed);
     setAttribute(this.cancel, "hidden", task === null);
+    setText(this.freshText, task ? "+" : "New task");
     this.resume.volatile = volatile;
     for (const button of [this.pause, this.resume, this.cancel, this.fresh]) button.disabled = !enabled;
   }
