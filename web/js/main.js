@@ -26,7 +26,6 @@ import "/web/js/inspector/change.js";
 import "/web/js/inspector/why.js";
 import "/web/js/inspector/error_list.js";
 import "/web/js/inspector/part_panel.js";
-import "/web/js/what_if/mock_control.js";
 import "/web/js/signals/signal_list.js";
 import "/web/js/timeline/event_list.js";
 
@@ -46,7 +45,7 @@ const taskPanel = document.querySelector("ph-task-panel");
 const tokenForm = document.querySelector("ph-token-form");
 const elements = document.querySelectorAll(
   "ph-replay-bar, ph-state-bar, ph-stop-button, ph-alarm-list, ph-reaction-list, ph-task-panel, ph-part-tree, ph-map, ph-part-panel, " +
-    "ph-signal-list, ph-event-list",
+    "ph-signal-list, ph-event-list, ph-what-if",
 );
 let state = emptyState();
 let mock = {};
@@ -101,7 +100,7 @@ function draw() {
     knownAt: moment ? moment.at : knownAt,
     volatile,
   };
-  for (const element of elements) element.update(view);
+  for (const element of elements) element.update?.(view);
 }
 
 /** The title is also visible for a hidden page, so it does not wait for an animation frame. */
@@ -194,6 +193,11 @@ document.addEventListener("ph-preview", ({ detail }) => {
 document.addEventListener("ph-moment", ({ detail }) => {
   moment = detail;
   draw();
+});
+document.addEventListener("ph-what-if", async () => {
+  await import("/web/js/what_if/drawer.js");
+  draw();
+  document.querySelector("ph-what-if").open();
 });
 document.addEventListener("ph-tab", ({ detail }) => (document.body.dataset.tab = detail));
 document.addEventListener("ph-try-now", () => {

@@ -31,7 +31,8 @@ class SignalList extends HTMLElement {
       "aria-label": "Filter signals",
       oninput: () => this.#sift(),
     });
-    this.head = el("div", { class: "signals-head" }, el("h2", {}, "Signals"), this.count, this.filter);
+    const whatIf = el("button", { class: "link", onclick: openWhatIf }, "What if …");
+    this.head = el("div", { class: "signals-head" }, el("h2", {}, "Signals"), this.count, whatIf, this.filter);
     this.empty = el("p", { class: "quiet" }, "Not known yet.");
     this.list = el("div", { role: "list", "aria-label": this.only ? "Pending" : "Signals" });
     setAttribute(this.head, "hidden", Boolean(this.only));
@@ -155,6 +156,10 @@ class SignalList extends HTMLElement {
     const { toggleDetail } = await import("/web/js/signals/signal_detail.js");
     toggleDetail(row, this.view);
   }
+}
+
+function openWhatIf() {
+  document.dispatchEvent(new CustomEvent("ph-what-if", { detail: {} }));
 }
 
 customElements.define("ph-signal-list", SignalList);
