@@ -48,7 +48,7 @@ const elements = [
   ...document.querySelectorAll(
     "ph-stop-button, ph-stop-release, ph-state-bar, ph-replay-bar, ph-moment-bar, ph-notices, ph-tabs, #held ph-hold-list, " +
       "ph-reason-list, ph-alarm-list, ph-reaction-list, ph-task-strip, ph-part-tree, ph-map, ph-part-panel, " +
-      "ph-signal-list, ph-event-list",
+      "ph-signal-list, ph-event-list, ph-what-if",
   ),
 ];
 let state = emptyState();
@@ -198,6 +198,11 @@ document.addEventListener("ph-preview", ({ detail }) => {
 document.addEventListener("ph-moment", ({ detail }) => {
   moment = detail;
   draw();
+});
+document.addEventListener("ph-what-if", async () => {
+  await import("/web/js/what_if/drawer.js");
+  draw();
+  document.querySelector("ph-what-if").open();
 });
 document.addEventListener("ph-tab", ({ detail }) => {
   document.body.dataset.tab = detail;

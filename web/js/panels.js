@@ -10,6 +10,5 @@ import "/web/js/inspector/change.js";
 import "/web/js/inspector/why.js";
 import "/web/js/inspector/error_list.js";
 import "/web/js/inspector/part_panel.js";
-import "/web/js/what_if/mock_control.js";
 import "/web/js/signals/signal_list.js";
 import "/web/js/timeline/event_list.js";
