@@ -21,7 +21,6 @@ import "/web/js/header/notices.js";
 import "/web/js/header/menu.js";
 import "/web/js/header/tabs.js";
 import "/web/js/header/hold_list.js";
-import "/web/js/header/reason_list.js";
 import { goTo, listen } from "/web/js/header/keys.js";
 import { showTitle } from "/web/js/header/title.js";
 import "/web/js/parts/part_tree.js";
@@ -47,7 +46,7 @@ const stopButton = document.querySelector("ph-stop-button");
 const elements = [
   ...document.querySelectorAll(
     "ph-stop-button, ph-stop-release, ph-state-bar, ph-replay-bar, ph-moment-bar, ph-notices, ph-tabs, #held ph-hold-list, " +
-      "ph-reason-list, ph-alarm-list, ph-reaction-list, ph-task-strip, ph-part-tree, ph-map, ph-part-panel, " +
+      "ph-why, ph-task-strip, ph-part-tree, ph-map, ph-part-panel, " +
       "ph-signal-list, ph-event-list, ph-what-if",
   ),
 ];
