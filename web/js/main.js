@@ -28,7 +28,7 @@ import "/web/js/inspector/error_list.js";
 import "/web/js/inspector/part_panel.js";
 import "/web/js/what_if/mock_control.js";
 import "/web/js/signals/signal_list.js";
-import "/web/js/timeline/event_list.js";
+import "/web/js/timeline/timeline.js";
 
 const REDRAW_MS = 250;
 const MOCK_PAUSE_MS = 1000;
@@ -46,7 +46,7 @@ const taskPanel = document.querySelector("ph-task-panel");
 const tokenForm = document.querySelector("ph-token-form");
 const elements = document.querySelectorAll(
   "ph-replay-bar, ph-state-bar, ph-stop-button, ph-alarm-list, ph-reaction-list, ph-task-panel, ph-part-tree, ph-map, ph-part-panel, " +
-    "ph-signal-list, ph-event-list",
+    "ph-signal-list, ph-timeline",
 );
 let state = emptyState();
 let mock = {};

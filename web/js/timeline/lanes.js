@@ -44,7 +44,7 @@ export function lanesOf(record, parts) {
   ];
 }
 
-/** Times of which something is known, each with whether it goes on now. */
+/** Times of which something is known; the last one goes on to now, or to the last contact. */
 export function knownTimes({ from, dark }) {
   const times = [];
   let begin = from;
@@ -53,6 +53,7 @@ export function knownTimes({ from, dark }) {
     begin = Math.max(begin, gap.end);
   }
   if (begin < Infinity) times.push({ begin, end: Infinity });
+  if (times.length) times.at(-1).isLast = true;
   return times;
 }
 
@@ -63,14 +64,15 @@ export function valueLane(record, group, changes, { seed, current }) {
     const begin = shownFrom(lane, time, group);
     const own = changes.filter(({ at }) => at >= begin && at <= time.end);
     const isFirst = begin === record.from && seed !== undefined;
-    const lasts = own.length === 0 && time.end === Infinity;
+    const lasts = own.length === 0 && time.isLast;
     let [at, value] = [begin, isFirst ? seed : lasts ? current : own[0]?.was];
     for (const change of own) {
-      put(lane, at, change.at, value);
+      // What lasted less than a millisecond was there all the same.
+      if (change.at > at || change !== own[0]) put(lane, at, change.at, value);
       if (change.point) lane.intervals.push({ begin: change.at, end: change.at, ...change.point });
       [at, value] = [change.at, change.value];
     }
-    put(lane, at, time.end, value);
+    if (time.end > at) put(lane, at, time.end, value);
   }
   return lane;
 }
@@ -90,9 +92,9 @@ export function spanLane(record, group, acts, { seed, current }) {
       if (isOn || !act.value) lane.intervals.push({ ...was, end: act.at });
       if (act.value) open.set(act.key, { begin: act.at, ...act.value });
     }
-    const isNow = time.end === Infinity;
-    if (isNow) addCurrent(open, current, begin);
-    for (const one of open.values()) lane.intervals.push({ ...one, end: time.end, lost: !isNow });
+    if (time.isLast) addCurrent(open, current, begin);
+    const lost = time.end !== Infinity;
+    for (const one of open.values()) lane.intervals.push({ ...one, end: time.end, lost });
   }
   lane.intervals.sort((a, b) => a.begin - b.begin);
   return lane;
@@ -107,14 +109,14 @@ function addCurrent(open, current, begin) {
 }
 
 /** From where a group is known within `time`; what is before that is not loaded. */
-function shownFrom(lane, { begin, end }, { from }) {
+function shownFrom(lane, { begin, end }, { from, isFull }) {
   const known = Math.min(Math.max(begin, from), end);
-  if (known > begin) lane.unknown.push({ begin, end: known, text: "not loaded: too many events" });
+  const text = isFull ? "not loaded: too many events" : "loading";
+  if (known > begin) lane.unknown.push({ begin, end: known, text });
   return known;
 }
 
 function put(lane, begin, end, value) {
-  if (end <= begin) return;
   if (value === undefined) {
     lane.unknown.push({ begin, end, text: "not known" });
     return;
@@ -272,7 +274,7 @@ function commandLane({ groups, ...record }) {
   }
   intervals.sort((a, b) => a.begin - b.begin);
   const lane = { intervals, unknown: [] };
-  const from = Math.max(requests.from, audit.from);
-  for (const time of knownTimes(record)) shownFrom(lane, time, { from });
+  const shorter = requests.from > audit.from ? requests : audit;
+  for (const time of knownTimes(record)) shownFrom(lane, time, shorter);
   return { key: "commands", name: "Commands", ...lane };
 }

@@ -6,7 +6,7 @@
 /** What is narrower could not be seen, px. */
 export const MIN_PX = 2;
 /** From calm to urgent: what a mark of several intervals is drawn as. */
-const URGENCY = ["none", "rest", "active", "busy", "command", "unknown", "warn", "rejected", "alarm"];
+const URGENCY = ["rest", "active", "busy", "command", "unknown", "warn", "rejected", "alarm"];
 const STEPS_S = [1, 5, 10, 30, 60, 120, 300, 600, 1800, 3600, 7200, 10_800, 21_600, 43_200];
 const LABEL_PX = 64;
 
@@ -41,7 +41,7 @@ export function rowsOf(intervals, most) {
 export function marksOf(intervals, scale) {
   const marks = [];
   for (const interval of intervals) {
-    if (interval.end < scale.from || interval.begin > scale.to) continue;
+    if (interval.tone === "none" || interval.end < scale.from || interval.begin > scale.to) continue;
     const end = Math.min(interval.end, scale.to);
     const left = Math.max(0, Math.round(xOf(scale, interval.begin)));
     const right = Math.max(Math.round(xOf(scale, end)), left + MIN_PX);
