@@ -2,10 +2,10 @@
 
 import { ticksOf, xOf } from "/web/js/timeline/marks.js";
 
-export const LANE_PX = 20;
+export const LANE_PX = 17;
 export const ROW_PX = 14;
-export const AXIS_PX = 18;
-const PAD_PX = 3;
+export const AXIS_PX = 16;
+export const PAD_PX = 2;
 const HATCH_PX = 6;
 const TEXT_PX = 5;
 const DAY_MS = 86_400_000;

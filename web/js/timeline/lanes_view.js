@@ -1,7 +1,7 @@
 /** The lanes on a canvas, their names beside it, and what is under a place. */
 
 import { el, renderOnce, setAttribute } from "/web/js/base/dom.js";
-import { AXIS_PX, drawTimeline, INKS, LANE_PX, ROW_PX } from "/web/js/timeline/draw.js";
+import { AXIS_PX, drawTimeline, INKS, LANE_PX, PAD_PX, ROW_PX } from "/web/js/timeline/draw.js";
 import { marksOf, rowsOf, timeAt } from "/web/js/timeline/marks.js";
 import { scaleOf } from "/web/js/timeline/range.js";
 
@@ -66,7 +66,7 @@ export class LanesView {
     const row = this.#rows.find((one) => y >= one.y && y < one.y + one.height);
     const at = timeAt(this.#scale, x);
     if (!row) return { at, lane: null, items: [] };
-    const n = Math.min(row.rows.length - 1, Math.max(0, Math.floor((y - row.y - 3) / ROW_PX)));
+    const n = Math.min(row.rows.length - 1, Math.max(0, Math.floor((y - row.y - PAD_PX) / ROW_PX)));
     const near = (mark) => Math.max(mark.x0 - x, x - mark.x1, 0);
     const marks = row.rows[n].filter((mark) => near(mark) <= NEAR_PX);
     marks.sort((a, b) => near(a) - near(b));

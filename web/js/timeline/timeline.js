@@ -209,11 +209,10 @@ class Timeline extends HTMLElement {
     const at = this.#view.moment?.at;
     const span = this.#range.span;
     const state = { tab: this.#tab, span, follows: this.#range.end === null, isTable: this.#isTable };
-    this.bar.show({ ...state, pinned: at ? timeAndDay(at) : "" });
+    const cut = this.#record.isCut ? `only the last ${MOST_EVENTS.toLocaleString("en-GB")} events` : "";
+    this.bar.show({ ...state, cut, pinned: at ? timeAndDay(at) : "" });
+    setAttribute(this, "data-pinned", Boolean(at));
     if (this.#record.problem) this.#tell(`Earlier events are not shown: ${this.#record.problem}`);
-    const cut = `Only the last ${MOST_EVENTS.toLocaleString("en-GB")} events of a lane are shown.`;
-    setAttribute(this.bar.root, "title", this.#record.isCut ? cut : null);
-    setAttribute(this, "data-cut", this.#record.isCut);
   }
 
   #drawTable(now) {

@@ -21,6 +21,7 @@ export class Toolbar {
       },
       "Export",
     );
+    this.cut = el("span", { class: "cut", hidden: true });
     this.when = el("strong");
     this.pin = el(
       "div",
@@ -41,13 +42,14 @@ export class Toolbar {
         step("−", "Zoom out (minus)", () => act.zoom(1 / 2)),
         step("+", "Zoom in (plus)", () => act.zoom(2)),
       ),
+      this.cut,
       el("div", { class: "timeline-acts" }, this.table, this.save),
       this.pin,
     );
   }
 
-  /** Show `{tab, span, follows, isTable, pinned}`; `pinned` is the text of a moment, or empty. */
-  show({ tab, span, follows, isTable, pinned }) {
+  /** Show `{tab, span, follows, isTable, pinned, cut}`; `pinned` is the text of a moment, or empty. */
+  show({ tab, span, follows, isTable, pinned, cut }) {
     for (const one of this.tabs) {
       const isChosen = one.id === `tab-${tab}`;
       setAttribute(one, "aria-selected", String(isChosen));
@@ -59,6 +61,8 @@ export class Toolbar {
     setAttribute(this.table, "aria-pressed", String(isTable));
     setAttribute(this.pin, "hidden", !pinned);
     setText(this.when, pinned);
+    setAttribute(this.cut, "hidden", !cut);
+    setText(this.cut, cut);
   }
 }
 
