@@ -19,7 +19,7 @@ import "/web/js/map/map.js";
 import "/web/js/header/hold_list.js";
 import "/web/js/task/task_form.js";
 import "/web/js/task/task_panel.js";
-import "/web/js/parts/part_tree.js";
+import "/web/js/parts/part_list.js";
 import "/web/js/inspector/mode_switcher.js";
 import "/web/js/inspector/plan.js";
 import "/web/js/inspector/change.js";
