@@ -23,7 +23,7 @@ import "/web/js/header/tabs.js";
 import "/web/js/header/hold_list.js";
 import { goTo, listen } from "/web/js/header/keys.js";
 import { showTitle } from "/web/js/header/title.js";
-import "/web/js/parts/part_tree.js";
+import "/web/js/parts/part_list.js";
 
 const REDRAW_MS = 250;
 const MOCK_PAUSE_MS = 1000;
