@@ -3,6 +3,7 @@
 import argparse
 
 import argcomplete
+from argcomplete.shell_integration import shellcode
 
 
 def script_for(shell: str) -> str:
@@ -11,7 +12,7 @@ def script_for(shell: str) -> str:
     Args:
         shell: `bash`, `zsh` or `fish`.
     """
-    return str(argcomplete.shellcode(["pilothouse"], shell=shell))
+    return str(shellcode(["pilothouse"], shell=shell))
 
 
 def complete(parser: argparse.ArgumentParser) -> None:

@@ -10,8 +10,8 @@ if TYPE_CHECKING:
     from api.client.service_client import ServiceClient
 
 
-def acknowledge(client: "ServiceClient", name: str) -> Json:
-    """Acknowledge an error; return it as it is then.
+def acknowledge(client: "ServiceClient", name: str) -> None:
+    """Acknowledge an error.
 
     Args:
         client: The service.
@@ -21,7 +21,7 @@ def acknowledge(client: "ServiceClient", name: str) -> Json:
         ServiceProblemError: There is no such error, or it was rejected.
         NoAnswerError: The service did not answer.
     """
-    return _ask(client, "POST", name, "acknowledge")
+    _ask(client, "POST", name, "acknowledge")
 
 
 def shelve(client: "ServiceClient", name: str, for_s: float, reason: str) -> Json:

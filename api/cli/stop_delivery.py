@@ -17,7 +17,8 @@ from api.client.outcomes import NoAnswerError, NoConnectionError
 
 HANGS_S = 1.5
 """A try without an answer for this time is left, and the next one begins."""
-_PAUSE_S = 0.25
+_PAUSES_S = (0.25, 0.5)
+"""After the first try, and after each later one."""
 _REFUSALS = frozenset({HTTPStatus.UNAUTHORIZED, HTTPStatus.FORBIDDEN})
 """Another try would be answered alike."""
 
@@ -85,7 +86,7 @@ def deliver(
             tell(f"try {tries}: {why}")
             return Delivery(None, tries, now() - begin, is_open=ended < tries)
         tell(f"try {tries}: {why}; trying again")
-        pause(min(_PAUSE_S, left_s))
+        pause(min(_PAUSES_S[tries > 1], left_s))
 
 
 def _may_have_arrived(result: Answer | NoAnswerError) -> bool:

@@ -37,7 +37,7 @@ def _add_options(parser: argparse.ArgumentParser) -> None:
     )
     open_error_names(names)
     what.add_argument("--all", action="store_true", help="acknowledge all that wait for it")
-    add_format(parser, "json: the errors")
+    add_format(parser, "json: the errors that are not over")
     add_url(parser)
 
 
@@ -59,14 +59,16 @@ def _ack(client: "ServiceClient", names: list[str], how: str, *, is_all: bool) -
             for line in error_lines(waiting) if waiting else ("no error waits for it",):
                 say(line)
         return Outcome.FAILED if waiting else Outcome.SUCCEEDED
-    done = []
-    for name in names or map(error_name, waiting):
-        done.append(acknowledge(client, name))
-        if how == "text":
-            say(f"acknowledged {name}; it is {done[-1]['state']} now")
+    wanted = names or [error_name(item) for item in waiting]
+    for name in wanted:
+        acknowledge(client, name)
+    still = {error_name(item): item for item in open_errors(client)["items"]}
     if how == "json":
-        say_json({"items": done})
-    elif not done:
+        say_json({"items": [still[name] for name in wanted if name in still]})
+        return Outcome.SUCCEEDED
+    for name in wanted:
+        say(f"{name} is acknowledged; it is {still[name]['state'] if name in still else 'over'}")
+    if not wanted:
         say("no error waits for it")
     return Outcome.SUCCEEDED
 

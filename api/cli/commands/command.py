@@ -58,9 +58,8 @@ def span(text: str) -> float:
     try:
         return float(number) * _UNITS[text[len(number) :] or "s"]
     except (ValueError, KeyError):
-        raise argparse.ArgumentTypeError(
-            f"invalid time {text!r}; such as 90s, 10min or 8h"
-        ) from None
+        message = f"invalid time {text!r}; such as 90s, 10min or 8h"
+        raise argparse.ArgumentTypeError(message) from None
 
 
 def default_url() -> str:
