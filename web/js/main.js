@@ -21,7 +21,6 @@ import "/web/js/header/notices.js";
 import "/web/js/header/menu.js";
 import "/web/js/header/tabs.js";
 import "/web/js/header/hold_list.js";
-import "/web/js/header/reason_list.js";
 import { goTo, listen } from "/web/js/header/keys.js";
 import { showTitle } from "/web/js/header/title.js";
 import "/web/js/parts/part_tree.js";
@@ -42,14 +41,13 @@ const pacer = new Pacer(draw);
 const pathWatch = new PathWatch(take);
 const panel = document.querySelector("ph-part-panel");
 const map = document.querySelector("ph-map");
-const taskPanel = document.querySelector("ph-task-panel");
 const tokenForm = document.querySelector("ph-token-form");
 const stopButton = document.querySelector("ph-stop-button");
 const elements = [
   ...document.querySelectorAll(
     "ph-stop-button, ph-stop-release, ph-state-bar, ph-replay-bar, ph-moment-bar, ph-notices, ph-tabs, #held ph-hold-list, " +
-      "ph-reason-list, ph-alarm-list, ph-reaction-list, ph-task-panel, ph-part-tree, ph-map, ph-part-panel, " +
-      "ph-signal-list, ph-event-list",
+      "ph-why, ph-task-strip, ph-part-tree, ph-map, ph-part-panel, " +
+      "ph-signal-list, ph-timeline, ph-what-if",
   ),
 ];
 let state = emptyState();
@@ -119,7 +117,6 @@ function currentView() {
 async function loadPanels() {
   await import("/web/js/panels.js");
   pacer.ask(true);
-  loadTracks();
 }
 
 /** Request what no frame carries; after a failure it is requested again on reconnection. */
@@ -147,16 +144,8 @@ function hearMock({ kind, data }) {
   setTimeout(loadMock, MOCK_PAUSE_MS);
 }
 
-/** Without example tracks there is no button for them. */
-function loadTracks() {
-  if (!taskPanel.update) return;
-  load(["/examples/tracks"], ([{ items }]) => (taskPanel.tracks = items));
-  load(["/tasks"], ([{ controllers }]) => (taskPanel.controllers = controllers));
-}
-
 /** After a restart that kept the events, the stream goes on where it was cut off. */
 function greet({ epoch, boot }) {
-  loadTracks();
   loadMock();
   const goesOn = epoch === state.epoch || (state.epoch !== null && boot > 1);
   if (!goesOn) load(["/events?limit=50"], ([log]) => take({ ...log, type: "log" }));
@@ -208,6 +197,11 @@ document.addEventListener("ph-preview", ({ detail }) => {
 document.addEventListener("ph-moment", ({ detail }) => {
   moment = detail;
   draw();
+});
+document.addEventListener("ph-what-if", async () => {
+  await import("/web/js/what_if/drawer.js");
+  draw();
+  document.querySelector("ph-what-if").open();
 });
 document.addEventListener("ph-tab", ({ detail }) => {
   document.body.dataset.tab = detail;
