@@ -7,6 +7,7 @@ import { PathWatch } from "/web/js/base/path_watch.js";
 import { robotSentence } from "/web/js/base/state_sentence.js";
 import { emptyState, fold } from "/web/js/base/store.js";
 import "/web/js/header/token_form.js";
+import "/web/js/header/version_notice.js";
 import "/web/js/base/pills.js";
 import "/web/js/header/replay_bar.js";
 import "/web/js/base/hold_button.js";
@@ -44,6 +45,7 @@ const panel = document.querySelector("ph-part-panel");
 const map = document.querySelector("ph-map");
 const taskPanel = document.querySelector("ph-task-panel");
 const tokenForm = document.querySelector("ph-token-form");
+const versionNotice = document.querySelector("ph-version-notice");
 const elements = document.querySelectorAll(
   "ph-replay-bar, ph-state-bar, ph-stop-button, ph-alarm-list, ph-reaction-list, ph-task-panel, ph-part-tree, ph-map, ph-part-panel, " +
     "ph-signal-list, ph-event-list",
@@ -148,7 +150,8 @@ function loadTracks() {
 }
 
 /** After a restart that kept the events, the stream goes on where it was cut off. */
-function greet({ epoch, boot }) {
+function greet({ epoch, boot, page_version }) {
+  versionNotice.compare(page_version);
   loadTracks();
   loadMock();
   const goesOn = epoch === state.epoch || (state.epoch !== null && boot > 1);
@@ -166,11 +169,11 @@ function askForToken() {
 connection.addEventListener("unauthorized", askForToken);
 document.addEventListener("ph-unauthorized", askForToken);
 document.addEventListener("ph-token", () => connection.tryNow());
-connection.addEventListener("frame", ({ detail: frame }) => {
+function hear(frame, at = localNow()) {
   if (frame.type === "hello") greet(frame);
   if (frame.type === "event") hearMock(frame);
   panel.hear(frame);
-  if (frame.type === "state") clock.observe(frame.at, localNow());
+  if (frame.type === "state") clock.observe(frame.at, at);
   const isFirst = state.systemState === null;
   take(frame);
   if (isFirst && state.systemState) loadMock();
@@ -179,8 +182,20 @@ connection.addEventListener("frame", ({ detail: frame }) => {
     pathWatch.look(state);
   }
   title();
-});
+}
 
+/** Show the frames that the page brought, which are as old as its first byte. */
+function showBrought() {
+  const block = document.getElementById("first-frame");
+  if (block === null) return;
+  const [{ responseStart }] = performance.getEntriesByType("navigation");
+  const at = performance.timeOrigin + responseStart;
+  for (const frame of JSON.parse(block.textContent)) hear(frame, at);
+  connection.heardAt(at);
+  block.remove();
+}
+
+connection.addEventListener("frame", ({ detail }) => hear(detail));
 document.addEventListener("ph-select", ({ detail }) => {
   selected = detail;
   draw();
@@ -210,6 +225,7 @@ document.addEventListener("ph-replay", ({ detail }) => take({ type: "replay", re
 document.addEventListener("ph-latch", ({ detail }) => take({ type: "latch", latch: detail }));
 setInterval(askToDraw, REDRAW_MS);
 setInterval(title, REDRAW_MS);
+showBrought();
 connection.tryNow();
 // A request shows at once whether a token is needed; the stream would wait for it first.
 load(["/system_state"], () => {});
