@@ -73,7 +73,7 @@ def _lead(place: Mapping[str, str], path: str) -> str:
         place: Bundle of each module that is loaded on demand.
         path: Of the module.
     """
-    return f'import("./{place[path]}").then((made) => made.{namespace_of(path)})'
+    return f'import("./{place[path]}").then((made)=>made.{namespace_of(path)})'
 
 
 def _scope(module: Module, lead: Callable[[str], str]) -> str:

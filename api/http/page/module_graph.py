@@ -80,7 +80,8 @@ def _in_order(entries: Iterable[str], by_path: Mapping[str, Module]) -> tuple[Mo
 
     def visit(path: str) -> None:
         if path in above:
-            raise PageError(path, f"it imports itself, through {' and '.join(above[1:]) or path}")
+            between = above[above.index(path) + 1 :]
+            raise PageError(path, f"it imports itself, through {' and '.join(between) or path}")
         if path in done:
             return
         above.append(path)
