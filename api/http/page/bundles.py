@@ -81,7 +81,7 @@ def _scope(module: Module, lead: Callable[[str], str]) -> str:
     bindings = [
         f"const {_pattern(imported)}={namespace_of(imported.path)};\n"
         for imported in module.imports
-        if imported.names or imported.whole
+        if imported.binds
     ]
     return (
         f"export const {namespace_of(module.path)}=(()=>{{\n{''.join(bindings)}"
@@ -115,7 +115,9 @@ def _imports(
     for module in portion:
         for imported in module.imports:
             if (bundle := place[imported.path]) != name:
-                needed.setdefault(bundle, {})[namespace_of(imported.path)] = None
+                bound = needed.setdefault(bundle, {})
+                if imported.binds:
+                    bound[namespace_of(imported.path)] = None
     return "".join(
         f'import{{{",".join(namespaces)}}}from"./{bundle}";\n'
         for bundle, namespaces in needed.items()

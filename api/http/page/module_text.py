@@ -40,6 +40,11 @@ class Import:
     whole: str | None
     """Local name of all exports together; None: they are not imported together."""
 
+    @property
+    def binds(self) -> bool:
+        """Tell whether it gives names to anything, and is not only for the effects."""
+        return bool(self.names or self.whole)
+
 
 @dataclass(frozen=True, slots=True)
 class Module:

@@ -77,7 +77,8 @@ def test_a_portion_is_as_large_as_a_file_may_be() -> None:
     portions = list(pack(texts))
 
     assert [key for portion in portions for key in portion] == list(texts)
-    sizes = [len(zlib.compress("".join(map(texts.get, each)).encode(), 9)) for each in portions]
+    joined = ["".join(texts[key] for key in portion) for portion in portions]
+    sizes = [len(zlib.compress(text.encode(), 9)) for text in joined]
     assert all(size <= MOST_BYTES for size in sizes)
     assert all(size > MOST_BYTES - 1_100 for size in sizes[:-1])
 
