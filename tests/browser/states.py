@@ -196,10 +196,28 @@ def storage_alone(page: Page, service: Service) -> None:
     page.locator(".storage").wait_for()
 
 
-def rejected(page: Page, _: Service) -> None:
-    table = b"x;y;yaw\n0;0;0\n1;2;zwei\n"
+def open_form(page: Page) -> None:
+    page.get_by_role("button", name="New task").click()
+    page.get_by_role("button", name="Drive the example loop").wait_for()
+
+
+def new_task(page: Page, _: Service) -> None:
+    open_form(page)
+
+
+def choose(page: Page, table: bytes) -> None:
+    open_form(page)
     file: Any = {"name": "field.csv", "mimeType": "text/csv", "buffer": table}
     page.get_by_label("Choose a CSV").set_input_files(file)
+
+
+def task_preview(page: Page, service: Service) -> None:
+    choose(page, service.track_ahead(30, scans=True))
+    page.get_by_text("Preview of field.csv").wait_for()
+
+
+def rejected(page: Page, _: Service) -> None:
+    choose(page, b"x;y;yaw\n0;0;0\n1;2;zwei\n")
     page.locator("ph-task-form").get_by_role("alert").scroll_into_view_if_needed()
 
 
@@ -294,6 +312,8 @@ STATES: dict[str, tuple[Robot, Act]] = {
     "reacting": ("mobile", reacting),
     "reactions": ("mobile", reactions_seen),
     "low_battery": ("example", low_battery),
+    "new_task": ("example", new_task),
+    "task_preview": ("example", task_preview),
     "rejected": ("example", rejected),
     "sending": ("example", sending),
     "far_down": ("large", far_down),
@@ -354,6 +374,7 @@ def shoot_page(browser: Browser, file: Path) -> None:
         page = browser.new_page(viewport={"width": 1440, "height": 900})
         page.goto(service.url)
         post(service, "/systems/actuation/mode?wait=15", {"mode": "MODERATE"})
+        open_form(page)
         page.get_by_role("button", name="Drive the example loop").click()
         page.wait_for_timeout(100_000)
         page.screenshot(path=file)

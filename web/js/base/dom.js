@@ -37,6 +37,8 @@ const PATHS = {
   idle: "M7 7h10v10H7z",
   paused: "M9 7v10M15 7v10",
   stopping: "M9 7v10M15 7v10M3 21h18",
+  done: "M12 3a9 9 0 1 0 .01 0M8 12.3l2.8 2.8L16 9.5",
+  canceled: "M12 3a9 9 0 1 0 .01 0M8 12h8",
   held: "M5.5 11h13v9.5h-13zM8.5 11V8a3.5 3.5 0 0 1 7 0v3",
   aborted: "M12 3a9 9 0 1 0 .01 0M8.5 8.5l7 7M15.5 8.5l-7 7",
   menu: "M4 7h16M4 12h16M4 17h16",

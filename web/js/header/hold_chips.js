@@ -1,4 +1,4 @@
-/** <ph-hold-chips>: the first holds, each released by a long press; a count opens the others. */
+/** <ph-hold-chips>: the first holds that a person may release, by a long press; a count opens all. */
 
 import { el, setAttribute, setText } from "/web/js/base/dom.js";
 import { whileSending } from "/web/js/base/sending.js";
@@ -26,7 +26,8 @@ class HoldChips extends HTMLElement {
   show({ live, contact, knownAt, volatile }) {
     const holds = Object.values(live.holds);
     const enabled = contact.level !== "lost" && !live.replay;
-    const first = new Map(holds.slice(0, SHOWN).map((hold) => [holdKey(hold), hold]));
+    const mine = holds.filter(isReleasable);
+    const first = new Map(mine.slice(0, SHOWN).map((hold) => [holdKey(hold), hold]));
     for (const [key, chip] of this.#chips) {
       if (first.has(key)) continue;
       chip.item.remove();
@@ -38,7 +39,7 @@ class HoldChips extends HTMLElement {
       this.#draw(this.#chips.get(key), hold, { enabled, knownAt, volatile });
     }
     setAttribute(this.count, "hidden", holds.length === 0);
-    setAttribute(this.count, "data-more", Math.max(0, holds.length - SHOWN));
+    setAttribute(this.count, "data-more", holds.length - first.size);
     setText(this.count, holds.length === 1 ? "1 hold" : `${holds.length} holds`);
     const isOpen = this.all.matches(":popover-open");
     if (isOpen && holds.length === 0) this.all.hidePopover();
@@ -50,7 +51,6 @@ class HoldChips extends HTMLElement {
     const why = el("span", { class: "why-held" });
     const item = el("li", { class: "chip hold" }, el("strong", {}, hold.owner), why);
     this.list.append(item);
-    if (!isReleasable(hold)) return { item, why, release: null };
     const release = el("ph-hold-button", { label: `Release ${hold.owner} (hold)`, short: "Release" });
     release.addEventListener("ph-held", ({ detail }) =>
       whileSending(release.button, async () => {
@@ -64,9 +64,8 @@ class HoldChips extends HTMLElement {
 
   #draw({ item, why, release }, hold, { enabled, knownAt, volatile }) {
     const since = `for ${wholeSeconds(knownAt - Date.parse(hold.since_at))}`;
-    if (!release?.button.hasAttribute("data-sending")) setText(why, hold.reason || since);
+    if (!release.button.hasAttribute("data-sending")) setText(why, hold.reason || since);
     setAttribute(item, "title", [hold.owner, hold.reason, since, whoseWords(hold)].filter(Boolean).join(", "));
-    if (!release) return;
     release.disabled = !enabled;
     release.volatile = volatile;
   }
