@@ -68,13 +68,15 @@ class Alarm extends HTMLElement {
     const key = [error, enabled, volatile, ...below];
     if (this.#shown && isSame(key, this.#shown.key)) return;
     this.#shown = { error, below, view, key, signal: state.signals[signal] };
-    this.#showHead(error, state);
+    this.#showHead(error, below, state);
     setAttribute(this.spark, "hidden", !signal || !isOn(error));
     this.#fillBody();
   }
 
-  #showHead(error, { signals, parts }) {
-    const { part, severity, state } = error;
+  #showHead(error, below, { signals, parts }) {
+    const { part, state } = error;
+    // A root is as urgent as the worst that follows from it.
+    const { severity } = worseBelow(error, below) ?? error;
     this.#path = `${part === null ? "" : partPath(parts[part] ?? { kind: "node", name: part })}/errors/${encodeURIComponent(error.error)}`;
     setAttribute(this, "data-state", state);
     setAttribute(this, "data-severity", severity);
@@ -91,7 +93,8 @@ class Alarm extends HTMLElement {
     if (!this.details.open || !this.#shown) return;
     if (!this.body) this.#buildBody();
     const { error, below, view, signal } = this.#shown;
-    setText(this.meaning, consequence(error));
+    const worse = worseBelow(error, below);
+    setText(this.meaning, consequence(worse ?? error) + (worse ? `, by ${errorName(worse)}` : ""));
     setText(this.measure, measured(error, signal));
     setText(this.facts, factsOf(error));
     const hint = hintOf(error);
@@ -115,26 +118,28 @@ class Alarm extends HTMLElement {
     this.seen = this.#button("Acknowledge", () => this.#acknowledge(this.seen, {}));
     this.shelve = this.#button("Shelve …", () => this.#openForm());
     this.announce = this.#button("Announce again", () => this.#send(this.announce, "DELETE", "/shelf"));
-    this.link = this.#button("Show part", () => this.#tell("ph-select", this.#shown.error.part));
-    this.moment = this.#button("Timeline", () =>
-      this.#tell("ph-show-moment", { at: Date.parse(this.#shown.error.since_at) }),
-    );
-    this.buttons = el("div", { class: "buttons" }, this.held, this.seen, this.shelve, this.announce, this.link, this.moment);
-    this.body = el("div", { class: "alarm-body" }, this.meaning, this.measure, this.facts, this.advice, this.buttons, this.below);
+    this.buttons = el("div", { class: "buttons" }, this.held, this.seen, this.shelve, this.announce);
+    const said = [this.meaning, this.measure, this.facts, this.advice];
+    this.body = el("div", { class: "alarm-body" }, ...said, this.buttons, this.#links(), this.below);
     this.details.append(this.body);
   }
 
-  #button(text, act) {
-    const button = el("button", { type: "button", class: "small" }, text);
+  #links() {
+    this.link = this.#button("", () => this.#tell("ph-select", this.#shown.error.part), "link");
+    const tell = () => this.#tell("ph-show-moment", { at: Date.parse(this.#shown.error.since_at) });
+    this.moment = this.#button("Show on the timeline", tell, "link");
+    return el("div", { class: "links" }, this.link, this.moment);
+  }
+
+  #button(text, act, kind = "small") {
+    const button = el("button", { type: "button", class: kind }, text);
     button.addEventListener("click", act);
     return button;
   }
 
   #showBelow(error, below, view) {
     setAttribute(this.below, "hidden", below.length === 0);
-    const worse = worseBelow(error, below);
-    const leadsTo = worse ? `: ${errorName(worse)}, ${worse.severity}` : "";
-    setText(this.summary, `${below.length} ${below.length === 1 ? "follows" : "follow"} from this${leadsTo}`);
+    setText(this.summary, `${below.length} ${below.length === 1 ? "follows" : "follow"} from this`);
     if (!this.below.open) return;
     const shown = below.slice(0, BELOW_SHOWN);
     renderOnce(this.list, JSON.stringify([shown.map(errorName), below.length]), () => [
@@ -155,6 +160,7 @@ class Alarm extends HTMLElement {
     setAttribute(this.announce, "hidden", until === null);
     for (const button of [this.seen, this.shelve, this.announce]) setAttribute(button, "disabled", !enabled);
     setAttribute(this.link, "hidden", part === null);
+    if (part !== null) setText(this.link, `Show ${part}`);
     setAttribute(this.moment, "hidden", !since);
     if (until !== null) this.form?.close();
     if (this.form) this.form.enabled = enabled;

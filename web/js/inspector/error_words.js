@@ -52,7 +52,6 @@ export function factsOf(error) {
   }
   if (first_out) facts.push("it came before the others");
   if (count > 1) facts.push(`${count} times`);
-  if (error.chattering) facts.push("it comes and goes");
   if (error.shelved_until_at !== null)
     facts.push(`shelved until ${timeAndDay(error.shelved_until_at)}: ${error.shelved_because}`);
   if (error.suppressed) facts.push("suppressed by the model");
