@@ -100,8 +100,11 @@ def test_who_selects_a_part_has_the_errors_closed_above_it_until_why_is_asked_fo
     expect(opened).not_to_have_attribute("open", "")
     expect(alarm(desktop, "OVERLOAD")).to_contain_text("Load 300 kg is above 250 kg")
     expect(desktop.locator("ph-part-panel h2")).to_be_in_viewport()
-    desktop.get_by_role("heading", level=1).click()
+    service.request("PUT", "/holds/gate", {"reason": "the gate is shut"})
+    desktop.get_by_role("button", name="+1 more: why").click()
     expect(opened).to_have_attribute("open", "")
+    further = desktop.get_by_role("list", name="Further reasons")
+    expect(further).to_have_text("also held by gate (the gate is shut)")
 
 
 def test_a_critical_error_is_in_the_title_until_somebody_acknowledged_it(
