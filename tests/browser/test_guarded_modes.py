@@ -109,6 +109,9 @@ def test_trees_and_plans_fit_beside_a_long_name(
     page = opened(browser, failing, width, height)
     failing.request("POST", f"{SYSTEM}/mode", {"mode": "CAREFUL"})
     expect(change(page)).to_contain_text("failed after", timeout=SLOW_MS)
+    if width < 1024:
+        page.get_by_role("tab", name="Parts").click()
+        page.get_by_role("treeitem").filter(has_text="mobile_manipulation").first.click()
     page.get_by_label("Plan first").check()
     page.get_by_role("radio", name="TRANSPORT").click()
     expect(page.locator("ph-plan")).to_contain_text(LONG)
