@@ -345,7 +345,7 @@ def shoot(browser: Browser, folder: Path, name: str, screen: str) -> None:
             forced_colors="active" if name == "forced_colors" else "none",
         )
         page.goto(service.url)
-        page.locator("ph-part-panel h2").wait_for()
+        page.locator("ph-part-panel h2").wait_for(state="attached")
         act(page, service)
         for scheme in SCHEMES:
             page.emulate_media(color_scheme=scheme)
