@@ -298,7 +298,7 @@ class TaskForm extends HTMLElement {
       return el("li", { class: "warning" }, `⚠ ${message}${place}${todo}`);
     });
     return [
-      el("h3", {}, `Preview of ${this.#file.name}`),
+      el("h3", {}, "Preview"),
       el("ul", {}, ...lines.map((line) => el("li", {}, line)), ...warnings),
     ];
   }

@@ -83,8 +83,8 @@ class TaskStrip extends HTMLElement {
     setAttribute(this, "data-current", task !== null);
     renderOnce(this.symbol, words.symbol, () => [icon(words.symbol)]);
     setText(this.word, words.word);
-    const then = contact.level === "lost" && state.at ? `as of ${timeOfDay(state.at)}` : "";
-    setText(this.name, [words.name, then].filter(Boolean).join(", "));
+    const then = contact.level === "lost" && state.at ? `as of ${timeOfDay(state.at)}` : null;
+    setText(this.name, then ?? words.name);
     setAttribute(this.name, "title", words.controller);
     const held = task ? heldWords(holds) || (task.reason ?? "") : "";
     setText(this.way, held || words.way);
