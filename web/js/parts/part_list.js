@@ -117,8 +117,9 @@ class PartList extends HTMLElement {
     this.urgent.hide(urgent.length === 0);
     const more = isAttention || words.length > 0 ? 0 : attention.length - urgent.length;
     setAttribute(this.more, "hidden", more === 0);
-    setText(this.more, `+${more} more need attention`);
+    setText(this.more, moreWords(more, attention.slice(PINNED), structure));
     this.tree.hide(isAttention);
+    setAttribute(this, "data-shown", isAttention ? "attention" : "all");
     const match = words.length > 0 ? filtered(structure, words) : null;
     this.treeLines = isAttention ? [] : treeLines(structure, this.#isOpen(match), match?.kept ?? null);
     this.bar.count(attention.map((name) => this.#looks.look(name)));
@@ -190,6 +191,13 @@ class PartList extends HTMLElement {
   #select({ name }) {
     this.dispatchEvent(new CustomEvent("ph-select", { bubbles: true, detail: name }));
   }
+}
+
+/** Systems come after the nodes in which it begins. */
+function moreWords(more, left, { children }) {
+  const isFollowing = left.every((name) => children.get(name).length > 0);
+  if (!isFollowing) return `${more} more need attention`;
+  return more === 1 ? "1 system follows from these" : `${more} systems follow from these`;
 }
 
 function isSame(one, other) {

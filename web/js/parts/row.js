@@ -12,12 +12,13 @@ export function makeRow(role) {
     dot: el("span", { class: "dot" }),
     start: el("span", { class: "name-start" }),
     end: el("span", { class: "name-end" }),
+    space: el("span", { class: "name-space" }),
     below: el("span", { class: "below" }),
     fit: el("span", { class: "fit" }),
     age: el("span", { class: "age" }),
     cause: el("span", { class: "cause" }),
   };
-  row.name = el("span", { class: "name" }, row.start, row.end);
+  row.name = el("span", { class: "name" }, row.start, row.end, row.space);
   const parts = [row.twist, row.dot, row.name, row.below, row.fit, row.age, row.cause];
   row.item = el("li", { role }, ...parts);
   return row;
@@ -46,11 +47,12 @@ export function fillRow(row, line, told) {
   setAttribute(item, "data-look", look);
   setAttribute(row.dot, "data-look", look);
   item.style.setProperty("--level", line.level ?? 1);
-  fillName(row, line.shown, line.name);
+  fillName(row, line);
   const isFolded = below !== null && line.open !== true;
   setText(row.below, isFolded ? String(below.count) : "");
   setAttribute(row.below, "data-look", isFolded ? below.worst : null);
-  fillFit(row.fit, part);
+  fillFit(row.fit, part, { look, below });
+  setAttribute(item, "data-tight", isTight(line, row.fit, isFolded));
   setText(row.age, age);
   const cause = causeWords(part, errors);
   setText(row.cause, cause);
@@ -58,32 +60,53 @@ export function fillRow(row, line, told) {
   setAttribute(item, "aria-label", spoken(line.name, told, isFolded, cause));
 }
 
-function fillHeading({ item, start, end, name, below, fit, age, cause }, { heading, level }) {
+function fillHeading(row, { heading, level }) {
+  const { item } = row;
   setAttribute(item, "class", "space");
   // Each row below says its whole name.
   setAttribute(item, "aria-hidden", "true");
   setAttribute(item, "tabindex", null);
   item.style.setProperty("--level", level);
-  [start.textContent, end.textContent, name.title] = [`${heading}/`, "", heading];
-  for (const empty of [below, fit, age, cause]) setText(empty, "");
+  fillName(row, { name: heading, shown: `${heading}/`, space: "" });
+  for (const empty of [row.below, row.age, row.cause]) setText(empty, "");
+  row.fit.replaceChildren();
+  row.fit.key = "";
 }
 
-function fillName({ start, end, name }, shown, whole) {
-  if (name.title === whole && start.textContent + end.textContent === shown) return;
-  name.title = whole;
-  [start.textContent, end.textContent] = splitName(shown);
+function fillName({ start, end, space: aside, name: node }, { name, shown, space }) {
+  setAttribute(node, "title", name);
+  const [head, tail] = splitName(shown);
+  setText(start, head);
+  setText(end, tail);
+  setText(aside, space);
 }
 
-/** The target only where it is missed; then what both have in common is left out. */
-function fillFit(fit, part) {
+/** Whether name and pill together are longer than a region of 320 px has room for.
+ *
+ * Counted and not measured: a layout for each row of each frame would cost more than it is worth.
+ */
+function isTight({ shown, level = 1 }, fit, isFolded) {
+  const needed = shown.length * NAME_PX + fit.textContent.length * FIT_PX;
+  return needed > ROOM_PX - level * LEVEL_PX - (isFolded ? BADGE_PX : 0);
+}
+
+const [NAME_PX, FIT_PX, LEVEL_PX, BADGE_PX, ROOM_PX] = [7.2, 6.6, 13, 26, 205];
+
+/** The target only where it is missed; then what both have in common is left out.
+ *
+ * Of a system in which something below is missed, the badge tells that.
+ */
+function fillFit(fit, part, { look, below }) {
   const { actual } = part;
-  const wanted = missedTarget(part);
-  const key = `${stateWords(actual)}|${wanted ? stateWords(wanted) : ""}`;
+  const wanted = below ? null : missedTarget(part);
+  const isAway = look === "unreachable";
+  const key = `${isAway}|${stateWords(actual)}|${wanted ? stateWords(wanted) : ""}`;
   if (fit.key === key) return;
   fit.key = key;
   fit.title = wanted ? `target ${stateWords(wanted)}, actual ${stateWords(actual)}` : "";
+  if (isAway) return fit.replaceChildren("unreachable");
   if (!wanted) return fit.replaceChildren(...actualWords(actual, true));
-  const isModeOnly = wanted.state === actual.state && wanted.mode && actual.mode;
+  const isModeOnly = wanted.state === actual.state && wanted.mode;
   fit.replaceChildren(
     el("span", { class: "wanted" }, isModeOnly ? modeWords(wanted.mode) : short(wanted)),
     el("span", { class: "arrow" }, "→"),
@@ -94,14 +117,13 @@ function fillFit(fit, part) {
 /** Inferred is italic with (*), as in the mode monitor of system_modes. */
 function actualWords({ state, mode, inferred, mode_inferred }, hasState) {
   if (state === "unknown") return [el("b", { title: "not known" }, "?")];
-  const said = [];
-  if (hasState) said.push(el("span", { class: `state${inferred ? " inferred" : ""}` }, state));
-  if (mode)
-    said.push(
-      el("span", { class: mode_inferred ? "mode inferred" : "mode" }, (hasState ? "." : "") + modeWords(mode)),
-    );
+  const said = hasState || mode ? [] : [el("b", { title: "mode not known" }, "?")];
+  const has = (kind, isInferred) => ({ class: isInferred ? `${kind} inferred` : kind });
+  if (hasState && mode) said.push(el("span", has("before", inferred), `${state}.`));
+  else if (hasState) said.push(el("span", has("state", inferred), state));
+  if (mode) said.push(el("span", has("mode", mode_inferred), modeWords(mode)));
   if (inferred || mode_inferred)
-    said.push(el("span", { class: "star", title: "inferred, not reported" }, "(*)"));
+    said.push(el("span", { class: "star", title: "inferred, not reported" }, " (*)"));
   return said;
 }
 
