@@ -10,6 +10,7 @@ from prometheus_client.metrics_core import Metric
 from prometheus_client.registry import Collector
 
 from api.http.gate.refusals import COUNTED, Refusals
+from domain.reaction_terms import ReactionState
 from domain.snapshot import ChangeStatus, Severity, SystemState
 from domain.timebase import to_seconds
 from service.refused_readings import WAYS
@@ -76,6 +77,13 @@ class _RobotCollector(Collector):
             "Number of errors that are on, of the robot and of its parts, by severity",
             "severity",
             ((str(severity), float(on[severity])) for severity in Severity),
+        )
+        reactions = Counter(view.state for view in core.reactions().values())
+        yield _gauge(
+            "pilothouse_reactions",
+            "Number of reactions, by how they stand",
+            "state",
+            ((str(state), float(reactions[state])) for state in ReactionState),
         )
         deviating = (name for name, part in core.parts().items() if not part.converged)
         yield _gauge(
