@@ -1,6 +1,7 @@
 /** One row of a list of parts: dot, name, what is wrong below, target and actual, age, cause. */
 
 import { el, setAttribute, setText } from "/web/js/base/dom.js";
+import { label, modeName } from "/web/js/base/words.js";
 import { splitName } from "/web/js/parts/lines.js";
 import { causeWords, LOOK_WORDS, missedTarget } from "/web/js/parts/verdict.js";
 
@@ -26,7 +27,8 @@ export function makeRow(role) {
 
 /** Bring a row up to date; nothing is touched while all that it shows is as it was.
  *
- * `told` is what is known of the part: `{part, look, errors, below, age, isSelected, hasFocus}`.
+ * `told` is what is known of the part: `{part, look, errors, below, age, isSelected, hasFocus, width}`,
+ * the width of the list in px.
  */
 export function fillRow(row, line, told) {
   const seen = [line, ...Object.values(told)];
@@ -35,7 +37,7 @@ export function fillRow(row, line, told) {
   const { item } = row;
   item.line = line;
   if (line.heading) return fillHeading(row, line);
-  const { part, look, errors, below, age, isSelected, hasFocus } = told;
+  const { part, look, errors, below, age, isSelected, hasFocus, width } = told;
   setAttribute(item, "class", "row");
   setAttribute(item, "aria-hidden", null);
   setAttribute(item, "aria-level", line.level);
@@ -52,7 +54,7 @@ export function fillRow(row, line, told) {
   setText(row.below, isFolded ? String(below.count) : "");
   setAttribute(row.below, "data-look", isFolded ? below.worst : null);
   fillFit(row.fit, part, { look, below });
-  setAttribute(item, "data-tight", isTight(line, row.fit, isFolded));
+  setAttribute(item, "data-tight", isTight(line, row.fit, width - (isFolded ? BADGE_PX : 0)));
   setText(row.age, age);
   const cause = causeWords(part, errors);
   setText(row.cause, cause);
@@ -81,16 +83,17 @@ function fillName({ start, end, space: aside, name: node }, { name, shown, space
   setText(aside, space);
 }
 
-/** Whether name and pill together are longer than a region of 320 px has room for.
+/** Whether name and pill are longer together than a list of this width has room for.
  *
  * Counted and not measured: a layout for each row of each frame would cost more than it is worth.
  */
-function isTight({ shown, level = 1 }, fit, isFolded) {
+function isTight({ shown, level = 1 }, fit, width) {
   const needed = shown.length * NAME_PX + fit.textContent.length * FIT_PX;
-  return needed > ROOM_PX - level * LEVEL_PX - (isFolded ? BADGE_PX : 0);
+  return needed > width - OTHERS_PX - level * LEVEL_PX;
 }
 
-const [NAME_PX, FIT_PX, LEVEL_PX, BADGE_PX, ROOM_PX] = [7.2, 6.6, 13, 26, 205];
+/** The widest that a letter of a name and of a pill are on average, and what stands beside both. */
+const [NAME_PX, FIT_PX, LEVEL_PX, BADGE_PX, OTHERS_PX] = [7.3, 6.7, 13, 25, 106];
 
 /** The target only where it is missed; then what both have in common is left out.
  *
@@ -108,7 +111,7 @@ function fillFit(fit, part, { look, below }) {
   if (!wanted) return fit.replaceChildren(...actualWords(actual, true));
   const isModeOnly = wanted.state === actual.state && wanted.mode;
   fit.replaceChildren(
-    el("span", { class: "wanted" }, isModeOnly ? modeWords(wanted.mode) : short(wanted)),
+    el("span", { class: "wanted" }, isModeOnly ? modeName(wanted.mode) : short(wanted)),
     el("span", { class: "arrow" }, "→"),
     ...actualWords(actual, !isModeOnly),
   );
@@ -121,23 +124,19 @@ function actualWords({ state, mode, inferred, mode_inferred }, hasState) {
   const has = (kind, isInferred) => ({ class: isInferred ? `${kind} inferred` : kind });
   if (hasState && mode) said.push(el("span", has("before", inferred), `${state}.`));
   else if (hasState) said.push(el("span", has("state", inferred), state));
-  if (mode) said.push(el("span", has("mode", mode_inferred), modeWords(mode)));
+  if (mode) said.push(el("span", has("mode", mode_inferred), modeName(mode)));
   if (inferred || mode_inferred)
     said.push(el("span", { class: "star", title: "inferred, not reported" }, " (*)"));
   return said;
-}
-
-function modeWords(mode) {
-  return mode === "__DEFAULT__" ? "default" : mode;
 }
 
 function short({ state, mode }) {
   return mode && mode !== "__DEFAULT__" ? mode : state;
 }
 
-function stateWords({ state, mode, inferred, mode_inferred }) {
-  const words = state === "unknown" ? "not known" : mode ? `${state}.${modeWords(mode)}` : state;
-  return inferred || mode_inferred ? `${words} (*)` : words;
+function stateWords(actual) {
+  const words = actual.state === "unknown" ? "not known" : label(actual);
+  return actual.inferred || actual.mode_inferred ? `${words} (*)` : words;
 }
 
 /** What a screen reader says of the row, without the age, which would not let it rest. */
