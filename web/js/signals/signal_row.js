@@ -55,10 +55,11 @@ class SignalRow extends HTMLElement {
     if (isSame && seen.second === second) return;
     this.#seen = { signal, isLive, second, isEngaged };
     if (!this.spark) this.#build();
-    const [value, unit] = valueWords(this.name, signal, view.state.emergencyStop);
+    const [value, unit, aside] = valueWords(this.name, signal, view.state.emergencyStop);
     setText(this.value, value);
     setText(this.unit, unit);
-    this.#judge(signal, isLive, view.serverNow);
+    setAttribute(this.reading, "title", `${value} ${unit}`.trimEnd());
+    this.#judge(signal, aside, isLive, view.serverNow);
     this.spark.show(this.name, view);
     this.detail?.show(view);
   }
@@ -68,11 +69,11 @@ class SignalRow extends HTMLElement {
     this.value = el("span", { class: "value" });
     this.unit = el("span", { class: "unit" });
     this.age = el("span", { class: "age" });
-    const reading = el("span", {}, this.value, " ", this.unit);
-    this.button.append(this.spark, el("span", { class: "signal-reading" }, reading, this.age));
+    this.reading = el("span", {}, this.value, " ", this.unit);
+    this.button.append(this.spark, el("span", { class: "signal-reading" }, this.reading, this.age));
   }
 
-  #judge(signal, isLive, now) {
+  #judge(signal, aside, isLive, now) {
     const { level, text } = verdict(signal, isLive, now);
     setAttribute(this, "data-level", level);
     setAttribute(this, "data-severity", signal.settings.severity);
@@ -80,7 +81,7 @@ class SignalRow extends HTMLElement {
     setAttribute(this.shape.firstChild, "d", SHAPES[level]);
     setAttribute(this.shape.lastChild, "hidden", level !== "pending");
     if (level !== "pending") {
-      setText(this.age, ageWords(signal, isLive, now));
+      setText(this.age, ageWords(signal, isLive, now) || aside);
       return;
     }
     setText(this.age, pendingWords(signal.pending, now));
