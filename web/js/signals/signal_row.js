@@ -5,7 +5,8 @@ import { describe } from "/web/js/base/signal_catalog.js";
 import { ageWords, pendingFor, pendingWords, valueWords, verdict } from "/web/js/base/signal_words.js";
 import "/web/js/base/sparkline.js";
 
-/** So many characters at the end of a long name stay, since names differ there. */
+/** A name that is longer is cut in its middle; the end stays, since names differ there. */
+const LONG = 20;
 const TAIL = 8;
 /** A shape for each level, so that colour is not all that tells them apart. */
 const SHAPES = {
@@ -28,7 +29,6 @@ class SignalRow extends HTMLElement {
     this.name = name;
     this.label = describe(name, signal).label;
     this.title = this.label;
-    const [head, tail] = [this.label.slice(0, -TAIL), this.label.slice(-TAIL)];
     this.word = el("span", { class: "signal-word" });
     this.button = el(
       "button",
@@ -37,7 +37,7 @@ class SignalRow extends HTMLElement {
       el(
         "span",
         { class: "signal-name" },
-        el("span", { class: "signal-label" }, el("span", {}, head), el("span", {}, tail)),
+        el("span", { class: "signal-label" }, ...labelParts(this.label)),
         this.word,
       ),
     );
@@ -88,6 +88,14 @@ class SignalRow extends HTMLElement {
     const share = pendingFor(signal.pending, now) / signal.pending.needs_s;
     setAttribute(this.shape.lastChild, "stroke-dasharray", `${Math.round(share * 100)} 100`);
   }
+}
+
+/** The name; a long one in two parts for the eye and in one for the ear. */
+function labelParts(label) {
+  if (label.length <= LONG) return [el("span", {}, label)];
+  const parts = [label.slice(0, -TAIL), label.slice(-TAIL)];
+  const seen = parts.map((text) => el("span", { "aria-hidden": "true" }, text));
+  return [el("span", { class: "visually-hidden" }, label), ...seen];
 }
 
 /** A shape, and the ring of a pending error, which fills. */
