@@ -29,7 +29,9 @@ def drawer(page: Page) -> Locator:
 def outcome(page: Page, topic: str) -> Locator:
     """Return the row of a topic: live, and simulated."""
     table = drawer(page).get_by_role("table", name="The robot now, and in the simulation")
-    return table.get_by_role("row").filter(has=page.get_by_role("rowheader", name=topic, exact=True))
+    return table.get_by_role("row").filter(
+        has=page.get_by_role("rowheader", name=topic, exact=True)
+    )
 
 
 def opened(page: Page) -> Locator:
