@@ -1,8 +1,8 @@
-"""What would happen if: a copy of the robot in simulated time, and the switches of the live mock."""
+"""What would happen if: a copy of the robot in simulated time; and the switches of the mock."""
 
 import re
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 
 import pytest
 
@@ -60,10 +60,10 @@ def writes(service: Service) -> list[str]:
 
 
 @pytest.fixture
-def unwritten(service: Service) -> Iterator[Callable[[], list[str]]]:
+def unwritten(service: Service) -> Callable[[], list[str]]:
     """Tell which requests have changed the live robot since the test began."""
     before = len(writes(service))
-    yield lambda: writes(service)[before:]
+    return lambda: writes(service)[before:]
 
 
 def test_a_low_battery_is_tried_on_a_copy_and_the_live_robot_is_not_touched(
