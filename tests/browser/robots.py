@@ -39,6 +39,51 @@ def large_robot(folder: Path, nodes: int = 100) -> tuple[str, ...]:
     return (str(model),)
 
 
+AREAS = {
+    "perception": ("camera", "lidar", "radar", "camera_wheel", "detector"),
+    "motion": ("motor", "encoder", "brake", "steering_observer", "imu"),
+    "power": ("cell_monitor", "converter", "charger", "fan", "fuse"),
+}
+PER_UNIT = 10
+
+
+def crowded_robot(folder: Path, nodes: int = 300) -> tuple[str, ...]:
+    """Return arguments of `pilothouse serve` for nodes in namespaces and in nested systems.
+
+    The robot `carrier` consists of areas, an area of units with ten nodes each; the node
+    `motion/shared_clock` is in the systems `motion` and `power`.
+    """
+    shared = "motion/shared_clock"
+    units: dict[str, list[str]] = {}
+    for number in range(nodes - 1):
+        unit, place = divmod(number, PER_UNIT)
+        area = list(AREAS)[unit % len(AREAS)]
+        kinds = AREAS[area]
+        name = f"{area}/unit_{unit:02}/{kinds[place % len(kinds)]}_{place:03}"
+        units.setdefault(f"{area}_unit_{unit:02}", []).append(name)
+    areas = {
+        area: [unit for unit in units if unit.startswith(f"{area}_unit")]
+        + ([shared] if area != "perception" else [])
+        for area in AREAS
+    }
+    systems = {"carrier": list(AREAS), **areas, **units}
+    of_a_node = (
+        "{ros__parameters: {type: node, modes: {"
+        "__DEFAULT__: {ros__parameters: {rate: 10}}, SLOW: {ros__parameters: {rate: 2}}}}}"
+    )
+    lines = []
+    for system, parts in systems.items():
+        wanted = ", ".join(f"{part}: active" for part in parts)
+        lines.append(
+            f"{system}: {{ros__parameters: {{type: system, modes: {{__DEFAULT__: {{{wanted}}}}}}}}}"
+        )
+    lines += [f"{node}: {of_a_node}" for unit in units.values() for node in unit]
+    lines.append(f"{shared}: {of_a_node}")
+    model = folder / f"crowded_{nodes}.yaml"
+    model.write_text("\n".join(lines) + "\n")
+    return (str(model),)
+
+
 GUARDED = """\
 mobile_manipulation:
   ros__parameters:

@@ -7,6 +7,7 @@ the picture of the README.
 
 import argparse
 import json
+import re
 import sys
 import tempfile
 import time
@@ -45,6 +46,14 @@ def drive(service: Service, speed_mps: float = 2.8) -> None:
     time.sleep(4)
 
 
+def show_part(page: Page, name: str) -> None:
+    """Show a part: on a phone it opens in place of the list."""
+    page.evaluate(
+        "(detail) => document.dispatchEvent(new CustomEvent('ph-select', { detail }))", name
+    )
+    page.locator("ph-part-panel h2").filter(has_text=name).wait_for()
+
+
 def running(_: Page, service: Service) -> None:
     drive(service)
 
@@ -71,38 +80,43 @@ def stopped(_: Page, service: Service) -> None:
 
 def guarded(page: Page, service: Service) -> None:
     """A mode that cannot be entered, with all reasons, and a part that a dead node keeps away."""
+    show_part(page, "mobile_manipulation")
     post(service, f"{MANIPULATION}/mode", {"mode": "CAREFUL"})
     page.locator(".change-status").filter(has_text="failed").wait_for()
     service.request("PATCH", "/mock/battery_level", {"value": 0.21})
     service.request("PATCH", "/mock/temperature", {"value": 55})
     page.locator(".mode").filter(has_text="MANIPULATE").locator("summary").click()
-    page.locator("ph-why summary").click()
+    page.locator("ph-part-why summary").click()
     page.locator(".root").nth(1).scroll_into_view_if_needed()
 
 
 def plan(page: Page, service: Service) -> None:
+    show_part(page, "mobile_manipulation")
     post(service, f"{MANIPULATION}/mode?wait=15", {"mode": "CAREFUL"})
     post(service, f"{MANIPULATION}/state?wait=15", {"transition": "cleanup"})
-    page.get_by_label("Show the plan first").check()
-    page.get_by_role("button", name="MANIPULATE").click()
+    page.get_by_label("Plan first").check()
+    page.get_by_role("radio", name="MANIPULATE").click()
     page.get_by_role("button", name="Apply").scroll_into_view_if_needed()
 
 
 def displaced(page: Page, service: Service) -> None:
     """A fallback in place of the mode that was requested, and why."""
+    show_part(page, "mobile_manipulation")
     post(service, f"{MANIPULATION}/mode?wait=15", {"mode": "MANIPULATE"})
     service.request("PATCH", "/mock/temperature", {"value": 55})
-    page.locator("ph-why summary").click()
-    page.locator("ph-why .root").wait_for()
+    page.locator("ph-part-why summary").click()
+    page.locator("ph-part-why .root").wait_for()
 
 
 def rolled_back(page: Page, service: Service) -> None:
+    show_part(page, "mobile_manipulation")
     post(service, f"{MANIPULATION}/mode", {"mode": "MANIPULATE"})
     page.locator(".change-status").filter(has_text="rolled back").wait_for()
     page.locator(".change").scroll_into_view_if_needed()
 
 
 def waiting(page: Page, service: Service) -> None:
+    show_part(page, "mobile_manipulation")
     service.request("PATCH", "/mock/battery_level", {"value": 0.21})
     page.get_by_text("battery_level is 0.21").wait_for()
     post(service, f"{MANIPULATION}/mode", {"mode": "MANIPULATE", "wait_for_s": 600})
@@ -145,7 +159,7 @@ def reacting(page: Page, service: Service) -> None:
 
 def reactions_seen(page: Page, service: Service) -> None:
     reacting(page, service)
-    page.locator("section.place-reactions").scroll_into_view_if_needed()
+    page.locator("ph-why ph-reaction-list").scroll_into_view_if_needed()
 
 
 def low_battery(_: Page, service: Service) -> None:
@@ -182,16 +196,34 @@ def storage_alone(page: Page, service: Service) -> None:
     page.locator(".storage").wait_for()
 
 
-def rejected(page: Page, _: Service) -> None:
-    table = b"x;y;yaw\n0;0;0\n1;2;zwei\n"
+def open_form(page: Page) -> None:
+    page.get_by_role("button", name="New task").click()
+    page.get_by_role("button", name="Drive the example loop").wait_for()
+
+
+def new_task(page: Page, _: Service) -> None:
+    open_form(page)
+
+
+def choose(page: Page, table: bytes) -> None:
+    open_form(page)
     file: Any = {"name": "field.csv", "mimeType": "text/csv", "buffer": table}
     page.get_by_label("Choose a CSV").set_input_files(file)
+
+
+def task_preview(page: Page, service: Service) -> None:
+    choose(page, service.track_ahead(30, scans=True))
+    page.get_by_text("Preview of field.csv").wait_for()
+
+
+def rejected(page: Page, _: Service) -> None:
+    choose(page, b"x;y;yaw\n0;0;0\n1;2;zwei\n")
     page.locator("ph-task-form").get_by_role("alert").scroll_into_view_if_needed()
 
 
 def sending(page: Page, _: Service) -> None:
     page.route("**/mode", lambda _: None)
-    page.get_by_role("button", name="PERFORMANCE").click()
+    page.get_by_role("radio", name="PERFORMANCE").click()
 
 
 def far_down(page: Page, _: Service) -> None:
@@ -280,6 +312,8 @@ STATES: dict[str, tuple[Robot, Act]] = {
     "reacting": ("mobile", reacting),
     "reactions": ("mobile", reactions_seen),
     "low_battery": ("example", low_battery),
+    "new_task": ("example", new_task),
+    "task_preview": ("example", task_preview),
     "rejected": ("example", rejected),
     "sending": ("example", sending),
     "far_down": ("large", far_down),
@@ -325,7 +359,7 @@ def shoot(browser: Browser, folder: Path, name: str, screen: str) -> None:
             forced_colors="active" if name == "forced_colors" else "none",
         )
         page.goto(service.url)
-        page.locator("ph-part-panel h2").wait_for()
+        page.locator("ph-part-panel h2").filter(has_text=re.compile(".")).wait_for(state="attached")
         act(page, service)
         for scheme in SCHEMES:
             page.emulate_media(color_scheme=scheme)
@@ -340,6 +374,7 @@ def shoot_page(browser: Browser, file: Path) -> None:
         page = browser.new_page(viewport={"width": 1440, "height": 900})
         page.goto(service.url)
         post(service, "/systems/actuation/mode?wait=15", {"mode": "MODERATE"})
+        open_form(page)
         page.get_by_role("button", name="Drive the example loop").click()
         page.wait_for_timeout(100_000)
         page.screenshot(path=file)

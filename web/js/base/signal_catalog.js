@@ -45,14 +45,39 @@ const CATALOG = {
   },
 };
 
-/** Return label, `show(value) -> [text, unit]` and control; unknown signals have no control. */
-export function describe(name, unit) {
-  const label = name.replaceAll("_", " ");
-  return CATALOG[name] ?? { label, show: (value) => plainly(value, unit), control: null };
+/** Return label, `show(value) -> [text, unit]` and control of a signal. */
+export function describe(name, { value, unit, settings = {} }) {
+  if (CATALOG[name]) return CATALOG[name];
+  const label = capitalised(settings.label || name.replaceAll("_", " "));
+  return {
+    label,
+    show: (shown) => plainly(shown, unit),
+    control: controlOf(value, settings),
+  };
+}
+
+/** The value with its unit as one text; "?" for one that is unknown. */
+export function valueText(name, signal, value) {
+  if (value === null || value === undefined) return "?";
+  return describe(name, signal).show(value).join(" ").trimEnd();
+}
+
+function capitalised(text) {
+  return text.charAt(0).toUpperCase() + text.slice(1);
 }
 
 function plainly(value, unit) {
   if (typeof value === "boolean") return [value ? "yes" : "no", ""];
   if (typeof value !== "number") return words(value);
   return unit === "ratio" ? percent(value) : [figure(value), unit ?? ""];
+}
+
+/** A number can be set around its threshold, within its limits. */
+function controlOf(value, { threshold, minimum, maximum, members }) {
+  if (members) return { kind: "select", options: members.split(", ") };
+  if (typeof value === "boolean") return { kind: "switch", label: "On" };
+  const far = 2 * Math.max(Math.abs(threshold ?? 0), Math.abs(value ?? 0)) || 1;
+  const min = minimum ?? ((threshold ?? 0) < 0 || (value ?? 0) < 0 ? -far : 0);
+  const max = maximum ?? far;
+  return { kind: "range", min, max, step: 10 ** Math.floor(Math.log10((max - min) / 50)) };
 }
