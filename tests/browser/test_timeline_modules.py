@@ -23,14 +23,15 @@ const event = (s, kind, data, more = {}) =>
   ({ id: ++id, at: at(s), kind, data, epoch: "one", cause: 1, actor: "", words: kind, ...more });
 const group = (events = [], more = {}) => ({ events, from: T0, isFull: false, ...more });
 const names = ["state", "task", "errors", "holds", "requests", "stops", "audit", "runs"];
-const groups = (given) => ({ ...Object.fromEntries(names.map((name) => [name, group()])), ...given });
+const none = Object.fromEntries(names.map((name) => [name, group()]));
+const groups = (given) => ({ ...none, ...given });
 const record = (given, more = {}) =>
   ({ from: T0, groups: groups(given), dark: [], seed: null, live: emptyState(), ...more });
 const lane = (found, key) => found.find((one) => one.key === key);
 const s = (time) => (time - T0) / 1000;
-const shown = ({ intervals }) =>
-  intervals.map(({ begin, end, short, text }) => [s(begin), end === Infinity ? null : s(end), short ?? text]);
-const told = (one) => one.unknown.map(({ begin, end }) => [s(begin), end === Infinity ? null : s(end)]);
+const times = ({ begin, end }) => [s(begin), end === Infinity ? null : s(end)];
+const shown = ({ intervals }) => intervals.map((one) => [...times(one), one.short ?? one.text]);
+const told = ({ unknown }) => unknown.map(times);
 """
 RANDOM = """
 let seed = SEED;
@@ -111,9 +112,9 @@ def test_a_bar_whose_begin_was_not_seen_is_cut(page: Page) -> None:
         const live = emptyState();
         live.holds = { anna: { owner: "anna", reason: "", since_at: at(-60) } };
         const { intervals } = lane(lanes.lanesOf(record({ holds }, { live }), []), "holds");
-        return intervals.map(({ short, begin, end, cut }) => [short, s(begin), end < Infinity, cut]);
+        return intervals.map((one) => [one.short, ...times(one), one.cut]);
     """
-    assert run(page, script) == [["gate", 0, True, True], ["anna", 0, False, True]]
+    assert run(page, script) == [["gate", 0, 30, True], ["anna", 0, None, True]]
 
 
 def test_errors_that_follow_from_others_have_no_bar(page: Page) -> None:
@@ -130,8 +131,9 @@ def test_errors_that_follow_from_others_have_no_bar(page: Page) -> None:
 def test_a_task_is_followed_from_its_acceptance_to_its_end(page: Page) -> None:
     script = """
         const task = (s, kind, reason) => event(s, `task.${kind}`, { task: "t1", reason });
-        const events = [task(1, "served"), task(2, "started"), task(5, "pausing", "the gate is shut"),
-          task(6, "paused", "the gate is shut"), task(9, "resumed"), task(12, "aborted", "off path")];
+        const why = "the gate is shut";
+        const events = [task(1, "served"), task(2, "started"), task(5, "pausing", why),
+          task(6, "paused", why), task(9, "resumed"), task(12, "aborted", "off path")];
         const found = lane(lanes.lanesOf(record({ task: group(events) }), []), "task");
         return shown(found);
     """
@@ -151,7 +153,8 @@ def test_a_command_says_who_asked_and_whether_it_was_rejected(page: Page) -> Non
     script = """
         const by = { cause: null, actor: "http:anna" };
         const hold = { owner: "gate", reason: "" };
-        const requests = group([event(1, "hold.requested", hold, { ...by, words: "hold gate requested" })]);
+        const asked = { ...by, words: "hold gate requested" };
+        const requests = group([event(1, "hold.requested", hold, asked)]);
         const write = (s, method, path, status) =>
           event(s, "audit.write", { method, path, status, address: "" }, by);
         const audit = group([
@@ -171,8 +174,9 @@ def test_a_command_says_who_asked_and_whether_it_was_rejected(page: Page) -> Non
 
 def test_modes_are_called_what_an_operator_calls_them(page: Page) -> None:
     script = """
-        const changed = (s, actual, was) => event(s, "part.actual_changed", { part: "arm", actual, was });
-        const events = [changed(1, "active.FAST", "inactive"), changed(2, "unknown", "active.FAST")];
+        const changed = (s, actual, was) =>
+          event(s, "part.actual_changed", { part: "arm", actual, was });
+        const events = [changed(1, "active.FAST", "inactive"), changed(2, "unknown", "active")];
         const found = lanes.lanesOf(record({ "part:arm": group(events) }), ["arm"]);
         return lane(found, "part:arm").intervals.map(({ short, tone }) => [short, tone]);
     """
@@ -301,10 +305,10 @@ def test_zooming_keeps_now_or_what_is_under_the_pointer(page: Page) -> None:
         const live = zoomed({ span: 600_000, end: null }, 2, 0.3, now);
         const past = moved({ span: 600_000, end: null }, -900_000, now);
         const place = (range, x) => marks.timeAt(scaleOf(range, now, width), x);
-        const [before, after] = [past, zoomed(past, 3, 0.25, now)].map((range) => place(range, 150));
+        const [before, after] = [past, zoomed(past, 3, 0.25, now)].map((one) => place(one, 150));
         const far = moved(past, -1e12, now);
         return [live, Math.abs(before - after) < 1, (now - far.end + far.span) / 3_600_000,
-          moved(past, 1e12, now).end, zoomed(past, 1e9, 0, now).span, zoomed(past, 1e-9, 0, now).span];
+          moved(past, 1e12, now).end, ...[1e9, 1e-9].map((by) => zoomed(past, by, 0, now).span)];
     """
     live, is_kept, far_h, back, least, most = run(page, script)
     assert live == {"span": 300_000, "end": None}
@@ -318,8 +322,10 @@ def test_a_chain_of_causes_is_told_from_the_near_to_the_far(page: Page) -> None:
     script = """
         const { causeWords } = await import("/web/js/timeline/causes.js");
         const one = (words, cause, actor = "") => ({ words, cause, actor, at: at(0) });
-        const chain = [one("task paused", 2), one("hold set", 1), one("hold requested", null, "http:anna")];
-        return [causeWords(chain).replaceAll(/\\d\\d:\\d\\d:\\d\\d/g, "T"), causeWords(chain.slice(0, 1))];
+        const first = one("hold requested", null, "http:anna");
+        const chain = [one("task paused", 2), one("hold set", 1), first];
+        const words = causeWords(chain).replaceAll(/\\d\\d:\\d\\d:\\d\\d/g, "T");
+        return [words, causeWords(chain.slice(0, 1))];
     """
     assert run(page, script) == [
         "because of hold set at T, because of hold requested at T by anna",
