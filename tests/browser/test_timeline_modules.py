@@ -26,7 +26,7 @@ const names = ["state", "task", "errors", "holds", "requests", "stops", "audit",
 const none = Object.fromEntries(names.map((name) => [name, group()]));
 const groups = (given) => ({ ...none, ...given });
 const record = (given, more = {}) =>
-  ({ from: T0, groups: groups(given), dark: [], seed: null, live: emptyState(), ...more });
+  ({ from: T0, groups: groups(given), dark: [], runBegin: T0 - 9e9, live: emptyState(), ...more });
 const lane = (found, key) => found.find((one) => one.key === key);
 const s = (time) => (time - T0) / 1000;
 const times = ({ begin, end }) => [s(begin), end === Infinity ? null : s(end)];
@@ -91,19 +91,26 @@ def test_nothing_is_carried_across_a_restart(page: Page) -> None:
     assert errors == [[15, 20, "ESTOP"]]
 
 
-def test_in_an_earlier_run_only_a_frame_tells_what_no_event_does(page: Page) -> None:
+def test_what_was_before_the_shown_time_tells_how_it_began_if_it_is_of_the_same_run(
+    page: Page,
+) -> None:
     script = """
         const dark = [{ begin: T0 + 20_000, end: T0 + 50_000, isRestart: true }];
-        const seed = { ...emptyState(), systemState: { state: "IDLE", errors: [] } };
         const live = { ...emptyState(), systemState: { state: "ERROR", errors: ["ESTOP"] } };
-        return [null, seed].map((seed) => {
-          const found = lane(lanes.lanesOf(record({}, { dark, seed, live }), []), "state");
-          return [shown(found), told(found)];
+        const earlier = {
+          state: group([event(-9, "system_state.changed", { state: "IDLE", was: "ERROR" })]),
+          holds: group([event(-9, "hold.set", { owner: "a" }),
+            event(-8, "hold.set", { owner: "b" }), event(-7, "hold.released", { owner: "b" })]),
+        };
+        return [T0 - 10_000, T0 - 1000].map((runBegin) => {
+          const found = lanes.lanesOf(record(earlier, { dark, live, runBegin }), []);
+          const state = lane(found, "state");
+          return [shown(state), told(state), shown(lane(found, "holds"))];
         });
     """
-    unseeded, seeded = run(page, script)
-    assert unseeded == [[[50, None, "ERROR"]], [[0, 20]]]
-    assert seeded == [[[0, 20, "IDLE"], [50, None, "ERROR"]], []]
+    same_run, earlier_run = run(page, script)
+    assert same_run == [[[0, 20, "IDLE"], [50, None, "ERROR"]], [], [[0, 20, "a"]]]
+    assert earlier_run == [[[50, None, "ERROR"]], [[0, 20]], []]
 
 
 def test_a_bar_whose_begin_was_not_seen_is_cut(page: Page) -> None:
@@ -331,3 +338,16 @@ def test_a_chain_of_causes_is_told_from_the_near_to_the_far(page: Page) -> None:
         "because of hold set at T, because of hold requested at T by anna",
         "The cause is no longer kept.",
     ]
+
+
+def test_a_small_robot_has_a_lane_for_each_part_and_a_large_one_for_those_that_are_chosen(
+    page: Page,
+) -> None:
+    script = """
+        const { chosenParts } = await import("/web/js/timeline/chosen_parts.js");
+        const robot = (count) => Object.fromEntries(Array.from({ length: count }, (_, n) =>
+          [`n${n}`, { name: `n${n}`, kind: n === 2 ? "system" : "node" }]));
+        const chosen = [3, 90].map((count) => chosenParts(robot(count), "n1", ["n0", "n2", "gone"]));
+        return chosen.map(({ names }) => names);
+    """
+    assert run(page, script) == [["n2", "n0", "n1"], ["n2", "n1", "n0"]]
