@@ -83,7 +83,9 @@ def test_the_worst_is_open_and_says_what_it_means_and_what_can_be_done(
 def test_an_error_leads_to_the_moment_when_it_began(desktop: Page, service: Service) -> None:
     load(service, 300)
     desktop.evaluate(
-        """() => document.addEventListener("ph-show-moment", ({ detail }) => (window.at = detail.at))"""
+        """() => document.addEventListener("ph-show-moment", ({ detail }) => {
+            window.at = detail.at;
+        })"""
     )
     alarm(desktop, "OVERLOAD").get_by_role("button", name="Show on the timeline").click()
     since = error_of(service)["since_at"]

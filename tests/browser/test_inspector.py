@@ -222,11 +222,13 @@ def test_pinned_to_a_moment_a_part_is_shown_as_it_was_and_nothing_can_be_sent(
             const actual = { state: "active", mode: "PERFORMANCE", inferred: false };
             const blockers = [{ message: "it was too hot then", path: [], causes: [] }];
             const target = { state: "active", mode: "MODERATE" };
-            const effective = { state: "active", mode: "PERFORMANCE", because: "invariant", rule: null, blockers };
+            const because = { because: "invariant", rule: null, blockers };
+            const effective = { state: "active", mode: "PERFORMANCE", ...because };
             const part = { name: "actuation", kind: "system", parts: [], target, actual,
                 effective_target: effective, converged: true, reachable: true, change: null };
-            const state = { ...emptyState(), at: "2026-05-04T12:00:00.000Z", parts: { actuation: part } };
-            const detail = { at: Date.parse("2026-05-04T12:00:00.000Z"), state };
+            const at = "2026-05-04T12:00:00.000Z";
+            const state = { ...emptyState(), at, parts: { actuation: part } };
+            const detail = { at: Date.parse(at), state };
             document.dispatchEvent(new CustomEvent("ph-moment", { detail }));
         }"""
     )
