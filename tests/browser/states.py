@@ -276,6 +276,8 @@ def far_down(page: Page, _: Service) -> None:
 
 
 def select(page: Page, part: str) -> None:
+    if page.get_by_role("tab", name="Parts").is_visible():
+        page.get_by_role("tab", name="Parts").click()
     row = page.get_by_role("treeitem").filter(has_text=part).last
     row.scroll_into_view_if_needed()
     row.click()

@@ -94,7 +94,7 @@ class Alarm extends HTMLElement {
     if (!this.body) this.#buildBody();
     const { error, below, view, signal } = this.#shown;
     const worse = worseBelow(error, below);
-    setText(this.meaning, consequence(worse ?? error) + (worse ? `, by ${errorName(worse)}` : ""));
+    setText(this.meaning, consequence(worse ?? error) + (worse ? ` (${errorName(worse)})` : ""));
     setText(this.measure, measured(error, signal));
     setText(this.facts, factsOf(error));
     const hint = hintOf(error);
