@@ -5,10 +5,11 @@ import { duration } from "/web/js/base/words.js";
 
 const SOON_OLD_MS = 5000;
 
-/** The value as `[text, unit]`; the stop is engaged whatever its signal says. */
+/** The value as `[text, unit, aside]`; the stop is engaged whatever its signal says. */
 export function valueWords(name, signal, emergencyStop) {
   const [text, unit] = signal.value === null ? ["?", ""] : describe(name, signal).show(signal.value);
-  return name === "estop" && emergencyStop?.engaged ? ["stop engaged", `(signal: ${text})`] : [text, unit];
+  const isStop = name === "estop" && emergencyStop?.engaged;
+  return isStop ? ["stop engaged", "", `signal: ${text}`] : [text, unit, ""];
 }
 
 /** How urgent a signal is: "error", "pending", "stale", "unknown" or "ok". */
