@@ -118,17 +118,12 @@ def test_who_wants_no_motion_sees_none(browser: Browser, service: Service) -> No
     page.close()
 
 
-@pytest.mark.parametrize(("parts", "size"), [(3, "small"), (101, "large")])
-def test_few_parts_leave_their_room_to_timeline_and_signals(
-    desktop: Page, parts: int, size: str
-) -> None:
-    del parts
-    if size == "small":
-        expect(desktop.locator("body")).to_have_attribute("data-size", "small")
-        timeline = desktop.locator(".region-timeline").bounding_box()
-        assert timeline is not None
-        assert timeline["x"] == 0
-        assert timeline["height"] > 180
+def test_few_parts_leave_their_room_to_timeline_and_signals(desktop: Page) -> None:
+    expect(desktop.locator("body")).to_have_attribute("data-size", "small")
+    timeline = desktop.locator(".region-timeline").bounding_box()
+    assert timeline is not None
+    assert timeline["x"] == 0
+    assert timeline["height"] > 180
 
 
 def test_a_tab_says_how_much_in_it_asks_for_attention(phone: Page, service: Service) -> None:
