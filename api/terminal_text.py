@@ -16,7 +16,13 @@ def complain(message: str) -> None:
     """Say on the standard error what went wrong."""
     # Where standard error takes nothing, the exit code is all that is left.
     with suppress(OSError):
-        print(f"pilothouse: {message}", file=sys.stderr, flush=True)
+        text = "\n".join(map(visible, message.splitlines()))
+        print(f"pilothouse: {text}", file=sys.stderr, flush=True)
+
+
+def say(line: str) -> None:
+    """Print a line at once, also into a pipe; nothing in it can steer the terminal."""
+    print(visible(line), flush=True)
 
 
 def finding_line(file: str, finding: "Finding") -> str:

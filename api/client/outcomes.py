@@ -33,7 +33,11 @@ class NoAnswerError(Exception):
     """The service did not answer, or what answered is not Pilothouse."""
 
 
-def no_connection(url: str, error: Exception) -> NoAnswerError:
+class NoConnectionError(NoAnswerError):
+    """The service could not be connected to: it was sent nothing."""
+
+
+def no_connection(url: str, error: Exception) -> NoConnectionError:
     """Return the error for a service that could not be connected to.
 
     Args:
@@ -42,11 +46,11 @@ def no_connection(url: str, error: Exception) -> NoAnswerError:
     """
     words = str(error)
     if "CERTIFICATE_VERIFY_FAILED" in words:
-        return NoAnswerError(f"the certificate of {url} is not trusted: {words}")
+        return NoConnectionError(f"the certificate of {url} is not trusted: {words}")
     if url.startswith("https:") and "SSL" in words:
         plain = url.replace("https:", "http:", 1)
-        return NoAnswerError(f"what answers at {url} does not speak HTTPS; try {plain}")
-    return NoAnswerError(f"no service answers at {url}: is it running?")
+        return NoConnectionError(f"what answers at {url} does not speak HTTPS; try {plain}")
+    return NoConnectionError(f"no service answers at {url}: is it running?")
 
 
 def token_hint(*, given: bool) -> str:

@@ -3,8 +3,9 @@
 Only the HTTP interface is used, so commands work with any service that can be reached.
 """
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
+from difflib import get_close_matches
 from urllib.parse import quote
 
 import httpx
@@ -19,6 +20,9 @@ from api.client.outcomes import (
 )
 
 _DURABLE = "Pilothouse-Durable"
+_KINDS = ("systems", "nodes")
+_MOST_LISTED = 20
+"""Parts of a kind in a hint."""
 _TIMEOUT = httpx.Timeout(10.0, connect=3.0)
 
 
@@ -56,8 +60,7 @@ class ServiceClient:
             NoAnswerError: The service did not answer.
         """
         name = part.lstrip("/")
-        hints: list[str] = []
-        for kind in ("systems", "nodes"):
+        for kind in _KINDS:
             path = f"/{kind}/{quote(name)}"
             try:
                 self.call("GET", path)
@@ -65,13 +68,20 @@ class ServiceClient:
                 problem = error.problem
                 if problem.get("code") != "UNKNOWN_PART":
                     raise
-                if hint := problem.get("hint"):
-                    hints.append(str(hint).replace("known:", f"{kind}:"))
             else:
                 return path
         detail = f"there is no system or node {name!r}"
-        found = {"hint": "; ".join(hints)} if hints else {}
-        raise ServiceProblemError({**problem, "detail": detail, **found})
+        raise ServiceProblemError({**problem, "detail": detail, "hint": self._parts_like(name)})
+
+    def _parts_like(self, name: str) -> str:
+        """Return what may have been meant: the parts that there are, and the nearest of them."""
+        known = {
+            kind: [str(item["name"]) for item in self.call("GET", f"/{kind}")["items"]]
+            for kind in _KINDS
+        }
+        lists = "; ".join(f"{kind}: {_some_of(names)}" for kind, names in known.items() if names)
+        near = get_close_matches(name, [each for names in known.values() for each in names], n=1)
+        return lists + (f"; did you mean {near[0]}?" if near else "")
 
     def call(
         self,
@@ -134,6 +144,10 @@ class ServiceClient:
         if not self._is_volatile:
             return ""
         return str(self.call("GET", "/storage")["reason"] or "")
+
+
+def _some_of(names: Sequence[str]) -> str:
+    return ", ".join(names[:_MOST_LISTED]) + (", ..." if len(names) > _MOST_LISTED else "")
 
 
 @contextmanager

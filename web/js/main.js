@@ -10,6 +10,7 @@ import { PathWatch } from "/web/js/base/path_watch.js";
 import { emptyState, fold } from "/web/js/base/store.js";
 import "/web/js/base/theme.js";
 import "/web/js/header/token_form.js";
+import "/web/js/header/version_notice.js";
 import "/web/js/base/pills.js";
 import "/web/js/header/replay_bar.js";
 import "/web/js/header/moment_bar.js";
@@ -21,10 +22,9 @@ import "/web/js/header/notices.js";
 import "/web/js/header/menu.js";
 import "/web/js/header/tabs.js";
 import "/web/js/header/hold_list.js";
-import "/web/js/header/reason_list.js";
 import { goTo, listen } from "/web/js/header/keys.js";
 import { showTitle } from "/web/js/header/title.js";
-import "/web/js/parts/part_tree.js";
+import "/web/js/parts/part_list.js";
 
 const REDRAW_MS = 250;
 const MOCK_PAUSE_MS = 1000;
@@ -43,12 +43,13 @@ const pathWatch = new PathWatch(take);
 const panel = document.querySelector("ph-part-panel");
 const map = document.querySelector("ph-map");
 const tokenForm = document.querySelector("ph-token-form");
+const versionNotice = document.querySelector("ph-version-notice");
 const stopButton = document.querySelector("ph-stop-button");
 const elements = [
   ...document.querySelectorAll(
     "ph-stop-button, ph-stop-release, ph-state-bar, ph-replay-bar, ph-moment-bar, ph-notices, ph-tabs, #held ph-hold-list, " +
-      "ph-reason-list, ph-alarm-list, ph-reaction-list, ph-task-strip, ph-part-tree, ph-map, ph-part-panel, " +
-      "ph-signal-list, ph-event-list",
+      "ph-why, ph-task-strip, ph-part-tree, ph-map, ph-part-panel, " +
+      "ph-signal-list, ph-timeline, ph-what-if",
   ),
 ];
 let state = emptyState();
@@ -146,7 +147,8 @@ function hearMock({ kind, data }) {
 }
 
 /** After a restart that kept the events, the stream goes on where it was cut off. */
-function greet({ epoch, boot }) {
+function greet({ epoch, boot, page_version }) {
+  versionNotice.compare(page_version);
   loadMock();
   const goesOn = epoch === state.epoch || (state.epoch !== null && boot > 1);
   if (!goesOn) load(["/events?limit=50"], ([log]) => take({ ...log, type: "log" }));
@@ -171,11 +173,11 @@ function watch() {
 connection.addEventListener("unauthorized", askForToken);
 document.addEventListener("ph-unauthorized", askForToken);
 document.addEventListener("ph-token", () => connection.tryNow());
-connection.addEventListener("frame", ({ detail: frame }) => {
+function hear(frame, at = localNow()) {
   if (frame.type === "hello") greet(frame);
   if (frame.type === "event") hearMock(frame);
   panel.hear?.(frame);
-  if (frame.type === "state") clock.observe(frame.at, localNow());
+  if (frame.type === "state") clock.observe(frame.at, at);
   const isFirst = state.systemState === null;
   take(frame);
   if (isFirst && state.systemState) loadMock();
@@ -183,8 +185,20 @@ connection.addEventListener("frame", ({ detail: frame }) => {
     map.hear?.(state);
     pathWatch.look(state);
   }
-});
+}
 
+/** Show the frames that the page brought, which are as old as its first byte. */
+function showBrought() {
+  const block = document.getElementById("first-frame");
+  if (block === null) return;
+  const [{ responseStart }] = performance.getEntriesByType("navigation");
+  const at = performance.timeOrigin + responseStart;
+  for (const frame of JSON.parse(block.textContent)) hear(frame, at);
+  connection.heardAt(at);
+  block.remove();
+}
+
+connection.addEventListener("frame", ({ detail }) => hear(detail));
 document.addEventListener("ph-select", ({ detail }) => {
   selected = detail;
   draw();
@@ -198,6 +212,11 @@ document.addEventListener("ph-preview", ({ detail }) => {
 document.addEventListener("ph-moment", ({ detail }) => {
   moment = detail;
   draw();
+});
+document.addEventListener("ph-what-if", async () => {
+  await import("/web/js/what_if/drawer.js");
+  draw();
+  document.querySelector("ph-what-if").open();
 });
 document.addEventListener("ph-tab", ({ detail }) => {
   document.body.dataset.tab = detail;
@@ -223,6 +242,7 @@ document.addEventListener("ph-replay", ({ detail }) => take({ type: "replay", re
 document.addEventListener("ph-latch", ({ detail }) => take({ type: "latch", latch: detail }));
 setInterval(watch, REDRAW_MS);
 listen();
+showBrought();
 connection.tryNow();
 // A request shows at once whether a token is needed; the stream would wait for it first.
 load(["/system_state"], () => {});

@@ -2,14 +2,7 @@
 
 import "/web/js/map/map.js";
 import "/web/js/task/task_strip.js";
-import "/web/js/inspector/alarm_list.js";
-import "/web/js/inspector/reaction_list.js";
-import "/web/js/inspector/mode_switcher.js";
-import "/web/js/inspector/plan.js";
-import "/web/js/inspector/change.js";
 import "/web/js/inspector/why.js";
-import "/web/js/inspector/error_list.js";
 import "/web/js/inspector/part_panel.js";
-import "/web/js/what_if/mock_control.js";
 import "/web/js/signals/signal_list.js";
-import "/web/js/timeline/event_list.js";
+import "/web/js/timeline/timeline.js";

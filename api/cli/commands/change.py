@@ -1,13 +1,19 @@
 """`pilothouse mode` and `pilothouse state`: request a change, and follow it to its end."""
 
 import argparse
+import json
 import math
+import sys
 import time
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable
 from typing import TYPE_CHECKING
 
-from api.cli.commands.command import Command, add_url, with_service
+from api.cli.change_report import JsonReport, Report, TextReport, is_large, words_of
+from api.cli.commands.command import Command, add_format, add_url, with_service
+from api.cli.completers import mode_names, part_names
+from api.cli.terminal_line import TerminalLine
 from api.client.outcomes import Json, Outcome
+from api.terminal_text import say
 
 if TYPE_CHECKING:
     from api.client.service_client import ServiceClient
@@ -15,9 +21,26 @@ if TYPE_CHECKING:
 _TRANSITIONS = ("configure", "activate", "deactivate", "cleanup", "shutdown")
 _MAX_WAIT_S = 3600.0
 _POLL_S = 0.1
+_POLL_LARGE_S = 0.5
+"""Its answer has a step for each node."""
 
 _ABOUT_MODE = "change the mode of a system or node"
 _ABOUT_STATE = "request a lifecycle transition of a system or node"
+_MANY = """\
+The steps are told as they happen; of more than 20 nodes, how many have arrived.
+
+"""
+_MODE_EXAMPLES = """\
+  pilothouse mode actuation PERFORMANCE
+  pilothouse mode actuation PERFORMANCE --dry-run     show the steps only
+  pilothouse mode arm FAST --wait-for 30              wait for what it requires
+
+"""
+_STATE_EXAMPLES = """\
+  pilothouse state drive_base deactivate
+  pilothouse state actuation activate --wait 10
+
+"""
 _CODES = """\
 exit code: 0 succeeded; 1 rejected or failed;
            2 unknown: timed out, or no answer
@@ -27,21 +50,26 @@ exit code: 0 succeeded; 1 rejected or failed;
 
 
 def _add_mode_options(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument("part", metavar="PART", help="name of a system or node")
-    parser.add_argument("mode", metavar="MODE", help="name of one of its modes")
+    _add_part(parser)
+    mode_names(parser.add_argument("mode", metavar="MODE", help="name of one of its modes"))
     _add_change_options(parser)
 
 
 def _add_state_options(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument("part", metavar="PART", help="name of a system or node")
+    _add_part(parser)
     parser.add_argument(
         "transition", metavar="TRANSITION", choices=_TRANSITIONS, help=", ".join(_TRANSITIONS)
     )
     _add_change_options(parser)
 
 
+def _add_part(parser: argparse.ArgumentParser) -> None:
+    part_names(parser.add_argument("part", metavar="PART", help="name of a system or node"))
+
+
 def _add_change_options(parser: argparse.ArgumentParser) -> None:
     add_url(parser)
+    add_format(parser, "json: the change as it ended, or the plan")
     parser.add_argument(
         "--wait",
         default=60.0,
@@ -83,8 +111,10 @@ def _run(options: argparse.Namespace, what: str, request: dict[str, str | float]
 
     def ask(client: "ServiceClient") -> Outcome:
         if options.dry_run:
-            return show_plan(client, options.part, what, request, print)
-        return change(client, options.part, what, request, options.wait, print)
+            return show_plan(client, options.part, what, request, options.format, say)
+        with TerminalLine(sys.stderr) as line:
+            report = JsonReport(say) if options.format == "json" else TextReport(say, line)
+            return change(client, options.part, what, request, options.wait, report)
 
     return with_service(options.url, ask)
 
@@ -92,14 +122,14 @@ def _run(options: argparse.Namespace, what: str, request: dict[str, str | float]
 MODE = Command(
     "mode",
     _ABOUT_MODE,
-    f"{_ABOUT_MODE.capitalize()}.\n\n{_CODES}",
+    f"{_ABOUT_MODE.capitalize()}.\n{_MANY}{_MODE_EXAMPLES}{_CODES}",
     _add_mode_options,
     _run_mode,
 )
 STATE = Command(
     "state",
     _ABOUT_STATE,
-    f"{_ABOUT_STATE.capitalize()}.\n\n{_CODES}",
+    f"{_ABOUT_STATE.capitalize()}.\n{_MANY}{_STATE_EXAMPLES}{_CODES}",
     _add_state_options,
     _run_state,
 )
@@ -108,7 +138,12 @@ STATE = Command(
 
 
 def show_plan(
-    client: "ServiceClient", part: str, what: str, request: Json, say: Callable[[str], None]
+    client: "ServiceClient",
+    part: str,
+    what: str,
+    request: Json,
+    how: str,
+    say: Callable[[str], None],
 ) -> Outcome:
     """Show the steps that a change would take; nothing is changed.
 
@@ -117,6 +152,7 @@ def show_plan(
         part: System or node.
         what: `mode` or `state`.
         request: Body of the request.
+        how: `text` or `json`.
         say: Prints a line for the user.
 
     Raises:
@@ -125,11 +161,14 @@ def show_plan(
     """
     plan = client.call("POST", f"{client.path_of(part)}/{what}?dry_run=true", request)
     steps = plan["steps"]
+    if how == "json":
+        say(json.dumps(plan))
+        return Outcome.SUCCEEDED
     if not steps:
         say(f"{part} is there already: no step is needed")
     for step in sorted(steps, key=lambda step: int(step["stage"])):
         stage = f"stage {step['stage']}: " if plan["stages"] > 1 else ""
-        say(f"{stage}would {_words(step['action'])} {step['node']}")
+        say(f"{stage}would {words_of(step['action'])} {step['node']}")
     if steps and plan["expected_s"] is not None:
         say(f"takes about {plan['expected_s']:.3g} s")
     return Outcome.SUCCEEDED
@@ -141,10 +180,10 @@ def change(
     what: str,
     request: Json,
     wait_s: float,
-    say: Callable[[str], None],
+    report: Report,
     pause: Callable[[float], None] = time.sleep,
 ) -> Outcome:
-    """Request a change, and report its steps until it ends.
+    """Request a change, and report on it until it ends.
 
     Args:
         client: The service.
@@ -152,46 +191,32 @@ def change(
         what: `mode` or `state`.
         request: Body of the request.
         wait_s: Longest time to wait for the end, in seconds.
-        say: Prints a line for the user.
+        report: Tells how it goes on.
         pause: Waits for a number of seconds.
 
     Raises:
         ServiceProblemError: The request was rejected.
         NoAnswerError: The service did not answer; the outcome is unknown.
     """
-    view = client.call("POST", f"{client.path_of(part)}/{what}", request)
-    told: dict[tuple[str, int], str] = {}
+    path = client.path_of(part)
+    view = client.call("POST", f"{path}/{what}", request)
     deadline = time.monotonic() + wait_s
-    if view["status"] == "waiting":
-        say(f"waits: {view['reason']}")
     while True:
-        for line in _news(view["steps"], told):
-            say(line)
+        report.show(view)
         if view["status"] not in ("running", "waiting"):
             break
         if time.monotonic() >= deadline:
-            say(f"not ended within {wait_s:g} s; see {client.address.url}/changes/{view['id']}")
+            where = f"{client.address.url}/changes/{view['id']}"
+            report.give_up(view, f"not ended within {wait_s:g} s; see {where}")
             return Outcome.UNKNOWN
-        pause(_POLL_S)
+        pause(_POLL_LARGE_S if is_large(view) else _POLL_S)
         view = client.call("GET", f"/changes/{view['id']}")
-    say(f"{part}: {_words(view['status'])}" + (f": {view['reason']}" if view["reason"] else ""))
+    report.end(part, view, _actual(client, path) if is_large(view) else "")
     ends = {"succeeded": Outcome.SUCCEEDED, "timed_out": Outcome.UNKNOWN}
     return ends.get(view["status"], Outcome.FAILED)
 
 
-def _news(steps: Sequence[Json], told: dict[tuple[str, int], str]) -> Iterator[str]:
-    """Yield a line for each step that changed; the steps of a node keep their order."""
-    seen: dict[str, int] = {}
-    for step in steps:
-        number = seen[step["node"]] = seen.get(step["node"], 0) + 1
-        key, status = (step["node"], number), step["status"]
-        if status == "pending" or told.get(key) == status:
-            continue
-        told[key] = status
-        error = f": {step['error']}" if step["error"] else ""
-        ending = "..." if status == "running" else f": {_words(status)}{error}"
-        yield f"{_words(step['action'])} {step['node']}{ending}"
-
-
-def _words(label: str) -> str:
-    return label.replace("_", " ")
+def _actual(client: "ServiceClient", path: str) -> str:
+    """Return actual state and mode of a part, such as `active.FAST`."""
+    actual = client.call("GET", path)["actual"]
+    return ".".join(filter(None, (actual["state"], actual["mode"])))

@@ -5,9 +5,11 @@ import json
 from collections.abc import Callable
 from typing import TYPE_CHECKING
 
-from api.cli.commands.command import Command, add_url, with_service
+from api.cli.commands.command import Command, add_format, add_url, span, with_service
 from api.cli.error_lines import error_lines, is_on
+from api.cli.error_requests import acknowledge, open_errors, shelve, unshelve
 from api.client.outcomes import Outcome
+from api.terminal_text import say
 
 if TYPE_CHECKING:
     from api.client.service_client import ServiceClient
@@ -24,7 +26,6 @@ stay as they are.
 exit code: 0 no error is on, or all that was asked for is done;
            1 an error is on, or something was rejected; 2 no answer
 """
-_UNITS = {"s": 1.0, "min": 60.0, "h": 3_600.0}
 
 
 def _add_options(parser: argparse.ArgumentParser) -> None:
@@ -39,7 +40,7 @@ def _add_options(parser: argparse.ArgumentParser) -> None:
         "--for",
         dest="for_s",
         metavar="TIME",
-        type=shelf_time,
+        type=span,
         default=600.0,
         help="how long, such as 90s, 10min or 8h; default: 10min",
     )
@@ -47,36 +48,20 @@ def _add_options(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--unshelve", metavar="NAME", action="append", default=[], help="announce an error again"
     )
-    parser.add_argument(
-        "--format", choices=("text", "json"), default="text", help="default: %(default)s"
-    )
+    add_format(parser)
     add_url(parser)
-
-
-def shelf_time(text: str) -> float:
-    """Read a time with its unit, s, min or h; without one it is in seconds.
-
-    Raises:
-        ArgumentTypeError: It is no such time.
-    """
-    number = text.rstrip("smhin")
-    try:
-        return float(number) * _UNITS[text[len(number) :] or "s"]
-    except (ValueError, KeyError):
-        raise argparse.ArgumentTypeError(f"invalid time {text!r}; such as 10min") from None
 
 
 def _run(options: argparse.Namespace) -> int:
     def ask(client: "ServiceClient") -> Outcome:
         if not (options.ack or options.shelve or options.unshelve):
-            return list_errors(client, options.part, options.format, print)
+            return list_errors(client, options.part, options.format, say)
         for name in options.ack:
-            client.call("POST", f"{_path(client, name)}/acknowledge")
+            acknowledge(client, name)
         for name in options.shelve:
-            shelf = {"for_s": options.for_s, "reason": options.reason}
-            client.call("PUT", f"{_path(client, name)}/shelf", shelf)
+            shelve(client, name, options.for_s, options.reason)
         for name in options.unshelve:
-            client.call("DELETE", f"{_path(client, name)}/shelf")
+            unshelve(client, name)
         return Outcome.SUCCEEDED
 
     return with_service(options.url, ask)
@@ -100,17 +85,10 @@ def list_errors(
         ServiceProblemError: There is no such part.
         NoAnswerError: The service did not answer.
     """
-    query = {"open": "true"} if part is None else {"open": "true", "part": part}
-    found = client.call("GET", "/errors", query=query)
+    found = open_errors(client, part)
     if how == "json":
-        say(json.dumps(found, indent=2))
+        say(json.dumps(found))
     else:
         for line in error_lines(found["items"]) if found["items"] else ("no errors",):
             say(line)
     return Outcome.FAILED if any(map(is_on, found["items"])) else Outcome.SUCCEEDED
-
-
-def _path(client: "ServiceClient", name: str) -> str:
-    """Return the path of an error by its name among all."""
-    part, _, error = name.rpartition(".")
-    return f"{client.path_of(part) if part else ''}/errors/{error}"

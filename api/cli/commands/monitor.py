@@ -2,11 +2,11 @@
 
 import argparse
 
-from api.cli.commands.command import DEFAULT_URL, Command, answered, default_url
+from api.cli.commands.command import Command, add_url, answered
 
 _TEXT = """\
-Watch a robot in this terminal until Ctrl-C: its state with reasons, systems
-and nodes with their targets, signals and task. Nothing is changed.
+Watch a robot in this terminal until q or Ctrl-C: its state with reasons, its
+systems and nodes with their targets, signals and task. Nothing is changed.
 
 Each part has a line: the target, then the actual state and mode; (*) marks
 inferred values. Lines that need attention are marked:
@@ -34,19 +34,14 @@ environment:
   NO_COLOR               no colours
   COLUMNS                width without a terminal; default: 80
 
-exit code: 0 ended by Ctrl-C, or --once has a snapshot, also of a robot in
+exit code: 0 ended by q or Ctrl-C, or --once has a snapshot, also of a robot in
            ERROR; 1 rejected, as without a valid token; 2 no answer
 """
 
 
 def _add_options(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument(
-        "url",
-        nargs="?",
-        default=default_url(),
-        metavar="URL",
-        help="URL of the service; default: PILOTHOUSE_URL, else " + DEFAULT_URL,
-    )
+    parser.add_argument("address", nargs="?", metavar="URL", help="URL of the service; as --url")
+    add_url(parser)
     parser.add_argument("--once", action="store_true", help="show one snapshot, then exit")
     parser.add_argument(
         "--format", default="text", choices=("text", "json"), help="json: as in the HTTP interface"
@@ -56,7 +51,9 @@ def _add_options(parser: argparse.ArgumentParser) -> None:
 def _run(options: argparse.Namespace) -> int:
     from api.cli.monitor.monitor import monitor
 
-    return answered(lambda: monitor(options.url, options.format, once=options.once))
+    return answered(
+        lambda: monitor(options.address or options.url, options.format, once=options.once)
+    )
 
 
 COMMAND = Command("monitor", "watch a robot in a terminal", _TEXT, _add_options, _run)

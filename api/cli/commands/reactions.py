@@ -5,9 +5,10 @@ import json
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from typing import TYPE_CHECKING, Any, TypeAlias
 
-from api.cli.commands.command import Command, add_url, with_service
+from api.cli.commands.command import Command, add_format, add_url, with_service
+from api.cli.unknown_name import no_such
 from api.client.outcomes import Outcome
-from api.terminal_text import complain
+from api.terminal_text import say
 
 if TYPE_CHECKING:
     from api.client.service_client import ServiceClient
@@ -41,9 +42,7 @@ def _add_options(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--ack", metavar="NAME", action="append", default=[], help="acknowledge a reaction"
     )
-    parser.add_argument(
-        "--format", choices=("text", "json"), default="text", help="default: %(default)s"
-    )
+    add_format(parser, "json: {items}")
     add_url(parser)
 
 
@@ -64,12 +63,10 @@ def _run(options: argparse.Namespace) -> int:
     def ask(client: "ServiceClient") -> Outcome:
         items = client.call("GET", "/reactions")["items"]
         if not (options.arm or options.ack):
-            return list_reactions(items, options.format, print)
+            return list_reactions(items, options.format, say)
         wanted = [name for name, _ in options.arm] + options.ack
         if unknown := [name for name in wanted if _path(client, items, name) is None]:
-            known = ", ".join(item["reaction"] for item in items) or "none"
-            complain(f"there is no reaction {unknown[0]!r}; known: {known}")
-            return Outcome.FAILED
+            raise no_such("reaction", unknown[0], [item["reaction"] for item in items])
         for name, how in options.arm:
             body = {"arm": how, "reason": options.reason}
             client.call("PATCH", str(_path(client, items, name)), body)
@@ -92,7 +89,7 @@ def list_reactions(items: Sequence[Json], how: str, say: Callable[[str], None]) 
         say: Prints a line for the user.
     """
     if how == "json":
-        say(json.dumps({"items": items}, indent=2))
+        say(json.dumps({"items": items}))
     else:
         for line in reaction_lines(items) if items else ("no reactions",):
             say(line)

@@ -1,6 +1,7 @@
 """`pilothouse task`: submit the waypoints of a file as a task, and follow its progress."""
 
 import argparse
+import json
 import sys
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
@@ -9,10 +10,11 @@ from math import degrees
 from pathlib import Path
 from typing import TYPE_CHECKING, TextIO
 
-from api.cli.commands.command import Command, add_url, with_service
+from api.cli.commands.command import Command, add_format, add_url, with_service
 from api.cli.task_text import distance_text, status_text
 from api.cli.terminal_line import TerminalLine
 from api.client.outcomes import Json, Outcome, ServiceProblemError
+from api.terminal_text import complain, say
 
 if TYPE_CHECKING:
     from api.client.service_client import ServiceClient
@@ -24,6 +26,10 @@ header or a # line names the columns, such as s_m, x_m, y_m, psi_rad. Commas,
 semicolons, tabs or blanks separate them. --columns names the columns of a file
 that does not, and --heading the unit of its headings; --preview says how they
 were read.
+
+  pilothouse task track.csv --preview
+  pilothouse task track.csv --speed 1.5 --controller stanley
+  pilothouse task --cancel
 
 While there are holds, such as during an error, the task waits. After Ctrl-C
 the task continues; --cancel cancels it.
@@ -68,12 +74,13 @@ def _add_options(parser: argparse.ArgumentParser) -> None:
         default=True,
         help="follow the task to its end (default), or only submit it",
     )
+    add_format(parser, "json: the task as it ended, or the preview")
     add_url(parser)
 
 
 def _run(options: argparse.Namespace) -> int:
     if options.cancel:
-        return with_service(options.url, lambda client: cancel(client, print))
+        return with_service(options.url, lambda client: cancel(client, options.format, say))
     asked = TaskOptions(
         file=options.file,
         controller=options.controller,
@@ -83,8 +90,9 @@ def _run(options: argparse.Namespace) -> int:
         start_index=options.start_index,
         preview=options.preview,
         wait=options.wait,
+        is_json=options.format == "json",
     )
-    return with_service(options.url, lambda client: run_task(client, asked, print))
+    return with_service(options.url, lambda client: run_task(client, asked, say))
 
 
 COMMAND = Command("task", "submit or cancel a waypoint task", _TEXT, _add_options, _run)
@@ -109,6 +117,8 @@ class TaskOptions:
     """Only show the preview; submit nothing."""
     wait: bool = True
     """Follow the task to its end."""
+    is_json: bool = False
+    """Print only the preview, or the task as it ended."""
 
     @property
     def query(self) -> dict[str, str | int | float]:
@@ -149,8 +159,10 @@ def run_task(
         return Outcome.UNKNOWN
     try:
         found = client.call("POST", "/tasks/preview", csv=text, query=asked.query)
-        for line in preview_lines(asked.file, found):
+        for line in () if asked.is_json else preview_lines(asked.file, found):
             say(line)
+        if asked.preview and asked.is_json:
+            say(json.dumps(found))
         if asked.preview:
             return Outcome.SUCCEEDED
         return _drive(client, asked, text, say, err)
@@ -175,13 +187,21 @@ def _drive(
         task = client.call("POST", "/tasks", csv=text, query=asked.query)
         name = f"task {task['id']}"
         if not asked.wait:
-            say(f"{name} is started: {status_text(task)}")
+            say(json.dumps(task) if asked.is_json else f"{name} is started: {status_text(task)}")
             return Outcome.SUCCEEDED
         with TerminalLine(complaints, REDRAW_S) as progress:
-            return follow_task(client, task, say, progress)
+            outcome = follow_task(client, task, _silent if asked.is_json else say, progress)
+        if asked.is_json:
+            say(json.dumps(client.call("GET", f"/tasks/{task['id']}")))
+        return outcome
     except KeyboardInterrupt:
-        say(f"{name} goes on; to cancel it: {_cancel_command(client)}")
+        tell = complain if asked.is_json else say
+        tell(f"{name} goes on; to cancel it: {_cancel_command(client)}")
         raise
+
+
+def _silent(_: str) -> None:
+    """Tell nothing."""
 
 
 def _text_of(file: str, complaints: TextIO) -> str | None:
@@ -195,8 +215,13 @@ def _text_of(file: str, complaints: TextIO) -> str | None:
         return None
 
 
-def cancel(client: "ServiceClient", say: Say) -> Outcome:
+def cancel(client: "ServiceClient", how: str, say: Say) -> Outcome:
     """Cancel the current task.
+
+    Args:
+        client: The service.
+        how: `text` or `json`.
+        say: Prints a line.
 
     Raises:
         ServiceProblemError: The request was rejected.
@@ -207,11 +232,12 @@ def cancel(client: "ServiceClient", say: Say) -> Outcome:
     except ServiceProblemError as error:
         if error.problem.get("status") != HTTPStatus.NOT_FOUND:
             raise
-        say("there is no task to cancel")
+        say(json.dumps({"task": None}) if how == "json" else "there is no task to cancel")
         return Outcome.SUCCEEDED
     client.call("DELETE", "/tasks/current")
     ended = client.call("GET", f"/tasks/{task['id']}")
-    say(f"task {ended['id']} after {distance_text(ended)}: {status_text(ended)}")
+    words = f"task {ended['id']} after {distance_text(ended)}: {status_text(ended)}"
+    say(json.dumps({"task": ended}) if how == "json" else words)
     return Outcome.SUCCEEDED
 
 

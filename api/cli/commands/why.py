@@ -5,43 +5,82 @@ import json
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
-from api.cli.commands.command import Command, add_url, with_service
+from api.cli.commands.command import Command, add_format, add_url, with_service
+from api.cli.completers import mode_names, part_names
+from api.cli.hold_lines import hold_line
+from api.cli.unknown_name import no_such
 from api.client.outcomes import Json, Outcome
+from api.terminal_text import say
 
 if TYPE_CHECKING:
     from api.client.service_client import ServiceClient
 
-_ABOUT = "tell why a part is not where it should be, or what keeps it from a mode"
+_ABOUT = "tell why the robot does not drive, or why a part deviates"
 _TEXT = """\
-Tell why a system or node is not where it should be. With a mode, tell whether a
-request for that mode would be accepted now, and what keeps the part from it.
+Tell why the robot does not drive: its errors, and what holds it. With a system
+or node, tell why that is not where it should be. With a mode as well, tell
+whether a request for it would be accepted now, and what keeps the part from it.
 
-Each reason stands above those that it follows from; a root cause has none below.
+Each reason stands above those that it follows from; a root cause has none
+below.
 
-exit code: 0 it is where it should be, or the mode can be entered;
-           1 it is not, or there is no such part or mode; 2 no answer
+  pilothouse why
+  pilothouse why actuation
+  pilothouse why actuation PERFORMANCE
+
+exit code: 0 nothing keeps the robot from driving, the part is where it should
+           be, or the mode can be entered;
+           1 it is not so, or there is no such part or mode; 2 no answer
 """
 
 
 def _add_options(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument("part", metavar="PART", help="name of a system or node")
-    parser.add_argument("mode", metavar="MODE", nargs="?", help="name of one of its modes")
-    parser.add_argument(
-        "--format", choices=("text", "json"), default="text", help="default: %(default)s"
-    )
+    part = parser.add_argument("part", metavar="PART", nargs="?", help="name of a system or node")
+    part_names(part)
+    mode_names(parser.add_argument("mode", metavar="MODE", nargs="?", help="one of its modes"))
+    add_format(parser, "json: what the text is made of")
     add_url(parser)
 
 
 def _run(options: argparse.Namespace) -> int:
     def ask(client: "ServiceClient") -> Outcome:
+        if options.part is None:
+            return why_robot(client, options.format, say)
         if options.mode is None:
-            return why(client, options.part, options.format, print)
-        return why_not(client, options.part, options.mode, options.format, print)
+            return why(client, options.part, options.format, say)
+        return why_not(client, options.part, options.mode, options.format, say)
 
     return with_service(options.url, ask)
 
 
 WHY = Command("why", _ABOUT, _TEXT, _add_options, _run)
+
+
+def why_robot(client: "ServiceClient", how: str, say: Callable[[str], None]) -> Outcome:
+    """Tell what keeps the robot from driving.
+
+    Args:
+        client: The service.
+        how: `text` or `json`.
+        say: Prints a line for the user.
+
+    Raises:
+        ServiceProblemError: The service denied access.
+        NoAnswerError: The service did not answer.
+    """
+    state, holds = client.call("GET", "/system_state"), client.call("GET", "/holds")["items"]
+    stop = client.call("GET", "/emergency_stop")
+    is_free = not (state["reasons"] or holds or stop["engaged"])
+    if how == "json":
+        say(json.dumps({"system_state": state, "holds": holds, "emergency_stop": stop}))
+    else:
+        task = str(state["task_status"]).lower().replace("_", " ")
+        say(f"the robot is {state['state']}, {task}{'; nothing keeps it' if is_free else ''}")
+        if stop["engaged"]:
+            say(f"  emergency stop by {stop['by']}: {stop['reason'] or 'no reason given'}")
+        for line in (*reason_lines(state["reasons"]), *(f"  {hold_line(hold)}" for hold in holds)):
+            say(line)
+    return Outcome.SUCCEEDED if is_free else Outcome.FAILED
 
 
 def why(client: "ServiceClient", part: str, how: str, say: Callable[[str], None]) -> Outcome:
@@ -60,7 +99,7 @@ def why(client: "ServiceClient", part: str, how: str, say: Callable[[str], None]
     found = client.call("GET", f"{client.path_of(part)}/why")
     is_there = found["converged"] and not found["blockers"]
     if how == "json":
-        say(json.dumps(found, indent=2))
+        say(json.dumps(found))
     else:
         say(_where(part, found))
         for line in reason_lines(found["blockers"]):
@@ -81,17 +120,15 @@ def why_not(
         say: Prints a line for the user.
 
     Raises:
-        ServiceProblemError: There is no such part.
+        ServiceProblemError: There is no such part or mode.
         NoAnswerError: The service did not answer.
     """
     modes = client.call("GET", f"{client.path_of(part)}/modes")["items"]
     found = next((each for each in modes if each["mode"] == mode), None)
     if found is None:
-        known = ", ".join(each["mode"] for each in modes) or "none"
-        say(f"{part} has no mode {mode!r}; its modes: {known}")
-        return Outcome.FAILED
+        raise no_such(f"mode of {part}", mode, [each["mode"] for each in modes])
     if how == "json":
-        say(json.dumps(found, indent=2))
+        say(json.dumps(found))
     else:
         say(f"{part} {'can' if found['can_enter'] else 'cannot'} enter {mode} now")
         for line in (*reason_lines(found["blockers"]), *_guard_lines(found)):

@@ -5,10 +5,12 @@ import io
 import signal
 import sys
 from contextlib import suppress
+from functools import partial
 
 from rich.console import Console
 
 from api.cli.first_ended import until_first_ends
+from api.cli.monitor.keyboard import Keyboard, take_single_keys
 from api.cli.monitor.output import ChangeLog, Form, write_picture
 from api.cli.monitor.picture import picture
 from api.cli.monitor.screen import Screen, alternate_screen
@@ -22,7 +24,7 @@ _PATIENCE_S = 10.0
 
 
 def monitor(url: str, form: Form, *, once: bool) -> int:
-    """Show a robot until Ctrl-C, or once; return the exit code.
+    """Show a robot until q or Ctrl-C, or once; return the exit code.
 
     Args:
         url: Where the service runs.
@@ -81,9 +83,19 @@ async def _draw(address: Address, console: Console) -> None:
     watch = Watch(address.url)
     with alternate_screen(console) as screen:
         if hasattr(signal, "SIGCONT"):
-            # After Ctrl-Z and `fg` the terminal shows something else.
-            asyncio.get_running_loop().add_signal_handler(signal.SIGCONT, screen.forget)
-        await until_first_ends(Link(address, watch).run(), _redraw(screen, watch, console))
+            handler = partial(_come_back, screen)
+            asyncio.get_running_loop().add_signal_handler(signal.SIGCONT, handler)
+        await until_first_ends(
+            Link(address, watch).run(),
+            _redraw(screen, watch, console),
+            Keyboard().until_quit(),
+        )
+
+
+def _come_back(screen: Screen) -> None:
+    """Go on after Ctrl-Z and `fg`: the terminal shows something else, and was reset."""
+    screen.forget()
+    take_single_keys()
 
 
 async def _redraw(screen: Screen, watch: Watch, console: Console) -> None:

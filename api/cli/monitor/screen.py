@@ -4,12 +4,13 @@ Rich would write the whole screen for each picture; over a serial line of 9600 b
 seconds.
 """
 
-import sys
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 
 from rich.console import Console
 from rich.text import Text
+
+from api.cli.monitor.keyboard import single_keys
 
 _ERASE_LINE = "\x1b[K"
 _ERASE_SCREEN = "\x1b[2J"
@@ -67,24 +68,5 @@ def alternate_screen(console: Console) -> Iterator[Screen]:
     Args:
         console: Of a terminal.
     """
-    with console.screen(), _without_echo():
+    with console.screen(), single_keys():
         yield Screen(console)
-
-
-@contextmanager
-def _without_echo() -> Iterator[None]:
-    """Keep the terminal from echoing keys into the picture."""
-    if sys.platform == "win32" or not sys.stdin.isatty():
-        yield
-        return
-    import termios
-
-    before = termios.tcgetattr(sys.stdin)
-    local_modes = before[3]
-    quiet = [*before[:3], local_modes & ~termios.ECHO, *before[4:]]
-    termios.tcsetattr(sys.stdin, termios.TCSADRAIN, quiet)
-    try:
-        yield
-    finally:
-        # Discards typed keys, which were not meant for the shell.
-        termios.tcsetattr(sys.stdin, termios.TCSAFLUSH, before)

@@ -67,6 +67,11 @@ export class Connection extends EventTarget {
     this.#drop();
   }
 
+  /** Note that a frame came another way, at a time in ms since 1970. */
+  heardAt(at) {
+    this.#lastFrameAt = at;
+  }
+
   /** State of the connection: "connecting" (no frame yet), "live", "late" or "lost". */
   level() {
     if (this.#lastFrameAt === null) return this.#attempts < 2 ? "connecting" : "lost";

@@ -73,7 +73,8 @@ class Chips extends HTMLElement {
     const isKnown = level === "live" && roundTripMs !== null;
     const lost = skipped === 1 ? "1 frame skipped" : `${skipped} frames skipped`;
     const trip = isKnown ? `${Math.max(1, Math.round(roundTripMs))} ms` : "";
-    setText(this.delay, [trip, skipped > 0 ? `${skipped} skipped` : ""].filter(Boolean).join(" · "));
+    const missed = level === "live" && skipped > 0 ? `${skipped} skipped` : "";
+    setText(this.delay, [trip, missed].filter(Boolean).join(" · "));
     setAttribute(this.whole, "title", `${isKnown ? `Round trip ${trip}; ` : ""}${lost} since the page was opened`);
     setAttribute(this.tryNow, "hidden", retryInMs === null || level === "live");
   }

@@ -2,7 +2,7 @@
 
 const KEPT = "pilothouse-plain-keys";
 const REGIONS = ["parts", "map", "selected", "signals", "log", "why"];
-const FOCUSABLE = "a[href], button:enabled, input:enabled, select:enabled, [tabindex='0']";
+const FOCUSABLE = "a[href], summary, button:enabled, input:enabled, select:enabled, [tabindex='0']";
 
 /** For the list of keys: `{key, what}`. */
 export const KEYS = [

@@ -12,7 +12,9 @@ class StateBar extends HTMLElement {
     this.word = el("strong");
     this.text = el("span");
     this.sentence = el("h1", { class: "sentence" }, this.word, this.text);
+    this.count = el("span");
     this.more = el("button", { type: "button", class: "more", hidden: true });
+    this.more.append(this.count, el("span", { class: "more-word" }, " more"));
     this.more.addEventListener("click", () => {
       this.dispatchEvent(new CustomEvent("ph-why", { bubbles: true }));
     });
@@ -32,7 +34,8 @@ class StateBar extends HTMLElement {
     setText(this.text, said.text);
     setAttribute(this.sentence, "title", [`${said.word}: ${said.text}`, ...said.more].join("\n"));
     setAttribute(this.more, "hidden", said.more.length === 0);
-    setText(this.more, `+${said.more.length} more`);
+    setText(this.count, `+${said.more.length}`);
+    setAttribute(this.more, "aria-label", `+${said.more.length} more: why`);
     setAttribute(this.more, "title", said.more.join("\n"));
     this.chips.show(view);
     this.#speak(live, said, storageSentence(live, contact));
