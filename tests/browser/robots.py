@@ -146,3 +146,16 @@ def guarded_robot(folder: Path, fault: str | None = None) -> tuple[str, ...]:
     settings = f"nodes: {{{LONG}: {{fault: {fault}}}}}\n" if fault else ""
     robot.write_text(f"{settings}changes: {{transition_deadline_s: 2.0}}\n")
     return (str(model), "--robot", str(robot))
+
+
+def many_signals_robot(folder: Path, count: int = 200) -> tuple[str, ...]:
+    """Return arguments of `pilothouse serve` for the example with further signals, to be posted."""
+    robot = folder / "many_signals.yaml"
+    limits = "above: 80.0, clear_threshold: 70.0, unit: °C, stale_after_s: 0, severity: urgent"
+    signals = [
+        f"  motor_{number:03}_temperature: {{{limits}, error: HOT_{number:03}}}"
+        for number in range(count)
+    ]
+    mean = "of: motor_000_temperature, statistic: mean, window_s: 10.0, label: mean of motor 0"
+    robot.write_text("\n".join(["signals:", *signals, f"  motor_mean: {{{mean}}}", ""]))
+    return ("--robot", str(robot))
