@@ -47,11 +47,18 @@ AREAS = {
 PER_UNIT = 10
 
 
-def crowded_robot(folder: Path, nodes: int = 300) -> tuple[str, ...]:
+CROWDED_FAULTS = {
+    "motion/unit_04/brake_002": "die",
+    "power/unit_08/fan_003": "error",
+    "motion/unit_10/imu_004": "die",
+}
+
+
+def crowded_robot(folder: Path, nodes: int = 300, *, faulty: bool = False) -> tuple[str, ...]:
     """Return arguments of `pilothouse serve` for nodes in namespaces and in nested systems.
 
     The robot `carrier` consists of areas, an area of units with ten nodes each; the node
-    `motion/shared_clock` is in the systems `motion` and `power`.
+    `motion/shared_clock` is in the systems `motion` and `power`. `faulty`: with CROWDED_FAULTS.
     """
     shared = "motion/shared_clock"
     units: dict[str, list[str]] = {}
@@ -79,9 +86,11 @@ def crowded_robot(folder: Path, nodes: int = 300) -> tuple[str, ...]:
         )
     lines += [f"{node}: {of_a_node}" for unit in units.values() for node in unit]
     lines.append(f"{shared}: {of_a_node}")
-    model = folder / f"crowded_{nodes}.yaml"
+    model, robot = folder / f"crowded_{nodes}.yaml", folder / "crowded_robot.yaml"
     model.write_text("\n".join(lines) + "\n")
-    return (str(model),)
+    faults = (f"  {node}: {{fault: {fault}}}\n" for node, fault in CROWDED_FAULTS.items())
+    robot.write_text(f"nodes:\n{''.join(faults)}")
+    return (str(model), *(("--robot", str(robot)) if faulty else ()))
 
 
 GUARDED = """\

@@ -125,7 +125,7 @@ def rolled_back(page: Page, service: Service) -> None:
 def waiting(page: Page, service: Service) -> None:
     show_part(page, "mobile_manipulation")
     service.request("PATCH", "/mock/battery_level", {"value": 0.21})
-    page.get_by_text("battery_level is 0.21").wait_for()
+    page.get_by_text("Battery is 0.21").first.wait_for()
     post(service, f"{MANIPULATION}/mode", {"mode": "MANIPULATE", "wait_for_s": 600})
     page.get_by_role("button", name="Stop waiting").scroll_into_view_if_needed()
 

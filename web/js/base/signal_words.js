@@ -1,7 +1,7 @@
 /** Texts on signals: pure functions. `api/cli/monitor/words.py` has the same rules. */
 
 import { describe } from "/web/js/base/signal_catalog.js";
-import { duration } from "/web/js/base/words.js";
+import { duration, modeName } from "/web/js/base/words.js";
 
 const SOON_OLD_MS = 5000;
 
@@ -52,4 +52,11 @@ export function ageWords({ received_at, stale, settings }, isLive, now) {
   const age = now - Date.parse(received_at);
   const limit = settings?.stale_after_s ? settings.stale_after_s * 500 : SOON_OLD_MS;
   return isLive && !stale && age < Math.max(limit, 1000) ? "" : `${duration(age)} old`;
+}
+
+/** A message with signals called by their labels, and modes as on the page. */
+export function plainMessage(message, signals) {
+  return message.replace(/[\w/]+/g, (word) =>
+    Object.hasOwn(signals, word) ? describe(word, signals[word].unit).label : modeName(word),
+  );
 }
