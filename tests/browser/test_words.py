@@ -1,5 +1,6 @@
 """The page speaks as an operator does: no word of the interface is on it, in any state."""
 
+import json
 import re
 from typing import Any
 
@@ -27,7 +28,9 @@ SEEN = """() => {
             if (node.checkVisibility() && node.hasAttribute(name)) said.push(node.getAttribute(name));
     return [...new Set(said)];
 }"""
-OF_THE_INTERFACE = re.compile(r"__\w+__|[?&]\w+=|(?:^|\s)/\w*_\w+|\b(?:GET|PUT|POST|PATCH|DELETE) /")
+OF_THE_INTERFACE = re.compile(
+    r"__\w+__|[?&]\w+=|(?:^|\s)/\w*_\w+|\b(?:GET|PUT|POST|PATCH|DELETE) /"
+)
 NAME = re.compile(r"\w+")
 
 
@@ -51,7 +54,10 @@ def fields(service: Service) -> set[str]:
 def own_names(service: Service) -> set[str]:
     """Return what the robot itself calls its signals, errors and parts."""
     signals = service.request("GET", "/signals")["items"]
-    parts = [*service.request("GET", "/nodes")["items"], *service.request("GET", "/systems")["items"]]
+    parts = [
+        *service.request("GET", "/nodes")["items"],
+        *service.request("GET", "/systems")["items"],
+    ]
     raised = [str(fact) for signal in signals for fact in signal["settings"].values()]
     named = [*(signal["signal"] for signal in signals), *(part["name"] for part in parts), *raised]
     return {word for name in named for word in NAME.findall(name)}
@@ -64,6 +70,27 @@ def interface_words(page: Page, known: set[str]) -> list[str]:
         for text in texts
         if OF_THE_INTERFACE.search(text) or known.intersection(NAME.findall(text))
     ]
+
+
+def test_in_texts_the_default_mode_is_called_default_and_requests_keep_its_name(
+    desktop: Page,
+) -> None:
+    sent = {
+        "mode": "__DEFAULT__",
+        "modes": {"__DEFAULT__": 1},
+        "words": "arm is active.__DEFAULT__, __DEFAULT__ requested",
+        "label": "active.__DEFAULT__",
+        "part": "my__DEFAULT__part",
+    }
+    read = desktop.evaluate(
+        """async (text) => {
+            const { parsePlain } = await import("/web/js/base/plain_json.js");
+            return parsePlain(text);
+        }""",
+        json.dumps(sent),
+    )
+    words = "arm is active.default, default requested"
+    assert read == {**sent, "words": words, "label": "active.default"}
 
 
 @pytest.mark.timeout(180)
