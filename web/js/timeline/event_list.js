@@ -154,7 +154,7 @@ function makeLine(event) {
   const name = `Show ${timeOfDay(event.at)} in all panels`;
   line.append(
     el("button", { type: "button", class: "event-time", title: name, onclick: show }, time),
-    el("span", { class: "event-words" }, event.words, " ", el("span", { class: "event-kind" }, event.kind)),
+    el("span", { class: "event-words" }, event.words, " ", el("span", { class: "event-kind" }, event.kind.replace(/[._]/g, " "))),
   );
   if (event.cause !== null) line.append(...causesOf(event));
   return line;
