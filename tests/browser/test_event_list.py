@@ -18,6 +18,10 @@ def events(page: Page) -> Locator:
     return page.get_by_role("list", name="Recent events")
 
 
+def open_log(page: Page) -> None:
+    page.get_by_role("tab", name="Log").click()
+
+
 def earlier(page: Page) -> Locator:
     return page.get_by_role("button", name=re.compile("^Earlier"))
 
@@ -30,6 +34,7 @@ def test_earlier_events_are_loaded_over_restarts_up_to_the_first(
     desktop: Page, complaints: Complaints
 ) -> None:
     asked = tell_earlier_runs(desktop)
+    open_log(desktop)
     desktop.get_by_role("switch", name="Show details").check()
     expect(events(desktop)).to_contain_text(f"thing {LAST} happened")
 
@@ -48,6 +53,7 @@ def test_earlier_events_are_loaded_over_restarts_up_to_the_first(
 
 def test_a_line_tells_of_each_restart_and_of_what_may_be_missing(desktop: Page) -> None:
     tell_earlier_runs(desktop)
+    open_log(desktop)
     expect(events(desktop)).to_contain_text(f"thing {LAST} happened")
     for _ in range(3):
         count = events(desktop).locator("li").count()
@@ -68,6 +74,7 @@ def test_a_line_tells_of_each_restart_and_of_what_may_be_missing(desktop: Page) 
 
 def test_who_scrolls_to_the_end_gets_more_and_keeps_the_place(phone: Page) -> None:
     tell_earlier_runs(phone)
+    open_log(phone)
     expect(events(phone)).to_contain_text(f"thing {LAST} happened")
     last = events(phone).locator("li").last
     before = last.inner_text()
@@ -83,6 +90,7 @@ def test_who_scrolls_to_the_end_gets_more_and_keeps_the_place(phone: Page) -> No
 
 def test_why_earlier_events_cannot_be_read_is_told(desktop: Page) -> None:
     tell_earlier_runs(desktop)
+    open_log(desktop)
     expect(events(desktop)).to_contain_text(f"thing {LAST} happened")
     detail = "earlier events cannot be read: disk I/O error"
     problem = f'{{"status": 503, "code": "STORAGE_DEGRADED", "detail": "{detail}"}}'
@@ -96,6 +104,7 @@ def test_why_earlier_events_cannot_be_read_is_told(desktop: Page) -> None:
 
 
 def test_a_service_that_has_told_everything_offers_nothing_earlier(desktop: Page) -> None:
+    open_log(desktop)
     expect(events(desktop).locator("li")).not_to_have_count(0)
     while earlier(desktop).is_visible():
         earlier(desktop).click()
