@@ -59,11 +59,34 @@ class _RobotCollector(Collector):
             "state",
             ((str(state), float(state is view.state)) for state in SystemState),
         )
+        yield from self._problems()
+        deviating = (name for name, part in core.parts().items() if not part.converged)
+        yield _gauge(
+            "pilothouse_part_deviates",
+            f"1 for each part whose actual state deviates from its target; at most {_MAX_PARTS}",
+            "part",
+            ((str(name), 1.0) for name in islice(deviating, _MAX_PARTS)),
+        )
+        yield from self._driving()
+        now = self._supervisor.clock.now()
+        yield _gauge(
+            "pilothouse_signal_age_seconds",
+            "Time since the last reading of a signal; absent before the first one",
+            "signal",
+            (
+                (name, to_seconds(now - signal.received_at))
+                for name, signal in core.signals().items()
+                if signal.received_at is not None
+            ),
+        )
+
+    def _problems(self) -> Iterator[Metric]:
+        core = self._supervisor.core
         yield _gauge(
             "pilothouse_error_active",
             "1 for each active error",
             "error",
-            ((error, 1.0) for error in view.errors),
+            ((error, 1.0) for error in core.system_state().errors),
         )
         yield _gauge(
             "pilothouse_part_errors",
@@ -84,25 +107,6 @@ class _RobotCollector(Collector):
             "Number of reactions, by how they stand",
             "state",
             ((str(state), float(reactions[state])) for state in ReactionState),
-        )
-        deviating = (name for name, part in core.parts().items() if not part.converged)
-        yield _gauge(
-            "pilothouse_part_deviates",
-            f"1 for each part whose actual state deviates from its target; at most {_MAX_PARTS}",
-            "part",
-            ((str(name), 1.0) for name in islice(deviating, _MAX_PARTS)),
-        )
-        yield from self._driving()
-        now = self._supervisor.clock.now()
-        yield _gauge(
-            "pilothouse_signal_age_seconds",
-            "Time since the last reading of a signal; absent before the first one",
-            "signal",
-            (
-                (name, to_seconds(now - signal.received_at))
-                for name, signal in core.signals().items()
-                if signal.received_at is not None
-            ),
         )
 
     def _driving(self) -> Iterator[Metric]:
