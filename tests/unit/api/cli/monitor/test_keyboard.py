@@ -11,7 +11,6 @@ from contextlib import suppress
 
 import pytest
 
-from api.cli.monitor import keyboard
 from api.cli.monitor.keyboard import Keyboard, single_keys, take_single_keys
 
 
@@ -19,7 +18,7 @@ from api.cli.monitor.keyboard import Keyboard, single_keys, take_single_keys
 def controller(monkeypatch: pytest.MonkeyPatch) -> Iterator[int]:
     """Return the other end of a terminal that is the standard input, in the foreground."""
     controller, terminal = pty.openpty()
-    monkeypatch.setattr(keyboard.os, "tcgetpgrp", lambda _: os.getpgrp())
+    monkeypatch.setattr(os, "tcgetpgrp", lambda _: os.getpgrp())
     with os.fdopen(terminal, closefd=True) as stdin:
         monkeypatch.setattr(sys, "stdin", stdin)
         yield controller
@@ -51,7 +50,7 @@ async def test_other_keys_do_not(typed: bytes, controller: int) -> None:
 async def test_in_the_background_nothing_is_read(
     controller: int, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(keyboard.os, "tcgetpgrp", lambda _: os.getpgrp() + 1)
+    monkeypatch.setattr(os, "tcgetpgrp", lambda _: os.getpgrp() + 1)
     with single_keys():
         assert not await ends(b"q", controller)
 
